@@ -17,8 +17,8 @@ from tiers import QUICK, TIERS  # noqa: E402
 
 nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cover"}
-# in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
-# (in a browser they need not: what is dear there, the site, is one for all workers)
+# in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with
+# one worker (in a browser they need not: what is dear there, the site, is one for all workers)
 TOGETHER = ("notebooks", "jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
@@ -41,11 +41,23 @@ for tier in TIERS:
 def coverage(session: nox.Session) -> None:
     """Run the quick tier, and print which branches of hdrlab it takes, file by file, and in all.
 
-    By slipcover, which stops watching what was seen: coverage.py takes half as long again. Its own module is
-    loaded before pytest can rewrite asserts in it, and it reads none of the tests: it warns of both.
+    By slipcover, which stops watching what was seen: coverage.py takes half as long again. Its own
+    module is loaded before pytest can rewrite asserts in it, and it reads none of the tests: it
+    warns of both.
     """
-    watched = ("-m", "slipcover", "--branch", "--source", "hdrlab", "--skip-covered", "--dont-wrap-pytest")
-    unheard = ("-Wignore:Module already imported", "-Wignore:Unable to activate pytest:RuntimeWarning")
+    watched = (
+        "-m",
+        "slipcover",
+        "--branch",
+        "--source",
+        "hdrlab",
+        "--skip-covered",
+        "--dont-wrap-pytest",
+    )
+    unheard = (
+        "-Wignore:Module already imported",
+        "-Wignore:Unable to activate pytest:RuntimeWarning",
+    )
     test(session, QUICK, *unheard, under=watched)
 
 

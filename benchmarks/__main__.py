@@ -53,7 +53,9 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     options.subjects = options.subjects or subjects()
     if unknown := set(options.subjects) - set(subjects()):
-        parser.error(f"expected subjects out of {', '.join(subjects())}, got {', '.join(sorted(unknown))}")
+        parser.error(
+            f"expected subjects out of {', '.join(subjects())}, got {', '.join(sorted(unknown))}"
+        )
     known = [row.name for subject in options.subjects for row in chosen(subject, None)]
     if options.rows and (unknown := set(options.rows.split(",")) - set(known)):
         parser.error(f"expected rows out of {', '.join(known)}, got {', '.join(sorted(unknown))}")
@@ -110,7 +112,8 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"{table.summary(outcomes)}; it took {time.perf_counter() - start:.0f} s")
     if options.json:
         figures = {
-            row.name: {who: plain(one) for who, one in (found or {}).items()} for row, found in outcomes
+            row.name: {who: plain(one) for who, one in (found or {}).items()}
+            for row, found in outcomes
         }
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf8")
     if stopped:

@@ -2,12 +2,12 @@
 
 E      radiance that a photograph saw, (H, W, 3): the truth of its moment
 PSNR   of log2 E, dB: 20 log10 of the truth's range over the root mean square of the difference, both in
-       stops; the darkest per cent of the truth counts as black, and the median difference, the unit, is
-       taken off
+       stops; the darkest per cent of the truth counts as black, and the median difference, the
+       unit, is taken off
 
-The places are the embedded ones at 96 x 144 pixels. A visitor walks through them, and the camera of the films
-pans by a pixel a frame. Photographs: film response, 8 bits, a well of 20 000 electrons, noise of 5, seed 0.
-Times are seconds of a processor of this machine, per map made.
+The places are the embedded ones at 96 x 144 pixels. A visitor walks through them, and the camera of
+the films pans by a pixel a frame. Photographs: film response, 8 bits, a well of 20 000 electrons,
+noise of 5, seed 0. Times are seconds of a processor of this machine, per map made.
 """
 
 from collections.abc import Callable, Mapping
@@ -82,11 +82,14 @@ def film(name: str, step: int, *, pan: int = 1) -> Film:
     rng, frames, truth, hidden = np.random.default_rng(0), [], [], []
     for j, at in enumerate(movers.path(count, (0, step))):
         seen, mask = (
-            views(one, offsets)[j] for one in movers.compose_moment(place.radiance, figure(place), at)
+            views(one, offsets)[j]
+            for one in movers.compose_moment(place.radiance, figure(place), at)
         )
         truth.append(seen)
         hidden.append(mask > 0)
-        frames.append(camera.shoot(truth[-1], turn[[j % 2]], camera.Camera(**WELL), rng=rng).images[0])
+        frames.append(
+            camera.shoot(truth[-1], turn[[j % 2]], camera.Camera(**WELL), rng=rng).images[0]
+        )
     return Film(np.stack(frames), turn, np.stack(truth), ~np.any(hidden, axis=0))
 
 
@@ -95,7 +98,9 @@ def compared(found: Mapping[str, list[float]], seconds: float) -> dict[str, list
     ours = np.array(found["ours"])
     less = {f"ours less {other}, dB": (ours - found[other]).tolist() for other in list(found)[:-1]}
     return (
-        {f"{way}, dB": values for way, values in found.items()} | less | {"processor seconds each": [seconds]}
+        {f"{way}, dB": values for way, values in found.items()}
+        | less
+        | {"processor seconds each": [seconds]}
     )
 
 
@@ -177,7 +182,9 @@ def split(_: Path) -> dict[str, list[float]]:
         start = process_time()
         E = splitter.merge(splitter.shoot(taken.moments[1], e, bits=16, **WELL), e)
         seconds += process_time() - start
-        for way, made in zip(found, (merge(taken.bracket.images, taken.bracket.times, g), E), strict=True):
+        for way, made in zip(
+            found, (merge(taken.bracket.images, taken.bracket.times, g), E), strict=True
+        ):
             found[way].append(psnr(made, taken.moments[1]))
     return compared(found, seconds / len(sequences()))
 

@@ -31,7 +31,9 @@ from hdrlab.course.sandbox import tiers
 STARTS, TRIES = 7, 50
 SCALED = "def scaled(x): return 2 * x\n"
 CHANGES = 500
-LOADED = "numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading"
+LOADED = (
+    "numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading"
+)
 
 
 def start(clock: Callable[[], float], loaded: str = "numpy, scipy.ndimage, scipy.linalg") -> float:
@@ -63,9 +65,10 @@ def homeworks(folder: Path) -> dict[str, Any]:
         name: sum(_seconds(partial(_check, task.id), time.process_time) for task in each.tasks)
         for name, each in plans.items()
     }
-    return {"starts of Python, the dearest homework": max(spent.values()) / one, "s of a start": one} | {
-        f"starts of Python, {name}": seconds / one for name, seconds in spent.items()
-    }
+    return {
+        "starts of Python, the dearest homework": max(spent.values()) / one,
+        "s of a start": one,
+    } | {f"starts of Python, {name}": seconds / one for name, seconds in spent.items()}
 
 
 def _check(task: str) -> None:
@@ -84,13 +87,19 @@ def graded(folder: Path) -> dict[str, Any]:
     alone = both._replace(tasks=tuple(task for task in both.tasks if task.id == "gsolve"))
     wrong = inline.inlined({"gsolve": tasks["gsolve"]})["gsolve"].text
     files = {folder / "wrong.py": wrong.replace("(smoothness * w[1:-1]) ** 2", "1.0")}
-    files |= {folder / "whole.py": "\n\n".join(block.text for block in inline.inlined(tasks).values())}
+    files |= {
+        folder / "whole.py": "\n\n".join(block.text for block in inline.inlined(tasks).values())
+    }
     spent = []
     for (file, text), homework in zip(files.items(), (alone, both), strict=True):
         file.write_text(text)
         act = partial(grading.grade, file, homework, Conditions(tier="practice"))
-        spent.append(min(_seconds(act, _of_all) for _ in range(3)))  # what is loaded once is not the work's
-    return {"starts of Python, a check and a homework": np.array(spent) / start(_of_children, LOADED)}
+        spent.append(
+            min(_seconds(act, _of_all) for _ in range(3))
+        )  # what is loaded once is not the work's
+    return {
+        "starts of Python, a check and a homework": np.array(spent) / start(_of_children, LOADED)
+    }
 
 
 def begins(folder: Path) -> dict[str, Any]:
@@ -114,7 +123,9 @@ def _begin(subject: Subject) -> None:
 
 def hostile(folder: Path) -> dict[str, Any]:
     """Return what a file costs that changes one thing many times."""
-    once, twice = (_seconds(partial(_read, changes), time.process_time) for changes in (CHANGES, 2 * CHANGES))
+    once, twice = (
+        _seconds(partial(_read, changes), time.process_time) for changes in (CHANGES, 2 * CHANGES)
+    )
     return {
         f"starts of Python, {2 * CHANGES} changes": twice / start(_of_children),
         "power of the changes that it grows with": log2(twice / once),

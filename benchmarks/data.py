@@ -3,7 +3,8 @@
 E        radiance (H, W, 3) float32: the room of `scenes.computed`, its contrast stretched to 6.5 decades
 bracket  7 photographs, 2 stops apart, 8 bits, response of film, noise of a large sensor
 
-They are simulated once per folder and read from it afterwards, so that every process has the same ones.
+They are simulated once per folder and read from it afterwards, so that every process has the same
+ones.
 """
 
 import os

@@ -1,8 +1,8 @@
 """What a rerun of published experiments is made of: who runs it, what it finds, and what must hold of that.
 
-A figure is one number, or a few of one kind, such as median, 95 % and worst; a hold has as many limits. What
-an experiment finds beyond its holds is printed, too. Long work is shared among processors: each item draws
-from a seed of its own, so the figures do not depend on who does which.
+A figure is one number, or a few of one kind, such as median, 95 % and worst; a hold has as many
+limits. What an experiment finds beyond its holds is printed, too. Long work is shared among
+processors: each item draws from a seed of its own, so the figures do not depend on who does which.
 """
 
 import os
@@ -95,7 +95,10 @@ def findings(one: Experiment, folder: Path) -> Found:
     """Return what an experiment finds; Skipped and Ctrl-C pass, any other failure becomes a RuntimeError."""
     try:
         found = one.run(folder)
-        return {what: tuple(np.atleast_1d(value).astype(float).tolist()) for what, value in found.items()}
+        return {
+            what: tuple(np.atleast_1d(value).astype(float).tolist())
+            for what, value in found.items()
+        }
     except Skipped:
         raise
     except Exception as error:

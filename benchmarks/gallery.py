@@ -72,14 +72,21 @@ class Connection:
         lines = [f"{method} {path} HTTP/1.1", f"Host: {self.parts.netloc}", f"Accept: {accept}"]
         lines += [f"Cookie: {self.cookie}"] if self.cookie else []
         if method == "POST":
-            lines += [f"Origin: {self.parts.scheme}://{self.parts.netloc}", f"Content-Length: {len(body)}"]
+            lines += [
+                f"Origin: {self.parts.scheme}://{self.parts.netloc}",
+                f"Content-Length: {len(body)}",
+            ]
             lines += ["Content-Type: application/x-www-form-urlencoded"]
         writer.write("\r\n".join([*lines, "", ""]).encode() + body)
         head = (await reader.readuntil(b"\r\n\r\n")).decode("latin-1").split("\r\n")
-        fields = {name.lower(): value for name, _, value in (line.partition(": ") for line in head[1:])}
+        fields = {
+            name.lower(): value for name, _, value in (line.partition(": ") for line in head[1:])
+        }
         if "set-cookie" in fields:
             self.cookie = fields["set-cookie"].split(";")[0]
-        return int(head[0].split()[1]), await reader.readexactly(int(fields.get("content-length", 0)))
+        return int(head[0].split()[1]), await reader.readexactly(
+            int(fields.get("content-length", 0))
+        )
 
 
 def build(folder: Path, voters: int) -> tuple[Path, dict[str, str]]:
@@ -93,10 +100,13 @@ def build(folder: Path, voters: int) -> tuple[Path, dict[str, str]]:
                 store.admit(db, store.Voter(f"v{k}", f"Voter {k}", f"team{k // TEAM}"))
         for team in range(-(-voters // TEAM)):
             photos.write_picture(
-                picture, np.kron(rng.integers(0, 256, (8, 12, 3), np.uint8), np.ones((20, 20, 1), np.uint8))
+                picture,
+                np.kron(rng.integers(0, 256, (8, 12, 3), np.uint8), np.ones((20, 20, 1), np.uint8)),
             )
             collect.hang(
-                db, room, collect.Entry(f"team{team}", f"View {team}", "A caption of a few words.", picture)
+                db,
+                room,
+                collect.Entry(f"team{team}", f"View {team}", "A caption of a few words.", picture),
             )
         with store.transaction(db):
             links = {f"v{k}": tokens.new_link(db, f"v{k}") for k in range(voters)}
@@ -109,7 +119,9 @@ def _when() -> Any:
     return datetime.fromisoformat(OPEN_FOR)
 
 
-def start(room: Path, port: int = 0, descriptors: int | None = None) -> tuple[subprocess.Popen[bytes], str]:
+def start(
+    room: Path, port: int = 0, descriptors: int | None = None
+) -> tuple[subprocess.Popen[bytes], str]:
     """Serve a gallery in a process of its own, and return it with its address when it answers.
 
     It has so many descriptors, and those of this process unless told.
@@ -173,7 +185,9 @@ class Voter:
             self.one.streams[1].close()
 
 
-async def voted(address: str, links: dict[str, str], *, within: float, changes: int, together: bool) -> Voted:
+async def voted(
+    address: str, links: dict[str, str], *, within: float, changes: int, together: bool
+) -> Voted:
     """Let everybody vote, and return what they saw. A server that dies ends it."""
     random, gate = Random(7), asyncio.Barrier(len(links)) if together else None
     done = Voted({kind: [] for kind in KINDS}, {}, {}, 0)
@@ -201,13 +215,15 @@ async def voted(address: str, links: dict[str, str], *, within: float, changes: 
 def judged(room: Path, seen: Voted) -> dict[str, Any]:
     """Return what became of the ballots that were acknowledged, and how long requests took.
 
-    A later ballot may stand there whose acknowledgement the kill cut off: it was written, so nothing is lost.
+    A later ballot may stand there whose acknowledgement the kill cut off: it was written, so
+    nothing is lost.
     """
     with closing(store.connect(room)) as db:
         kept = ballots.every(db)
         rows = db.execute("SELECT count(*) FROM ballots").fetchone()[0]
     lost = sum(
-        kept.get(who) not in (frozenset(last), frozenset(seen.sent[who])) for who, last in seen.last.items()
+        kept.get(who) not in (frozenset(last), frozenset(seen.sent[who]))
+        for who, last in seen.last.items()
     )
     found: dict[str, Any] = {
         "ballots lost": lost,
@@ -216,7 +232,9 @@ def judged(room: Path, seen: Voted) -> dict[str, Any]:
     }
     for kind, seconds in seen.seconds.items():
         if seconds:
-            found[f"ms of a {kind}: median, 95 %, worst"] = 1e3 * np.quantile(seconds, (0.5, 0.95, 1))
+            found[f"ms of a {kind}: median, 95 %, worst"] = 1e3 * np.quantile(
+                seconds, (0.5, 0.95, 1)
+            )
     return found | {"voters": len(seen.last)}
 
 
@@ -224,7 +242,13 @@ def voters(address: str, links: str, within: str, changes: str, together: str) -
     """Vote, in the second process: read the links, print what was seen as JSON."""
     read = json.loads(Path(links).read_text())
     seen = asyncio.run(
-        voted(address, read, within=float(within), changes=int(changes), together=together == "together")
+        voted(
+            address,
+            read,
+            within=float(within),
+            changes=int(changes),
+            together=together == "together",
+        )
     )
     sys.stdout.write(json.dumps(seen._asdict()) + "\n")
 
@@ -268,7 +292,9 @@ def load(
         if slow:
             words = [sys.executable, "-m", "benchmarks.gallery", "hold", address, str(slow)]
             holding = subprocess.Popen(words, cwd=ROOT)
-            _wait_for_connections(server, slow if descriptors is None else min(slow, descriptors // 5))
+            _wait_for_connections(
+                server, slow if descriptors is None else min(slow, descriptors // 5)
+            )
         arguments = [address, str(file), str(within), str(changes), how]
         command = [sys.executable, "-m", "benchmarks.gallery", *arguments]
         ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -288,7 +314,9 @@ def _wait_for_connections(server: subprocess.Popen[bytes], count: int) -> None:
         time.sleep(0.02)
 
 
-def killed(folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 1.5) -> dict[str, Any]:
+def killed(
+    folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 1.5
+) -> dict[str, Any]:
     """Return how many acknowledged ballots were lost when the server was killed while they came in."""
     lost = acknowledged = 0
     for k in range(times):
@@ -308,7 +336,11 @@ def killed(folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 
         again.wait()
         lost += int(judged(room, seen)["ballots lost"])
         acknowledged += len(seen.last)
-    return {"acknowledged ballots lost": lost, "acknowledged before the kill": acknowledged, "kills": times}
+    return {
+        "acknowledged ballots lost": lost,
+        "acknowledged before the kill": acknowledged,
+        "kills": times,
+    }
 
 
 def _wait_for_ballots(room: Path, server: subprocess.Popen[bytes], count: int) -> None:

@@ -1,7 +1,8 @@
 """`python -m benchmarks.installing [EXTRA]`: what an installation takes, in seconds and megabytes by package.
 
-An empty environment is made, hdrlab is installed into it from this clone, and the size of each package that
-hdrlab names is added up, with what none but it brings along. What several of them need is a line of its own.
+An empty environment is made, hdrlab is installed into it from this clone, and the size of each
+package that hdrlab names is added up, with what none but it brings along. What several of them need
+is a line of its own.
 """
 
 import importlib.metadata as metadata
@@ -25,7 +26,9 @@ def install(folder: Path, extra: str = "") -> float:
     python = next(folder.glob("[bS]*/python*"))
     begun = time.perf_counter()
     target = f"{ROOT}[{extra}]" if extra else str(ROOT)
-    subprocess.run([python, "-m", "pip", "install", "--quiet", "--no-cache-dir", target], check=True)
+    subprocess.run(
+        [python, "-m", "pip", "install", "--quiet", "--no-cache-dir", target], check=True
+    )
     return time.perf_counter() - begun
 
 
@@ -63,7 +66,9 @@ def shares(sizes: dict[str, float], needs: dict[str, set[str]]) -> dict[str, tup
     brings = {name: closure(name, needs) - (named - {name}) for name in named}
     users = Counter(one for among in brings.values() for one in among)
     rows = {name: [one for one in among if users[one] == 1] for name, among in brings.items()}
-    shared = sizes.keys() - {one for one, count in users.items() if count == 1}  # extras of others, too
+    shared = sizes.keys() - {
+        one for one, count in users.items() if count == 1
+    }  # extras of others, too
     rows["what several of them need"] = sorted(shared - {"hdrlab", "pip", "setuptools"})
     rows["hdrlab itself"] = ["hdrlab"]
     totals = {name: (sum(sizes[one] for one in among), len(among)) for name, among in rows.items()}

@@ -1,6 +1,7 @@
 """Run a command and print its seconds, its peak memory in bytes, and its exit code.
 
-A small process of its own, because Linux counts what the parent of a command held as the command's own.
+A small process of its own, because Linux counts what the parent of a command held as the command's
+own.
 
 arguments: CPU to stay on or -1, file for its input, file for its output, the command
 """

@@ -3,8 +3,8 @@
 time     wall clock, interleaved: in each round everyone once, so that a busy machine is busy for all of them
 memory   the peak of resident memory above what the process held before, in a fresh process, on the second run
 
-Resident memory counts what C++ allocates as well as what Python does. The first run brings in libraries
-and tables.
+Resident memory counts what C++ allocates as well as what Python does. The first run brings in
+libraries and tables.
 """
 
 import ctypes
@@ -96,7 +96,9 @@ def timed(case: Case) -> dict[str, Any]:
             break
         for who, run in case.runs.items():
             seconds[who].append(clocked(run))
-        if case.least:  # by turns, for what the others leave in memory and on the disk slows it down
+        if (
+            case.least
+        ):  # by turns, for what the others leave in memory and on the disk slows it down
             least.append(clocked(case.least))
     floors = dict.fromkeys(floors, median(least)) if least else floors
     return {"seconds": seconds, "errors": errors, "missing": case.missing, "floors": floors}
@@ -145,11 +147,21 @@ def peak(run: Run) -> float | None:
 
 
 def process(
-    command: list[str], *, one: bool, source: Path | str = os.devnull, target: Path | str = os.devnull
+    command: list[str],
+    *,
+    one: bool,
+    source: Path | str = os.devnull,
+    target: Path | str = os.devnull,
 ) -> Usage:
     """Return what a command takes; in one thread it stays on one processor, whatever its libraries like."""
     cpu = max(os.sched_getaffinity(0)) if one and hasattr(os, "sched_getaffinity") else -1
-    launch = [sys.executable, str(ROOT / "benchmarks" / "launch.py"), str(cpu), str(source), str(target)]
+    launch = [
+        sys.executable,
+        str(ROOT / "benchmarks" / "launch.py"),
+        str(cpu),
+        str(source),
+        str(target),
+    ]
     done = subprocess.run([*launch, *command], cwd=ROOT, capture_output=True, text=True)
     seconds, size, code = (done.stdout.split() or ["0", "0", "1"])[-3:]
     if done.returncode or int(code):
@@ -158,7 +170,9 @@ def process(
 
 
 def _kilobytes(status: Path, field: str) -> int:
-    return next(int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith(field))
+    return next(
+        int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith(field)
+    )
 
 
 if __name__ == "__main__":

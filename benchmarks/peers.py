@@ -70,7 +70,9 @@ def pfs_bracket(bracket: Bracket, folder: Path) -> Path:
     return frames
 
 
-def pfs_run(command: list[str], source: Path, one: bool, idle: tuple[str, ...] = ("pfstag",)) -> Run:
+def pfs_run(
+    command: list[str], source: Path, one: bool, idle: tuple[str, ...] = ("pfstag",)
+) -> Run:
     """Return a run of one of the pfstools, less what the idle one takes: to read and write the same alone."""
     busy, rest = ([pfstools(program), *options] for program, *options in (command, idle))
 

@@ -5,8 +5,9 @@ gray     the largest ratio of two channels' radiances of a gray wall, over the s
 spread   stops, what the map of all pixels leaves
 
 Cameras: eight of Grossberg and Nayar's 201 curves, evenly picked; no prior here was fitted to them. Scenes:
-the embedded ones at 240 x 360 pixels, in turn. Photographs: JPEG of quality 92, a well of 20 000 electrons,
-noise of 5; three and four frames 2 stops apart, five, seven and nine 1 stop; the seed is the curve's number.
+the embedded ones at 240 x 360 pixels, in turn. Photographs: JPEG of quality 92, a well of 20 000
+electrons, noise of 5; three and four frames 2 stops apart, five, seven and nine 1 stop; the seed is
+the curve's number.
 """
 
 import io
@@ -61,7 +62,9 @@ def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float
         off = (g[RELIABLE_LEVELS] - true) / np.log(2)
         error = np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
         E = merge_with_quality(taken.images, taken.times, g, weights.gaussian()).E
-        left = consistency.measure_spread(consistency.measure_level_exposures(taken.images, taken.times, E))
+        left = consistency.measure_spread(
+            consistency.measure_level_exposures(taken.images, taken.times, E)
+        )
         found[name] = (float(error), float(2 ** np.ptp(off, axis=1).max()), left)
     return found
 

@@ -1,7 +1,7 @@
 """What a subject is made of: rows of work, who does it, and what must hold of the figures.
 
-A hold compares one number, computed from the figures of all who did the work, with a limit; beyond it lies
-the goal.
+A hold compares one number, computed from the figures of all who did the work, with a limit; beyond
+it lies the goal.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,7 +36,8 @@ class Case(NamedTuple):
     missing : peer -> why it is not there
     error : how far a result is from the truth, given who made it; None where nothing can be said
     reads : bytes of the input, which have to be read at least once; by who where they differ
-    least : what must be done at least, where that is more than to go through memory: a file by one call
+    least : what must be done at least, where that is more than to go through memory: a file by one
+        call
     """
 
     runs: dict[str, Run]
@@ -49,8 +50,8 @@ class Case(NamedTuple):
 class Figures(NamedTuple):
     """Of one who did it: median seconds in one thread and by default, peak MB beyond the input, error.
 
-    `floor` is the seconds that the machine takes to read the input and write the result, and nothing else; of
-    a file, to read or write its bytes by one call.
+    `floor` is the seconds that the machine takes to read the input and write the result, and
+    nothing else; of a file, to read or write its bytes by one call.
     """
 
     seconds: float
@@ -66,7 +67,8 @@ Results = dict[str, Figures]
 class Hold(NamedTuple):
     """What must be at least, or at most, a limit; `figure` returns None where it cannot be told.
 
-    What is `timed` may end short of its limit where the machine does: no program could be much faster.
+    What is `timed` may end short of its limit where the machine does: no program could be much
+    faster.
     """
 
     what: str
@@ -84,7 +86,11 @@ class Hold(NamedTuple):
         if value >= self.limit if self.least else value <= self.limit:
             return "ok"
         ours = results[OURS]
-        return "AT FLOOR" if self.timed and ours.floor and ours.seconds <= NEAR * ours.floor else "MISSED"
+        return (
+            "AT FLOOR"
+            if self.timed and ours.floor and ours.seconds <= NEAR * ours.floor
+            else "MISSED"
+        )
 
 
 class Row(NamedTuple):

@@ -1,8 +1,9 @@
 """The figures as text: a block per row, who did the work line by line, then what it must hold.
 
-The floor is the time in which the machine reads the input and writes the result, and does nothing else: bytes
-over the bandwidth of a copy, or a file's bytes read or written by one call, measured in the same process and
-by turns with the others. A ratio that is short within a quarter of the floor is "AT FLOOR": the machine's.
+The floor is the time in which the machine reads the input and writes the result, and does nothing
+else: bytes over the bandwidth of a copy, or a file's bytes read or written by one call, measured in
+the same process and by turns with the others. A ratio that is short within a quarter of the floor
+is "AT FLOOR": the machine's.
 """
 
 from benchmarks.experiments import Experiment, Found, listed
@@ -16,7 +17,9 @@ def block(row: Row, results: Results, missing: dict[str, str]) -> str:
     lines = [f"{row.name}: {row.title}", _line("", (*COLUMNS, row.accuracy))]
     best = best_peer(results)
     for who, figures in results.items():
-        lines.append(_line(who + (" *" if who == best and len(results) > 2 else ""), _cells(figures)))
+        lines.append(
+            _line(who + (" *" if who == best and len(results) > 2 else ""), _cells(figures))
+        )
     lines += [f"  {peer}: missing, {reason}" for peer, reason in missing.items()]
     return "\n".join(lines + [verdict(row, n, results) for n in range(len(row.holds))])
 
@@ -32,7 +35,8 @@ def experiment(row: Experiment, found: Found) -> str:
         lines.append((what, published, listed(numbers), *rest))
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     cells = [
-        "   ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines
+        "   ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        for line in lines
     ]
     return "\n".join([f"{row.name}: {row.title}", *(f"  {line}".rstrip() for line in cells)])
 
@@ -56,7 +60,9 @@ def summary(outcomes: list[Outcome]) -> str:
 
 
 def _cells(figures: Figures) -> tuple[str, ...]:
-    times = [f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.2f} s" for seconds in figures[:2]]
+    times = [
+        f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.2f} s" for seconds in figures[:2]
+    ]
     memory = "-" if figures.megabytes is None else f"{figures.megabytes:.0f} MB"
     floor = "-" if not figures.floor else f"{figures.seconds / figures.floor:.3g}"
     return (*times, memory, floor, "-" if figures.error is None else f"{figures.error:.3g}")

@@ -4,29 +4,33 @@ inside   share of the measured pixels within 1.96 s of the true radiance, of all
 width    s over the Cramer-Rao bound, 1 / sqrt(sum 1 / V) with V of the true light: median over the brackets
 noise    electrons found over those that were: quartiles of the brackets; rounding hides those of some
 unsure   noise found: of the pixels that a camera without noise would measure, the share that the map calls
-         unmeasured (false alarms); of those that it would clip in every photograph, and of those that it
-         would call 0 in every one, the share that the map gives a deviation (misses), percent
+         unmeasured (false alarms); of those that it would clip in every photograph, and of those
+         that it would call 0 in every one, the share that the map gives a deviation (misses),
+         percent
 levels   response found: share of the cameras whose curve lies within 1.96 rho of the true one, by tenths of
          the levels 5 to 250. It is no 95 %, and `hdrlab calibrate` prints no such band
 error    root mean square of HDRutils' estimator [Hanji20], sum X / sum t, over that of the mean by inverse
-         variance, RAW of 16 bits: median; and the least z of a bracket, by how many standard errors its mean
-         square is greater: of 400 equal ones, chance makes one -3
+         variance, RAW of 16 bits: median; and the least z of a bracket, by how many standard errors
+         its mean square is greater: of 400 equal ones, chance makes one -3
 
-Cameras: all of Grossberg and Nayar's 201 curves, twice; nothing here was fitted to them. Scenes: the embedded
-ones, green, at 240 x 360 pixels, in turn. Photographs: three to seven of 8 bits, 1.2 to 2.3 stops apart, a
-well of 2 000 to 50 000 electrons and read noise of 1 to 20, drawn with the bracket's number.
+Cameras: all of Grossberg and Nayar's 201 curves, twice; nothing here was fitted to them. Scenes:
+the embedded ones, green, at 240 x 360 pixels, in turn. Photographs: three to seven of 8 bits, 1.2
+to 2.3 stops apart, a well of 2 000 to 50 000 electrons and read noise of 1 to 20, drawn with the
+bracket's number.
 
 chi2     of real brackets, green, by the noise found in them: squares of X / t - E over variance + (rho E)^2,
-         per degree of freedom. Asked are flat parts that two frames measure and where nothing moved, less the
-         hundredth of the pixels that differs most. 1 is what the model says; a camera that smooths or
-         sharpens before it writes JPEG, or a scanned film, need not keep to it
+         per degree of freedom. Asked are flat parts that two frames measure and where nothing
+         moved, less the hundredth of the pixels that differs most. 1 is what the model says; a
+         camera that smooths or sharpens before it writes JPEG, or a scanned film, need not keep to
+         it
 chance   the same without rho, where from each photograph its mean over pixels of like light is taken away:
-         what differs from pixel to pixel. So chi2 of `window` is no noise that was not found: its camera
-         bends the curve a little from photograph to photograph, for all pixels of a light alike. What is
-         left of `memorial`, scanned film, is shared by neighbours, a third to a half of it over eight pixels
+         what differs from pixel to pixel. So chi2 of `window` is no noise that was not found: its
+         camera bends the curve a little from photograph to photograph, for all pixels of a light
+         alike. What is left of `memorial`, scanned film, is shared by neighbours, a third to a half
+         of it over eight pixels
 
-Three ways: the sensor known; its noise found in the photographs; and the response found in them, too.
-Figures by decades below the brightest light, 0 to 5.
+Three ways: the sensor known; its noise found in the photographs; and the response found in them,
+too. Figures by decades below the brightest light, 0 to 5.
 """
 
 from collections.abc import Iterator, Mapping
@@ -111,7 +115,10 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float,
     true_g = families.invert_curves(exposure, brightness)[0]
     whole = float(np.exp(true_g[-1]))  # the exposure of a full well
     known = Noise(*(np.array([one]) for one in (well / whole, read, 0.0)))
-    counts, widths = np.zeros((2, len(WAYS), len(DECADES))), np.full((len(WAYS), len(DECADES)), np.nan)
+    counts, widths = (
+        np.zeros((2, len(WAYS), len(DECADES))),
+        np.full((len(WAYS), len(DECADES)), np.nan),
+    )
     floor = bound(Z, t, true_g, whole * E, known)
     for way in range(len(WAYS)):
         g, noise = true_g, known
@@ -184,7 +191,10 @@ def chi_square(taken: Bracket) -> Iterator[float]:
     state = pipeline.measure_deviation(pipeline.assemble(taken))
     images, t = state.bracket.images[..., 1], state.bracket.times[:, None, None]
     noise = estimate_noise(state.bracket.images, t.ravel(), state.g, state.E)
-    g, E = np.reshape(state.g, (256, -1))[:, min(1, state.g.ndim - 1)], state.E[..., 1].astype(np.float64)
+    g, E = (
+        np.reshape(state.g, (256, -1))[:, min(1, state.g.ndim - 1)],
+        state.E[..., 1].astype(np.float64),
+    )
     X, N, R, rho = np.exp(g), *(one[1] for one in noise)
     V, steep = (
         variance(E * t, np.gradient(X)[images], N, R) / t**2,
@@ -197,7 +207,9 @@ def chi_square(taken: Bracket) -> Iterator[float]:
     yield scattered(x, V + (rho * E) ** 2, measured)
     for alike in np.array_split(np.argsort(E), GROUPS):
         share = np.where(measured, x / E, np.nan)[:, alike]
-        x[:, alike] -= (np.nan_to_num(np.nanmean(share, axis=1, keepdims=True), nan=1.0) - 1) * E[alike]
+        x[:, alike] -= (np.nan_to_num(np.nanmean(share, axis=1, keepdims=True), nan=1.0) - 1) * E[
+            alike
+        ]
     yield scattered(x, V, measured)
 
 
@@ -234,7 +246,10 @@ ROWS = (
         compared,
         (
             *(hold for way in WAYS for hold in _true(way)),
-            *(at_most(f"unsure, {kind}", most) for kind, most in zip(KINDS, (2.0, 10.0, 10.0), strict=True)),
+            *(
+                at_most(f"unsure, {kind}", most)
+                for kind, most in zip(KINDS, (2.0, 10.0, 10.0), strict=True)
+            ),
             *(at_least(f"error, {d} decades below", 1.0, -4.0) for d in DECADES),
         ),
     ),

@@ -31,7 +31,8 @@ May I trust it?                        diagnostics.consistency, diagnostics.cont
 All of it in a row                     pipeline.assemble, pipeline.develop; io.photos.read_bracket
 Steps, sliders, plots                  show.widgets.play, show.widgets.tune, show.plots
 
-Chapters are loaded when they are first used: `import hdrlab` costs nothing, and `hdrlab.tonemap` works.
+Chapters are loaded when they are first used: `import hdrlab` costs nothing, and `hdrlab.tonemap`
+works.
 """
 
 import importlib

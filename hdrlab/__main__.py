@@ -4,7 +4,11 @@ import sys
 
 try:
     from hdrlab.cli import run
-except (KeyboardInterrupt, ImportError, RuntimeError) as error:  # a module of C wraps what rises in it
+except (
+    KeyboardInterrupt,
+    ImportError,
+    RuntimeError,
+) as error:  # a module of C wraps what rises in it
     if not isinstance(error.__cause__ or error, KeyboardInterrupt):
         raise
     sys.stderr.write("hdrlab: interrupted\n")

@@ -1,7 +1,8 @@
 """The main job on an embedded scene: photograph a chapel whose radiance is known, assemble, compare.
 
-The camera keeps its response to itself, the hand shakes, the sensor is noisy and has a few stuck pixels: all
-that a real bracket has, and the truth besides. `real_steps` does it with a real bracket, without the truth.
+The camera keeps its response to itself, the hand shakes, the sensor is noisy and has a few stuck
+pixels: all that a real bracket has, and the truth besides. `real_steps` does it with a real
+bracket, without the truth.
 """
 
 from collections.abc import Generator, Iterator
@@ -48,7 +49,9 @@ def real_steps(out: Path) -> Iterator[str]:
     yield f"report     {write_report(out, assembly, picture, recipe={'tonemap': settings})}"
 
 
-def _assemble_steps(out: Path, bracket: Bracket) -> Generator[str, None, tuple[pipeline.Assembly, Developed]]:
+def _assemble_steps(
+    out: Path, bracket: Bracket
+) -> Generator[str, None, tuple[pipeline.Assembly, Developed]]:
     """Write the maps and the picture of a bracket, yield a line about each step, return what was found."""
     out.mkdir(parents=True, exist_ok=True)
     for assembly in pipeline.assemble_steps(bracket):
@@ -66,7 +69,9 @@ def _summarise(assembly: pipeline.Assembly) -> str:
     """Return what a stage of the pipeline has to say."""
     match assembly.stage:
         case "align":
-            return "moved by " + ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets) + " pixels"
+            return (
+                "moved by " + ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets) + " pixels"
+            )
         case "times":
             times = assembly.bracket.times
             return f"the longest is {times[-1] / times[0]:.4g} times the shortest"

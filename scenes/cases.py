@@ -39,7 +39,10 @@ def by_place(E: F32) -> list[Array]:
 def corners(E: F32) -> list[Array]:
     """Return photographs of which the last has dark corners."""
     y, x = np.mgrid[-1 : 1 : SHAPE[0] * 1j, -1 : 1 : SHAPE[1] * 1j]
-    return [*take_three(E)[:2], take_three(E * (1 - 0.4 * (y**2 + x**2)).astype(np.float32)[..., None])[2]]
+    return [
+        *take_three(E)[:2],
+        take_three(E * (1 - 0.4 * (y**2 + x**2)).astype(np.float32)[..., None])[2],
+    ]
 
 
 def turned(E: F32) -> list[Array]:

@@ -4,9 +4,10 @@ A, B     radiance (H, W, 3) of one place, each from half of the paths: their dif
 rho      reflectance (H, W, 3) of what is seen
 guides   (H, W, G), what tells surfaces apart and has next to no noise: normal, ln depth, rho
 
-Radiance over reflectance is light, which is smoother than the surface it falls on. Two places count as alike
-where the patches around them differ by no more than the noise does [Rousselle12 sec. 4] and their guides
-agree [Rousselle13 sec. 4]. Each half is averaged with the weights of the other, which do not know its noise.
+Radiance over reflectance is light, which is smoother than the surface it falls on. Two places count
+as alike where the patches around them differ by no more than the noise does [Rousselle12 sec. 4]
+and their guides agree [Rousselle13 sec. 4]. Each half is averaged with the weights of the other,
+which do not know its noise.
 """
 
 from functools import partial
@@ -19,7 +20,8 @@ from scipy.ndimage import gaussian_filter, maximum_filter, uniform_filter
 
 Float = NDArray[np.floating[Any]]
 
-DARKEST = 0.02  # what reflects less counts as reflecting that much, for noise must not be divided by nothing
+# what reflects less counts as reflecting that much, for noise must not be divided by nothing
+DARKEST = 0.02
 
 
 def variance(A: Float, B: Float) -> Float:
@@ -40,12 +42,21 @@ def believed(A: Float, B: Float) -> Float:
 
 
 def average(
-    means: Float, light: Float, guides: Float, *, var: Float, radius: int, strength: float, tolerance: float
+    means: Float,
+    light: Float,
+    guides: Float,
+    *,
+    var: Float,
+    radius: int,
+    strength: float,
+    tolerance: float,
 ) -> Float:
     """Return `means` averaged with weights from `light`, the other half, and from the guides."""
     pad = ((radius, radius), (radius, radius))
     H, W = var.shape
-    wide = [np.pad(x, (*pad, (0, 0))[: x.ndim], mode="reflect") for x in (means, light, guides, var)]
+    wide = [
+        np.pad(x, (*pad, (0, 0))[: x.ndim], mode="reflect") for x in (means, light, guides, var)
+    ]
     total, sums = np.zeros((H, W, 1), np.float32), np.zeros_like(means)
     for dy, dx in product(range(-radius, radius + 1), repeat=2):
         there = (slice(radius + dy, radius + dy + H), slice(radius + dx, radius + dx + W))
@@ -81,8 +92,9 @@ def denoise(
 
     References
     ----------
-    Rousselle, Knaus and Zwicker, Adaptive rendering with non-local means filtering, SIGGRAPH Asia 2012.
-    Rousselle, Manzi and Zwicker, Robust denoising using feature and color information, Pacific Graphics 2013.
+    Rousselle, Knaus and Zwicker, Adaptive rendering with non-local means filtering, SIGGRAPH Asia
+    2012. Rousselle, Manzi and Zwicker, Robust denoising using feature and color information,
+    Pacific Graphics 2013.
     """
     under = np.maximum(rho, np.float32(DARKEST))
     a, b = believed(A, B) / under, believed(B, A) / under
@@ -102,8 +114,8 @@ def denoise(
 def finer(light: Float, coarse: Float, guides: Float, *, tolerance: float = 0.15) -> Float:
     """Return light of a grid half as fine, (H / 2, W / 2, 3), on that of the guides, (H, W, G).
 
-    Each pixel takes the mean of the coarse ones about it, with weights that fall with distance and where the
-    guides differ [Kopf07 sec. 3]; `coarse` holds the guides of the coarse grid.
+    Each pixel takes the mean of the coarse ones about it, with weights that fall with distance and
+    where the guides differ [Kopf07 sec. 3]; `coarse` holds the guides of the coarse grid.
 
     References
     ----------
@@ -120,9 +132,9 @@ def finer(light: Float, coarse: Float, guides: Float, *, tolerance: float = 0.15
             there = np.ix_(y + 2, x + 2)
             away = ((2 * y + 0.5 - row) ** 2)[:, None] + (2 * x + 0.5 - column) ** 2
             d = ((guides - known[there]) ** 2).sum(axis=2) / tolerance**2
-            w = (np.exp(-away / 6) * np.maximum(np.exp(-np.minimum(d, 50)), 1e-6))[..., None].astype(
-                np.float32
-            )
+            w = (np.exp(-away / 6) * np.maximum(np.exp(-np.minimum(d, 50)), 1e-6))[
+                ..., None
+            ].astype(np.float32)
             total += w
             sums += w * wide[there]
     return sums / total

@@ -18,7 +18,8 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
     Parameters
     ----------
     path : the file; what it held is replaced
-    layers : (H, W), (H, W, 3) or (H, W, 4) each, of one size, finite, not negative, up to 65504; the first
+    layers : (H, W), (H, W, 3) or (H, W, 4) each, of one size, finite, not negative, up to 65504;
+        the first
         is what programs see that know of one part alone
 
     Raises
@@ -28,7 +29,9 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
     """
     arrays = {name: np.asarray(layer, np.float32) for name, layer in layers.items()}
     if len({layer.shape[:2] for layer in arrays.values()}) != 1:
-        raise ValueError(f"expected layers of one size, got {[layer.shape for layer in arrays.values()]}")
+        raise ValueError(
+            f"expected layers of one size, got {[layer.shape for layer in arrays.values()]}"
+        )
     parts = []
     for name, layer in arrays.items():
         if layer.ndim not in (2, 3) or layer[0, 0].size not in CHANNELS:

@@ -65,8 +65,8 @@ def lit(
 ) -> Float:
     """Return E of a place in one light; `known` is what is seen in the frame, and in one half as fine.
 
-    Light varies less than the surface that it falls on: what other surfaces and lights of some size give is
-    found on the coarser grid, unless it is detailed.
+    Light varies less than the surface that it falls on: what other surfaces and lights of some size
+    give is found on the coarser grid, unless it is detailed.
     """
     E = shining(mi, place, parts, light, frame, samples, seed)
     if light.bounces == 1:
@@ -80,7 +80,9 @@ def lit(
     return E + np.maximum(fine.rho, np.float32(DARKEST)) * light_on
 
 
-def radiance(mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: int, seed: int) -> Float:
+def radiance(
+    mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: int, seed: int
+) -> Float:
     """Return E of a frame, the sum over all lights."""
     known: dict[tuple[str, ...], tuple[Guides, Guides]] = {}
     views, smooth = (frame, halved(frame)), min(samples, SMOOTH)
@@ -89,5 +91,7 @@ def radiance(mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: 
         if light.absent not in known:
             fine, blunt = (seen(mi, place, parts, light, view, smooth, seed) for view in views)
             known[light.absent] = fine, blunt
-        E = E + lit(mi, place, parts, light, frame, known[light.absent], samples, seed + 7919 * (k + 1))
+        E = E + lit(
+            mi, place, parts, light, frame, known[light.absent], samples, seed + 7919 * (k + 1)
+        )
     return E

@@ -1,7 +1,8 @@
 """The moving picture of README: what `play` shows in notebook 04, as an animated WebP.
 
-A dot is the level of a pixel in one photograph of a bracket, over ln exposure as it would be if all pixels
-had the same light. As the ln E of each pixel is added, all dots slide onto one curve, the response g.
+A dot is the level of a pixel in one photograph of a bracket, over ln exposure as it would be if all
+pixels had the same light. As the ln E of each pixel is added, all dots slide onto one curve, the
+response g.
 
     python -m scenes.readme -o README.webp
 """
@@ -45,7 +46,12 @@ def animate(frames: list[bytes]) -> bytes:
     options = {"lossless": True, "quality": 100, "method": 6, "loop": 0}
     film = [*there, *there[back]]
     film[0].save(
-        out, "WEBP", save_all=True, append_images=film[1:], duration=[*lasts, *lasts[back]], **options
+        out,
+        "WEBP",
+        save_all=True,
+        append_images=film[1:],
+        duration=[*lasts, *lasts[back]],
+        **options,
     )
     return out.getvalue()
 

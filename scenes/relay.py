@@ -5,8 +5,9 @@ n    their normals (n, 3)
 t    how far they lie from the projector, metres
 rho  their reflectance (n, 3)
 
-Paths that run on at random would seldom meet a small bright patch on the floor, and each that did would leave
-a speck. Paths that look for lamps find it [Keller97 sec. 3]: so the patch is covered with small lamps.
+Paths that run on at random would seldom meet a small bright patch on the floor, and each that did
+would leave a speck. Paths that look for lamps find it [Keller97 sec. 3]: so the patch is covered
+with small lamps.
 
 References
 ----------
@@ -26,7 +27,9 @@ from scenes.models.place import Light, Material, Place
 from scenes.models.shapes import Mesh, Parts, unit
 from scenes.tracer import Float, Frame, described, scene, sensor
 
-SMALL = 0.5  # side of a lamp in its cell: large ones would stand out over edges, in each other's light
+SMALL = (
+    0.5  # side of a lamp in its cell: large ones would stand out over edges, in each other's light
+)
 DARK = 1e-3  # of the brightest light: what gets less, behind the lead of a window, makes no lamp
 GRAZING = 0.08  # the least cosine: a surface almost along the light would get a lamp without end
 
@@ -40,7 +43,9 @@ def spots(mi: ModuleType, made: Any, beam: Material, count: int = 96) -> tuple[M
     view = {"type": "perspective", "fov": beam["fov"], "near_clip": 1.0, "film": film}
     eye = mi.load_dict(described(mi, view | {"look_at": beam["look_at"]}))
     aovs = mi.load_dict({"type": "aov", "aovs": "rho:albedo,n:geo_normal,P:position,t:depth"})
-    found = np.array(mi.render(made, sensor=eye, integrator=aovs, spp=1, seed=0), np.float64).reshape(-1, 10)
+    found = np.array(
+        mi.render(made, sensor=eye, integrator=aovs, spp=1, seed=0), np.float64
+    ).reshape(-1, 10)
     light = np.pi * zoom(beam["irradiance"], count).reshape(-1, 3)  # as Mitsuba's projector has it
     hit = (found[:, 9] > 0) & (light.max(axis=1) > DARK * light.max())
     rho, n, P, t = found[hit, :3], found[hit, 3:6], found[hit, 6:9], found[hit, 9]
@@ -48,13 +53,19 @@ def spots(mi: ModuleType, made: Any, beam: Material, count: int = 96) -> tuple[M
     n = n * -np.sign((n * ray).sum(axis=1, keepdims=True))
     cos = np.maximum(-(n * ray).sum(axis=1), GRAZING)
     side = 2 * t * np.tan(np.radians(beam["fov"]) / 2) / count / np.sqrt(cos)
-    E = rho * light[hit] * (cos / t**2)[:, None] / np.pi  # a matt surface returns rho / pi of what it gets
+    E = (
+        rho * light[hit] * (cos / t**2)[:, None] / np.pi
+    )  # a matt surface returns rho / pi of what it gets
     return squares(P, n, SMALL * side), chart(E / SMALL**2)
 
 
 def squares(P: Float, n: Float, side: Float) -> Mesh:
     """Return a square about each point, 2 mm before its surface; each has a texel of `chart` to itself."""
-    a = unit(np.cross(n, np.where(np.abs(n[:, :1]) < 0.7, [1.0, 0, 0], [0, 1.0, 0]))) * side[:, None] / 2
+    a = (
+        unit(np.cross(n, np.where(np.abs(n[:, :1]) < 0.7, [1.0, 0, 0], [0, 1.0, 0])))
+        * side[:, None]
+        / 2
+    )
     b = np.cross(n, a)
     corners = np.stack([P - a - b, P + a - b, P + a + b, P - a + b], axis=1) + 0.002 * n[:, None]
     first = 4 * np.arange(len(P))[:, None]
@@ -99,7 +110,9 @@ def relayed(mi: ModuleType, place: Place) -> dict[str, Light]:
             continue
         lights[name] = light._replace(bounces=1)
         with tempfile.TemporaryDirectory() as folder:
-            made = scene(mi, place, place.parts, light, Path(folder), sensor(mi, place.camera, Frame(1, 1)))
+            made = scene(
+                mi, place, place.parts, light, Path(folder), sensor(mi, place.camera, Frame(1, 1))
+            )
             found = [spots(mi, made, slide) for slide in slides]
         parts: Parts = [(f"spots {k}", mesh) for k, (mesh, _) in enumerate(found)]
         glow = {f"spots {k}": shine for k, (_, shine) in enumerate(found)}

@@ -1,8 +1,8 @@
 """Render a place again: `python -m scenes.render chapel -o chapel.exr`.
 
-Mitsuba 3 traces the paths (`pip install "hdrlab[scenes]"`), and is needed for nothing else. A place is
-rendered once per light, in two halves whose difference tells the noise, which `scenes.denoise` takes
-out.
+Mitsuba 3 traces the paths (`pip install "hdrlab[scenes]"`), and is needed for nothing else. A place
+is rendered once per light, in two halves whose difference tells the noise, which `scenes.denoise`
+takes out.
 
 E      radiance (H, W, 3), cd/m^2
 """
@@ -60,8 +60,12 @@ def cover(mi: ModuleType, place: Place, frame: Frame) -> Float:
     visitor = [("visitor", mesh) for _, mesh in place.visitor]
     white = Light({"visitor": (1.0, 1.0, 1.0)}, black=tuple(place.materials))
     with tempfile.TemporaryDirectory() as folder:
-        made = scene(mi, place, place.parts + visitor, white, Path(folder), sensor(mi, place.camera, frame))
-        return sharp(mi, made, place.camera, frame, {"type": "path", "max_depth": 1}, SMOOTH, 5)[..., 0]
+        made = scene(
+            mi, place, place.parts + visitor, white, Path(folder), sensor(mi, place.camera, frame)
+        )
+        return sharp(mi, made, place.camera, frame, {"type": "path", "max_depth": 1}, SMOOTH, 5)[
+            ..., 0
+        ]
 
 
 def around(mask: Float) -> tuple[slice, slice]:
@@ -77,8 +81,9 @@ def around(mask: Float) -> tuple[slice, slice]:
 def visitor(E: Float, without: Float, hidden: Float) -> Float:
     """Return the visitor's layer (H, W, 4): radiance times mask, and the mask of what he hides or shades.
 
-    The place with him is E = mover + (1 - mask) without. So what he hides is E - (1 - hidden) without, and a
-    surface in his shade counts as hidden by something black, in the share of its light that it has lost.
+    The place with him is E = mover + (1 - mask) without. So what he hides is E - (1 - hidden)
+    without, and a surface in his shade counts as hidden by something black, in the share of its
+    light that it has lost.
     """
     c = hidden[..., None]
     body = np.clip(E - (1 - c) * without, 0, None) * (c > 0)
@@ -128,7 +133,8 @@ def rendered(
     samples : paths per pixel of the coarser grid, in each light and round
     rounds : how often it is rendered, each time with other paths; the result is the mean
     seed : of the paths
-    variant : of Mitsuba; "llvm_ad_rgb" is quicker where the machine has LLVM, and its results are equal
+    variant : of Mitsuba; "llvm_ad_rgb" is quicker where the machine has LLVM, and its results are
+        equal
 
     Raises
     ------
@@ -149,12 +155,20 @@ def rendered(
 
 def main() -> None:
     """Render what the command line asks for."""
-    parser = argparse.ArgumentParser(prog="python -m scenes.render", description="Render a place again.")
+    parser = argparse.ArgumentParser(
+        prog="python -m scenes.render", description="Render a place again."
+    )
     parser.add_argument("name", choices=PLACES)
     parser.add_argument("-o", "--out", type=Path, help="an .exr file; NAME.exr, unless told")
-    parser.add_argument("--height", type=int, default=512, help="of the picture, pixels (default: 512)")
-    parser.add_argument("--samples", type=int, default=320, help="paths per pixel and light (default: 320)")
-    parser.add_argument("--rounds", type=int, default=4, help="of which the mean is taken (default: 4)")
+    parser.add_argument(
+        "--height", type=int, default=512, help="of the picture, pixels (default: 512)"
+    )
+    parser.add_argument(
+        "--samples", type=int, default=320, help="paths per pixel and light (default: 320)"
+    )
+    parser.add_argument(
+        "--rounds", type=int, default=4, help="of which the mean is taken (default: 4)"
+    )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
         "--variant", default="scalar_rgb", help="of Mitsuba; llvm_ad_rgb is quicker where LLVM is"

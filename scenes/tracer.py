@@ -48,7 +48,9 @@ def mitsuba(variant: str) -> ModuleType:
     try:
         mi = import_module("mitsuba")
     except ImportError:
-        raise ModuleNotFoundError('rendering a scene needs Mitsuba 3: pip install "hdrlab[scenes]"') from None
+        raise ModuleNotFoundError(
+            'rendering a scene needs Mitsuba 3: pip install "hdrlab[scenes]"'
+        ) from None
     mi.set_variant(variant)
     return mi
 
@@ -71,7 +73,9 @@ def described(mi: ModuleType, what: Any) -> Any:
         what = {"type": "bitmap", "data": what}
     if not isinstance(what, dict):
         return what
-    made = {key: described(mi, value) for key, value in what.items() if key not in ("data", "repeat")}
+    made = {
+        key: described(mi, value) for key, value in what.items() if key not in ("data", "repeat")
+    }
     if "data" in what:
         made["bitmap"] = mi.Bitmap(np.ascontiguousarray(what["data"][::-1], np.float32))
         made["raw"] = True  # numbers as they are: reflectance and radiance, not an encoded picture
@@ -119,7 +123,9 @@ def sensor(mi: ModuleType, camera: Camera, frame: Frame) -> Material:
     }
 
 
-def scene(mi: ModuleType, place: Place, parts: Parts, light: Light, folder: Path, view: Material) -> Any:
+def scene(
+    mi: ModuleType, place: Place, parts: Parts, light: Light, folder: Path, view: Material
+) -> Any:
     """Return Mitsuba's scene of a place in one of its lights."""
     black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
     whole: Material = {"type": "scene", "camera": view}
@@ -132,7 +138,11 @@ def scene(mi: ModuleType, place: Place, parts: Parts, light: Light, folder: Path
         solid = {"type": "ply", "filename": str(path), "bsdf": {"type": "twosided", "inner": bsdf}}
         if name in light.glow:
             glow = light.glow[name]
-            colour = {"type": "rgb", "value": list(glow)} if isinstance(glow, tuple) else described(mi, glow)
+            colour = (
+                {"type": "rgb", "value": list(glow)}
+                if isinstance(glow, tuple)
+                else described(mi, glow)
+            )
             solid["emitter"] = {"type": "area", "radiance": colour}
         if name.startswith("spots"):  # they shine, and are not in the way
             solid["bsdf"] = {"type": "mask", "opacity": 0.0, "bsdf": {"type": "diffuse"}}
@@ -143,7 +153,8 @@ def scene(mi: ModuleType, place: Place, parts: Parts, light: Light, folder: Path
 def solids(parts: Parts, light: Light) -> Parts:
     """Return what is there in a light, one mesh per material.
 
-    What shines with a texture stays apart: Mitsuba chooses a texel, and takes the one place where it lies.
+    What shines with a texture stays apart: Mitsuba chooses a texel, and takes the one place where
+    it lies.
     """
     there = [(name, mesh) for name, mesh in parts if name not in light.absent]
     apart = {name for name, glow in light.glow.items() if not isinstance(glow, tuple)}
@@ -156,17 +167,28 @@ def traced(mi: ModuleType, scene: Any, integrator: Material, samples: int, seed:
     kind, passes = mi.load_dict(integrator), -(-samples // PASS)
     total: Any = 0.0
     for k in range(passes):
-        total = total + np.array(mi.render(scene, integrator=kind, spp=PASS, seed=seed + k), np.float64)
-    return np.nan_to_num(total / passes, nan=0.0, posinf=0.0).astype(np.float32)  # a path in many millions
+        total = total + np.array(
+            mi.render(scene, integrator=kind, spp=PASS, seed=seed + k), np.float64
+        )
+    return np.nan_to_num(total / passes, nan=0.0, posinf=0.0).astype(
+        np.float32
+    )  # a path in many millions
 
 
 def sharp(
-    mi: ModuleType, scene: Any, camera: Camera, frame: Frame, integrator: Material, samples: int, seed: int
+    mi: ModuleType,
+    scene: Any,
+    camera: Camera,
+    frame: Frame,
+    integrator: Material,
+    samples: int,
+    seed: int,
 ) -> Float:
     """Return the mean of about `samples` lines of sight through each pixel, at most, (H, W, C).
 
-    All of a pixel's lines are spread over it at once: an edge then errs by N^-3/4 instead of N^-1/2, which is
-    what is left where passes of fewer are averaged [Mitchell96]. Strips of the picture bound the memory.
+    All of a pixel's lines are spread over it at once: an edge then errs by N^-3/4 instead of
+    N^-1/2, which is what is left where passes of fewer are averaged [Mitchell96]. Strips of the
+    picture bound the memory.
     """
     side = int(np.sqrt(samples))
     (top, bottom, _), (left, right, _) = (
@@ -188,7 +210,12 @@ def seen(
     """Return what the camera sees in a light, whatever there is of it."""
     with tempfile.TemporaryDirectory() as folder:
         made = scene(
-            mi, place, parts, Light(absent=light.absent), Path(folder), sensor(mi, place.camera, frame)
+            mi,
+            place,
+            parts,
+            Light(absent=light.absent),
+            Path(folder),
+            sensor(mi, place.camera, frame),
         )
         guides = {"type": "aov", "aovs": "rho:albedo,n:sh_normal,t:depth"}
         found = sharp(mi, made, place.camera, frame, guides, samples, seed)

@@ -104,7 +104,8 @@ Y = grays[2]
 t = threshold(np.bincount(Y.ravel(), minlength=256), 0.5)
 seen = np.where(exclusion(Y, t), 255 * (t < Y), 128).astype(np.uint8)
 pictures.picture(
-    seen, alt="The bitmap of the middle photograph: above the median white, below black, excluded gray"
+    seen,
+    alt="The bitmap of the middle photograph: above the median white, below black, excluded gray",
 )
 
 # %% [markdown] about="shrink"

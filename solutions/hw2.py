@@ -50,7 +50,8 @@ bracket = camera.shoot(
 grays = bracket.images[..., 1]
 Z, B = sampling.by_grid(grays, 60), np.log(bracket.times)
 pictures.picture(
-    plots.samples(Z, np.zeros(60), B), alt="Levels of sixty pixels over ln time: seven columns of dots"
+    plots.samples(Z, np.zeros(60), B),
+    alt="Levels of sixty pixels over ln time: seven columns of dots",
 )
 
 # %% [markdown] about="hat"
@@ -82,7 +83,9 @@ pictures.picture(
 # %% about="gsolve hat"
 found = gsolve(Z, B, 30, hat())
 ax = plots.samples(Z, found[1], B, g=found[0])
-pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E, lie on one rising curve, g")
+pictures.picture(
+    ax, alt="The sixty pixels' points, moved sideways by their ln E, lie on one rising curve, g"
+)
 
 # %% [markdown] about="irradiance"
 # ## 3 · Robertson: the best irradiance for a curve ({points})
@@ -132,7 +135,9 @@ ax = plots.response(responses.true_g(), label="true")
 plots.response(np.log(states[-1][0]), label=f"after {len(states) - 1} iterations", ax=ax)
 ax.lines[-1].set(color="#0072B2", linestyle="--")
 ax.legend()
-pictures.picture(ax, alt="The curve after the last iteration winds about the true one, once in two stops")
+pictures.picture(
+    ax, alt="The curve after the last iteration winds about the true one, once in two stops"
+)
 
 # %% [markdown] about="recover"
 # ## 6 · Mitsunaga and Nayar: a polynomial, and rough times ({points})

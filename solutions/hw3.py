@@ -133,7 +133,9 @@ print(f"unchanged when read again: {np.array_equal(from_bytes(data), np.float32(
 
 # %% about="to_radiance to_pixels merge"
 apart = np.abs(to_radiance(to_pixels(E)) / np.maximum(E, 1e-12) - 1)[E > 1e-6]
-print(f"RGBE keeps the channels within {np.median(apart):.2%} in the middle, and {apart.max():.0%} at worst")
+print(
+    f"RGBE keeps the channels within {np.median(apart):.2%} in the middle, and {apart.max():.0%} at worst"
+)
 
 # %% [markdown] about="decode_half"
 # ## 7 · Half a float ({points})
@@ -172,7 +174,9 @@ for word in (0x3C00, 0xC100, 0x7BFF, 0x0001, 0x7C00):
 
 # %% about="weighted_variance"
 levels = bracket.images[..., 1].copy()
-levels[2, 100:190, 60:95] = levels[2, 20:110, 200:235]  # as if something had stood there for a while
+levels[2, 100:190, 60:95] = levels[
+    2, 20:110, 200:235
+]  # as if something had stood there for a while
 z = np.arange(256)
 x, w = g[levels] - np.log(bracket.times)[:, None, None], np.minimum(z, 255 - z)[levels] / 127
 score = np.sqrt(weighted_variance(x, w)) / 0.2

@@ -70,7 +70,8 @@ pictures.radiance(room, alt="The room's radiance in false colour")
 Lm = 0.18 * L / log_average(L)
 Ld = display(Lm, Lm, 20.0)
 pictures.picture(
-    colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room by the global operator: inside and outside"
+    colour.to_8bit(colour.recolour(room, L, Ld)),
+    alt="The room by the global operator: inside and outside",
 )
 
 # %% [markdown] about="scale_steps"
@@ -123,7 +124,8 @@ base, detail = layers(lL, sigma_s=6.0)
 low, high = np.quantile(base, [0.01, 0.99])
 Ld = np.clip(10 ** (compress(base, low, high) + detail), 0, 1)
 pictures.picture(
-    colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room with its light compressed, details kept"
+    colour.to_8bit(colour.recolour(room, L, Ld)),
+    alt="The room with its light compressed, details kept",
 )
 
 # %% [markdown] about="fix_uncertain"

@@ -69,7 +69,10 @@ pictures.radiance(room, alt="The room's radiance in false colour")
 light = np.logspace(-4, 0, 201)
 full, R = 20_000, 5
 whole = variance(light, 0 * light + 1 / 4095, full, R)
-each = {"photons alone": light / np.sqrt(variance(light, 0 * light, full, 0)), "all": light / np.sqrt(whole)}
+each = {
+    "photons alone": light / np.sqrt(variance(light, 0 * light, full, 0)),
+    "all": light / np.sqrt(whole),
+}
 pictures.picture(
     curves.lines(
         np.log2(light),
@@ -106,7 +109,9 @@ pictures.picture(
 # %% about="inverse_variance_merge"
 green = room[..., 1] / room[..., 1].max()
 t, full, R = 4.0 ** np.arange(6) / 2, 20_000, 5
-taken = camera.shoot(green, t, camera.Camera(response="linear", bits=16, full_well=full, read_noise=R), rng=1)
+taken = camera.shoot(
+    green, t, camera.Camera(response="linear", bits=16, full_well=full, read_noise=R), rng=1
+)
 g = responses.true_g("linear", 2**16)
 X = np.exp(g - g[-1])[taken.images]
 E, s = inverse_variance_merge(X, np.full(X.shape, 1 / 65535), X < 0.98, t, full, R)
@@ -143,7 +148,8 @@ detail = l - base
 high = np.quantile(base, 0.99)
 Ld = np.clip(np.exp(0.45 * (base - high) + detail), 0, 1)
 pictures.picture(
-    colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room with its base compressed, details kept"
+    colour.to_8bit(colour.recolour(room, L, Ld)),
+    alt="The room with its base compressed, details kept",
 )
 
 # %% [markdown] about="remap"
@@ -166,7 +172,9 @@ pictures.picture(
 
 # %% about="remap"
 i = np.linspace(-8, 0, 201)[None]
-remapped = {f"alpha = {alpha}": remap(i, -4.0, sigma=1.0, alpha=alpha, beta=0.2)[0] for alpha in (0.5, 1, 2)}
+remapped = {
+    f"alpha = {alpha}": remap(i, -4.0, sigma=1.0, alpha=alpha, beta=0.2)[0] for alpha in (0.5, 1, 2)
+}
 pictures.picture(
     curves.lines(i[0], remapped, across="l, ln luminance", up="r, nats"),
     alt="r over l: steep, straight or flat at g = -4, and a gentle slope beyond sigma on both sides",
@@ -223,7 +231,9 @@ pictures.picture(
 sdr = np.clip(0.18 * room / np.exp(np.mean(np.log(L))), 0, None)
 hdr, sdr = np.minimum(sdr, 8), sdr / (1 + sdr)
 g = gain_map(sdr, hdr, 0.0, 3.2)
-pictures.picture(colour.to_8bit(g), alt="The gain map: bright in the window, the lamp and where sun falls")
+pictures.picture(
+    colour.to_8bit(g), alt="The gain map: bright in the window, the lamp and where sun falls"
+)
 
 # %% [markdown] about="apply_gain"
 # ## 7 · What a brighter screen shows ({points})
@@ -244,7 +254,9 @@ pictures.picture(colour.to_8bit(g), alt="The gain map: bright in the window, the
 # Return the light, 1 = white, that a screen shows which takes the part W of the gain.
 
 # %% about="gain_map apply_gain"
-shown = [apply_gain(sdr, np.rint(255 * g) / 255, 0.0, 3.2, W=W) / 8**W for W in (0, 1 / 3, 2 / 3, 1)]
+shown = [
+    apply_gain(sdr, np.rint(255 * g) / 255, 0.0, 3.2, W=W) / 8**W for W in (0, 1 / 3, 2 / 3, 1)
+]
 pictures.picture(
     colour.to_8bit(np.clip(np.hstack(shown), 0, 1)),
     alt="The room on screens of 1, 2, 4 and 8 times white: the larger, the more is to be seen in the window",
@@ -421,7 +433,9 @@ pictures.picture(
 
 # %% about="centre"
 pictures.picture(
-    colour.to_8bit(np.clip(L / np.quantile(L, 0.95), 0, 1) * centre(L.shape) / centre(L.shape).max()),
+    colour.to_8bit(
+        np.clip(L / np.quantile(L, 0.95), 0, 1) * centre(L.shape) / centre(L.shape).max()
+    ),
     alt="The room, which becomes darker and darker from the middle to the edges of the picture",
 )
 
@@ -453,7 +467,9 @@ pictures.picture(
 # Return where the patch around a pixel is flat, (H, W), of frames A (t, H, W).
 
 # %% about="flat"
-frames = np.clip(L / np.quantile(L, 0.95), 0, 1) + np.random.default_rng(8).normal(0, 0.01, (4, *L.shape))
+frames = np.clip(L / np.quantile(L, 0.95), 0, 1) + np.random.default_rng(8).normal(
+    0, 0.01, (4, *L.shape)
+)
 pictures.picture(
     colour.to_8bit(flat(frames).astype(float)),
     alt="White on most of the walls; black along edges, on most of the floor, and at the picture's rim",
@@ -477,8 +493,13 @@ pictures.picture(
 # Return the shortest x (k,) that minimises |A x - b|, by the SVD of A.
 
 # %% about="solve_by_svd"
-chain = np.array([[1.0, -1, 0], [0, 1, -1], [1, 0, -1]])  # differences of three numbers, and no number
-print(solve_by_svd(chain, np.array([1.0, 1, 2])), "as the differences say: 1, 1 and 2; their mean is 0")
+chain = np.array(
+    [[1.0, -1, 0], [0, 1, -1], [1, 0, -1]]
+)  # differences of three numbers, and no number
+print(
+    solve_by_svd(chain, np.array([1.0, 1, 2])),
+    "as the differences say: 1, 1 and 2; their mean is 0",
+)
 
 # %% [markdown]
 # ## The whole sheet

@@ -62,11 +62,16 @@ use_plan("project")
 FOLDER = ""
 room = scenes.room((240, 320))
 bracket = camera.shoot(
-    room, 2.0 ** np.arange(-9, 2, 2), camera.Camera(sensitivity=1 / 16, full_well=2e4, read_noise=5), rng=6
+    room,
+    2.0 ** np.arange(-9, 2, 2),
+    camera.Camera(sensitivity=1 / 16, full_well=2e4, read_noise=5),
+    rng=6,
 )
 if FOLDER:
     bracket = photos.read_bracket(Path(FOLDER))
-pictures.picture(plots.thumbnails(bracket), alt="The photographs, from the shortest exposure to the longest")
+pictures.picture(
+    plots.thumbnails(bracket), alt="The photographs, from the shortest exposure to the longest"
+)
 
 # %% [markdown]
 # ## 3 · The radiance map

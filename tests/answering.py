@@ -37,7 +37,12 @@ class Process:
     def __init__(self, *answers, forks=True, ended=0, used=0.0, left=1e9):
         self.answers, self.now, self.asked, self.links = list(answers), 100.0, [], []
         self.until, self.cleared, self.closed, self.granted = [], [], False, 2
-        self.sandbox, self.ended, self.used, self.left = SimpleNamespace(forks=forks), ended, used, left
+        self.sandbox, self.ended, self.used, self.left = (
+            SimpleNamespace(forks=forks),
+            ended,
+            used,
+            left,
+        )
         self.spoken, self.begun = None, None
 
     def __call__(self, sandbox, modules, seconds):

@@ -12,7 +12,10 @@ def radiance(texture, decades=2.0):
     rows, columns = H + 2 * MARGIN, W + 2 * MARGIN
     z = max(rows / texture.shape[0], columns / texture.shape[1]) + 0.01
     grown = zoom(texture.astype(np.float32) / 255, (z, z, 1), order=1)[:rows, :columns]
-    light = np.linspace(-0.25, 0.25, rows)[:, None, None] + np.linspace(-0.15, 0.15, columns)[None, :, None]
+    light = (
+        np.linspace(-0.25, 0.25, rows)[:, None, None]
+        + np.linspace(-0.15, 0.15, columns)[None, :, None]
+    )
     E = 10 ** (decades * (grown - 0.5 + light))
     return E / np.median(E)
 
@@ -31,5 +34,8 @@ def bracket(offsets, times, *, texture=None, decades=2.0, dtype=np.uint8, seed=0
     rng = np.random.default_rng(seed)
     E = radiance(astronaut() if texture is None else texture, decades)
     return np.stack(
-        [photograph(E, t, o, rng=rng, dtype=dtype, **knobs) for t, o in zip(times, offsets, strict=True)]
+        [
+            photograph(E, t, o, rng=rng, dtype=dtype, **knobs)
+            for t, o in zip(times, offsets, strict=True)
+        ]
     )

@@ -12,7 +12,9 @@ PLACE = Path("/checks")
 
 def item(name="test_a_promise", task="hat", *, folder=PLACE, subject=None, mark=None, check=None):
     """A check as pytest has it."""
-    made = SimpleNamespace(name=name, path=folder / f"test_{task}.py", get_closest_marker=lambda which: mark)
+    made = SimpleNamespace(
+        name=name, path=folder / f"test_{task}.py", get_closest_marker=lambda which: mark
+    )
     if subject is not None:
         made.funcargs = {"subject": subject}
     if check is not None:
@@ -48,5 +50,7 @@ def checking(folder):
     }
     made = Checking(job)
     (folder / "lines").touch()
-    made.lines = lambda: [json.loads(one) for one in (folder / "lines").read_text("utf8").splitlines()]
+    made.lines = lambda: [
+        json.loads(one) for one in (folder / "lines").read_text("utf8").splitlines()
+    ]
     return made

@@ -46,7 +46,8 @@ def pytest_configure(config):
         config.option.tier = ALL if named else QUICK
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    # a worker has a core: had it threads for all, they would wait for one another, and such waiting computes
+    # a worker has a core: had it threads for all, they would wait for one another, and such waiting
+    # computes
     threadpoolctl.threadpool_limits(1)
     for name in THREADS:
         os.environ.setdefault(
@@ -56,7 +57,9 @@ def pytest_configure(config):
 
 def pytest_ignore_collect(collection_path, config):
     """Leave unread what is of another tier as a whole."""
-    address = collection_path.relative_to(config.rootpath).as_posix() + "/" * collection_path.is_dir()
+    address = (
+        collection_path.relative_to(config.rootpath).as_posix() + "/" * collection_path.is_dir()
+    )
     return None if may_hold(address, config.option.tier) else True
 
 
@@ -89,7 +92,9 @@ def pytest_unconfigure():
     SCRATCH.cleanup()
 
 
-DATA = Path(__file__).resolve().parents[2] / "shared" / "data"  # beside the repository, not part of it
+DATA = (
+    Path(__file__).resolve().parents[2] / "shared" / "data"
+)  # beside the repository, not part of it
 
 
 @pytest.fixture(scope="session")
@@ -120,7 +125,9 @@ def photographs(shared):
         folder = shared(name)
         with open(folder / "exposures.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        images = np.stack([np.asarray(Image.open(folder / row["file"]).convert("RGB")) for row in rows])
+        images = np.stack(
+            [np.asarray(Image.open(folder / row["file"]).convert("RGB")) for row in rows]
+        )
         times = [float(row["exposure_time_s"]) for row in rows]
         return bracket(images, times, [row["file"] for row in rows])
 
@@ -141,8 +148,8 @@ def decades():
 def seven_frames(decades):
     """seven_frames(response) -> (E, Bracket): 7 frames, 2 stops apart, noise of a large sensor.
 
-    A well of 50 000 electrons and 5 electrons of noise: at a middling level 0.6 % of shot noise, beside the
-    rounding to 8 bits.
+    A well of 50 000 electrons and 5 electrons of noise: at a middling level 0.6 % of shot noise,
+    beside the rounding to 8 bits.
     """
 
     @cache
@@ -150,7 +157,10 @@ def seven_frames(decades):
         E = decades(shape)
         times = camera.times_around(E, 7, stops=2)
         return E, camera.shoot(
-            E, times, camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5), rng=7
+            E,
+            times,
+            camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5),
+            rng=7,
         )
 
     return shoot

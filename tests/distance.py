@@ -2,8 +2,8 @@
 
     python tests/distance.py     # prints tasks, verbs and rooms, and exits 1 where one is too large
 
-A line of code is one that is no docstring, comment or empty line. Names are followed through the imports
-inside hdrlab; what is looked up at run time is not.
+A line of code is one that is no docstring, comment or empty line. Names are followed through the
+imports inside hdrlab; what is looked up at run time is not.
 """
 
 import ast
@@ -46,7 +46,9 @@ def code_lines(text):
     words = [line.strip() for line in text.split("\n")]
     lines, docstrings = {n for n, word in enumerate(words, 1) if word and word[0] != "#"}, set()
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Constant | ast.JoinedStr):  # a long string is code, whatever it holds
+        if isinstance(
+            node, ast.Constant | ast.JoinedStr
+        ):  # a long string is code, whatever it holds
             lines.update(range(node.lineno, node.end_lineno + 1))
         if isinstance(node, DOCUMENTED) and ast.get_docstring(node) is not None:
             docstrings.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
@@ -128,7 +130,9 @@ def read(package=ROOT / "hdrlab"):
     """Return the Library of a package; reading takes seconds."""
     sources = {}
     for path in sorted(package.rglob("*.py")):
-        name = ".".join(path.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")
+        name = ".".join(path.relative_to(package.parent).with_suffix("").parts).removesuffix(
+            ".__init__"
+        )
         sources[name] = path.read_text(encoding="utf8")
     return Library(sources)
 
@@ -137,7 +141,9 @@ def tasks(package=ROOT / "hdrlab"):
     """Return the function of each task of the plan."""
     plan = tomllib.loads((package / "course" / "plan.toml").read_text(encoding="utf8"))
     each = [homework for homework in plan.values() if isinstance(homework, dict)]
-    return {task["id"]: f"hdrlab.{task['function']}" for one in each for task in one.get("tasks", [])}
+    return {
+        task["id"]: f"hdrlab.{task['function']}" for one in each for task in one.get("tasks", [])
+    }
 
 
 def excesses(library):
@@ -171,7 +177,9 @@ def main():
     rooms = library.rooms()
     for room, lines in rooms.most_common():
         print(f"{room:56}{lines:7}")
-    print(f"{'the lesson rooms':56}{sum(rooms[one] for one in LESSONS):7}\n{'hdrlab':56}{rooms.total():7}")
+    print(
+        f"{'the lesson rooms':56}{sum(rooms[one] for one in LESSONS):7}\n{'hdrlab':56}{rooms.total():7}"
+    )
     beyond = list(excesses(library))
     print(*beyond, sep="\n")
     return bool(beyond)

@@ -21,7 +21,9 @@ def pieces(folder, count=5, names="s"):
         path = folder / f"{names}{k}.py"
         if not path.exists():
             path.write_text(f"{folder / 'begun'}\n{'x' * k}")
-        made.append(journal.Piece(f"{names}{k}", path, journal.key(path.read_text().partition("\n")[2])))
+        made.append(
+            journal.Piece(f"{names}{k}", path, journal.key(path.read_text().partition("\n")[2]))
+        )
     return made
 
 

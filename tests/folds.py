@@ -2,8 +2,8 @@
 
     python tests/folds.py     # writes it into the notebooks' cells, as JupyterLab and the site read it
 
-A cell draws where it makes a picture or asks a prediction, whose code has the answer. It only draws where it
-calls nothing of the library but what shows, and defines no function that computes.
+A cell draws where it makes a picture or asks a prediction, whose code has the answer. It only draws
+where it calls nothing of the library but what shows, and defines no function that computes.
 """
 
 import ast

@@ -45,7 +45,9 @@ def picture(path, seed=0, shape=(60, 90, 3)):
     return path
 
 
-def make(folder, teams=TEAMS, *, marks=2, closes=CLOSES, names=None, title="{team}'s view", caption=""):
+def make(
+    folder, teams=TEAMS, *, marks=2, closes=CLOSES, names=None, title="{team}'s view", caption=""
+):
     """Make a gallery of these teams."""
     store.create(folder / "gallery", "Spring", closes, marks)
     with closing(store.connect(folder / "gallery")) as db:
@@ -96,15 +98,26 @@ class Browser:
 
     def ask(self, method, path, headers=None, pieces=(b"",)):
         cookies = "; ".join(f"{name}={value}" for name, value in self.cookies.items())
-        sent = {"host": self.address.netloc} | ({"cookie": cookies} if cookies else {}) | (headers or {})
+        sent = (
+            {"host": self.address.netloc}
+            | ({"cookie": cookies} if cookies else {})
+            | (headers or {})
+        )
         target, _, query = path.partition("?")
         scope = {
-            **{"type": "http", "method": method, "http_version": "1.1", "scheme": self.address.scheme},
+            **{
+                "type": "http",
+                "method": method,
+                "http_version": "1.1",
+                "scheme": self.address.scheme,
+            },
             **{"path": unquote_to_bytes(target).decode("latin-1"), "raw_path": target.encode()},
             **{"query_string": query.encode(), "client": ("192.0.2.1", 5000), "root_path": ""},
             "headers": [(name.encode(), value.encode("latin-1")) for name, value in sent.items()],
         }
-        with ThreadPoolExecutor(1) as apart:  # a browser test before may have left a loop running in this one
+        with ThreadPoolExecutor(
+            1
+        ) as apart:  # a browser test before may have left a loop running in this one
             answer = apart.submit(asyncio.run, asked(self.application, scope, pieces)).result()
         for made in SimpleCookie(answer.headers.get("set-cookie", "")).values():
             self.cookies[made.key] = made.value
@@ -127,4 +140,6 @@ async def asked(application, scope, pieces):
 
     await application(scope, receive, send)
     headers = {name.decode(): value.decode("latin-1") for name, value in messages[0]["headers"]}
-    return Answer(messages[0]["status"], headers, b"".join(one.get("body", b"") for one in messages[1:]))
+    return Answer(
+        messages[0]["status"], headers, b"".join(one.get("body", b"") for one in messages[1:])
+    )

@@ -65,7 +65,9 @@ CODE = {
         "import os\ndef hat(n=256):\n    print(os.urandom(9).hex())\n    os._exit(os.urandom(1)[0])\n"
     ),
     "kills itself": "import os\ndef hat(n=256):\n    os.kill(os.getpid(), 9)\n    os.abort()\n",
-    "closes its link": ("import os\ndef hat(n=256):\n    os.closerange(3, 64)\n    while True: pass\n"),
+    "closes its link": (
+        "import os\ndef hat(n=256):\n    os.closerange(3, 64)\n    while True: pass\n"
+    ),
     "fills the memory": "def hat(n=256):\n    return len([bytes(1 << 28) for _ in range(64)])\n",
     "crashes": "import ctypes\ndef hat(n=256):\n    ctypes.string_at(0)\n",
     "calls itself": "import sys\nsys.setrecursionlimit(10**9)\ndef hat(n=256):\n    return hat(n)\n",
@@ -93,7 +95,10 @@ FILES = {
     "a long number": (".ipynb", lambda: b'{"cells": ' + b"9" * SIZE + b"}"),
     "many cells that are no Python": (".ipynb", lambda: notebook(*["def hat(:"] * 1_000)),
     "a cell with half a character": (".ipynb", lambda: notebook("x = '\ud800'", HAT)),
-    "sheets that are no lists": (".ipynb", lambda: b'{"worksheets": [{"cells": 7}, 3, {"cells": [5]}]}'),
+    "sheets that are no lists": (
+        ".ipynb",
+        lambda: b'{"worksheets": [{"cells": 7}, 3, {"cells": [5]}]}',
+    ),
     "a cell's source that is a number": (".ipynb", lambda: notebook(7, [7, [8]], {"a": 1})),
     "names of cells": (".ipynb", lambda: b'{"cells": {"cell_type": "code"}}'),
     "NUL": (".py", lambda: b"\0" * SIZE),
@@ -107,11 +112,15 @@ FILES = {
     "statements on a line": (".py", lambda: code("a=1;" * 6_000)),
     "a chain of assignments": (
         ".py",
-        lambda: code("a0 = 1\n" + "\n".join(f"a{k + 1} = a{k}" for k in range(4_000)) + "\nn = a4000"),
+        lambda: code(
+            "a0 = 1\n" + "\n".join(f"a{k + 1} = a{k}" for k in range(4_000)) + "\nn = a4000"
+        ),
     ),
     "a chain of functions": (
         ".py",
-        lambda: code("\n".join(f"def f{k}(x=lambda: f{k + 1}): return f{k + 1}" for k in range(3_000))),
+        lambda: code(
+            "\n".join(f"def f{k}(x=lambda: f{k + 1}): return f{k + 1}" for k in range(3_000))
+        ),
     ),
     "many changes of a name": (".py", lambda: code("a = []\n" + "a.append(a)\n" * 3_000)),
     "many bindings of a name": (".py", lambda: code("a = 1\n" + "a = a + 1\n" * 3_000)),
@@ -137,11 +146,17 @@ FILES = {
             "f = lambda " + ", ".join(f"a{k}" for k in range(4_000)) + ": " + "(lambda: 0)," * 4_000
         ),
     ),
-    "comprehensions that bind": (".py", lambda: code("x = " + "[(a := " * 60 + "1" + ") for _ in b]" * 60)),
+    "comprehensions that bind": (
+        ".py",
+        lambda: code("x = " + "[(a := " * 60 + "1" + ") for _ in b]" * 60),
+    ),
     "a name of a megabyte": (".py", lambda: code("a" * SIZE + " = 1")),
     "dots": (".py", lambda: code("import " + "a." * 9_000 + "b")),
     "too much code": (".py", lambda: code("#" * 1_100_000)),
-    "a task that is too long": (".py", lambda: b"T = '" + b"x" * 950_000 + b"'\ndef hat(n=256): return T\n"),
+    "a task that is too long": (
+        ".py",
+        lambda: b"T = '" + b"x" * 950_000 + b"'\ndef hat(n=256): return T\n",
+    ),
 }
 
 NAMES = {

@@ -22,4 +22,6 @@ def turn_clock_back(here):
     (here.parent / "clock/sitecustomize.py").write_text(CLOCK)
     for path in here.rglob("*"):
         os.utime(path, (4e9, 4e9))
-    return os.pathsep.join([str(here.parent / "clock"), *filter(None, [os.environ.get("PYTHONPATH")])])
+    return os.pathsep.join(
+        [str(here.parent / "clock"), *filter(None, [os.environ.get("PYTHONPATH")])]
+    )

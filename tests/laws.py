@@ -54,7 +54,12 @@ def shrugs_off_a_hot_pixel(tonemap):
 
 def monotone(tonemap):
     """One curve for all pixels: a brighter pixel is never darker on the display."""
-    for L in (scene(), RADIANCES["zeros among it"], RADIANCES["the range of float32"], hot_pixel(scene())):
+    for L in (
+        scene(),
+        RADIANCES["zeros among it"],
+        RADIANCES["the range of float32"],
+        hot_pixel(scene()),
+    ):
         order = np.argsort(L, axis=None)
         assert np.all(np.diff(tonemap(L).ravel()[order]) >= -1e-6)  # float32 rounds
 
@@ -80,7 +85,10 @@ def photographs(response, *, shape=(60, 80), frames=7, bits=8, rng=11):
     E = (10.0 ** np.random.default_rng(rng).uniform(-2.5, 2.5, shape)).astype(np.float32)
     times = camera.times_around(E, frames, stops=2)
     return camera.shoot(
-        E, times, camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5), rng=rng
+        E,
+        times,
+        camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5),
+        rng=rng,
     )
 
 
@@ -185,7 +193,12 @@ def refuses_one_photograph_and_times_that_are_all_alike(recover, response):
 def refuses_photographs_that_share_no_level(recover, response):
     flat = np.full((40, 50), 1, np.uint8)
     ramp = np.broadcast_to(np.arange(100, 150), (40, 50)).astype(np.uint8)
-    for frames in ((0 * flat, 255 * flat), (2 * flat, 254 * flat), (ramp, 255 * flat), (0 * flat, ramp)):
+    for frames in (
+        (0 * flat, 255 * flat),
+        (2 * flat, 254 * flat),
+        (ramp, 255 * flat),
+        (0 * flat, ramp),
+    ):
         with pytest.raises(ValueError, match="expected"):
             recover(np.stack(frames), [1.0, 4.0])
 
@@ -194,7 +207,9 @@ def refuses_times_that_are_wrong_by_a_factor_of_100(recover, response):
     """Whether the photographs contradict each other under them, or only every camera that there is."""
     taken = photographs(response)
     images, times = taken.images, taken.times
-    factor = 10_000 if response == "linear" else 100  # at 100 it would pass for a camera of gamma 4.3
+    factor = (
+        10_000 if response == "linear" else 100
+    )  # at 100 it would pass for a camera of gamma 4.3
     off = float(factor) ** np.arange(len(times))
     for frames, wrong in (
         (images, times * np.r_[1 / factor, np.ones(len(times) - 1)]),
@@ -233,7 +248,9 @@ def answers_nonsense_with_a_rising_curve_or_an_error(recover, response):
         except ValueError as error:
             assert "expected" in str(error)
         else:
-            assert np.all(np.isfinite(g)) and np.all(np.diff(g, axis=0) >= 0) and np.all(g[128] == 0)
+            assert (
+                np.all(np.isfinite(g)) and np.all(np.diff(g, axis=0) >= 0) and np.all(g[128] == 0)
+            )
 
 
 RECOVERY = (

@@ -16,4 +16,6 @@ def told(file):
 
 def of(folder):
     """Return the processes whose environment names this folder, as where their scratch is."""
-    return [one for one, environment in told("environ").items() if str(folder).encode() in environment]
+    return [
+        one for one, environment in told("environ").items() if str(folder).encode() in environment
+    ]

@@ -1,11 +1,13 @@
 """Numbers that came for some input, and must come again: a file of them beside each module of tests.
 
-A module of tests has CASES, {function: calls}, each call without arguments. `python tests/recorded.py FILE`
-writes down what its calls answer; whoever does so says in the commit why the numbers may change.
+A module of tests has CASES, {function: calls}, each call without arguments. `python
+tests/recorded.py FILE` writes down what its calls answer; whoever does so says in the commit why
+the numbers may change.
 
-Of an answer its parts are kept: a number or word as it is, an array of at most SMALL values in full; of a
-larger one its shape, its smallest and largest value, and three means with different weights, of one
-larger than LARGE over a part of its values. A call that refuses its input is "refused".
+Of an answer its parts are kept: a number or word as it is, an array of at most SMALL values in
+full; of a larger one its shape, its smallest and largest value, and three means with different
+weights, of one larger than LARGE over a part of its values. A call that refuses its input is
+"refused".
 """
 
 import importlib.util
@@ -70,7 +72,9 @@ def _array(a: np.ndarray) -> list[str]:
         infinite = ~np.isfinite(values)
         if infinite.any():
             shape.append(
-                f"not_finite={np.flatnonzero(infinite)[:3].tolist()}of{infinite.sum()}".replace(" ", "")
+                f"not_finite={np.flatnonzero(infinite)[:3].tolist()}of{infinite.sum()}".replace(
+                    " ", ""
+                )
             )
             values = np.where(infinite, 0.0, values)
         low, high, values = values.min(), values.max(), values[:: values.size // LARGE + 1]
@@ -98,7 +102,11 @@ def answers(call: Callable[[], Any]) -> list[list[str]]:
 
 
 def same(
-    came: list[list[str]], expected: list[list[str]], tolerance: float = TOLERANCE, *, floor: float = FLOOR
+    came: list[list[str]],
+    expected: list[list[str]],
+    tolerance: float = TOLERANCE,
+    *,
+    floor: float = FLOOR,
 ) -> bool:
     """Return whether all words are the same, and all numbers within the tolerance."""
     if [len(one) for one in came] != [len(one) for one in expected]:
@@ -127,7 +135,9 @@ def _alike(one: str, other: str) -> bool:
     if a[::2] != b[::2]:
         return False
     pairs = zip(a[1::2], b[1::2], strict=True)
-    return all(abs(float(x) - float(y)) < 1.01 * 10.0 ** -len(y.partition(".")[2]) for x, y in pairs)
+    return all(
+        abs(float(x) - float(y)) < 1.01 * 10.0 ** -len(y.partition(".")[2]) for x, y in pairs
+    )
 
 
 def _number(word: str) -> float | str:
@@ -149,14 +159,19 @@ def read(module: str) -> dict[str, list[list[list[str]]]]:
 
 
 def check(
-    cases: Mapping[str, Sequence[Callable[[], Any]]], name: str, module: str, tolerance: float = TOLERANCE
+    cases: Mapping[str, Sequence[Callable[[], Any]]],
+    name: str,
+    module: str,
+    tolerance: float = TOLERANCE,
 ) -> None:
     """Assert that the calls of a function answer what stands in the file."""
     expected = read(module)[name]
     assert len(cases[name]) == len(expected)
     for k, (call, wanted) in enumerate(zip(cases[name], expected, strict=True)):
         came = answers(call)
-        assert same(came, wanted, tolerance), f"call {k} of {name}: {came} instead of {wanted}"[:600]
+        assert same(came, wanted, tolerance), f"call {k} of {name}: {came} instead of {wanted}"[
+            :600
+        ]
 
 
 def main(file: str) -> None:

@@ -40,10 +40,12 @@ PAPERS = {
     r"Paris, Hasinoff and Kautz \(SIGGRAPH 2011\)": DOI + "10.1145/1964921.1964963",
     r"Pérez, Gangnet and Blake \(SIGGRAPH 2003\)": DOI + "10.1145/882262.882269",
     r"Raskar, Agrawal and Tumblin \(SIGGRAPH 2006\)": DOI + "10.1145/1179352.1141957",
-    r"Reinhard(, Stark, Shirley and Ferwerda| and others) \(SIGGRAPH 2002\)": DOI + "10.1145/566570.566575",
+    r"Reinhard(, Stark, Shirley and Ferwerda| and others) \(SIGGRAPH 2002\)": DOI
+    + "10.1145/566570.566575",
     r"Reinhard \(Journal of Graphics Tools 2002\)": DOI + "10.1080/10867651.2002.10487554",
     r"Reinhard and Devlin \(IEEE TVCG 2005\)": DOI + "10.1109/TVCG.2005.9",
-    r"Robertson, Borman and Stevenson \((Journal of Electronic Imaging )?2003\)": DOI + "10.1117/1.1557695",
+    r"Robertson, Borman and Stevenson \((Journal of Electronic Imaging )?2003\)": DOI
+    + "10.1117/1.1557695",
     r"Sen and others \((SIGGRAPH Asia )?2012\)": DOI + "10.1145/2366145.2366222",
     r"Talvala and others \(SIGGRAPH 2007\)": DOI + "10.1145/1276377.1276424",
     r"Tocci and others \(SIGGRAPH 2011\)": DOI + "10.1145/1964921.1964936",

@@ -9,7 +9,9 @@ SLOWEST = 20
 
 def main(folder: Path) -> int:
     """Print what the reports in a folder say; return 1 where a test failed, or none ran."""
-    tests = [test for file in sorted(folder.glob("*.xml")) for test in ET.parse(file).iter("testcase")]
+    tests = [
+        test for file in sorted(folder.glob("*.xml")) for test in ET.parse(file).iter("testcase")
+    ]
     failed = [test for test in tests if any(kind.tag in ("failure", "error") for kind in test)]
     skipped = sum(test.find("skipped") is not None for test in tests)
     print(f"the {SLOWEST} slowest tests, in seconds, with what each of them sets up")

@@ -13,7 +13,8 @@ from hdrlab.io.files import replacing
 
 HERE = Path(__file__).parent
 SENTENCES = HERE / "test_sentences.py"
-# behind the last cell of a notebook: what its names say of its sentences, and whether its sliders answer
+# behind the last cell of a notebook: what its names say of its sentences, and whether its sliders
+# answer
 JUDGE = """import json as _json, sys as _sys
 _sys.path.append({here!r})
 import test_sentences as _sentences
@@ -52,7 +53,9 @@ def _run(path: Path) -> tuple[nbformat.NotebookNode, list[list[str]]]:
     """Return a notebook with its outputs, its untrue sentences, and the sliders that do not answer."""
     with TemporaryDirectory(prefix="run-") as folder:
         notebook = nbformat.read(path, as_version=4)
-        notebook.cells.append(nbformat.v4.new_code_cell(JUDGE.format(here=str(HERE), stem=path.stem)))
+        notebook.cells.append(
+            nbformat.v4.new_code_cell(JUDGE.format(here=str(HERE), stem=path.stem))
+        )
         judging = Path(folder) / path.name
         nbformat.write(notebook, judging)
         (done,) = execute.run_steps([judging], Path(folder), jobs=1)

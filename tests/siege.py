@@ -1,8 +1,8 @@
 """What the tests of attacks share: the attacks made ready, a place for them to look around in, and an oracle.
 
-The attacks are files in tests/attacks. A file's name begins with its number in the list of attacks, 1 to
-26, and what it does is harmless: it writes to no place but the one it is told, or where only a sandbox has
-one.
+The attacks are files in tests/attacks. A file's name begins with its number in the list of attacks,
+1 to 26, and what it does is harmless: it writes to no place but the one it is told, or where only a
+sandbox has one.
 """
 
 import ctypes
@@ -18,9 +18,8 @@ import hdrlab
 HERE = Path(__file__).parent / "attacks"
 NAMES = sorted(path.stem for path in HERE.glob("a*.py"))
 HONEST = "def double(x):\n    return 2 * x\n"
-IMPOLITE = (
-    "import sys; getattr(sys.modules.get('worker'), 'REFUSED', {}).clear()\n"  # past Python's own refusals
-)
+# past Python's own refusals
+IMPOLITE = "import sys; getattr(sys.modules.get('worker'), 'REFUSED', {}).clear()\n"
 
 
 def armed(name, place, port):

@@ -9,7 +9,9 @@ from hdrlab.course.reports.results import Check, Result
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))
-CLASS = Roster((Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
+CLASS = Roster(
+    (Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3"))
+)
 
 
 def result(student="t", *kinds, problems=(), **more):
@@ -26,5 +28,7 @@ def result(student="t", *kinds, problems=(), **more):
         )
         for k, kind in enumerate(kinds or ("",))
     ]
-    made = Result(student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {})
+    made = Result(
+        student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {}
+    )
     return made._replace(**more)

@@ -2,8 +2,9 @@
 
     python tests/systems.py     # writes the site's systems.md
 
-A row of tests/systems.txt: what the system is called | whose it is | functions or modules of the library |
-notebook: its sections that play it | tasks that grade it. tests/course/test_systems.py looks for all of them.
+A row of tests/systems.txt: what the system is called | whose it is | functions or modules of the
+library | notebook: its sections that play it | tasks that grade it. tests/course/test_systems.py
+looks for all of them.
 """
 
 import importlib
@@ -41,7 +42,9 @@ def table():
             found = re.match(r"(\d\d): (.+)", part)
             number, heading = found.groups() if found else (number, part)
             sections.append((number, heading))
-        rows.append((name, papers.split(), places.split(", "), sections, tasks.split(", ") if tasks else []))
+        rows.append(
+            (name, papers.split(), places.split(", "), sections, tasks.split(", ") if tasks else [])
+        )
     return rows
 
 
@@ -55,7 +58,9 @@ def code_of(number, heading):
     for cell in json.loads(path_of(number).read_text(encoding="utf8"))["cells"]:
         text = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
-            inside = next((one == heading for one in reversed(re.findall(r"^## (.+)$", text, re.M))), inside)
+            inside = next(
+                (one == heading for one in reversed(re.findall(r"^## (.+)$", text, re.M))), inside
+            )
         elif inside:
             code += text + "\n"
     return code
@@ -89,7 +94,11 @@ def written():
             each = ", ".join(f"“{heading}”" for other, heading in sections if other == number)
             played.append(f"[{number}](notebooks/{path_of(number).name}): {each}")
         checked = [f"[`{task}`](assignments/{tasks[task][0]}.ipynb)" for task in graded]
-        cells = [", ".join(link(place, modules) for place in places), "; ".join(played), ", ".join(checked)]
+        cells = [
+            ", ".join(link(place, modules) for place in places),
+            "; ".join(played),
+            ", ".join(checked),
+        ]
         lines.append(f"| {n} {name} ({', '.join(papers)}) | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 

@@ -7,7 +7,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "ARCHITECTURE.md"
-pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="reads a clone, and this is an installed package")
+pytestmark = pytest.mark.skipif(
+    not PAGE.exists(), reason="reads a clone, and this is an installed package"
+)
 
 
 def named():

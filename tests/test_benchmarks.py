@@ -29,7 +29,11 @@ from benchmarks.rows import (
     within,
 )
 
-RESULTS = {OURS: Figures(0.1, 0.05, 20, 0.5), "slow": Figures(2, 2, 10, 1), "fast": Figures(0.4, 0.4, 50, 1)}
+RESULTS = {
+    OURS: Figures(0.1, 0.05, 20, 0.5),
+    "slow": Figures(2, 2, 10, 1),
+    "fast": Figures(0.4, 0.4, 50, 1),
+}
 
 
 def row(*holds, name="work"):
@@ -80,7 +84,10 @@ def test_a_block_names_everyone_the_missing_and_every_verdict():
 
 def test_the_summary_counts_the_holds_and_names_what_is_not_met():
     text = table.summary(
-        [(row(faster(3), faster(5)), RESULTS), (row(faster(1), name="alone"), {OURS: Figures(1, 1)})]
+        [
+            (row(faster(3), faster(5)), RESULTS),
+            (row(faster(1), name="alone"), {OURS: Figures(1, 1)}),
+        ]
     )
     assert text.splitlines()[0] == "1 of 3 holds are met"
     assert "MISSED: work" in text and "not judged: alone" in text
@@ -107,7 +114,8 @@ def test_a_row_that_breaks_says_why_and_makes_the_exit_code_1(monkeypatch, capsy
 
 
 @pytest.mark.parametrize(
-    ("arguments", "known"), [(["nothing"], "speed"), (["speed", "--rows", "merge,nothing"], "gsolve70")]
+    ("arguments", "known"),
+    [(["nothing"], "speed"), (["speed", "--rows", "merge,nothing"], "gsolve70")],
 )
 def test_an_unknown_subject_or_row_is_refused_with_those_there_are(arguments, known, capsys):
     with pytest.raises(SystemExit) as ended:
@@ -117,9 +125,16 @@ def test_an_unknown_subject_or_row_is_refused_with_those_there_are(arguments, kn
     assert "nothing" in said and known in said
 
 
-PEERS = ("opencv", "align_image_stack", "scikit-image")  # each in a row of its own, as one may be missing
+PEERS = (
+    "opencv",
+    "align_image_stack",
+    "scikit-image",
+)  # each in a row of its own, as one may be missing
 WITHOUT_HOLD = {
-    "align": {"align-arch", *(f"align-{kind}-{peer}" for kind in ("shift", "turned") for peer in PEERS)},
+    "align": {
+        "align-arch",
+        *(f"align-{kind}-{peer}" for kind in ("shift", "turned") for peer in PEERS),
+    },
     "ghosts": {"ghosts-alone"},  # the slide's own way, printed beside ours
 }
 
@@ -171,8 +186,12 @@ def test_a_hold_of_an_experiment_judges_number_by_number(hold, value, verdict):
 
 
 @pytest.mark.parametrize(("limit", "code"), [(2, 0), (1, 1)])
-def test_an_experiment_is_printed_beside_what_was_published(limit, code, monkeypatch, tmp_path, capsys):
-    row = experiment(lambda: {"error, %": 1.5, "more": [1, 2]}, at_most("error, %", limit, published="2.7"))
+def test_an_experiment_is_printed_beside_what_was_published(
+    limit, code, monkeypatch, tmp_path, capsys
+):
+    row = experiment(
+        lambda: {"error, %": 1.5, "more": [1, 2]}, at_most("error, %", limit, published="2.7")
+    )
     monkeypatch.setattr(command, "chosen", lambda subject, names: [row])
     figures = tmp_path / "figures.json"
     assert command.main(["papers", "--json", str(figures)]) == code
@@ -189,7 +208,10 @@ def test_an_experiment_is_printed_beside_what_was_published(limit, code, monkeyp
 def test_an_experiment_without_data_is_skipped_and_a_broken_one_is_missed(
     find, code, reason, monkeypatch, capsys
 ):
-    rows = [experiment(find, at_most("x", 1)), experiment(lambda: {"x": 0}, at_most("x", 1), name="next")]
+    rows = [
+        experiment(find, at_most("x", 1)),
+        experiment(lambda: {"x": 0}, at_most("x", 1), name="next"),
+    ]
     monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
     assert command.main(["papers"]) == code
     said = capsys.readouterr().out
@@ -231,7 +253,9 @@ def test_data_are_read_from_the_folder_that_is_named_first(tmp_path):
 def test_everyone_runs_once_to_warm_up_and_once_in_each_of_at_least_five_rounds(monkeypatch):
     monkeypatch.setattr(measure, "ENOUGH", 0)
     order = []
-    case = Case({who: lambda who=who: order.append(who) for who in "ab"}, {}, lambda who, result: ord(who))
+    case = Case(
+        {who: lambda who=who: order.append(who) for who in "ab"}, {}, lambda who, result: ord(who)
+    )
     found = measure.timed(case)
     assert order == ["a", "b"] * 6
     assert [len(seconds) for seconds in found["seconds"].values()] == [5, 5]
@@ -260,7 +284,9 @@ def test_the_floor_of_a_file_is_one_call_by_turns_with_everyone(monkeypatch):
     assert order == ["a", *["a", "least"] * 5]
 
 
-@pytest.mark.parametrize(("floor", "said"), [(0.09, "AT FLOOR"), (0.0800, "AT FLOOR"), (0.0799, "MISSED")])
+@pytest.mark.parametrize(
+    ("floor", "said"), [(0.09, "AT FLOOR"), (0.0800, "AT FLOOR"), (0.0799, "MISSED")]
+)
 def test_a_ratio_that_is_missed_within_a_quarter_of_the_floor_is_the_machines(floor, said):
     results = RESULTS | {OURS: RESULTS[OURS]._replace(floor=floor)}
     assert faster(5).verdict(results) == said
@@ -277,7 +303,9 @@ def test_a_run_of_processes_reports_its_own_time():
     assert Usage(3, 100).net(Usage(1, 40)) == (2, 60)
 
 
-@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="the peak is read from /proc")
+@pytest.mark.skipif(
+    not Path("/proc/self/clear_refs").exists(), reason="the peak is read from /proc"
+)
 def test_the_peak_is_what_a_run_holds_at_once_beyond_what_the_process_held():
     code = (
         "import numpy as np; from benchmarks.measure import peak\n"
@@ -305,7 +333,11 @@ def test_a_peer_that_is_missing_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "cv2", None)
     monkeypatch.setattr("shutil.which", lambda program: None)
     runs, missing = peers.present(
-        {"there": lambda: print, "cv2": lambda: peers.opencv(True), "pfs": lambda: peers.pfstools("pfsin")}
+        {
+            "there": lambda: print,
+            "cv2": lambda: peers.opencv(True),
+            "pfs": lambda: peers.pfstools("pfsin"),
+        }
     )
     assert list(runs) == ["there"]
     assert "pip install opencv-contrib-python-headless" in missing["cv2"]

@@ -40,7 +40,12 @@ TOY = distance.Library({"toy": "", "toy.a": A, "toy.b": B, "toy.c": C})
 
 
 def test_lines_are_those_of_what_a_function_calls_without_docstrings_and_comments():
-    assert TOY.needs("toy.a.f") == {("toy.a", "f"), ("toy.a", "TWO"), ("toy.b", "double"), ("toy.c", "half")}
+    assert TOY.needs("toy.a.f") == {
+        ("toy.a", "f"),
+        ("toy.a", "TWO"),
+        ("toy.b", "double"),
+        ("toy.c", "half"),
+    }
     assert TOY.distance("toy.a.f") == (3, 2 + 1 + 2 + 4)
     assert TOY.distance("toy.b.g") == (2, 2 + 4)
     assert TOY.rooms() == {"(top)": 0, "a": 7, "b": 5, "c": 4}

@@ -75,7 +75,9 @@ def test_a_function_whose_parameters_are_listed_shows_an_example():
         for node in functions_of(name)
         if not node.name.startswith("_")
     }
-    assert [name for name, text in said.items() if "Parameters\n---" in text and ">>> " not in text] == []
+    assert [
+        name for name, text in said.items() if "Parameters\n---" in text and ">>> " not in text
+    ] == []
     assert len(said) > 200
 
 

@@ -19,7 +19,9 @@ PAGES = ROOT / "hdrlab/course/site/pages"
 README = ROOT / "README.md"
 GUIDES = [README, ROOT / "CONTRIBUTING.md", *sorted(PAGES.glob("*.md"))]
 WORKFLOWS = sorted((ROOT / ".github").rglob("*.yml")) if README.exists() else []
-pytestmark = pytest.mark.skipif(not README.exists(), reason="reads a clone, and this is an installed package")
+pytestmark = pytest.mark.skipif(
+    not README.exists(), reason="reads a clone, and this is an installed package"
+)
 
 
 def text_of(path):
@@ -29,7 +31,9 @@ def text_of(path):
 def typed(path):
     """Return the hdrlab commands of a page, those of its listings and those in running text, as words."""
     text = text_of(path)
-    lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.S) for line in block.splitlines()]
+    lines = [
+        line for block in re.findall(r"```sh\n(.*?)```", text, re.S) for line in block.splitlines()
+    ]
     lines += re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S))
     parts = [part for line in lines for part in re.split(r"&&|#", line)]
     found = [re.match(r"\s*(?:[$] )?(?:env/bin/)?hdrlab (.+)", part) for part in parts]
@@ -56,22 +60,31 @@ def options_of(command):
 def test_each_command_and_option_that_a_page_names_is_there(path):
     for words in typed(path):
         command, rest = command_of(words)
-        unknown = {word.partition("=")[0] for word in rest if re.match(r"--?[a-z]", word)} - options_of(
-            command
-        )
+        unknown = {
+            word.partition("=")[0] for word in rest if re.match(r"--?[a-z]", word)
+        } - options_of(command)
         assert not unknown, f"hdrlab {' '.join(words)}"
 
 
 def test_commands_are_read_from_listings_and_from_running_text():
-    assert ["assemble", "photos/", "-o", "room.hdr", "--picture", "room.png", "--report", "room/"] in typed(
-        README
-    )
+    assert [
+        "assemble",
+        "photos/",
+        "-o",
+        "room.hdr",
+        "--picture",
+        "room.png",
+        "--report",
+        "room/",
+    ] in typed(README)
     assert len(typed(PAGES / "instructors.md")) > 20
 
 
 def test_the_table_of_commands_names_every_one_once():
     table = re.findall(r"^\| (`hdrlab .*?) \|", text_of(PAGES / "commands.md"), re.M)
-    named = [re.match(r"hdrlab (\w+)", one)[1] for row in table for one in re.findall(r"`([^`]+)`", row)]
+    named = [
+        re.match(r"hdrlab (\w+)", one)[1] for row in table for one in re.findall(r"`([^`]+)`", row)
+    ]
     hidden = {"doctor", "course"}  # in a row of grade, and in the section for those who teach
     assert sorted(named) == sorted(set(cli.main.commands) - hidden)
 
@@ -86,7 +99,10 @@ def test_the_table_of_promises_names_tests_that_there_are():
 
 def test_every_function_on_the_map_is_there():
     names = [
-        name for line in hdrlab.__doc__.splitlines() if "  " in line for name in re.split(r"[,;] ", line[39:])
+        name
+        for line in hdrlab.__doc__.splitlines()
+        if "  " in line
+        for name in re.split(r"[,;] ", line[39:])
     ]
     names = [name for name in names if re.fullmatch(r"[\w.]+", name) and "." in name]
     assert len(names) > 40
@@ -105,7 +121,9 @@ def test_links_between_the_pages_of_the_repository_lead_somewhere():
         links = re.findall(r"\]\(([^)#:]+)\)", text_of(path))
         local = [link for link in links if not link.startswith("../../actions/")]
         assert not [link for link in local if not (path.parent / link).exists()]
-        named = {link.split("/")[4] for link in links if link.startswith("../../actions/workflows/")}
+        named = {
+            link.split("/")[4] for link in links if link.startswith("../../actions/workflows/")
+        }
         assert named <= {one.name for one in WORKFLOWS}
 
 
@@ -113,20 +131,27 @@ def test_one_version_stands_in_the_package_the_changes_and_the_citation():
     citation = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
     newest = re.search(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.M)[1]
     assert hdrlab.__version__ == newest == citation["version"]
-    assert citation["license"] == tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["license"]
+    assert (
+        citation["license"] == tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["license"]
+    )
 
 
 def test_the_moving_picture_of_the_readme_moves_and_is_small():
     path = ROOT / "README.webp"
     with Image.open(path) as film:
-        assert path.name in text_of(README) and film.n_frames > 20 and path.stat().st_size < 1_000_000
+        assert (
+            path.name in text_of(README) and film.n_frames > 20 and path.stat().st_size < 1_000_000
+        )
 
 
 def test_the_workflows_run_every_tier_and_the_quick_one_on_three_systems():
     jobs = yaml.safe_load(text_of(ROOT / ".github/workflows/ci.yml"))["jobs"]
     assert set(jobs["tiers"]["strategy"]["matrix"]["tier"]) == set(TIERS) - {QUICK}
     systems = {one.partition("-")[0] for one in jobs["quick"]["strategy"]["matrix"]["os"]}
-    assert systems == {"ubuntu", "windows", "macos"} and {"run": f"nox -s {QUICK}"} in jobs["quick"]["steps"]
+    assert (
+        systems == {"ubuntu", "windows", "macos"}
+        and {"run": f"nox -s {QUICK}"} in jobs["quick"]["steps"]
+    )
 
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)

@@ -78,7 +78,9 @@ def test_whatever_is_neither_a_result_nor_a_clear_error_is_a_finding(kind, tmp_p
 def test_words_past_python_are_a_finding_and_a_clear_error_is_none(tmp_path):
     path = tmp_path / "fuzzed.txt"
     path.write_bytes(b"")
-    reader = readers.Reader("mine", ".txt", lambda folder: None, raises(ValueError("fuzzed.txt: no")))
+    reader = readers.Reader(
+        "mine", ".txt", lambda folder: None, raises(ValueError("fuzzed.txt: no"))
+    )
     assert worker.judged(reader, path, lambda: "")[0] == worker.CLEAN
     assert worker.judged(reader, path, lambda: "libfoo: bad marker")[0].startswith("printed libfoo")
 
@@ -111,7 +113,9 @@ def test_a_damaged_file_is_read_or_refused_in_a_clear_sentence(name, tmp_path, m
         assert kind in (worker.READ, worker.CLEAN), (number, kind, said[:300])
 
 
-@pytest.mark.parametrize(("findings", "code"), [((), 0), ((fuzz.Finding(3, "KeyError: B", b"ab"),), 1)])
+@pytest.mark.parametrize(
+    ("findings", "code"), [((), 0), ((fuzz.Finding(3, "KeyError: B", b"ab"),), 1)]
+)
 def test_the_command_prints_a_table_keeps_what_it_finds_and_ends_with_1(
     findings, code, tmp_path, monkeypatch, capsys
 ):

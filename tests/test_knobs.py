@@ -1,7 +1,8 @@
 """What a knob is when nobody sets it: `knobs.txt` has every number, and a change of one is made on purpose.
 
-A default is part of every picture made with it, and so is a number with a name in a module, or a field of a
-state that need not be given: `constants.txt`. `python tests/test_knobs.py` writes both lists anew.
+A default is part of every picture made with it, and so is a number with a name in a module, or a
+field of a state that need not be given: `constants.txt`. `python tests/test_knobs.py` writes both
+lists anew.
 """
 
 import ast
@@ -19,7 +20,17 @@ LIST = Path(__file__).with_name("knobs.txt")
 CONSTANTS = Path(__file__).with_name("constants.txt")
 # of this machine
 NOT_LISTED = {"PROCESSORS", "THREADS"}
-ROOMS = ("align", "beyond", "calibration", "capture", "core", "diagnostics", "enhance", "fast", "pipeline")
+ROOMS = (
+    "align",
+    "beyond",
+    "calibration",
+    "capture",
+    "core",
+    "diagnostics",
+    "enhance",
+    "fast",
+    "pipeline",
+)
 ROOMS += ("radiance", "response", "tonemap")
 
 
@@ -36,9 +47,15 @@ def knobs():
         if "._" in module.name:
             continue
         for name, function in sorted(vars(import_module(module.name)).items()):
-            if inspect.isfunction(function) and function.__module__ == module.name and name[0] != "_":
+            if (
+                inspect.isfunction(function)
+                and function.__module__ == module.name
+                and name[0] != "_"
+            ):
                 parameters = inspect.signature(function).parameters.values()
-                numbers = [one for one in parameters if isinstance(one.default, (int, float, tuple))]
+                numbers = [
+                    one for one in parameters if isinstance(one.default, (int, float, tuple))
+                ]
                 if numbers:
                     said = ", ".join(f"{one.name}={one.default}" for one in numbers)
                     yield f"{module.name.removeprefix('hdrlab.')}.{name}: {said}"
@@ -66,7 +83,9 @@ def named(text):
     """Yield the names that a module gives to values in capitals."""
     for statement in ast.parse(text).body:
         targets = (
-            statement.targets if isinstance(statement, ast.Assign) else [getattr(statement, "target", None)]
+            statement.targets
+            if isinstance(statement, ast.Assign)
+            else [getattr(statement, "target", None)]
         )
         for node in (node for target in targets if target is not None for node in ast.walk(target)):
             if isinstance(node, ast.Name) and node.id.isupper() and node.id not in NOT_LISTED:

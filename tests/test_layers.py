@@ -8,7 +8,17 @@ from pathlib import Path
 import hdrlab
 
 HOME = Path(hdrlab.__file__).parent
-CHAPTERS = ("io", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance", "beyond")
+CHAPTERS = (
+    "io",
+    "capture",
+    "align",
+    "response",
+    "calibration",
+    "radiance",
+    "tonemap",
+    "enhance",
+    "beyond",
+)
 BELOW = {"core": set()}  # which rooms each room may use, beside itself
 BELOW |= {chapter: {"core"} for chapter in CHAPTERS}
 BELOW["fast"] = BELOW["diagnostics"] = {"core", *CHAPTERS}
@@ -22,7 +32,17 @@ BELOW["__init__"] = set()
 
 ONLY_IN = {  # package -> rooms
     **dict.fromkeys(
-        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "gphoto2", "pillow"],
+        [
+            "PIL",
+            "imageio",
+            "tifffile",
+            "imagecodecs",
+            "OpenEXR",
+            "Imath",
+            "rawpy",
+            "gphoto2",
+            "pillow",
+        ],
         {"io"},
     ),
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),
@@ -30,7 +50,8 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
     "jupyterlab": {"cli"},
     **dict.fromkeys(
-        ["nbformat", "nbclient", "sphinx", "numpydoc", "docutils", "ziamath", "latex2mathml"], {"course"}
+        ["nbformat", "nbclient", "sphinx", "numpydoc", "docutils", "ziamath", "latex2mathml"],
+        {"course"},
     ),  # the site
     "pyseccomp": {"course"},  # the sandbox
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
@@ -76,7 +97,11 @@ def imports(path):
                 if base == OPTIONAL:  # skimage_transform stands for skimage.transform
                     yield node.lineno, node.level, tuple(alias.name.split("_"))
                 inner = (*base, alias.name)
-                yield node.lineno, node.level, inner if base[0] == "hdrlab" and is_module(inner) else base
+                yield (
+                    node.lineno,
+                    node.level,
+                    inner if base[0] == "hdrlab" and is_module(inner) else base,
+                )
 
 
 def wrong_in(path, level, target):
@@ -109,7 +134,13 @@ def test_a_module_uses_the_layers_below_it_alone():
 def test_an_import_of_another_layer_is_found():
     """What the promise above stands on: a file in a lower room, and what is wrong with its imports."""
     path = HOME / "radiance/merge.py"
-    wrong = [("hdrlab", "fast"), ("hdrlab", "tonemap", "durand"), ("matplotlib",), ("cv2",), ("torch",)]
+    wrong = [
+        ("hdrlab", "fast"),
+        ("hdrlab", "tonemap", "durand"),
+        ("matplotlib",),
+        ("cv2",),
+        ("torch",),
+    ]
     assert all(wrong_in(path, 0, target) for target in wrong) and wrong_in(path, 1, ("core",))
     allowed = [("hdrlab", "core", "arrays"), ("hdrlab",), ("numpy",), ("functools",)]
     assert not any(wrong_in(path, 0, target) for target in allowed)
@@ -135,7 +166,9 @@ def test_a_module_below_the_screen_does_not_print():
         for node in nodes_of(path)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
     ]
-    found = [f"{path.relative_to(HOME)}:{node.lineno}" for path, node in calls if node.func.id == "print"]
+    found = [
+        f"{path.relative_to(HOME)}:{node.lineno}" for path, node in calls if node.func.id == "print"
+    ]
     assert found == []
     assert len(calls) > 1000
 
@@ -143,10 +176,14 @@ def test_a_module_below_the_screen_does_not_print():
 def paths_into(nodes, folder):
     """Return the lines that name a folder as a path: an operand of `/`, an argument, or "folder/..."."""
     docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
-    operands = [part for node in nodes if isinstance(node, ast.BinOp) for part in (node.left, node.right)]
+    operands = [
+        part for node in nodes if isinstance(node, ast.BinOp) for part in (node.left, node.right)
+    ]
     arguments = [part for node in nodes if isinstance(node, ast.Call) for part in node.args]
     parts = {id(part) for part in (*operands, *arguments)}
-    texts = [node for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    texts = [
+        node for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
     return [
         text.lineno
         for text in texts
@@ -157,12 +194,19 @@ def paths_into(nodes, folder):
 
 def test_no_module_reads_the_tests():
     found = [
-        f"{path.relative_to(HOME)}:{line}" for path in FILES for line in paths_into(nodes_of(path), "tests")
+        f"{path.relative_to(HOME)}:{line}"
+        for path in FILES
+        for line in paths_into(nodes_of(path), "tests")
     ]
     assert found == []
 
 
 def test_a_path_into_the_tests_is_found_however_it_is_written():
-    for code in ('HERE / "tests"', 'folder("tests")', 'open("../tests/laws.py")', 'f"{x}/tests/{y}"'):
+    for code in (
+        'HERE / "tests"',
+        'folder("tests")',
+        'open("../tests/laws.py")',
+        'f"{x}/tests/{y}"',
+    ):
         assert paths_into(list(ast.walk(ast.parse(code))), "tests"), code
     assert not paths_into(list(ast.walk(ast.parse('{"tests": 3}'))), "tests")

@@ -75,7 +75,9 @@ def photographs(tmp_path):
     ramp = np.broadcast_to(np.linspace(2, 2000, 96)[:, None], (96, 64))
     for stops in range(3):
         levels = np.clip(ramp / 4**stops, 0, 255).astype(np.uint8)
-        Image.fromarray(levels).convert("RGB").save(tmp_path / "photos" / f"{stops}.jpg", quality=95)
+        Image.fromarray(levels).convert("RGB").save(
+            tmp_path / "photos" / f"{stops}.jpg", quality=95
+        )
     return tmp_path
 
 
@@ -88,9 +90,9 @@ def test_a_part_that_needs_another_package_says_which_to_install(tmp_path):
     (tmp_path / "a.tif").write_bytes(b"II*\0" + bytes(40))
     (tmp_path / "a.exr").write_bytes(b"v/1\x01" + bytes(40))
     told = alone(EACH, tmp_path).splitlines()
-    assert [(part, package in line) for (part, package), line in zip(PARTS.items(), told, strict=True)] == [
-        (part, True) for part in PARTS
-    ], told
+    assert [
+        (part, package in line) for (part, package), line in zip(PARTS.items(), told, strict=True)
+    ] == [(part, True) for part in PARTS], told
 
 
 @pytest.mark.parametrize("form", ["JPEG", "PNG"])

@@ -16,10 +16,20 @@ from PIL import Image
 from hdrlab.capture import camera
 from hdrlab.capture.sensor import Sensor
 
-ROOMS = ("align", "beyond", "capture", "core", "diagnostics", "enhance", "fast", "radiance", "response")
+ROOMS = (
+    "align",
+    "beyond",
+    "capture",
+    "core",
+    "diagnostics",
+    "enhance",
+    "fast",
+    "radiance",
+    "response",
+)
 ROOMS += ("tonemap",)
-# other letters: F is an f-number in `exposure`; figures and the parts of a verb have tests of their own, and
-# so has what wants more pixels than these
+# other letters: F is an f-number in `exposure`; figures and the parts of a verb have tests of their
+# own, and so has what wants more pixels than these
 ELSEWHERE = ("capture.exposure.ev", "capture.exposure.irradiance", "capture.movers.shoot")
 ELSEWHERE += ("diagnostics.noise.estimate_noise",)
 FIRST = {"images", "L", "E", "F", "picture"}
@@ -55,13 +65,25 @@ def verbs():
         package = import_module(f"hdrlab.{room}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             for name, verb in list(vars(import_module(module.name)).items()):
-                if not inspect.isfunction(verb) or verb.__module__ != module.name or name.startswith("_"):
+                if (
+                    not inspect.isfunction(verb)
+                    or verb.__module__ != module.name
+                    or name.startswith("_")
+                ):
                     continue
-                place, known = f"{module.name[7:]}.{name}", inspect.signature(verb).parameters.values()
+                place, known = (
+                    f"{module.name[7:]}.{name}",
+                    inspect.signature(verb).parameters.values(),
+                )
                 needed = [
-                    one.name for one in known if one.default is one.empty and one.kind < one.VAR_KEYWORD
+                    one.name
+                    for one in known
+                    if one.default is one.empty and one.kind < one.VAR_KEYWORD
                 ]
-                raises = "\nRaises" in inspect.cleandoc(verb.__doc__ or "") or place == "radiance.merge.merge"
+                raises = (
+                    "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
+                    or place == "radiance.merge.merge"
+                )
                 if raises and {*needed[:1]} <= FIRST and needed and place not in ELSEWHERE:
                     found[place] = verb, needed
     return found
@@ -89,7 +111,9 @@ def leaves(answer):
         return [leaf for part in answer for leaf in leaves(part)]
     if isinstance(answer, dict):
         return leaves(list(answer.values()))
-    return leaves(list(vars(answer).values())) if hasattr(answer, "__dict__") else [np.asarray(answer)]
+    return (
+        leaves(list(vars(answer).values())) if hasattr(answer, "__dict__") else [np.asarray(answer)]
+    )
 
 
 def same(a, b):
@@ -123,7 +147,11 @@ ANY = {
     "one axis more": lambda a: a[None],
 }
 NOT_FINITE = {"NaN": lambda a: some(a, np.nan), "infinite": lambda a: some(a, np.inf)}
-NO_LIGHT = {**NOT_FINITE, "negative": lambda a: some(a, -1), "beyond float32": lambda a: some(a, 1e300)}
+NO_LIGHT = {
+    **NOT_FINITE,
+    "negative": lambda a: some(a, -1),
+    "beyond float32": lambda a: some(a, 1e300),
+}
 MISTAKES = {
     "images": {
         **ANY,
@@ -172,7 +200,12 @@ MISTAKES = {
         "one too few": lambda a: a[1:],
         "a half": lambda a: a + 0.5,
     },
-    "homographies": {**ANY, **NOT_FINITE, "one too few": lambda a: a[1:], "singular": lambda a: 0 * a},
+    "homographies": {
+        **ANY,
+        **NOT_FINITE,
+        "one too few": lambda a: a[1:],
+        "singular": lambda a: 0 * a,
+    },
     "centre": {
         "None": lambda a: None,
         "a number": lambda a: 3,
@@ -180,15 +213,21 @@ MISTAKES = {
         "NaN": lambda a: (np.nan, 1),
     },
 }
-# what answers instead: `sanitize` mends light; in float64 1e300 is light; a camera takes any number of times
+# what answers instead: `sanitize` mends light; in float64 1e300 is light; a camera takes any number
+# of times
 ANSWERED = {
     ("core.gamut.sanitize", "E"): {*NO_LIGHT, "objects"},
     ("tonemap.reinhard.tonemap", "L"): {"beyond float32"},
     ("capture.camera.shoot", "times"): {"one too few"},
 }
-# a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette; the
-# commands run `fast`, or come through `core.bracket`, which do not
-LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align", "radiance.merge.merge")
+# a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette;
+# the commands run `fast`, or come through `core.bracket`, which do not
+LESSONS = (
+    "align.cerman.align",
+    "align.homography.align",
+    "align.mtb.align",
+    "radiance.merge.merge",
+)
 LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
 HIDDEN = ("masked", "masked frames", "Pillow's places in a palette")
 ANSWERED |= {
@@ -200,13 +239,22 @@ ANSWERED |= {
 # photographs of four pixels a row, and of no pixels: nothing moves
 ANSWERED["align.mtb.align", "images"] |= {"one photograph of Pillow in CMYK", "no columns"}
 # any arrays can be moved, and light be of any shape
-ANSWERED["align.shift.shift", "images"] = {*MISTAKES["images"]} - {"None", "a word", "nothing", "ragged"}
+ANSWERED["align.shift.shift", "images"] = {*MISTAKES["images"]} - {
+    "None",
+    "a word",
+    "nothing",
+    "ragged",
+}
 ANSWERED["capture.ranges.expose_levels", "L"] = {"complex", "masked", "nothing", "one axis more"}
 ANSWERED["capture.ranges.expose_levels", "L"] |= {"beyond float32", "four channels"}
 ANSWERED["diagnostics.motion.measure_motion", "w"] = {"None"}
-ANSWERED |= {(f"beyond.{one}.shoot", "e"): {"complex", "masked"} for one in ("assorted", "splitter")}
+ANSWERED |= {
+    (f"beyond.{one}.shoot", "e"): {"complex", "masked"} for one in ("assorted", "splitter")
+}
 ANSWERED["core.metrics.radiance_errors", "well"] = {"masked"}
-ANSWERED["align.shift.shift", "offsets"] = ANSWERED["align.resample.photographs", "homographies"] = {"masked"}
+ANSWERED["align.shift.shift", "offsets"] = ANSWERED[
+    "align.resample.photographs", "homographies"
+] = {"masked"}
 GATED = [(verb, name) for verb, (_, needed) in VERBS.items() for name in needed if name in MISTAKES]
 
 
@@ -215,7 +263,9 @@ SLOW = ("beyond.patches.synthesise", "response.debevec.recover", "response.margi
 
 def test_every_public_verb_is_given_what_it_needs():
     known = {*VALUES, "e"}
-    assert len(VERBS) > 45 and not {name: needed for name, (_, needed) in VERBS.items() if {*needed} - known}
+    assert len(VERBS) > 45 and not {
+        name: needed for name, (_, needed) in VERBS.items() if {*needed} - known
+    }
 
 
 @pytest.mark.parametrize(("verb", "name"), GATED)
@@ -229,7 +279,9 @@ def test_what_means_nothing_is_refused_in_words(verb, name):
         try:
             call(verb, given)
         except ValueError as error:
-            assert str(error).startswith(("expected", "could not convert", "setting an array")), mistake
+            assert str(error).startswith(("expected", "could not convert", "setting an array")), (
+                mistake
+            )
         else:
             pytest.fail(f"{verb} answered to {name} that are {mistake}")
 

@@ -79,7 +79,9 @@ def forked(tmp_path):
     started.end()
 
 
-def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_does_not_see_it(forked):
+def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_does_not_see_it(
+    forked,
+):
     tests = ["test_toy.py::test_it_doubles"]
     assert forked.run(tests, 60) == 0
     codes = {}
@@ -94,11 +96,15 @@ def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_
 
 
 def test_what_is_listed_as_changing_nothing_stands_in_its_file_and_has_a_reason():
-    listed = tomllib.loads((mutation.HERE / "equivalent.toml").read_text(encoding="utf8"))["equivalent"]
+    listed = tomllib.loads((mutation.HERE / "equivalent.toml").read_text(encoding="utf8"))[
+        "equivalent"
+    ]
     there = {
         (file, one.text, one.old, one.new)
         for file in {one["file"] for one in listed}
         for one in mutants(file, (ROOT / file).read_text(encoding="utf8"))
     }
-    assert [one for one in listed if (one["file"], one["text"], one["old"], one["new"]) not in there] == []
+    assert [
+        one for one in listed if (one["file"], one["text"], one["old"], one["new"]) not in there
+    ] == []
     assert all(len(one["why"]) > 10 for one in listed)

@@ -28,12 +28,16 @@ def calls_of(cell):
 
 
 def bound(table):
-    return {name.get_name() for name in table.get_symbols() if name.is_assigned() or name.is_imported()}
+    return {
+        name.get_name() for name in table.get_symbols() if name.is_assigned() or name.is_imported()
+    }
 
 
 def globals_read(table):
     """Return the globals that the functions of a cell read; a comprehension runs at once, and is none."""
-    inner = [each for each in table.get_children() if not each.get_name().endswith(("comp", "genexpr"))]
+    inner = [
+        each for each in table.get_children() if not each.get_name().endswith(("comp", "genexpr"))
+    ]
     found = {name.get_name() for each in inner for name in each.get_symbols() if name.is_global()}
     return found.union(*map(globals_read, inner))
 
@@ -84,7 +88,9 @@ def test_every_picture_has_alt_text(path):
             assert len(texts) == 1, f"{cell.id}: {call.func.attr}"
             assert not isinstance(texts[0], ast.Constant) or len(texts[0].value) > 10, cell.id
     for cell in cells_of(path, "markdown"):
-        assert "![](" not in cell.source and ("<img" not in cell.source or "alt=" in cell.source), cell.id
+        assert "![](" not in cell.source and ("<img" not in cell.source or "alt=" in cell.source), (
+            cell.id
+        )
 
 
 def test_a_prediction_binds_no_name_that_a_function_reads_from_another_cell(path):
@@ -116,7 +122,9 @@ def test_a_static_strip_stands_beside_each_widget(path):
     code = cells_of(path, "code")
     for cell, following in zip(code, [*code[1:], None], strict=True):
         if kinds_of(cell) & {"play", "tune"}:
-            assert following is not None and "strip" in kinds_of(cell) | kinds_of(following), cell.id
+            assert following is not None and "strip" in kinds_of(cell) | kinds_of(following), (
+                cell.id
+            )
 
 
 def test_a_notebook_unfolds_answers_asks_three_exercises_and_takes_the_readers_photographs(path):

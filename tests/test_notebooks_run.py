@@ -23,10 +23,14 @@ def ran(request, executed):
 
 
 def test_every_cell_of_a_notebook_runs_and_none_complains(ran):
-    cells = [cell for cell in nbformat.read(ran.executed, as_version=4).cells if cell.cell_type == "code"]
+    cells = [
+        cell for cell in nbformat.read(ran.executed, as_version=4).cells if cell.cell_type == "code"
+    ]
     outputs = [output for cell in cells for output in cell.outputs]
     assert all(cell.execution_count for cell in cells if cell.source.strip())
-    assert [one for one in outputs if one.output_type == "error" or one.get("name") == "stderr"] == []
+    assert [
+        one for one in outputs if one.output_type == "error" or one.get("name") == "stderr"
+    ] == []
 
 
 def test_what_a_notebook_says_of_its_own_numbers_is_true(ran):

@@ -1,6 +1,7 @@
 """The published experiments, run again: what `python -m benchmarks papers` holds.
 
-Where a whole experiment takes too long, the test's name says how much of it is run; the limits are the same.
+Where a whole experiment takes too long, the test's name says how much of it is run; the limits are
+the same.
 """
 
 from pathlib import Path
@@ -16,7 +17,14 @@ from benchmarks.papers import ROWS, cerman, curves, mitsunaga, space, wilburn
 
 NOWHERE = Path("nowhere")  # no data there: they are looked for in ../shared/data
 EXPERIMENTS = {row.name: row for row in ROWS}
-QUICK = ["cerman-figure3", "cerman-ratio", "emor", "mitsunaga-figure4", "mitsunaga-canon", "mitsunaga-flat"]
+QUICK = [
+    "cerman-figure3",
+    "cerman-ratio",
+    "emor",
+    "mitsunaga-figure4",
+    "mitsunaga-canon",
+    "mitsunaga-flat",
+]
 
 
 @pytest.fixture(autouse=True)
@@ -73,7 +81,9 @@ def test_the_default_reads_all_201_measured_responses_within_its_limits(shared):
     assert met("curves", found) == {curves.DEFAULT: "ok"}
 
 
-def test_doubtful_times_spoil_the_default_more_than_what_is_offered_for_them_on_every_sixth_curve(shared):
+def test_doubtful_times_spoil_the_default_more_than_what_is_offered_for_them_on_every_sixth_curve(
+    shared,
+):
     shared("crf_curves")
     used = {name: curves.methods(curves.BEST)[name] for name in (curves.DEFAULT, curves.BEST)}
     found = curves.compared(NOWHERE, used, off=curves.OFF, which=range(0, 201, 6))
@@ -84,7 +94,9 @@ def test_doubtful_times_spoil_the_default_more_than_what_is_offered_for_them_on_
 def test_every_method_that_is_offered_has_a_row(shared):
     shared("crf_curves")
     found = curves.compared(NOWHERE, curves.methods(curves.BEST, curves.ESTIMATED), which=(0,))
-    assert {"debevec", "grossberg", "mann", "mitsunaga", "robertson", "space", curves.BEST} <= set(found)
+    assert {"debevec", "grossberg", "mann", "mitsunaga", "robertson", "space", curves.BEST} <= set(
+        found
+    )
 
 
 def test_a_method_that_refuses_a_bracket_says_so_in_a_row_of_its_own(shared):
@@ -113,7 +125,9 @@ def test_the_spline_reads_all_201_measured_responses_from_a_display(shared):
     assert set(met("wilburn-display", found).values()) == {"ok"}
 
 
-def test_the_spline_reads_three_of_201_measured_responses_from_motion_blur_in_median_and_worst(shared):
+def test_the_spline_reads_three_of_201_measured_responses_from_motion_blur_in_median_and_worst(
+    shared,
+):
     shared("crf_curves")
     found = wilburn.measured(NOWHERE, "blur", every=100)
     median, _, worst = found[wilburn.RMSE]  # of three, 95 % is nearly the worst

@@ -28,4 +28,6 @@ def test_the_first_mention_of_a_paper_carries_its_link(path):
 
 def test_each_paper_of_the_table_is_named_in_a_notebook():
     texts = [prose(path) for path in NOTEBOOKS]
-    assert [pattern for pattern in PAPERS if not any(mentions(text, pattern) for text in texts)] == []
+    assert [
+        pattern for pattern in PAPERS if not any(mentions(text, pattern) for text in texts)
+    ] == []

@@ -1,8 +1,8 @@
 """What notebooks say of their own numbers: each sentence stands there, and the numbers bear it out.
 
-A row is a sentence, or the piece of it that could become untrue, and what makes it true, asked of the names
-that the notebook's own cells have made, in the kernel that ran them (see `runs`). A number is true if it
-rounds to the digits that the sentence has.
+A row is a sentence, or the piece of it that could become untrue, and what makes it true, asked of
+the names that the notebook's own cells have made, in the kernel that ran them (see `runs`). A
+number is true if it rounds to the digits that the sentence has.
 """
 
 import contextlib
@@ -48,16 +48,22 @@ SENTENCES = {
         "The scene has more than a decade more than the sensor": lambda n: (
             n.scenes.decades(n.E, tail=0) > 1 + ranges.sensor_range(n.GOOD)[0]
         ),
-        "In the long exposure luminances of 0.3 to 0.6 cross three levels": lambda n: levels_met(n, 1.0) == 3,
+        "In the long exposure luminances of 0.3 to 0.6 cross three levels": lambda n: (
+            levels_met(n, 1.0) == 3
+        ),
         "in the short one they are all below the first step": lambda n: levels_met(n, 0.1) == 1,
-        "With 6 bits a level is 340 electrons wide": lambda n: round(20_000 / (2**6 - 1 - 2**2), -1) == 340,
+        "With 6 bits a level is 340 electrons wide": lambda n: (
+            round(20_000 / (2**6 - 1 - 2**2), -1) == 340
+        ),
         "With 8 bits it is 84": lambda n: round(20_000 / (2**8 - 1 - 2**4)) == 84,
-        "Each photograph holds nearly twelve stops": lambda n: 11.5 < ranges.sensor_range(n.GOOD)[1] < 12,
+        "Each photograph holds nearly twelve stops": lambda n: (
+            11.5 < ranges.sensor_range(n.GOOD)[1] < 12
+        ),
         "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
     },
     "02": {
-        "With the spot or the partial meter on her face she is about a stop too dark": lambda n: all(
-            round(n.place(mode).off) == -1 for mode in ("spot", "partial")
+        "With the spot or the partial meter on her face she is about a stop too dark": lambda n: (
+            all(round(n.place(mode).off) == -1 for mode in ("spot", "partial"))
         ),
         "More than half of the picture is full then": lambda n: n.place("spot").full.mean() > 0.5,
         "the face is four to five stops too dark": lambda n: all(
@@ -79,14 +85,17 @@ SENTENCES = {
             np.abs(n.mtb.align(n.real)).max(axis=0).tolist() == [1, 8]
         ),
         "At $(-63, -63)$, as far as it can go": lambda n: n.corner == (-63, -63),
-        "at half a degree a corner is off by 2.4 pixels": lambda n: round(280 * np.deg2rad(0.5), 1) == 2.4,
+        "at half a degree a corner is off by 2.4 pixels": lambda n: (
+            round(280 * np.deg2rad(0.5), 1) == 2.4
+        ),
     },
     "04": {
         "with our $P = 7$ for 43": lambda n: n.debevec.samples_needed(7) == 43,
         "For $P = 11$ this asks for $N = 26$": lambda n: n.debevec.samples_needed(11) == 26,
         "$g(127)$ is a little less": lambda n: -0.05 < n.g[127] < 0 and abs(n.g[128]) < 1e-9,
         "half of the points between the levels 64 and 192 lie within a hundredth of a stop": lambda n: (
-            np.median(np.abs(n.g[n.Z] - n.lE[:, None] - n.B)[(n.Z >= 64) & (n.Z <= 192)]) < 0.01 * np.log(2)
+            np.median(np.abs(n.g[n.Z] - n.lE[:, None] - n.B)[(n.Z >= 64) & (n.Z <= 192)])
+            < 0.01 * np.log(2)
         ),
     },
     "05": {
@@ -116,7 +125,9 @@ SENTENCES = {
         "After the tenth iteration the error falls by a fifth": lambda n: (
             round(n.fall.error[299] / n.fall.error[9], 1) == 0.8
         ),
-        "more than ten times as far off as after the first": lambda n: n.fall.off[299] > 10 * n.fall.off[0],
+        "more than ten times as far off as after the first": lambda n: (
+            n.fall.off[299] > 10 * n.fall.off[0]
+        ),
         "and they are right within 0.002": lambda n: (
             np.abs(n.R ** (np.log(n.true).sum() / np.log(n.R).sum()) - n.true).max() < 0.0025
         ),
@@ -131,23 +142,30 @@ SENTENCES = {
             round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
         ),
         "the cut alone does not save it": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
-        "The true order fits, noise or not": lambda n: max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1,
+        "The true order fits, noise or not": lambda n: (
+            max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1
+        ),
         "comes out low, for a ratio of 4 by two in a hundred at noise of four levels": lambda n: (
             round(100 * (1 - n.estimate(4.0, 4.0)[0].k / 4)) == 2
         ),
         "From level 10 to 250 the table and the polynomial keep within some hundredths of a stop": lambda n: (
-            max(worst(n.three[name], n.responses.true_g("film"), 10, 250) for name in ("table", "polynomial"))
+            max(
+                worst(n.three[name], n.responses.true_g("film"), 10, 250)
+                for name in ("table", "polynomial")
+            )
             < 0.1
         ),
         "is off by more than a stop at both ends": lambda n: all(
-            worst(n.three["power law"], n.responses.true_g("film"), level, level) > 1 for level in (10, 250)
+            worst(n.three["power law"], n.responses.true_g("film"), level, level) > 1
+            for level in (10, 250)
         ),
         "$k$ is 4 to a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
         "and comes out above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
         "The screen and the many times hardly do worse than the true curve": lambda n: (
-            max(radiance_off(n, "a screen"), radiance_off(n, "a chart")) < 0.002 + radiance_off(n, "true")
+            max(radiance_off(n, "a screen"), radiance_off(n, "a chart"))
+            < 0.002 + radiance_off(n, "true")
         ),
         "with degree 2 or 3 the curve is off by more than 4 % of the range somewhere": lambda n: (
             min(spline_off(n, n.simplex(degree)) for degree in (2, 3)) > 4
@@ -170,14 +188,16 @@ SENTENCES = {
         ),
         "`mix` with 6": lambda n: off(*n.nearest("mix", 6)) < 0.2,
         "`wig` stays 2 to 3 % off with all twelve": lambda n: 2 < off(*n.nearest("wig", 12)) < 3,
-        "as the second does for `srgb`": lambda n: off(*n.nearest("srgb", 2)) > off(*n.nearest("srgb", 1)),
+        "as the second does for `srgb`": lambda n: (
+            off(*n.nearest("srgb", 2)) > off(*n.nearest("srgb", 1))
+        ),
         "is already within 1 %, with five within 0.2 %": lambda n: all(
             patches_off(n, name, patches) < limit
             for name in ("film", "srgb", "mix")
             for patches, limit in ((3, 1), (5, 0.2))
         ),
-        "the space is better for `film` and `srgb`, with half to two thirds of the error": lambda n: all(
-            0.5 <= round(share(n, name, 100), 2) <= 0.67 for name in ("film", "srgb")
+        "the space is better for `film` and `srgb`, with half to two thirds of the error": lambda n: (
+            all(0.5 <= round(share(n, name, 100), 2) <= 0.67 for name in ("film", "srgb"))
         ),
         "worse for `mix`, and much worse for `wig`": lambda n: (
             share(n, "wig", 100) > 5 > share(n, "mix", 100) > 1
@@ -189,16 +209,22 @@ SENTENCES = {
         "`film` is well met from 0.002 to 0.1": lambda n: all(
             off(*n.believed(noise, "film")) < 0.25 for noise in (0.002, 0.005, 0.02, 0.05, 0.1)
         ),
-        "at 0.05 it is already pulled off by a percent": lambda n: round(off(*n.believed(0.05, "mix"))) == 1,
+        "at 0.05 it is already pulled off by a percent": lambda n: (
+            round(off(*n.believed(0.05, "mix"))) == 1
+        ),
     },
     "10": {
         "Fifteen. The last photograph reaches twelve stops further down than the first": lambda n: (
             round(float(np.log2(n.light.max() / n.light.min()))) == 15
             and round(float(np.log2(n.inside.times.max() / n.inside.times.min()))) == 12
         ),
-        "and the scene has eighteen": lambda n: round(float(np.log2(n.true_L.max() / n.true_L.min()))) == 18,
+        "and the scene has eighteen": lambda n: (
+            round(float(np.log2(n.true_L.max() / n.true_L.min()))) == 18
+        ),
         "The frames agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
-        "six stops below the windows": lambda n: round(n.scenes.decades(n.real.E) / np.log10(2)) == 6,
+        "six stops below the windows": lambda n: (
+            round(n.scenes.decades(n.real.E) / np.log10(2)) == 6
+        ),
         "film reaches level 128 with a seventh of the light that fills it": lambda n: (
             round(float(np.exp(n.true_g[250]))) == 7
         ),
@@ -211,7 +237,9 @@ SENTENCES = {
         ),
     },
     "12": {
-        "will the error in the region shrink: two, five, or fifteen?": lambda n: 12 < errors_shrink(n) < 18,
+        "will the error in the region shrink: two, five, or fifteen?": lambda n: (
+            12 < errors_shrink(n) < 18
+        ),
         "Once, where he stood in the reference photograph": lambda n: len(n.result.references) == 1,
     },
     "13": {
@@ -237,8 +265,12 @@ SENTENCES = {
         ),
         "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
         "One pixel nearly doubles the mean": lambda n: 1.8 < n.hot.mean() / n.L.mean() < 2,
-        "would show the street five stops too dark": lambda n: round(np.log2(n.hot.max() / n.L.max())) == 5,
-        "$L_d = 0.15$ is level 109": lambda n: round(255 * float(n.colour.encode_srgb(0.18 / 1.18))) == 109,
+        "would show the street five stops too dark": lambda n: (
+            round(np.log2(n.hot.max() / n.L.max())) == 5
+        ),
+        "$L_d = 0.15$ is level 109": lambda n: (
+            round(255 * float(n.colour.encode_srgb(0.18 / 1.18))) == 109
+        ),
         "nearly straight from a stop below middle gray to three stops above it": lambda n: (
             [-1, 3] == [round(n.ev[steep(n)][k]) for k in (0, -1)]
         ),
@@ -254,12 +286,17 @@ SENTENCES = {
             abs(n.glint - n.alone.mean)[32, 48] < 0.005 and round(float(n.alone.k[32, 48]), 1) == 1
         ),
         "a decade on each side": lambda n: (
-            round(float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())) == 1
+            round(
+                float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())
+            )
+            == 1
         ),
     },
     "17": {
         "must flatten that the most to get the range down: soft edges": lambda n: (
-            fine_detail(n, "finest alone") < fine_detail(n, "all levels") < fine_detail(n, "coarsest alone")
+            fine_detail(n, "finest alone")
+            < fine_detail(n, "all levels")
+            < fine_detail(n, "coarsest alone")
         ),
         "Outlines stand after a few sweeps, and the large differences are missing for thousands": lambda n: (
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
@@ -277,7 +314,8 @@ SENTENCES = {
             < quality(n, "with noise").Q - quality(n, "vignette").Q
         ),
         "S falls with the key, N has a peak, and Q follows N": lambda n: (
-            np.argmax(n.three["N"]) == np.argmax(n.three["Q"]) and n.three["S"][0] > 2 * n.three["S"][-1]
+            np.argmax(n.three["N"]) == np.argmax(n.three["Q"])
+            and n.three["S"][0] > 2 * n.three["S"][-1]
         ),
         "and $S = 0$": lambda n: round(quality(n, "negative").S, 2) == 0,
         "All three are near 0.9 at the finest scale": lambda n: all(
@@ -295,14 +333,21 @@ SENTENCES = {
         "nearly one pixel in ten of flag, rocket and wall": lambda n: all(
             0.07 < mistaken(n, "locus", tone) < 0.1 for tone in ("light", "dark")
         ),
-        "The face comes within a level in one round": lambda n: abs(n.states["skin"][1].mean - 128) < 1,
+        "The face comes within a level in one round": lambda n: (
+            abs(n.states["skin"][1].mean - 128) < 1
+        ),
         "hardly anything of flag, rocket and wall": lambda n: all(
             mistaken(n, "chrominance", tone) < 0.02 for tone in ("light", "dark")
         ),
         "The picture is off by two": lambda n: round(128 - n.states["whole picture"][1].mean) == 2,
-        "shade are off by nearly forty": lambda n: 35 < 128 - n.states["light and shade"][1].mean < 40,
+        "shade are off by nearly forty": lambda n: (
+            35 < 128 - n.states["light and shade"][1].mean < 40
+        ),
         "within four levels of the sRGB curve between levels 20 and 200": lambda n: (
-            np.abs(n.srgb - n.relight.f(n.q, a=1.79, c=0.192))[(n.srgb >= 20) & (n.srgb <= 200)].max() < 4
+            np.abs(n.srgb - n.relight.f(n.q, a=1.79, c=0.192))[
+                (n.srgb >= 20) & (n.srgb <= 200)
+            ].max()
+            < 4
         ),
         "three stops up": lambda n: round(n.corrected().delta) == 3,
     },
@@ -313,14 +358,19 @@ SENTENCES = {
         "of two pixels that differ by two stops few are exchanged": lambda n: exchanged(n) < 0.01,
     },
     "21": {
-        "so bright that a fifth of the picture is full": lambda n: round(np.mean(n.L >= 1), 1) == 0.2,
+        "so bright that a fifth of the picture is full": lambda n: (
+            round(np.mean(n.L >= 1), 1) == 0.2
+        ),
         "112 waves in 256 pixels come back as 16, coarse and at full strength": lambda n: (
             np.argmax(np.abs(np.fft.rfft(n.wave()[1] - n.wave()[1].mean()))) == 16 // 4
         ),
         "17.6 times with the code": lambda n: round(n.flutter.amplification(n.CODE), 1) == 17.6,
-        "The noise grows 52 times with one chop": lambda n: round(n.flutter.amplification(n.ONE), 1) == 52,
+        "The noise grows 52 times with one chop": lambda n: (
+            round(n.flutter.amplification(n.ONE), 1) == 52
+        ),
         "averaged short pictures meets the coded one's at nine": lambda n: (
-            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"])) == 9
+            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"]))
+            == 9
         ),
         "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
         "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
@@ -335,9 +385,12 @@ SENTENCES = {
         "there are as many zeros as groups less one": lambda n: (
             np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
         ),
-        "Exactly one is 0, but for rounding": lambda n: np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1,
+        "Exactly one is 0, but for rounding": lambda n: (
+            np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1
+        ),
         "one line is about twice as steep as the other": lambda n: (
-            round(np.divide(*(np.polyfit(n.digits[4:13], one[4:13], 1)[0] for one in n.errors))) == 2
+            round(np.divide(*(np.polyfit(n.digits[4:13], one[4:13], 1)[0] for one in n.errors)))
+            == 2
         ),
     },
     "23": {
@@ -360,18 +413,29 @@ SENTENCES = {
     },
     "24": {
         "`ghosts` is about as good here": lambda n: (
-            abs(np.diff([n.decibels(n.E3[way], n.taken.moments[1]) for way in ("patches", "ghosts")])[0]) < 1
+            abs(
+                np.diff(
+                    [n.decibels(n.E3[way], n.taken.moments[1]) for way in ("patches", "ghosts")]
+                )[0]
+            )
+            < 1
         ),
     },
     "25": {
-        "Seven pixels in a hundred are beyond white": lambda n: round(100 * np.mean(n.light > 1)) == 7,
-        "beyond three stops, eight times white, less than one is left": lambda n: np.mean(n.light > 8) < 0.01,
+        "Seven pixels in a hundred are beyond white": lambda n: (
+            round(100 * np.mean(n.light > 1)) == 7
+        ),
+        "beyond three stops, eight times white, less than one is left": lambda n: (
+            np.mean(n.light > 8) < 0.01
+        ),
         "with 10 bits 0.6 % at 1000 cd/m²": lambda n: round(step_at(n, "gamma", 1000), 1) == 0.6,
         "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
             round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
         ),
         "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
-        "whose step is a fortieth of a stop": lambda n: 0.02 < np.max(n.largest - n.lowest) / 255 < 0.025,
+        "whose step is a fortieth of a stop": lambda n: (
+            0.02 < np.max(n.largest - n.lowest) / 255 < 0.025
+        ),
         "over eight stops a code is a thirtieth of a stop": lambda n: round(255 / 8) == 32,
         "At 2 a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
         "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
@@ -415,7 +479,9 @@ def scallops(n, stops, smoothness=0):
 
 def radiance_off(n, name):
     """Return by how much radiance read off one photograph is off, in the median."""
-    return np.median(np.abs(metrics.radiance_errors(np.exp(n.g[name][n.shot]), n.workshop, n.well)[n.well]))
+    return np.median(
+        np.abs(metrics.radiance_errors(np.exp(n.g[name][n.shot]), n.workshop, n.well)[n.well])
+    )
 
 
 def patches_off(n, name, patches):
@@ -432,7 +498,9 @@ def share(n, name, samples):
 
 def gain(n, name):
     """Return the error of gsolve of a hundred pixels over that of thousands."""
-    few, many = (off(pair["gsolve"], true) for pair, true in (n.both(name, 100), n.both(name, 4000)))
+    few, many = (
+        off(pair["gsolve"], true) for pair, true in (n.both(name, 100), n.both(name, 4000))
+    )
     return few / many
 
 
@@ -460,8 +528,14 @@ def step_at(n, coding, light):
 def gained(n):
     """Return for how many cameras 300 iterations find a better curve than the scheme that stops."""
     stops = ({"eps": 1e-3}, {"eps": 0, "max_iterations": 300})
-    fits = [[n.last(n.mitsunaga.fit_steps(M, [0.5] * 3, 5, **how)).c[0] for M in n.means] for how in stops]
-    ends = [[n.ambiguity.mean_error(c, one.c) for c, one in zip(cs, n.trials, strict=True)] for cs in fits]
+    fits = [
+        [n.last(n.mitsunaga.fit_steps(M, [0.5] * 3, 5, **how)).c[0] for M in n.means]
+        for how in stops
+    ]
+    ends = [
+        [n.ambiguity.mean_error(c, one.c) for c, one in zip(cs, n.trials, strict=True)]
+        for cs in fits
+    ]
     return int(np.sum(np.less(*ends[::-1])))
 
 
@@ -546,7 +620,9 @@ def test_each_sentence_stands_in_its_notebook(path):
 
 def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_cannot_be_judged_with_the_reason():
     (sentence,) = SENTENCES["00"]
-    assert untrue("00_welcome", {"stops": 16.2}) == [] and untrue("00_welcome", {"stops": 15}) == [sentence]
+    assert untrue("00_welcome", {"stops": 16.2}) == [] and untrue("00_welcome", {"stops": 15}) == [
+        sentence
+    ]
     (said,) = untrue("00_welcome", {})
     assert said.startswith(f"{sentence}: AttributeError")
 
@@ -554,7 +630,12 @@ def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_canno
 def test_a_slider_whose_function_has_lost_a_name_since_is_told(monkeypatch):
     monkeypatch.setattr(widget, "_instances", {})
     names = {"level": 100}
-    tune(lambda a=0: np.full((4, 4), names["level"] + a, np.uint8), lambda x: x, alt="A square", a=[0, 1])
+    tune(
+        lambda a=0: np.full((4, 4), names["level"] + a, np.uint8),
+        lambda x: x,
+        alt="A square",
+        a=[0, 1],
+    )
     assert unanswered() == []
     names.clear()
     assert unanswered() == ["A square, a: KeyError('level')"]

@@ -27,17 +27,25 @@ def test_what_a_tier_lists_is_there(start):
 
 def test_the_longest_start_counts():
     assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestThree::test_a") == "browser"
-    assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestOthers0::test_a") == "jupyterlab"
+    assert (
+        tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestOthers0::test_a")
+        == "jupyterlab"
+    )
     assert len(set(STARTS)) == len(STARTS)
 
 
 def test_what_is_long_has_its_turn_before_the_others():
-    addresses = ["tests/core/test_blur.py::test_a", *(f"{start}::test_a" for start in reversed(FIRST))]
+    addresses = [
+        "tests/core/test_blur.py::test_a",
+        *(f"{start}::test_a" for start in reversed(FIRST)),
+    ]
     assert sorted(addresses, key=turn) == [*reversed(addresses[1:]), addresses[0]]
 
 
 def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():
-    assert tier_of("tests/core/test_blur.py::test_a") == QUICK and may_hold("tests/core/test_blur.py", QUICK)
+    assert tier_of("tests/core/test_blur.py::test_a") == QUICK and may_hold(
+        "tests/core/test_blur.py", QUICK
+    )
     assert tier_of("tests/browser/test_new.py::test_a") == "browser"
     assert may_hold("tests/", "browser") and may_hold("tests/browser/test_new.py", "browser")
     assert not may_hold("tests/browser/", QUICK) and may_hold("tests/browser/", ALL)

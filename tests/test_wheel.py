@@ -42,10 +42,14 @@ OUT = ("tests", "attacks", "equivalent", "solutions", "benchmarks", "models", ".
 
 def test_the_wheel_holds_the_package_notebooks_and_handouts_and_nothing_else(wheel):
     held = [name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name]
-    files = [path for path in (ROOT / "hdrlab").rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    files = [
+        path for path in (ROOT / "hdrlab").rglob("*") if path.is_file() and path.suffix != ".pyc"
+    ]
     expected = {path.relative_to(ROOT).as_posix() for path in files}
     for folder in ("notebooks", "assignments"):
-        expected |= {f"hdrlab/course/{folder}/{path.name}" for path in (ROOT / folder).glob("*.ipynb")}
+        expected |= {
+            f"hdrlab/course/{folder}/{path.name}" for path in (ROOT / folder).glob("*.ipynb")
+        }
     assert set(held) == expected and expected.issuperset(IN)
     parts = {part for name in held for part in name.split("/")}
     assert not parts.intersection(OUT)
@@ -61,7 +65,16 @@ def test_the_wheel_carries_no_attack_and_no_full_answer(wheel):
 
 def test_neither_the_wheel_nor_the_source_distribution_holds_a_model_solution(wheel, tmp_path):
     """The worked sheets are in the clone; a pack of them is written on asking, by `hdrlab course pack`."""
-    command = [sys.executable, "-m", "build", "--sdist", "--no-isolation", "--outdir", tmp_path, ROOT]
+    command = [
+        sys.executable,
+        "-m",
+        "build",
+        "--sdist",
+        "--no-isolation",
+        "--outdir",
+        tmp_path,
+        ROOT,
+    ]
     subprocess.run(command, check=True, capture_output=True)
     with tarfile.open(next(tmp_path.glob("hdrlab-*.tar.gz"))) as sdist:
         held = sdist.getnames() + zipfile.ZipFile(wheel).namelist()

@@ -1,8 +1,8 @@
 """Which tests run when: the quick tier at `python -m pytest`, another at `python -m pytest --tier=papers`.
 
-A test is quick unless another list below names it, and the longest name counts. Quick are units, laws, the
-specification on the library, the layers, the handouts against their source, the sandbox and a homework in it;
-a quick test takes at most 5 s.
+A test is quick unless another list below names it, and the longest name counts. Quick are units,
+laws, the specification on the library, the layers, the handouts against their source, the sandbox
+and a homework in it; a quick test takes at most 5 s.
 
 notebooks  every notebook, run once; what they say of their numbers; the site that is made of them
 browser    JupyterLab on three notebooks, the site and the gallery in Chromium
@@ -184,8 +184,8 @@ TIERS = {
 }
 QUICK, ALL = "quick", "all"
 STARTS = tuple(start for starts in TIERS.values() for start in starts)
-# begun first, in this order: what is long, or what the others of its tier wait for; begun last, one worker
-# would be busy with it alone
+# begun first, in this order: what is long, or what the others of its tier wait for; begun last, one
+# worker would be busy with it alone
 FIRST = (
     "tests/course/test_site.py",
     "tests/browser/test_site_in_a_browser.py",
@@ -222,7 +222,10 @@ def tier_of(address: str) -> str:
     if not address.startswith(STARTS):  # most are in no list
         return QUICK
     found = [
-        (len(start), tier) for tier, starts in TIERS.items() for start in starts if address.startswith(start)
+        (len(start), tier)
+        for tier, starts in TIERS.items()
+        for start in starts
+        if address.startswith(start)
     ]
     return max(found)[1]
 

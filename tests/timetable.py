@@ -2,8 +2,9 @@
 
     python tests/timetable.py     # writes the minutes into the site's course.md, and makes COURSE.md of it
 
-A notebook: a minute for every 150 words, one for each prediction, one for each cell that draws. A task: ten
-minutes, and three for each line of code that the library's own function needs. No class has been timed.
+A notebook: a minute for every 150 words, one for each prediction, one for each cell that draws. A
+task: ten minutes, and three for each line of code that the library's own function needs. No class
+has been timed.
 """
 
 import json
@@ -94,15 +95,21 @@ def with_minutes(text):
         share = sum(one[3].startswith(sheet) for one in weeks)
         asked = [(points, minutes) for name, points, minutes in each.values() if name == sheet]
         whole = sum(points for points, _ in asked)
-        counted = plan_of_the_course().get(sheet, {}).get("at_most", whole)  # of what there is to choose from
-        hours = math.ceil(sum(minutes for _, minutes in asked) * counted / max(whole, 1) / 60 / share)
+        counted = (
+            plan_of_the_course().get(sheet, {}).get("at_most", whole)
+        )  # of what there is to choose from
+        hours = math.ceil(
+            sum(minutes for _, minutes in asked) * counted / max(whole, 1) / 60 / share
+        )
         also = sum(map(int, re.findall(r"(\d+) hours", row[4])))  # of what is no task
         return f"| {row[1]} | {row[2]} | {minutes} | {row[4]} | {hours + also or row[5]} |"
 
     text = re.sub(WEEK, week, text, flags=re.M)
     text = re.sub(NOTEBOOK, book, text, flags=re.M)
     text = re.sub(TASK, task, text, flags=re.M)
-    return re.sub(PART, lambda row: f"| {row[1]} | {row[2]} | {part(row[1], row[2])} |", text, flags=re.M)
+    return re.sub(
+        PART, lambda row: f"| {row[1]} | {row[2]} | {part(row[1], row[2])} |", text, flags=re.M
+    )
 
 
 def copy_of(text):

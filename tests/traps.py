@@ -1,6 +1,7 @@
 """Archives that no class is to unpack: each has a trap, and each is refused, whatever the limits.
 
-What is harmful in them is harmless here: names lead to /tmp/planted, bombs hold a few megabytes of zeros.
+What is harmful in them is harmless here: names lead to /tmp/planted, bombs hold a few megabytes of
+zeros.
 """
 
 import io
@@ -11,7 +12,11 @@ import tarfile
 import zipfile
 import zlib
 
-FILES = {"report.html": b"<p>hello", "photographs/a.jpg": b"\xff\xd8" * 500, "source/hdr.py": b"print()\n"}
+FILES = {
+    "report.html": b"<p>hello",
+    "photographs/a.jpg": b"\xff\xd8" * 500,
+    "source/hdr.py": b"print()\n",
+}
 
 
 def zipped(path, files, **knobs):
@@ -86,7 +91,9 @@ def long_header(path, size=10_000_000, kind=tarfile.XHDTYPE):
 
 def resizing(path):
     """Write a tar whose extended header gives a member another size than its own header."""
-    return tarred(path, [(info("a.txt", pax_headers={"size": "7"}), b"0" * 600)], format=tarfile.PAX_FORMAT)
+    return tarred(
+        path, [(info("a.txt", pax_headers={"size": "7"}), b"0" * 600)], format=tarfile.PAX_FORMAT
+    )
 
 
 def resizing_as_solaris(path):
@@ -112,9 +119,13 @@ TRAPS = {
     "a drive's name": lambda p: zipped(p, {"C:/planted": b"x"}),
     "a member that climbs out, zip": lambda p: zipped(p, {"a/../../planted": b"x"}),
     "a member that climbs out, tar": lambda p: tarred(p, [(info("../planted"), b"x")]),
-    "a member that climbs out by backslashes": lambda p: zipped(p, [(entry("..\\planted", 0o100644), b"x")]),
+    "a member that climbs out by backslashes": lambda p: zipped(
+        p, [(entry("..\\planted", 0o100644), b"x")]
+    ),
     "a device in a zip": lambda p: zipped(p, [(entry("tty", DEVICE), b"")]),
-    "a device in a tar": lambda p: tarred(p, [(info("null", tarfile.CHRTYPE, devmajor=1, devminor=3), b"")]),
+    "a device in a tar": lambda p: tarred(
+        p, [(info("null", tarfile.CHRTYPE, devmajor=1, devminor=3), b"")]
+    ),
     "a block device": lambda p: tarred(p, [(info("sda", tarfile.BLKTYPE, devmajor=8), b"")]),
     "a pipe": lambda p: tarred(p, [(info("pipe", tarfile.FIFOTYPE), b"")]),
     "a pipe in a zip": lambda p: zipped(p, [(entry("pipe", FIFO), b"")]),
@@ -152,6 +163,8 @@ TRAPS = {
     "nothing": lambda p: p.write_bytes(b""),
     "a stream that ends in rubbish": lambda p: p.write_bytes(b"\x1f\x8b" + os.urandom(300)),
     "a wrong checksum": lambda p: p.write_bytes(
-        zipped(p, {"a": b"hello"}).read_bytes().replace(struct.pack("<L", zlib.crc32(b"hello")), b"abcd")
+        zipped(p, {"a": b"hello"})
+        .read_bytes()
+        .replace(struct.pack("<L", zlib.crc32(b"hello")), b"abcd")
     ),
 }

@@ -1,8 +1,9 @@
 """A Linux that lacks what Windows lacks: for tests of what a student and an instructor do there.
 
-`hide` takes away modules, signals and calls that only POSIX has, and lends two methods of sockets that only
-Windows has. `build` makes an interpreter that does so in every process, and that stands, as the launcher of a
-virtual environment does there, between a process and the one it was started by.
+`hide` takes away modules, signals and calls that only POSIX has, and lends two methods of sockets
+that only Windows has. `build` makes an interpreter that does so in every process, and that stands,
+as the launcher of a virtual environment does there, between a process and the one it was started
+by.
 """
 
 import ctypes
@@ -18,7 +19,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 SYSTEM = ROOT / "hdrlab/course/sandbox/inside/system.py"
 MODULES = ("fcntl", "resource", "pwd", "pyseccomp")
-CALLS = ("fork", "forkpty", "killpg", "setpgid", "setsid", "getuid", "geteuid", "posix_fallocate", "mkfifo")
+CALLS = (
+    "fork",
+    "forkpty",
+    "killpg",
+    "setpgid",
+    "setsid",
+    "getuid",
+    "geteuid",
+    "posix_fallocate",
+    "mkfifo",
+)
 CALLS += ("waitid", "sched_getaffinity", "O_NOFOLLOW", "O_DIRECTORY")
 LAUNCHER = """#!{python} -IS
 import ctypes, subprocess, sys
@@ -68,7 +79,9 @@ def hide():
     for name in set(CALLS) & set(dir(os)):
         delattr(os, name)
     del signal.SIGKILL, socket.send_fds, socket.recv_fds
-    subprocess.Popen.kill = lambda process: process.send_signal(9)  # it is a call of its own on Windows
+    subprocess.Popen.kill = lambda process: process.send_signal(
+        9
+    )  # it is a call of its own on Windows
     started = subprocess.Popen.__init__
 
     def start(self, *words, **options):
@@ -115,7 +128,9 @@ def share_sockets():
     socket.socket.share, socket.fromshare = share, fromshare
 
 
-if __name__ == "__main__":  # in front of the supervisor, which starts without any site's customization
+if (
+    __name__ == "__main__"
+):  # in front of the supervisor, which starts without any site's customization
     import runpy
 
     hide()

@@ -44,7 +44,9 @@ def answers(name: str, kind: str, count: int = COUNT) -> tuple[ArrayLike, ArrayL
     return np.array(errors), np.array(doubted)
 
 
-def accuracy(_: Path, *, kind: str, names: tuple[str, ...], count: int = COUNT) -> Mapping[str, ArrayLike]:
+def accuracy(
+    _: Path, *, kind: str, names: tuple[str, ...], count: int = COUNT
+) -> Mapping[str, ArrayLike]:
     """Return of each the share within the limit, %, the median and 95 % of the errors, pixels."""
     found: dict[str, ArrayLike] = {}
     for name in names:
@@ -56,7 +58,9 @@ def accuracy(_: Path, *, kind: str, names: tuple[str, ...], count: int = COUNT) 
 
 def share(doubted: Array, among: Array, none: float) -> Array:
     """Return how many of those among which one looks are doubted, %, and how many these are."""
-    return np.array([100 * np.mean(doubted[among]) if among.any() else none, np.count_nonzero(among)])
+    return np.array(
+        [100 * np.mean(doubted[among]) if among.any() else none, np.count_nonzero(among)]
+    )
 
 
 def flagged(_: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLike]:
@@ -76,18 +80,16 @@ def flagged(_: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLike
 def beside(kind: str, title: str) -> tuple[Experiment, ...]:
     """Return the rows of the peers, one each, for one may be missing."""
     return tuple(
-        Experiment(f"align-{kind}-{name.split()[0].strip(',').lower()}", f"{title}; {name}", run, ())
+        Experiment(
+            f"align-{kind}-{name.split()[0].strip(',').lower()}", f"{title}; {name}", run, ()
+        )
         for name in who.PEERS
         for run in [partial(accuracy, kind=kind, names=(name,))]
     )
 
 
-SHIFT = (
-    "shift of up to 32 whole pixels: % of 100 pairs within 1 pixel at the corners, median and 95 % of errors"
-)
-TURN = (
-    "shift to 32 pixels, rotation to 3 degrees: % of 100 pairs within 0.3 pixels, median and 95 % of errors"
-)
+SHIFT = "shift of up to 32 whole pixels: % of 100 pairs within 1 pixel at the corners, median and 95 % of errors"
+TURN = "shift to 32 pixels, rotation to 3 degrees: % of 100 pairs within 0.3 pixels, median and 95 % of errors"
 TOLD = "of 100 pairs of each class of Ward's failures: % of the failures that are told, and their number"
 ROWS = (
     Experiment(

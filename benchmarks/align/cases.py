@@ -4,8 +4,8 @@ images  (2, H, W, 3) uint8: the darker photograph, which moves, and the brighter
 times   (2,) s
 truth   (3, 3): where pixel (x, y, 1) of the first lies on the second; None where nothing corresponds
 
-Six subjects: three embedded places, and three pictures of scikit-image under slanting light. Case i of a kind
-is the same in every run.
+Six subjects: three embedded places, and three pictures of scikit-image under slanting light. Case i
+of a kind is the same in every run.
 """
 
 from collections.abc import Callable
@@ -42,13 +42,17 @@ def subject(name: str) -> NDArray[np.float32]:
     if hasattr(scenes, name):
         return np.asarray(getattr(scenes, name)(SHAPE), np.float32)
     texture = getattr(data, name)() / np.float32(255)
-    grown = zoom(texture, (*(1.01 * n / m for n, m in zip(SHAPE, texture.shape, strict=False)), 1), order=1)
+    grown = zoom(
+        texture, (*(1.01 * n / m for n, m in zip(SHAPE, texture.shape, strict=False)), 1), order=1
+    )
     y, x = (np.linspace(-0.5, 0.5, n) for n in SHAPE)
     light = 0.5 * y[:, None, None] + 0.3 * x[None, :, None]
     return np.asarray(10 ** (2.2 * grown[: SHAPE[0], : SHAPE[1]] + light), np.float32)
 
 
-def pair(i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float | None = None) -> Case:
+def pair(
+    i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float | None = None
+) -> Case:
     """Return two photographs of a scene, moved by `moves`, in the frames' own pixels."""
     stops = rng.uniform(1, 3) if stops is None else stops
     times = camera.times_around(E, 2, stops=stops)
@@ -104,7 +108,10 @@ def moving(i: int) -> Case:
     times = camera.times_around(E, 2, stops=rng.uniform(1, 3))
     both = [
         camera.shoot(
-            one, [t], camera.Camera(full_well=FULL_WELL, read_noise=READ_NOISE, response="film"), rng=dark
+            one,
+            [t],
+            camera.Camera(full_well=FULL_WELL, read_noise=READ_NOISE, response="film"),
+            rng=dark,
         ).images[0]
         for one, t in zip((moved, E), times, strict=True)
     ]
@@ -114,15 +121,17 @@ def moving(i: int) -> Case:
 def fine(i: int) -> Case:
     """Return a pair of fine texture [Ward: 3 %]: of leaves that moved, of tiles, of bars, in turn.
 
-    Leaves that the wind moved have nothing in common; tiles and bars fit in many places, so there is a truth,
-    but a photograph does not tell it.
+    Leaves that the wind moved have nothing in common; tiles and bars fit in many places, so there
+    is a truth, but a photograph does not tell it.
     """
     rng = np.random.default_rng((5, i))
     stops, moves = rng.uniform(1, 3), away(rng.integers(-RADIUS, RADIUS, 2))
     y, x = np.indices(SHAPE)
     if i % 3:
         period = rng.integers(3, 13)
-        pattern = np.sin(2 * np.pi * x / period) * (np.sin(2 * np.pi * y / period) if i % 3 == 1 else 1)
+        pattern = np.sin(2 * np.pi * x / period) * (
+            np.sin(2 * np.pi * y / period) if i % 3 == 1 else 1
+        )
         return pair(i, _scene(pattern), moves, rng, stops)
     leaves = [gaussian_filter(rng.standard_normal(SHAPE), rng.uniform(0.5, 1.5)) for _ in range(2)]
     both = [pair(i, _scene(one / one.std()), moves * 0 + np.eye(3), rng, stops) for one in leaves]

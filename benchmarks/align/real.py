@@ -3,11 +3,13 @@
 S  sharpness  the slope that one pixel in a hundred exceeds, stops per pixel: an edge that is out of place by
               a pixel in one photograph of the bracket becomes two gentler ones in the map
 
-Map and photographs are compared over the same pixels: those which the photograph in the middle, which is
-never resampled, measures well, too. A photograph is moved to the nearest pixel for that; nothing is smoothed.
+Map and photographs are compared over the same pixels: those which the photograph in the middle,
+which is never resampled, measures well, too. A photograph is moved to the nearest pixel for that;
+nothing is smoothed.
 
-Read the arch with care: its photographs lie within a few pixels of each other, and where they do not agree
-the map has steps that no photograph has. These count as sharp, too, so there is no hold on it.
+Read the arch with care: its photographs lie within a few pixels of each other, and where they do
+not agree the map has steps that no photograph has. These count as sharp, too, so there is no hold
+on it.
 """
 
 from collections.abc import Mapping
@@ -72,9 +74,15 @@ def beside_the_sharpest(taken: Bracket, align: str) -> float:
     """Return the map's S / that of the photograph beside which it is lowest, over what both measure well."""
     found = pipeline.assemble(taken, align=align)
     rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
-    size, first = (rows.stop - rows.start, columns.stop - columns.start), [[rows.start, columns.start]]
+    size, first = (
+        (rows.stop - rows.start, columns.stop - columns.start),
+        [[rows.start, columns.start]],
+    )
     back = np.linalg.inv(found.homographies) @ warp.as_homographies(first)
-    Z = [warp.nearest(one[..., 1].astype(float), H, size) for one, H in zip(taken.images, back, strict=True)]
+    Z = [
+        warp.nearest(one[..., 1].astype(float), H, size)
+        for one, H in zip(taken.images, back, strict=True)
+    ]
     g = found.g if found.g.ndim == 1 else found.g[:, 1]
     own = by_brightness(taken.images)[len(Z) // 2 - 1 + len(Z) % 2]
     well = [binary_erosion((one > WELL[0]) & (one < WELL[1]), iterations=2) for one in Z]
@@ -82,14 +90,19 @@ def beside_the_sharpest(taken: Bracket, align: str) -> float:
     for one, seen in zip(Z, well, strict=True):
         both = seen & well[own]
         if both.mean() > SHARE:
-            shares.append(sharpness(found.E[..., 1], both) / sharpness(np.exp(g[one.astype(int)]), both))
+            shares.append(
+                sharpness(found.E[..., 1], both) / sharpness(np.exp(g[one.astype(int)]), both)
+            )
     return min(shares)
 
 
 def compared(folder: Path, *, which: str) -> Mapping[str, ArrayLike]:
     """Return the sharpness of the map beside its sharpest photograph, for each way to align."""
     taken = {"arch": arch, "crusader": crusader}[which](folder)
-    found = {way: beside_the_sharpest(taken, way) for way in ("none", "mtb", "cerman", "homography", "auto")}
+    found = {
+        way: beside_the_sharpest(taken, way)
+        for way in ("none", "mtb", "cerman", "homography", "auto")
+    }
     return found | {GAIN: max(found[way] for way in found if way != "none") / found["none"]}
 
 

@@ -80,16 +80,23 @@ def by_hugin(images: Array, _: Float) -> Answer:
         for path, image in zip(files, images[::-1], strict=True):
             iio.imwrite(path, image)
         command = [HUGIN, "-p", str(project), *map(str, files)]
-        if subprocess.run(command, cwd=folder, capture_output=True).returncode or not project.exists():
+        if (
+            subprocess.run(command, cwd=folder, capture_output=True).returncode
+            or not project.exists()
+        ):
             return np.eye(3), True  # it says that it found no points
         seen = _traced([str(project), "1"], warp.corners(images.shape[1:3]))
-        return warp.through(warp.corners(images.shape[1:3]), _traced(["-r", str(project), "0"], seen)), False
+        return warp.through(
+            warp.corners(images.shape[1:3]), _traced(["-r", str(project), "0"], seen)
+        ), False
 
 
 def _traced(options: list[str], points: Float) -> Float:
     """Return where Hugin puts points (n, 2), (x, y)."""
     text = "".join(f"{x} {y}\n" for x, y in points)
-    done = subprocess.run(["pano_trafo", *options], input=text, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["pano_trafo", *options], input=text, capture_output=True, text=True, check=True
+    )
     return np.array([line.split()[:2] for line in done.stdout.splitlines() if line.strip()], float)
 
 

@@ -9,10 +9,10 @@ sheets     the sheets of a class in which each student is asked variants of its 
 costs      submissions that are to cost much, each graded alone: the worst of each kind
 books      what is done beside the grading, where all results are there: it may not grow faster than the class
 
-What fifty thousand would take is told from what one takes here, on as many processors of this kind: hours of
-the workers, which they share, and beside these what the command's own process does alone, which limits how
-many it keeps busy. Four workers on two processors tell what more workers cost, and not what they gain. The
-figures are those of `hdrlab grade` in the strict tier; see `grading`.
+What fifty thousand would take is told from what one takes here, on as many processors of this kind:
+hours of the workers, which they share, and beside these what the command's own process does alone,
+which limits how many it keeps busy. Four workers on two processors tell what more workers cost, and
+not what they gain. The figures are those of `hdrlab grade` in the strict tier; see `grading`.
 """
 
 import os
@@ -37,7 +37,11 @@ PROCESSES, WORKERS = (1, 2), (1, 2, 4)
 HONEST = 60  # among all that is hostile
 # seconds of a processor, and by the clock, that one submission may cost
 CPU, CLOCK = 60, 300
-FIGURES = {"CPU seconds": attrgetter("cpu"), "seconds": attrgetter("seconds"), "MB": attrgetter("largest")}
+FIGURES = {
+    "CPU seconds": attrgetter("cpu"),
+    "seconds": attrgetter("seconds"),
+    "MB": attrgetter("largest"),
+}
 BOOKS = (1200, 4800)  # more than are compared with each other
 LARGE = f"{judged.LARGE // 1000} 000"
 
@@ -84,7 +88,9 @@ def processes(folder: Path, count: int = SCALE) -> dict[str, Any]:
     place = handed.write(folder / "class", each)
     used = {jobs: grade(place, folder / f"by{jobs}", "--jobs", str(jobs)) for jobs in PROCESSES}
     differ = judged.differing(folder / "by1", folder / "by2", each)
-    return _scaling(list(used.values()), count, "processes", PROCESSES) | {"files that differ": differ}
+    return _scaling(list(used.values()), count, "processes", PROCESSES) | {
+        "files that differ": differ
+    }
 
 
 def workers(folder: Path, count: int = SCALE) -> dict[str, Any]:
@@ -105,7 +111,9 @@ def _scaling(used: list[Used], count: int, what: str, numbers: tuple[int, ...]) 
     by, last = f"{_listed(numbers)} {what}", used[-1]
     return {
         f"seconds by {by}": [one.seconds for one in used],
-        f"times as fast by {_listed(numbers[1:])}": [used[0].seconds / one.seconds for one in used[1:]],
+        f"times as fast by {_listed(numbers[1:])}": [
+            used[0].seconds / one.seconds for one in used[1:]
+        ],
         f"processors kept busy by {numbers[-1]} {what}": last.cpu / last.seconds,
         f"CPU seconds of one by {by}": [one.cpu / count for one in used],
         f"ms of one in the command's own process by {by}": [1e3 * one.own / count for one in used],
@@ -161,7 +169,8 @@ def books(folder: Path) -> dict[str, Any]:
     seconds = [one.own for one in used]
     return {
         f"CPU seconds of the command's own process for {_listed(BOOKS)} results": seconds,
-        "power of the class that they grow with": log(seconds[1] / seconds[0]) / log(BOOKS[1] / BOOKS[0]),
+        "power of the class that they grow with": log(seconds[1] / seconds[0])
+        / log(BOOKS[1] / BOOKS[0]),
         "ms of one": 1e3 * (seconds[1] - seconds[0]) / (BOOKS[1] - BOOKS[0]),
         f"minutes of {LARGE}": seconds[1] / BOOKS[1] * judged.LARGE / 60,
         f"MB for {_listed(BOOKS)} results": [one.total for one in used],

@@ -1,8 +1,9 @@
 """What one submission costs at most: each that is made to cost much is a class of its own, and is graded.
 
-All tasks of the homework are hostile in the same way, so that whatever is done for one task is done for all.
-The seconds are those of `hdrlab grade`, with its own start, the reading, all checks, the feedback and what is
-alike; a submission that waits is charged by the clock, and one that computes by the processor.
+All tasks of the homework are hostile in the same way, so that whatever is done for one task is done
+for all. The seconds are those of `hdrlab grade`, with its own start, the reading, all checks, the
+feedback and what is alike; a submission that waits is charged by the clock, and one that computes
+by the processor.
 """
 
 import bz2
@@ -56,18 +57,25 @@ def each() -> Iterator[Costly]:
     """Yield all of them."""
     for name, body in CODE.items():
         yield Costly("code", name, ".py", partial(_source, body))
-    yield Costly("code", "computes at import", ".py", lambda: b"while True: x = 1\n" + _source("return x"))
+    yield Costly(
+        "code", "computes at import", ".py", lambda: b"while True: x = 1\n" + _source("return x")
+    )
     for name, (ending, made) in handed.tests("hostile").FILES.items():
         yield Costly("file", name, ending, made)
     yield Costly(
-        "archive", "slow to unpack, then computes", ".tar.bz2", lambda: _archive(_source(CODE["computes"]))
+        "archive",
+        "slow to unpack, then computes",
+        ".tar.bz2",
+        lambda: _archive(_source(CODE["computes"])),
     )
     yield Costly("archive", "too slow to unpack", ".tar.bz2", lambda: _archive(b"", 5 * SLOW))
 
 
 def _source(body: str) -> bytes:
     tasks = [task.id for task in plan.read().homeworks["hw2"].tasks]
-    return (HEAD + "".join(f"def {task}(*given, **named):\n    {body}\n" for task in tasks)).encode()
+    return (
+        HEAD + "".join(f"def {task}(*given, **named):\n    {body}\n" for task in tasks)
+    ).encode()
 
 
 @cache

@@ -21,7 +21,9 @@ from benchmarks.measure import ROOT, THREADS
 from hdrlab.course.sandbox import tiers
 
 TICK = 0.2  # seconds between two looks at the processes
-TIMEOUT = 10  # seconds for one answer, as usual: what never ends is waited for so long, check by check
+TIMEOUT = (
+    10  # seconds for one answer, as usual: what never ends is waited for so long, check by check
+)
 HERTZ = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
 
 
@@ -49,7 +51,15 @@ def grade(folder: Path, out: Path, *words: str, beside: Sequence[int] = ()) -> U
         tiers.choose("strict")
     except tiers.Unavailable as reason:
         raise Skipped(str(reason)) from None
-    command = [sys.executable, "-m", "hdrlab", "grade", str(folder / "submissions"), "--homework", "hw2"]
+    command = [
+        sys.executable,
+        "-m",
+        "hdrlab",
+        "grade",
+        str(folder / "submissions"),
+        "--homework",
+        "hw2",
+    ]
     for option, name in (
         ("roster", "roster.csv"),
         ("received", "received.csv"),
@@ -115,7 +125,10 @@ def _cpu(process: int, fields: int) -> float:
 
 def _megabytes(process: int) -> float:
     """Return what a process holds, its share of what it shares; all of it where the kernel does not say."""
-    for file, field in ((f"/proc/{process}/smaps_rollup", "Pss:"), (f"/proc/{process}/status", "VmRSS:")):
+    for file, field in (
+        (f"/proc/{process}/smaps_rollup", "Pss:"),
+        (f"/proc/{process}/status", "VmRSS:"),
+    ):
         with suppress(OSError):
             for line in Path(file).read_text().splitlines():
                 if line.startswith(field):

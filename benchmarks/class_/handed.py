@@ -30,7 +30,15 @@ from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
 TESTS = ROOT / "tests"
-SHARES = {"right": 60, "equivalent": 30, "mistake": 96, "half": 15, "blank": 12, "attack": 42, "trap": 45}
+SHARES = {
+    "right": 60,
+    "equivalent": 30,
+    "mistake": 96,
+    "half": 15,
+    "blank": 12,
+    "attack": 42,
+    "trap": 45,
+}
 HOSTILE = ("attack", "trap")
 HOURS = (-30.0, -2.0, 5.0, 70.0, 276.0)  # after the end
 PORT = 9  # where nobody answers
@@ -59,7 +67,9 @@ def kinds(count: int) -> list[str]:
     made = dict.fromkeys(SHARES, 0)
     order = []
     for n in range(1, count + 1):
-        behind = {kind: share * n / sum(SHARES.values()) - made[kind] for kind, share in SHARES.items()}
+        behind = {
+            kind: share * n / sum(SHARES.values()) - made[kind] for kind, share in SHARES.items()
+        }
         order.append(max(behind, key=lambda kind: behind[kind]))
         made[order[-1]] += 1
     return order
@@ -95,11 +105,18 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         names = [one.name for one in misconceptions.known() if one.task in ids]
         return [(name, ".ipynb", _mistaken(name)) for name in islice(cycle(names), count)]
     if kind == "half":
-        some = [homework._replace(tasks=homework.tasks[: 1 + k % (len(ids) - 1)]) for k in range(count)]
+        some = [
+            homework._replace(tasks=homework.tasks[: 1 + k % (len(ids) - 1)]) for k in range(count)
+        ]
         return [(part.tasks[-1].id, ".ipynb", _filled(homework, part)) for part in some]
     if kind == "blank":
         blank = solutions.notebook(homework).encode()
-        each = [("handout", blank), ("cut short", blank[:3000]), ("no notebook", b"hello"), ("empty", b"")]
+        each = [
+            ("handout", blank),
+            ("cut short", blank[:3000]),
+            ("no notebook", b"hello"),
+            ("empty", b""),
+        ]
         return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
     if kind == "attack":
         siege = tests("siege")
@@ -110,9 +127,16 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
 
 def _right(homework: Homework) -> list[Made]:
     cells = solutions.texts(homework)
-    notebook, script = solutions.notebook(homework, cells).encode(), solutions.script(cells).encode()
+    notebook, script = (
+        solutions.notebook(homework, cells).encode(),
+        solutions.script(cells).encode(),
+    )
     archive = packed({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
-    return [("notebook", ".ipynb", notebook), ("script", ".py", script), ("archive", ".zip", archive)]
+    return [
+        ("notebook", ".ipynb", notebook),
+        ("script", ".py", script),
+        ("archive", ".zip", archive),
+    ]
 
 
 @cache
@@ -127,7 +151,9 @@ def _filled(homework: Homework, part: Homework) -> bytes:
 
 def attack(text: str, task: str) -> bytes:
     """Return an attack whose function, called double, has the name of a task."""
-    return re.sub(r"^def double\(x\)", f"def {task}(x=0, *_, **__)", text, flags=re.MULTILINE).encode()
+    return re.sub(
+        r"^def double\(x\)", f"def {task}(x=0, *_, **__)", text, flags=re.MULTILINE
+    ).encode()
 
 
 @cache

@@ -48,13 +48,18 @@ def lost(graded: Mapping[str, Result], each: Sequence[Handed]) -> int:
 
 def gained(graded: Mapping[str, Result], each: Iterable[Handed]) -> float:
     """Return the most points that something hostile has got."""
-    return max((graded[one.team].score for one in each if one.hostile and one.team in graded), default=0.0)
+    return max(
+        (graded[one.team].score for one in each if one.hostile and one.team in graded), default=0.0
+    )
 
 
 def not_whole(graded: Mapping[str, Result], each: Iterable[Handed]) -> int:
     """Return how many of those that are right have less than all points."""
     right = [one for one in each if one.kind in ("right", "equivalent")]
-    return sum(one.team not in graded or graded[one.team].score < graded[one.team].max_score for one in right)
+    return sum(
+        one.team not in graded or graded[one.team].score < graded[one.team].max_score
+        for one in right
+    )
 
 
 def not_named(graded: Mapping[str, Result], each: Iterable[Handed]) -> float:
@@ -72,8 +77,14 @@ def not_named(graded: Mapping[str, Result], each: Iterable[Handed]) -> float:
 
 def not_refused(graded: Mapping[str, Result], each: Iterable[Handed]) -> int:
     """Return how many archives with a trap were not refused with a line."""
-    traps = [graded[one.team].problems if one.team in graded else () for one in each if one.kind == "trap"]
-    return sum(not any(line.startswith("The archive is refused: ") for line in said) for said in traps)
+    traps = [
+        graded[one.team].problems if one.team in graded else ()
+        for one in each
+        if one.kind == "trap"
+    ]
+    return sum(
+        not any(line.startswith("The archive is refused: ") for line in said) for said in traps
+    )
 
 
 def size(out: Path) -> tuple[int, int]:

@@ -52,7 +52,9 @@ def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
     for name in traps.TRAPS:
         yield "trap", name, partial(_put, ".zip", handed.trap(name))
     for kind, each in (("code", bad.CODE), ("text", bad.TEXTS)):
-        yield from ((kind, name, partial(_put, ".py", text.encode())) for name, text in each.items())
+        yield from (
+            (kind, name, partial(_put, ".py", text.encode())) for name, text in each.items()
+        )
     for name, (ending, made) in bad.FILES.items():
         yield "file", name, partial(_put, ending, made())
     for name, ending in bad.NAMES.items():

@@ -18,7 +18,9 @@ def varied() -> plan.Plan:
     read = plan.read()
     homeworks = {
         name: one._replace(
-            tasks=tuple(task._replace(parameters=(*rewording.parameters(task.id),)) for task in one.tasks)
+            tasks=tuple(
+                task._replace(parameters=(*rewording.parameters(task.id),)) for task in one.tasks
+            )
         )
         for name, one in read.homeworks.items()
     }
@@ -30,7 +32,9 @@ def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
     asked, teams = varied(), [f"s{number:03d}" for number in range(count)]
     clock, processor = time.perf_counter(), time.process_time()
     files = [
-        *solutions.build_for_teams_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)
+        *solutions.build_for_teams_steps(
+            asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None
+        )
     ]
     clock, processor = time.perf_counter() - clock, time.process_time() - processor
     wrong, different = 0, set()

@@ -3,16 +3,18 @@
 right/<task>/<way>.py  a right way that keeps to what the task's sheet says: another order of a scan, another
                        solver, gauge, fill, rounding, type or shape; none may lose a point
 wrong/<task>/<way>.py  a plausible answer without the method that is asked for; at most a third of the points;
-                       one with the method and a known mistake in it is among the mistakes, at half or more
+                       one with the method and a known mistake in it is among the mistakes, at half
+                       or more
 mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named;
                        those that do not miss what their task is about cost half of it at most
 
-What is wrong is to earn the same on all inputs: its score varies by a twentieth of the task's points at most.
+What is wrong is to earn the same on all inputs: its score varies by a twentieth of the task's
+points at most.
 
-Every file is graded on SEEDS students' inputs in the practice tier. The k-th files of a homework's tasks are
-one submission, whose functions answer all students' checks from one sandbox. A process of its own for each
-check, the specification, the points and the names of mistakes are those of `check` in a notebook.
-`SEEDS=3 python -m benchmarks fairness` is a shorter run.
+Every file is graded on SEEDS students' inputs in the practice tier. The k-th files of a homework's
+tasks are one submission, whose functions answer all students' checks from one sandbox. A process of
+its own for each check, the specification, the points and the names of mistakes are those of `check`
+in a notebook. `SEEDS=3 python -m benchmarks fairness` is a shorter run.
 """
 
 import inspect
@@ -77,7 +79,9 @@ def mistakes() -> dict[str, dict[str, str]]:
     return found
 
 
-def submissions(answers: dict[str, dict[str, str]]) -> Iterator[tuple[Homework, dict[str, tuple[str, str]]]]:
+def submissions(
+    answers: dict[str, dict[str, str]],
+) -> Iterator[tuple[Homework, dict[str, tuple[str, str]]]]:
     """Yield (homework, task -> (way, source)): the first way of each task, the second of each, and so on."""
     for homework in plan.read().homeworks.values():
         own = {task.id: list(answers.get(task.id, {}).items()) for task in homework.tasks}
@@ -113,7 +117,10 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     for (name, test), points in zip(tests.items(), worth, strict=True):
         subject.fresh()
         compare.notes.clear()
-        given = {"subject": subject, "rng": np.random.default_rng(plan.seed("fairness", student, task.id))}
+        given = {
+            "subject": subject,
+            "rng": np.random.default_rng(plan.seed("fairness", student, task.id)),
+        }
         ended = Check(task.id, name, name, Fraction(), points, "holds")
         try:
             test(**{one: given[one] for one in inspect.signature(test).parameters})
@@ -126,7 +133,9 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     broken = tuple(one.name for one in checks if one.outcome != "holds")
     found = misconceptions.closest(task, calls[: plugin.CALLS]) if broken else None
     needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
-    traced = causes.traced(checks, needs, named=found is not None, once=found is not None and found.once)
+    traced = causes.traced(
+        checks, needs, named=found is not None, once=found is not None and found.once
+    )
     share = float(sum(one.points for one in traced) / sum(worth))
     return Score(task.id, way, share, broken, found.name if found else "")
 
@@ -145,7 +154,9 @@ def spread(found: list[Score]) -> float:
     apart = {key: max(each) - min(each) for key, each in shares.items()}
     for (task, way), most in apart.items():
         if most > TWENTIETH:
-            print(f"  {task} {way}: from {min(shares[task, way]):.0%} to {max(shares[task, way]):.0%}")
+            print(
+                f"  {task} {way}: from {min(shares[task, way]):.0%} to {max(shares[task, way]):.0%}"
+            )
     return max(apart.values())
 
 
@@ -166,7 +177,9 @@ def refusals(found: list[Score]) -> list[str]:
     for one in found:
         for promise in one.broken:
             lost[one.task, one.way, promise] = lost.get((one.task, one.way, promise), 0) + 1
-    return [f"  {task} {way}: {promise}, {count} times" for (task, way, promise), count in lost.items()]
+    return [
+        f"  {task} {way}: {promise}, {count} times" for (task, way, promise), count in lost.items()
+    ]
 
 
 def right(_: Path) -> dict[str, Any]:
@@ -218,7 +231,10 @@ NONE_REFUSED: Hold = at_most("right answers refused", 0)
 ALIKE: Hold = at_most("by which a score varies", TWENTIETH)
 ROWS = (
     Experiment(
-        "right", "right answers from the sheets", right, (NONE_REFUSED, at_least("fewest ways of a task", 6))
+        "right",
+        "right answers from the sheets",
+        right,
+        (NONE_REFUSED, at_least("fewest ways of a task", 6)),
     ),
     Experiment(
         "wrong",

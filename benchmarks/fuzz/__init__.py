@@ -2,12 +2,11 @@
 
     python -m benchmarks fuzz [--reader NAME] [--minutes N] [--seed S] [--keep FOLDER]
 
-Files that the project has written itself are mutated (`mutations`) and read in a process of 2 GB and 5 s of
-a processor a file (`worker`). A file may be read, or be refused by a ValueError of less than 2,000 characters
-that names it. Whatever else happens is a finding: another exception, a crash, a hang, words of a C library
-on stderr, a file left behind, something global changed. It is made small (`minimise`) and kept, to become
-a test.
-File k of a reader is the same whenever the seed is.
+Files that the project has written itself are mutated (`mutations`) and read in a process of 2 GB
+and 5 s of a processor a file (`worker`). A file may be read, or be refused by a ValueError of less
+than 2,000 characters that names it. Whatever else happens is a finding: another exception, a crash,
+a hang, words of a C library on stderr, a file left behind, something global changed. It is made
+small (`minimise`) and kept, to become a test. File k of a reader is the same whenever the seed is.
 """
 
 import argparse
@@ -29,7 +28,9 @@ from benchmarks.fuzz.worker import CLEAN, READ
 SEED = 21
 # files of a reader where no time is told
 FILES = 1000
-HEADER = f"{'reader':<16}{'files':>9}{'results':>9}{'clean errors':>14}{'findings':>10}{'files/s':>9}"
+HEADER = (
+    f"{'reader':<16}{'files':>9}{'results':>9}{'clean errors':>14}{'findings':>10}{'files/s':>9}"
+)
 
 
 class Finding(NamedTuple):
@@ -57,7 +58,9 @@ class Tally(NamedTuple):
         return f"{self.reader:<16}{numbers}{self.files / max(self.seconds, 1e-9):>9.0f}"
 
 
-def fuzz(reader: Reader, numbers: Iterable[int], *, seed: int = SEED, seconds: float = 1e9) -> Tally:
+def fuzz(
+    reader: Reader, numbers: Iterable[int], *, seed: int = SEED, seconds: float = 1e9
+) -> Tally:
     """Return what becomes of the mutated files of these numbers, until the seconds are over."""
     start, counts = time.perf_counter(), Counter[str]()
     found: dict[str, Finding] = {}
@@ -70,9 +73,13 @@ def fuzz(reader: Reader, numbers: Iterable[int], *, seed: int = SEED, seconds: f
             kind, said = process.judge(data)
             counts[kind] += 1
             if kind not in (READ, CLEAN) and kind not in found:
-                found[kind] = Finding(number, f"{kind}: {said}", minimised(data, process.alike(kind)))
+                found[kind] = Finding(
+                    number, f"{kind}: {said}", minimised(data, process.alike(kind))
+                )
     taken = time.perf_counter() - start
-    return Tally(reader.name, counts.total(), counts[READ], counts[CLEAN], tuple(found.values()), taken)
+    return Tally(
+        reader.name, counts.total(), counts[READ], counts[CLEAN], tuple(found.values()), taken
+    )
 
 
 def keep(folder: Path, tally: Tally, seed: int) -> None:
@@ -82,7 +89,9 @@ def keep(folder: Path, tally: Tally, seed: int) -> None:
     for one in tally.findings:
         path = folder / f"{tally.reader}-{seed}-{one.number}{suffix}"
         path.write_bytes(one.data)
-        path.with_name(path.name + ".txt").write_text(one.said + "\n", encoding="utf8", errors="replace")
+        path.with_name(path.name + ".txt").write_text(
+            one.said + "\n", encoding="utf8", errors="replace"
+        )
 
 
 def row(name: str) -> Experiment:
@@ -97,7 +106,9 @@ def row(name: str) -> Experiment:
         figures = counts | {"findings": len(tally.findings), "files/s": tally.files / tally.seconds}
         return {what: (float(value),) for what, value in figures.items()}
 
-    return Experiment(name, "damaged files: a result, or one clear error", run, (at_most("findings", 0),))
+    return Experiment(
+        name, "damaged files: a result, or one clear error", run, (at_most("findings", 0),)
+    )
 
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
@@ -105,11 +116,19 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         "python -m benchmarks fuzz", description=(__doc__ or "").partition("\n")[0]
     )
-    parser.add_argument("--reader", action="append", choices=READERS, metavar="NAME", help=", ".join(READERS))
-    parser.add_argument("--minutes", type=float, help=f"in all; {FILES} files of each reader by default")
+    parser.add_argument(
+        "--reader", action="append", choices=READERS, metavar="NAME", help=", ".join(READERS)
+    )
+    parser.add_argument(
+        "--minutes", type=float, help=f"in all; {FILES} files of each reader by default"
+    )
     parser.add_argument("--seed", type=int, default=SEED, help="the same seed, the same files")
-    parser.add_argument("--first", type=int, default=0, help="number of the first file of each reader")
-    parser.add_argument("--keep", metavar="FOLDER", type=Path, help="write the findings' files here")
+    parser.add_argument(
+        "--first", type=int, default=0, help="number of the first file of each reader"
+    )
+    parser.add_argument(
+        "--keep", metavar="FOLDER", type=Path, help="write the findings' files here"
+    )
     return parser.parse_args(arguments)
 
 

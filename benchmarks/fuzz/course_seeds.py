@@ -24,9 +24,7 @@ def plan(folder: Path) -> None:
     """Write plans: that of the package, and a short one."""
     text = plans.PLAN.read_text(encoding="utf8")
     (folder / "whole.toml").write_text(text, encoding="utf8")
-    short = (
-        '[late]\nfree_days = 2\npoints_a_day = 1.5\n[hw1]\ntitle = "One"\ndue = 2026-03-20T23:59:00+08:00\n'
-    )
+    short = '[late]\nfree_days = 2\npoints_a_day = 1.5\n[hw1]\ntitle = "One"\ndue = 2026-03-20T23:59:00+08:00\n'
     short += 'tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]\n'
     (folder / "short.toml").write_text(
         short + 'by_hand = [{ title = "Words", points = 5 }]\n', encoding="utf8"
@@ -85,7 +83,9 @@ def result(folder: Path) -> None:
     )
     checks = (one, one._replace(drawing=drawing, kind="raised"))
     names = ("b01", "hw2", "The curve", "strict")
-    whole = results.Result(*names, checks, {"hat": "tent"}, ("none",), "ab", "cd", "ef", {"numpy": "2"})
+    whole = results.Result(
+        *names, checks, {"hat": "tent"}, ("none",), "ab", "cd", "ef", {"numpy": "2"}
+    )
     (folder / "a.json").write_bytes(results.to_json(whole))
 
 
@@ -95,7 +95,11 @@ def notebook(folder: Path) -> None:
     cells = [
         {"cell_type": "markdown", "source": ["# A\n", "words"], "metadata": {}},
         {"cell_type": "code", "source": HAT.splitlines(True), "metadata": mark, "outputs": []},
-        {"cell_type": "code", "source": "LAM = 30\ndef gsolve(Z):\n    return LAM * Z", "metadata": {}},
+        {
+            "cell_type": "code",
+            "source": "LAM = 30\ndef gsolve(Z):\n    return LAM * Z",
+            "metadata": {},
+        },
     ]
     whole = {"cells": cells, "nbformat": 4, "nbformat_minor": 5, "metadata": {}}
     (folder / "a.ipynb").write_text(json.dumps(whole, indent=1))
@@ -121,7 +125,12 @@ def archives(folder: Path) -> None:
 
 def manifest(folder: Path) -> None:
     """Write what an archive of `hdrlab submit` says of itself."""
-    said = {"title": "Dusk", "caption": "Seven frames.", "artifact": "artifact.png", "students": ["b01"]}
+    said = {
+        "title": "Dusk",
+        "caption": "Seven frames.",
+        "artifact": "artifact.png",
+        "students": ["b01"],
+    }
     (folder / "a.json").write_text(json.dumps(said, indent=1))
 
 
@@ -139,7 +148,9 @@ def words(folder: Path) -> None:
     """Write a report's words."""
     text = "# Title\n\nWords with **stress**, `code` and $x^2$.\n\n## Method\n\n- one\n- two\n\n"
     text += "| a | b |\n|---|---|\n| 1 | 2 |\n"
-    (folder / "a.md").write_text(text + "\n![it](artifact.jpg) <b>x</b>\n\n```\ncode\n```\n", encoding="utf8")
+    (folder / "a.md").write_text(
+        text + "\n![it](artifact.jpg) <b>x</b>\n\n```\ncode\n```\n", encoding="utf8"
+    )
     picture = web.data_uri(web.encode_webp(RGB)).partition(",")[2]
     shown = [{"output_type": "display_data", "data": {"image/webp": picture, "image/png": picture}}]
     cells = [

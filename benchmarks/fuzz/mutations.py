@@ -20,7 +20,18 @@ NUMBERS: tuple[bytes, ...] = (
     b"nan",
     b"1e-320",
 )
-NUMBERS += (b"9" * 30, b"9" * 5000, b"0x7f", b"", b"1_0", b"\xd9\xa3", b"inf", b"-0", b"1/0", b"4294967295")
+NUMBERS += (
+    b"9" * 30,
+    b"9" * 5000,
+    b"0x7f",
+    b"",
+    b"1_0",
+    b"\xd9\xa3",
+    b"inf",
+    b"-0",
+    b"1/0",
+    b"4294967295",
+)
 WORDS: tuple[bytes, ...] = (
     b"\0",
     b"\xed\xa0\x80",
@@ -31,7 +42,19 @@ WORDS: tuple[bytes, ...] = (
     b"\xef\xbb\xbf",
     b"\xe2\x80\xae",
 )
-WORDS += (b"\r", b"\n", b'"', b",", b"\t", b"[" * 3000, b'{"a":' * 2000, b"../", b"null", b"true", b"=1+1")
+WORDS += (
+    b"\r",
+    b"\n",
+    b'"',
+    b",",
+    b"\t",
+    b"[" * 3000,
+    b'{"a":' * 2000,
+    b"../",
+    b"null",
+    b"true",
+    b"=1+1",
+)
 WORDS += (
     b"\xff\xd9",
     b"x" * 140_000,

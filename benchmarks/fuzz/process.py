@@ -15,7 +15,8 @@ from typing import IO, Any, NamedTuple
 from benchmarks.fuzz.readers import Reader
 from benchmarks.measure import ROOT, THREADS
 
-# by the clock, of a file whose reader waits for something; a busy one is ended after 5 s of a processor
+# by the clock, of a file whose reader waits for something; a busy one is ended after 5 s of a
+# processor
 PATIENCE = 60.0
 
 

@@ -44,7 +44,8 @@ class Reader(NamedTuple):
     ----------
     make : writes good ones into a folder
     read : reads one, given its path
-    named : whether an error is to name the file; not so where the reader gets bytes, or its caller names it
+    named : whether an error is to name the file; not so where the reader gets bytes, or its caller
+        names it
     errors : what it may raise
     needs : the module without which it reads nothing
     damaged : how the names of damaged files of it begin
@@ -130,7 +131,10 @@ def read_archive(path: Path) -> None:
 
 def read_manifest(path: Path) -> None:
     """Read what an archive of `hdrlab submit` says of itself."""
-    with seeds.removed(path.parent / "hung") as folder, course_seeds.packed(path, folder) as archive:
+    with (
+        seeds.removed(path.parent / "hung") as folder,
+        course_seeds.packed(path, folder) as archive,
+    ):
         students = roster.Roster((roster.Student("fuzzed", "Ada", "fuzzed"),))
         with collect.entry(archive, students):
             pass
@@ -213,6 +217,11 @@ ALL: Sequence[Reader] = (
     Reader("artifact", ".jpg", seeds.photographs, pictures.prepare),
     Reader("words", ".md", course_seeds.words, read_words),
     Reader("words-ipynb", ".ipynb", course_seeds.words, read_words, damaged="report"),
-    Reader("token", ".txt", course_seeds.token, lambda path: tokens.read(path.read_text("utf8", "replace"))),
+    Reader(
+        "token",
+        ".txt",
+        course_seeds.token,
+        lambda path: tokens.read(path.read_text("utf8", "replace")),
+    ),
 )
 READERS = {one.name: one for one in ALL}

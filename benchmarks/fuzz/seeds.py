@@ -51,14 +51,26 @@ def maps(folder: Path) -> None:
     for suffix in radiance.SUFFIXES:
         radiance.write_radiance(folder / f"colour{suffix}", E)
         radiance.write_radiance(folder / f"gray{suffix}", E[..., 1])
-    plain = b"#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 12 +X 17\n" + rgbe.to_pixels(E).tobytes()
+    plain = (
+        b"#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 12 +X 17\n"
+        + rgbe.to_pixels(E).tobytes()
+    )
     (folder / "plain.hdr").write_bytes(plain)
-    tifffile.imwrite(folder / "tiled.tif", E.astype(">f8"), photometric="rgb", tile=(16, 16), byteorder=">")
-    tifffile.imwrite(folder / "deflated.tif", E.astype(np.float16), photometric="rgb", compression="deflate")
+    tifffile.imwrite(
+        folder / "tiled.tif", E.astype(">f8"), photometric="rgb", tile=(16, 16), byteorder=">"
+    )
+    tifffile.imwrite(
+        folder / "deflated.tif", E.astype(np.float16), photometric="rgb", compression="deflate"
+    )
     if OpenEXR:
         for kind in ("NO", "RLE", "PIZ", "PXR24", "B44", "DWAA"):
-            header = {"type": OpenEXR.scanlineimage, "compression": getattr(OpenEXR, f"{kind}_COMPRESSION")}
-            with OpenEXR.File(header, {"RGBA": np.dstack([E, E[..., 0]]).astype(np.float16)}) as file:
+            header = {
+                "type": OpenEXR.scanlineimage,
+                "compression": getattr(OpenEXR, f"{kind}_COMPRESSION"),
+            }
+            with OpenEXR.File(
+                header, {"RGBA": np.dstack([E, E[..., 0]]).astype(np.float16)}
+            ) as file:
                 file.write(str(folder / f"{kind}.exr"))
 
 
@@ -91,7 +103,11 @@ def telephones(folder: Path) -> None:
 
 def jpegxl(folder: Path) -> None:
     """Write JPEG XL of each kind of sample, bare and in boxes, by libjxl."""
-    for name, pixels in ("light", E), ("half", E[..., 1].astype(np.float16)), ("deep", RGB * np.uint16(257)):
+    for name, pixels in (
+        ("light", E),
+        ("half", E[..., 1].astype(np.float16)),
+        ("deep", RGB * np.uint16(257)),
+    ):
         (folder / f"{name}.jxl").write_bytes(imagecodecs.jpegxl_encode(pixels, lossless=True))
     (folder / "lossy.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB, distance=2.0))
     (folder / "gray.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB[..., 1], usecontainer=True))
@@ -121,7 +137,9 @@ def photographs(folder: Path) -> None:
     image.save(folder / "progressive.jpg", progressive=True, optimize=True)
     image.convert("L").save(folder / "gray.jpg")
     image.convert("L").save(folder / "gray.png")
-    tifffile.imwrite(folder / "deep.tif", RGB.astype(np.uint16) * 257, photometric="rgb", compression="lzw")
+    tifffile.imwrite(
+        folder / "deep.tif", RGB.astype(np.uint16) * 257, photometric="rgb", compression="lzw"
+    )
     tifffile.imwrite(folder / "tiled.tif", RGB, photometric="rgb", tile=(16, 16), byteorder=">")
 
 
@@ -165,4 +183,6 @@ def curves(folder: Path) -> None:
     """Write a response in each format."""
     for suffix in response_files.FORMS:
         response_files.write_curve(folder / f"gray{suffix}", G)
-        response_files.write_curve(folder / f"colour{suffix}", np.stack([G, G + 0.1, 0.9 * G], axis=-1))
+        response_files.write_curve(
+            folder / f"colour{suffix}", np.stack([G, G + 0.1, 0.9 * G], axis=-1)
+        )

@@ -1,7 +1,7 @@
 """Reads files in a process of its own, within limits, and says of each what came of it.
 
-A path a line comes in; a line of JSON goes out: a kind and words. What is printed on the way goes to a file,
-and is a finding.
+A path a line comes in; a line of JSON goes out: a kind and words. What is printed on the way goes
+to a file, and is a finding.
 """
 
 import gc
@@ -98,7 +98,9 @@ def outcome(reader: Reader, path: Path) -> tuple[str, str]:
 def where(error: BaseException) -> str:
     """Return the last line of hdrlab that an error went through."""
     lines = [
-        one for one in traceback.extract_tb(error.__traceback__) if f"{os.sep}hdrlab{os.sep}" in one.filename
+        one
+        for one in traceback.extract_tb(error.__traceback__)
+        if f"{os.sep}hdrlab{os.sep}" in one.filename
     ]
     return f"{Path(lines[-1].filename).name}:{lines[-1].lineno}" if lines else "the reader"
 
@@ -133,7 +135,8 @@ def main(name: str, folder: str) -> None:
     for count, line in enumerate(sys.stdin):
         if count == FIRST:
             gc.collect()
-            gc.freeze()  # what was imported by now stays: to look through it after each file takes 60 ms
+            # what was imported by now stays: to look through it after each file takes 60 ms
+            gc.freeze()
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         found = judged(reader, Path(line.rstrip("\n")), printed)
         signal.setitimer(signal.ITIMER_PROF, 0)

@@ -1,12 +1,13 @@
 """What is left of ghosts, measured by the truth; and that nothing is found where nothing moved.
 
-The error is the root mean square of log2(E / truth), in stops, over the pixels of the regions found in which
-somebody's passing changes the radiance by more than 5 % and a frame measures something. The truth of a region
-is the moment of its leading frame. The plain map is judged by whichever moment suits it best, the empty scene
-among them. Both are first multiplied by the factor that brings the still pixels to their truth.
+The error is the root mean square of log2(E / truth), in stops, over the pixels of the regions found
+in which somebody's passing changes the radiance by more than 5 % and a frame measures something.
+The truth of a region is the moment of its leading frame. The plain map is judged by whichever
+moment suits it best, the empty scene among them. Both are first multiplied by the factor that
+brings the still pixels to their truth.
 
-"change elsewhere" compares the map with the plain one outside the regions; "left over" is the median error of
-those pixels outside that somebody passed, against the empty scene.
+"change elsewhere" compares the map with the plain one outside the regions; "left over" is the
+median error of those pixels outside that somebody passed, against the empty scene.
 """
 
 from collections.abc import Mapping
@@ -122,7 +123,11 @@ def alone(_: Path) -> Mapping[str, ArrayLike]:
 
 def found_in_stillness(place: str) -> tuple[int, int, float]:
     """Return in how many brackets of a still place regions are found, of how many, and the map's change."""
-    brackets = [still(place), still(place, (512, 768)), *(one for s in SEEDS for _, one in shaken(place, s))]
+    brackets = [
+        still(place),
+        still(place, (512, 768)),
+        *(one for s in SEEDS for _, one in shaken(place, s)),
+    ]
     found = [(rid(one, "regions"), plain(one)) for one in brackets]
     change = max(float(np.abs(one.E / merged.E - 1).max()) for one, merged in found)
     return sum(len(one.references) > 0 for one, _ in found), len(found), change
@@ -131,7 +136,9 @@ def found_in_stillness(place: str) -> tuple[int, int, float]:
 def stillness(_: Path) -> Mapping[str, ArrayLike]:
     """Return what is found where nothing moved, on a tripod and in a hand."""
     found = along(found_in_stillness, STILL, "still")
-    figures: dict[str, ArrayLike] = {place: one[:2] for place, one in zip(STILL, found, strict=True)}
+    figures: dict[str, ArrayLike] = {
+        place: one[:2] for place, one in zip(STILL, found, strict=True)
+    }
     figures["brackets with a region"] = sum(one[0] for one in found)
     figures["most change"] = max(one[2] for one in found)
     return figures
@@ -156,7 +163,10 @@ ROWS = (
         (at_least("least ratio", 10), at_most("most change elsewhere", 0.01)),
     ),
     Experiment(
-        "ghosts-alone", "the same, as on the slide: the best exposure of each region and no other", alone, ()
+        "ghosts-alone",
+        "the same, as on the slide: the best exposure of each region and no other",
+        alone,
+        (),
     ),
     Experiment(
         "ghosts-still",

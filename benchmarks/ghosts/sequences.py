@@ -1,8 +1,8 @@
 """Brackets with a truth: somebody or something moves through the embedded places, and nothing does.
 
-Seven frames two stops apart, the camera's film response in 8 bits, a well of 50 000 electrons with 5
-electrons of noise. In each place its visitor walks to the right; a warm ball flies across, eight times as
-bright as the place's median; and a gray one rolls along, four times as dark.
+Seven frames two stops apart, the camera's film response in 8 bits, a well of 50 000 electrons with
+5 electrons of noise. In each place its visitor walks to the right; a warm ball flies across, eight
+times as bright as the place's median; and a gray one rolls along, four times as dark.
 """
 
 from collections.abc import Iterator
@@ -57,8 +57,8 @@ def still(place: str, shape: tuple[int, int] = SHAPE, *, rng: int = RNG) -> Brac
 def shaken(place: str, seed: int) -> Iterator[tuple[str, Bracket]]:
     """Yield two brackets of a still place from a hand that moved by up to half a pixel each way.
 
-    One has half the scene's size: whole pixels of the scene are half ones of the picture. The other has its
-    full size, and light between pixels is interpolated.
+    One has half the scene's size: whole pixels of the scene are half ones of the picture. The other
+    has its full size, and light between pixels is interpolated.
     """
     E, rng = radiance(place), np.random.default_rng(seed)
     times = camera.times_around(E, FRAMES, stops=2)

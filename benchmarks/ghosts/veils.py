@@ -1,10 +1,11 @@
 """Veiling glare of lenses that are not known: what of the truth comes back, and that clear ones stay alone.
 
-Four scenes through lenses that scatter 5 or 10 % of the light with the power 2, 2.5 or 3 of the distance. The
-affected region is where more than 5 % of a pixel's light was scattered, in a channel; its error there is that
-of E over the truth, the largest of the channels. "photographed" has ten frames of 8 bits between lens and
-map, two stops apart, the shortest of which holds the brightest light; its error counts where a frame measured
-the pixel, with what the merge errs in it. A light that all frames clip scatters more than the map knows of.
+Four scenes through lenses that scatter 5 or 10 % of the light with the power 2, 2.5 or 3 of the
+distance. The affected region is where more than 5 % of a pixel's light was scattered, in a channel;
+its error there is that of E over the truth, the largest of the channels. "photographed" has ten
+frames of 8 bits between lens and map, two stops apart, the shortest of which holds the brightest
+light; its error counts where a frame measured the pixel, with what the merge errs in it. A light
+that all frames clip scatters more than the map knows of.
 """
 
 from collections.abc import Callable, Mapping
@@ -77,7 +78,9 @@ def figures(what: str, work: Callable[[tuple[str, GlareSpread]], Left]) -> Mappi
     out: dict[str, ArrayLike] = {}
     for place in STILL:
         own = [one for (name, _), one in zip(items, found, strict=True) if name == place]
-        out[f"{place}: worst median before, after"] = tuple(max(one[k] for one in own) for k in (0, 1))
+        out[f"{place}: worst median before, after"] = tuple(
+            max(one[k] for one in own) for k in (0, 1)
+        )
     out["worst median error"] = max(one.after for one in found)
     out["least share of pixels within 5 %"] = min(one.close for one in found)
     out["median share of pixels within 5 %"] = float(np.median([one.close for one in found]))
@@ -99,7 +102,9 @@ def clear(_: Path) -> Mapping[str, ArrayLike]:
     changes = []
     for place in STILL:
         E = resample(radiance(place), SHAPE)
-        changes += [float(np.abs(flare.remove_glare(F).E / F - 1).max()) for F in (E, through(E)[0])]
+        changes += [
+            float(np.abs(flare.remove_glare(F).E / F - 1).max()) for F in (E, through(E)[0])
+        ]
     return {"maps looked at": len(changes), "most change": max(changes)}
 
 
@@ -116,5 +121,7 @@ ROWS = (
         bracketed,
         (at_most("worst median error", 0.05),),
     ),
-    Experiment("flare-clear", "the same scenes through a clear lens", clear, (at_most("most change", 0),)),
+    Experiment(
+        "flare-clear", "the same scenes through a clear lens", clear, (at_most("most change", 0),)
+    ),
 )

@@ -3,10 +3,11 @@
 lessons   the rooms of the lessons, core to beyond, with fast, diagnostics and pipeline
 grader    what grades, on the side that a submission does not reach: plan, checks, sandbox, classroom
 
-Of all mutants (`mutants`) MUTANTS are drawn in each of the two, the same ones each time. A mutant's tests are
-those that run its line, and then those that run anything else of its file (`known`). A mutant is killed where
-one of them fails, ends otherwise, or takes ten times as long. Who survives is listed. `equivalent.toml` names
-those that change no result, each with the reason: they count neither for nor against.
+Of all mutants (`mutants`) MUTANTS are drawn in each of the two, the same ones each time. A mutant's
+tests are those that run its line, and then those that run anything else of its file (`known`). A
+mutant is killed where one of them fails, ends otherwise, or takes ten times as long. Who survives
+is listed. `equivalent.toml` names those that change no result, each with the reason: they count
+neither for nor against.
 
 `MUTANTS=40 python -m benchmarks mutation` is a shorter run, and `MUTANTS_SEED=2` draws others.
 """
@@ -39,14 +40,25 @@ MUTANTS = int(os.environ.get("MUTANTS", "250"))
 SEED = int(os.environ.get("MUTANTS_SEED", "1"))
 PROCESSES = os.cpu_count() or 1
 ROOMS = (
-    *("core", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance", "beyond"),
+    *(
+        "core",
+        "capture",
+        "align",
+        "response",
+        "calibration",
+        "radiance",
+        "tonemap",
+        "enhance",
+        "beyond",
+    ),
     *("fast", "diagnostics", "pipeline"),
 )
 GRADER = (
     *("grading.py", "plan.py", "submission.py", "scratch.py", "checks/*.py", "classroom/**/*.py"),
     *("code/*.py", "archives/*.py", "sandbox/*.py", "reports/*.py"),
 )
-# seconds of tests that are asked of a mutant: of those that run its line, and of those that run its file
+# seconds of tests that are asked of a mutant: of those that run its line, and of those that run its
+# file
 NEAR, FAR = 240.0, 60.0
 CLOSE = "killed, % of those that change a result"
 
@@ -68,7 +80,12 @@ class Forked:
         command = [sys.executable, str(HERE / "forked.py")]
         self.tree = tree
         self.process = subprocess.Popen(
-            command, cwd=tree, env=environment, text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            command,
+            cwd=tree,
+            env=environment,
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
         )
 
     def run(self, tests: Sequence[str], seconds: float) -> int:
@@ -88,7 +105,9 @@ class Forked:
             yield
         finally:
             path.write_text(before, encoding="utf8")
-            os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))  # its compiled form is true again
+            os.utime(
+                path, ns=(state.st_atime_ns, state.st_mtime_ns)
+            )  # its compiled form is true again
 
     def end(self) -> None:
         """End the process."""
@@ -128,9 +147,13 @@ def copies(folder: Path, count: int) -> list[Path]:
     trees = [folder / f"tree-{k}" for k in range(count)]
     for tree in trees:
         shutil.copytree(
-            ROOT, tree, ignore=shutil.ignore_patterns(".git", "__pycache__", ".*_cache", "*.egg-info")
+            ROOT,
+            tree,
+            ignore=shutil.ignore_patterns(".git", "__pycache__", ".*_cache", "*.egg-info"),
         )
-        subprocess.run([sys.executable, "-m", "compileall", "-q", "hdrlab", "tests"], cwd=tree, check=True)
+        subprocess.run(
+            [sys.executable, "-m", "compileall", "-q", "hdrlab", "tests"], cwd=tree, check=True
+        )
     if (data := ROOT.parent / "shared").exists():
         (folder / "shared").symlink_to(data)
     return trees
@@ -171,7 +194,10 @@ def fates(files: Sequence[str]) -> list[Fate]:
 def equivalent() -> dict[tuple[str, ...], str]:
     """Return the mutants that a person has found to change no result: (file, text, old, new) -> why."""
     listed = tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf8"))
-    return {(one["file"], one["text"], one["old"], one["new"]): one["why"] for one in listed["equivalent"]}
+    return {
+        (one["file"], one["text"], one["old"], one["new"]): one["why"]
+        for one in listed["equivalent"]
+    }
 
 
 def table(found: list[Fate]) -> str:
@@ -212,18 +238,30 @@ def figures(files: Sequence[str]) -> dict[str, Any]:
 def lessons(_: Path) -> dict[str, Any]:
     """Return how many mutants of the lessons are seen."""
     return figures(
-        [str(path.relative_to(ROOT)) for room in ROOMS for path in ROOT.glob(f"hdrlab/{room}/**/*.py")]
+        [
+            str(path.relative_to(ROOT))
+            for room in ROOMS
+            for path in ROOT.glob(f"hdrlab/{room}/**/*.py")
+        ]
     )
 
 
 def grader(_: Path) -> dict[str, Any]:
     """Return how many mutants of the grader's trusted side are seen."""
     return figures(
-        [str(path.relative_to(ROOT)) for one in GRADER for path in ROOT.glob(f"hdrlab/course/{one}")]
+        [
+            str(path.relative_to(ROOT))
+            for one in GRADER
+            for path in ROOT.glob(f"hdrlab/course/{one}")
+        ]
     )
 
 
 ROWS = (
-    Experiment("lessons", "mutants of the lessons, in the quick tier", lessons, (at_least(CLOSE, 90),)),
-    Experiment("grader", "mutants of the grader, in the quick tier", grader, (at_least(CLOSE, 90),)),
+    Experiment(
+        "lessons", "mutants of the lessons, in the quick tier", lessons, (at_least(CLOSE, 90),)
+    ),
+    Experiment(
+        "grader", "mutants of the grader, in the quick tier", grader, (at_least(CLOSE, 90),)
+    ),
 )

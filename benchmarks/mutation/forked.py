@@ -1,7 +1,7 @@
 """A process that has imported what tests need, but not hdrlab: for each line read, a child runs tests.
 
-A line is JSON: {"tests": addresses, "seconds": at most so many}; the answer is pytest's exit code, or -1 for
-a child that took longer. It is a script, so that nothing of hdrlab is imported.
+A line is JSON: {"tests": addresses, "seconds": at most so many}; the answer is pytest's exit code,
+or -1 for a child that took longer. It is a script, so that nothing of hdrlab is imported.
 """
 
 import importlib
@@ -15,9 +15,23 @@ from contextlib import suppress
 from pathlib import Path
 
 COMMON = (
-    *("numpy", "scipy.ndimage", "scipy.optimize", "scipy.sparse.linalg", "scipy.interpolate", "scipy.signal"),
+    *(
+        "numpy",
+        "scipy.ndimage",
+        "scipy.optimize",
+        "scipy.sparse.linalg",
+        "scipy.interpolate",
+        "scipy.signal",
+    ),
     *("scipy.stats", "scipy.fft", "scipy.spatial", "PIL.Image", "nbformat"),
-    *("matplotlib.figure", "pytest", "_pytest.tmpdir", "_pytest.junitxml", "IPython", "skimage.data"),
+    *(
+        "matplotlib.figure",
+        "pytest",
+        "_pytest.tmpdir",
+        "_pytest.junitxml",
+        "IPython",
+        "skimage.data",
+    ),
 )
 TOO_LONG = -1
 

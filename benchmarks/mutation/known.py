@@ -13,10 +13,15 @@ import coverage
 from benchmarks.measure import THREADS
 
 # tests that run a file unseen by coverage: from outside, or in processes of their own
-SANDBOX = "tests/course/test_grading.py::test_in_a_sandbox_the_library_has_all_points_and_a_blank_none"
+SANDBOX = (
+    "tests/course/test_grading.py::test_in_a_sandbox_the_library_has_all_points_and_a_blank_none"
+)
 KNOBS = "tests/test_knobs.py::test_every"
 AFAR = {
-    "hdrlab/": (f"{KNOBS}_knob_stands_where_its_list_says", f"{KNOBS}_constant_stands_where_its_list_says"),
+    "hdrlab/": (
+        f"{KNOBS}_knob_stands_where_its_list_says",
+        f"{KNOBS}_constant_stands_where_its_list_says",
+    ),
     "hdrlab/course/": (f"{SANDBOX}[project]",),
 }
 
@@ -33,7 +38,9 @@ class Known(NamedTuple):
 
     def far(self, file: str, line: int) -> list[str]:
         """Return the other tests that run the file: a line may be run as it is imported."""
-        own = set().union(*self.lines.get(file, {}).values()) if self.lines.get(file) else set[str]()
+        own = (
+            set().union(*self.lines.get(file, {}).values()) if self.lines.get(file) else set[str]()
+        )
         own |= {test for start, tests in AFAR.items() if file.startswith(start) for test in tests}
         return sorted(own - set(self.near(file, line)), key=self._taken)
 
@@ -45,9 +52,16 @@ def known(tree: Path, folder: Path) -> Known:
     """Return what a run of the quick tier in a tree tells; RuntimeError where a test fails."""
     data, results = folder / "coverage", folder / "quick.xml"
     command = [sys.executable, "-m", "pytest", "--tier=quick", "-q", f"--junitxml={results}"]
-    command += ["--cov=hdrlab", "--cov-context=test", "--cov-report=", f"--basetemp={folder / 'tmp'}"]
+    command += [
+        "--cov=hdrlab",
+        "--cov-context=test",
+        "--cov-report=",
+        f"--basetemp={folder / 'tmp'}",
+    ]
     environment = (
-        os.environ | dict.fromkeys(THREADS, "1") | {"COVERAGE_FILE": str(data), "PYTHONPATH": str(tree)}
+        os.environ
+        | dict.fromkeys(THREADS, "1")
+        | {"COVERAGE_FILE": str(data), "PYTHONPATH": str(tree)}
     )
     ran = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True)
     if ran.returncode:
@@ -65,7 +79,9 @@ def known(tree: Path, folder: Path) -> Known:
             own[line] |= {name.rpartition("|")[0] for name in names if "|" in name}
         lines[Path(file).relative_to(tree).as_posix()] = dict(own)
     every = set().union(*(tests for own in lines.values() for tests in own.values()))
-    return Known(lines, {test: seconds.get(_junit(test), 0.0) for test in every.union(*AFAR.values())})
+    return Known(
+        lines, {test: seconds.get(_junit(test), 0.0) for test in every.union(*AFAR.values())}
+    )
 
 
 def _junit(address: str) -> str:

@@ -144,4 +144,6 @@ def instead(node: ast.expr | ast.stmt) -> Iterator[str]:
 
 def of(root: Path, files: list[str]) -> list[Mutant]:
     """Return the mutants of files of a repository."""
-    return [one for file in files for one in mutants(file, (root / file).read_text(encoding="utf8"))]
+    return [
+        one for file in files for one in mutants(file, (root / file).read_text(encoding="utf8"))
+    ]

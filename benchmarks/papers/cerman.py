@@ -3,9 +3,9 @@
 E      irradiance   (H, W), the green channel of a radiance map; 1 fills the well in the shortest exposure
 error  RMSE of f^-1 over levels 10 to 250, percent of its value at 250
 
-Figure 3 is shot from the embedded room with seed 0. The darkest pairs are of scenes with ln E normal, of
-standard deviation 1.5, and of six measured radiance maps; seeds 0 to 19. The noise is that of the paper,
-Normal(0, 1) levels.
+Figure 3 is shot from the embedded room with seed 0. The darkest pairs are of scenes with ln E
+normal, of standard deviation 1.5, and of six measured radiance maps; seeds 0 to 19. The noise is
+that of the paper, Normal(0, 1) levels.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -57,7 +57,9 @@ def pixels_polynomial(bracket: Bracket, w: Array, order: int) -> Array:
     """Return g from pairs of levels of single pixels, as Mitsunaga and Nayar have it, exposures known."""
     Z = by_grid(bracket.images, 10_000)
     return curve(
-        grossberg.solve_polynomial(grossberg.build_pixel_equations(Z, bracket.times, w), order=order)
+        grossberg.solve_polynomial(
+            grossberg.build_pixel_equations(Z, bracket.times, w), order=order
+        )
     )
 
 
@@ -80,14 +82,16 @@ METHODS: dict[str, Callable[[Bracket, Array, int], Array]] = {
 }
 
 
-PLAIN = dict(zip(METHODS, (weights.hat(), weights.gaussian(), weights.flat(), weights.flat()), strict=True))
+PLAIN = dict(
+    zip(METHODS, (weights.hat(), weights.gaussian(), weights.flat(), weights.flat()), strict=True)
+)
 
 
 def figure3(E: ArrayLike | None = None, *, rng: int = 0) -> Figure3:
     """Return the errors of four methods on six photographs of a cubic camera [Cerman06 fig. 3].
 
-    Clean photographs are rounded to 256 levels, too. Without the cut a polynomial takes all levels alike, as
-    the paper's does.
+    Clean photographs are rounded to 256 levels, too. Without the cut a polynomial takes all levels
+    alike, as the paper's does.
     """
     G = irradiance(E)
     clean = camera.shoot(G, TIMES, camera.Camera(response="cubic"), rng=rng)
@@ -98,7 +102,11 @@ def figure3(E: ArrayLike | None = None, *, rng: int = 0) -> Figure3:
         {name: error(name, clean, w) for name, w in PLAIN.items()},
         {name: error(name, noisy, w) for name, w in PLAIN.items()},
         {name: error(name, noisy, w) for name, w in cut.items()},
-        {name: error(name, noisy, w, order=3) for name, w in cut.items() if name.startswith("polynomial")},
+        {
+            name: error(name, noisy, w, order=3)
+            for name, w in cut.items()
+            if name.startswith("polynomial")
+        },
     )
 
 

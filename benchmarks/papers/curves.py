@@ -2,10 +2,11 @@
 
 error  RMSE of f^-1 over levels 10 to 250, percent of its value at 250
 
-Stated here: the embedded room's green channel, 128 x 192 pixels; five frames 2 stops apart, around the one
-that suits the scene; noise of Normal(0, 1) levels after the response, 256 levels; curve k has seed k.
-Doubtful times are the true ones, each multiplied by a factor uniform in 0.9 ... 1.1, drawn with seed (1, k).
-Where a method refuses brackets, a row says how many, and its errors are those of the others.
+Stated here: the embedded room's green channel, 128 x 192 pixels; five frames 2 stops apart, around
+the one that suits the scene; noise of Normal(0, 1) levels after the response, 256 levels; curve k
+has seed k. Doubtful times are the true ones, each multiplied by a factor uniform in 0.9 ... 1.1,
+drawn with seed (1, k). Where a method refuses brackets, a row says how many, and its errors are
+those of the others.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -29,8 +30,12 @@ Float = NDArray[np.float64]
 Method = Callable[[Bracket], Float]
 SHAPE, FRAMES, STOPS, NOISE, OFF = (128, 192), 5, 2.0, 1.0, 0.1
 DEFAULT = "debevec"
-STIFF = 100.0  # smoothness for times that are still off by a little: they bend the curve where frames meet
-BEST, ESTIMATED = "debevec, smoothness 100, mitsunaga's ratios", "debevec, smoothness 100, estimated times"
+# smoothness for times that are still off by a little: they bend the curve where frames meet
+STIFF = 100.0
+BEST, ESTIMATED = (
+    "debevec, smoothness 100, mitsunaga's ratios",
+    "debevec, smoothness 100, estimated times",
+)
 
 
 @cache

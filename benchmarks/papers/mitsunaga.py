@@ -2,9 +2,10 @@
 
 error  mean of |f - truth| over the pixel levels, percent of the range
 
-Section 5: `ambiguity.draw_trial` states how cameras, ratios, radiance and noise are drawn; a seed's 100
-trials are drawn one after the other. The Canon's pictures are lost: its published ratios are the truth of
-such a trial, with a camera of seed 0. Flat patches are 200 x 200 pixels of brightness 0.5 with noise of 0.01.
+Section 5: `ambiguity.draw_trial` states how cameras, ratios, radiance and noise are drawn; a seed's
+100 trials are drawn one after the other. The Canon's pictures are lost: its published ratios are
+the truth of such a trial, with a camera of seed 0. Flat patches are 200 x 200 pixels of brightness
+0.5 with noise of 0.01.
 """
 
 from collections.abc import Mapping
@@ -54,7 +55,10 @@ def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trial
     rng = np.random.default_rng(seed)
     drawn = [ambiguity.draw_trial(rng) for _ in range(trials)]
     runs = [paper_states(one) for one in drawn]
-    paper = [ambiguity.mean_error(states[-1].c[0], one.c) for states, one in zip(runs, drawn, strict=True)]
+    paper = [
+        ambiguity.mean_error(states[-1].c[0], one.c)
+        for states, one in zip(runs, drawn, strict=True)
+    ]
     better = along(marginal_error, drawn, f"seed {seed}") if ours else []
     return Trials(np.array(paper), np.array([len(states) for states in runs]), np.array(better))
 
@@ -67,14 +71,18 @@ def paper_states(one: ambiguity.Trial) -> list[mitsunaga.Fit]:
 def marginal_error(one: ambiguity.Trial) -> float:
     """Return the error of marginal maximum likelihood, from where the paper's scheme stopped."""
     start = paper_states(one)[-1]
-    return ambiguity.mean_error(marginal.fit(one.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, one.c)
+    return ambiguity.mean_error(
+        marginal.fit(one.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, one.c
+    )
 
 
-def search_ratio(M: Float, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:
+def search_ratio(
+    M: Float, start: float, order: int, *, reach: float = 1.25, steps: int = 81
+) -> float:
     """Return the ratio of two frames M (N, 2) with the lowest error in start / reach ... start * reach.
 
-    The line search of [Mitsunaga99 sec. 4]. For clean samples, which leave no error at the truth: noise lifts
-    that minimum and moves it far, and then alternating is better.
+    The line search of [Mitsunaga99 sec. 4]. For clean samples, which leave no error at the truth:
+    noise lifts that minimum and moves it far, and then alternating is better.
     """
     R = start * reach ** np.linspace(-1, 1, steps)
     R = R[R < 1]
@@ -88,7 +96,8 @@ def scan_valley(
 ) -> Valley:
     """Return figure 4 of the paper for a camera c: two frames, the truth at `ratio`, a guess at `start`.
 
-    Samples are not quantised. With sigma = 0 the error touches 0 at the truth; with noise it does not.
+    Samples are not quantised. With sigma = 0 the error touches 0 at the truth; with noise it does
+    not.
     """
     draw = np.random.default_rng(rng)
     E = 10 ** draw.uniform(-2, 0, 1000)
@@ -149,7 +158,10 @@ def canon_ratios(_: Path) -> Mapping[str, ArrayLike]:
 
 def flatness(_: Path) -> Mapping[str, ArrayLike]:
     """Return the test's threshold, and what share of flat patches passes."""
-    return {"threshold": selection.threshold(25, psi=0.05), "flat patches kept, %": [kept(1), kept(100)]}
+    return {
+        "threshold": selection.threshold(25, psi=0.05),
+        "flat patches kept, %": [kept(1), kept(100)],
+    }
 
 
 ROWS = (

@@ -4,15 +4,17 @@ f          response      exposure 0 to 1 -> brightness 0 to 1
 RMSE       of f^-1       over the measured brightnesses, 15 to 240 of 255, as a fraction of its range there
 disparity                the largest error there; as in the paper, both curves go from 0 to 1 over that range
 variance                 of the errors of several sets at each brightness, the mean of that, in square
-                         per cent: the paper gives no unit; as fractions its 0.05 exceeds the squared RMSE
+                         per cent: the paper gives no unit; as fractions its 0.05 exceeds the
+                         squared RMSE
 sigma      noise         0.005, after the response, of each pixel, before it is cut into 256 levels
 
-Stated here, since the paper does not: the screen has gamma 2.2 and its brightest patch just saturates the
-camera; a patch is 30 pixels wide in the photograph, the inner 27 are read; a scan line crosses two ramps of
-100 pixels between a white that saturates the camera, 1.05, and a black without light; 300 scan lines, 60 for
-figure 7. Mitsunaga and Nayar's method gets four photographs of 100 x 100 pixels of a scene, exposures stated
-as 1/8, 1/4, 1/2 and 1, with ratios that are off by up to 5 % or, 0.45 ... 0.55 as in that paper, by 10 %;
-radiance is uniform in its logarithm over two decades; the order is chosen by held-out error.
+Stated here, since the paper does not: the screen has gamma 2.2 and its brightest patch just
+saturates the camera; a patch is 30 pixels wide in the photograph, the inner 27 are read; a scan
+line crosses two ramps of 100 pixels between a white that saturates the camera, 1.05, and a black
+without light; 300 scan lines, 60 for figure 7. Mitsunaga and Nayar's method gets four photographs
+of 100 x 100 pixels of a scene, exposures stated as 1/8, 1/4, 1/2 and 1, with ratios that are off by
+up to 5 % or, 0.45 ... 0.55 as in that paper, by 10 %; radiance is uniform in its logarithm over two
+decades; the order is chosen by held-out error.
 """
 
 from collections.abc import Callable, Sequence
@@ -39,7 +41,10 @@ Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
 GAMMA, BRIGHTEST, SIGMA, WHITE, BLACK = 2.2, 220, 0.005, 1.05, 0.0
 RAMP, LINES = 100, 300
-FRAMES, OFF = 4, (0.05, 0.1)  # of Mitsunaga and Nayar's method: photographs, and how far ratios are off
+FRAMES, OFF = (
+    4,
+    (0.05, 0.1),
+)  # of Mitsunaga and Nayar's method: photographs, and how far ratios are off
 OUTLIERS = 0.2  # of its sets: the paper removed two of ten
 
 
@@ -66,7 +71,9 @@ def truth(f: Curve, found: InverseResponse) -> InverseResponse:
     )
 
 
-def photograph(f: Curve, X: Float, rng: np.random.Generator, *, sigma: float = SIGMA) -> NDArray[np.uint8]:
+def photograph(
+    f: Curve, X: Float, rng: np.random.Generator, *, sigma: float = SIGMA
+) -> NDArray[np.uint8]:
     """Return the levels of round(255 (f(X) + noise))."""
     M = f(np.minimum(X, 1.0)) + sigma * rng.standard_normal(X.shape)
     return np.round(255 * np.clip(M, 0, 1)).astype(np.uint8)
@@ -103,7 +110,9 @@ def blurred(
 
 def errors(cameras: Sequence[Curve], found: Sequence[InverseResponse]) -> Errors:
     """Return the Errors of the curves found for the cameras."""
-    apart = np.stack([difference(one, truth(f, one)) for f, one in zip(cameras, found, strict=True)])
+    apart = np.stack(
+        [difference(one, truth(f, one)) for f, one in zip(cameras, found, strict=True)]
+    )
     return Errors(np.sqrt(np.mean(apart**2, axis=1)), np.abs(apart).max(axis=1), apart)
 
 
@@ -116,7 +125,9 @@ def by_display(
     cameras: Sequence[Curve], *, join: Callable[..., InverseResponse] = joining.join, seed: int = 0
 ) -> Errors:
     """Return the Errors of the display's method, one photograph per camera."""
-    found = [join(display_blends(f, np.random.default_rng([seed, k]))) for k, f in enumerate(cameras)]
+    found = [
+        join(display_blends(f, np.random.default_rng([seed, k]))) for k, f in enumerate(cameras)
+    ]
     return errors(cameras, found)
 
 
@@ -150,21 +161,26 @@ def self_calibrated(cameras: Sequence[Curve], *, off: float, seed: int = 0) -> E
     found, stated = [], 2.0 ** np.arange(FRAMES)
     for k, f in enumerate(cameras):
         rng = np.random.default_rng([seed, k])
-        E, R = 10 ** rng.uniform(-2, 0, (100, 100)), 0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1))
+        E, R = (
+            10 ** rng.uniform(-2, 0, (100, 100)),
+            0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1)),
+        )
         exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
         g = recovery.find_validated_method("mitsunaga")(
             np.stack([photograph(f, E * e, rng) for e in exposures]), stated
         )
         at = np.linspace(MIN_BRIGHTNESS, MAX_BRIGHTNESS, TABLE_SIZE)
-        found.append(normalize(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1)))
+        found.append(
+            normalize(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1))
+        )
     return errors(cameras, found)
 
 
 def table1(name: str, *, sets: int = 10, lines: int = LINES, seed: int = 0) -> dict[str, Errors]:
     """Return the Errors (sets,) of a simulated camera: display and blur, his polynomial and our spline.
 
-    And of the method they are compared with, without the worst fifth. Published means: RMSE 0.012, 0.012 and
-    0.006, disparity 0.017, 0.029 and 0.017, `variance` 0.050, 0.052 and 0.061.
+    And of the method they are compared with, without the worst fifth. Published means: RMSE 0.012,
+    0.012 and 0.006, disparity 0.017, 0.029 and 0.017, `variance` 0.050, 0.052 and 0.061.
     """
     cameras = [as_response(name).f] * sets
     compared = {
@@ -183,11 +199,17 @@ def table1(name: str, *, sets: int = 10, lines: int = LINES, seed: int = 0) -> d
 
 
 def figure7(
-    name: str = "film", *, trials: int = 100, acceleration: float = 0.15, lines: int = 60, seed: int = 0
+    name: str = "film",
+    *,
+    trials: int = 100,
+    acceleration: float = 0.15,
+    lines: int = 60,
+    seed: int = 0,
 ) -> tuple[Float, Float]:
     """Return the RMSE between left and right edges (trials,), of linear and of accelerated motion.
 
-    Published: below 0.01 in the good example, 0.028 in the bad one; the limit is `motion_blur.MAX_RMSE`.
+    Published: below 0.01 in the good example, 0.028 in the bad one; the limit is
+    `motion_blur.MAX_RMSE`.
     """
     f, rng = as_response(name).f, np.random.default_rng(seed)
     pairs = [

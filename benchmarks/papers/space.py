@@ -19,14 +19,18 @@ from hdrlab.calibration.chart import NEUTRAL
 from hdrlab.response import space
 
 Float = NDArray[np.float64]
-PLACES = NEUTRAL[:5]  # the chart's grays but black: as exposures, where white is at 0.9 of the range
+PLACES = NEUTRAL[
+    :5
+]  # the chart's grays but black: as exposures, where white is at 0.9 of the range
 EMOR, OURS = "RMS with 3, 5, 11 published components", "RMS with 3, 5, 11 components of ours"
 SAMPLES = "RMS of a response from 5 samples, mean, %"
 
 
 def read_emor(path: Path) -> space.Space:
     """Return the published components: blocks, `name =` and numbers: the axis, the mean, the components."""
-    parts = re.split(r"^\s*\w+(?:\(\d+\))?\s*=", path.read_text(encoding="latin-1"), flags=re.MULTILINE)
+    parts = re.split(
+        r"^\s*\w+(?:\(\d+\))?\s*=", path.read_text(encoding="latin-1"), flags=re.MULTILINE
+    )
     _, mean, *components = (np.array(numbers.split(), np.float64) for numbers in parts[1:])
     return space.Space(mean, np.stack(components), np.ones(len(components)))
 
@@ -36,12 +40,16 @@ def rms(curves: Float, like: Float) -> Float:
     return np.sqrt(np.mean((curves - like) ** 2, axis=-1))
 
 
-def projection(curves: Float, basis: space.Space, counts: tuple[int, ...] = (3, 5, 11)) -> dict[int, float]:
+def projection(
+    curves: Float, basis: space.Space, counts: tuple[int, ...] = (3, 5, 11)
+) -> dict[int, float]:
     """Return the mean RMS of the curves projected on the first components; held: 0.0057, 0.0023, 0.0005."""
     mean = {}
     for count in counts:
         part = space.truncate(basis, count)
-        mean[count] = float(rms(curves, space.reconstruct(space.project(curves, part), part)).mean())
+        mean[count] = float(
+            rms(curves, space.reconstruct(space.project(curves, part), part)).mean()
+        )
     return mean
 
 
@@ -73,7 +81,10 @@ def measured(folder: Path) -> Float:
     """Return the 201 curves (C, 1024) at even exposures."""
     exposure, brightness = measured_curves(folder)
     return np.stack(
-        [np.interp(np.linspace(0, 1, 1024), x, m) for x, m in zip(exposure, brightness, strict=True)]
+        [
+            np.interp(np.linspace(0, 1, 1024), x, m)
+            for x, m in zip(exposure, brightness, strict=True)
+        ]
     )
 
 

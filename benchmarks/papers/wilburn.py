@@ -1,7 +1,7 @@
 """The table and figure 7 of Wilburn, Xu and Matsushita 2008: `mixtures` states the simulated set-up.
 
-Table 1 has ten sets for each of five cameras, seed 0; the 201 measured curves have one photograph each, with
-seed k. The paper's table has the means of RMSE and disparity.
+Table 1 has ten sets for each of five cameras, seed 0; the 201 measured curves have one photograph
+each, with seed k. The paper's table has the means of RMSE and disparity.
 """
 
 from collections.abc import Mapping
@@ -11,13 +11,24 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks.experiments import Experiment, along, at_least, at_most, listed, measured_curves, spread
+from benchmarks.experiments import (
+    Experiment,
+    along,
+    at_least,
+    at_most,
+    listed,
+    measured_curves,
+    spread,
+)
 from benchmarks.papers import mixtures as setup
 from hdrlab.calibration import motion_blur
 
 Float = NDArray[np.float64]
 WAYS = {"display": setup.by_display, "blur": setup.by_motion_blur}
-PUBLISHED = {"display": (0.012, 0.017, 0.050), "blur": (0.012, 0.029, 0.052)}  # RMSE, disparity, variance
+PUBLISHED = {
+    "display": (0.012, 0.017, 0.050),
+    "blur": (0.012, 0.029, 0.052),
+}  # RMSE, disparity, variance
 LIMITS = {"display": (0.001, 0.003, 0.008), "blur": (0.0005, 0.002, 0.006)}
 RMSE, DISPARITY = "RMSE: median, 95 %, worst", "disparity, mean"
 TRIALS, SETS = 100, 10

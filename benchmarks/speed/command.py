@@ -1,7 +1,7 @@
 """The whole command: seven JPEGs of 12 megapixels to a map and a picture, beside a script of OpenCV.
 
-Larger ones are made of these: beside and below each photograph stands the same once more, which the hand
-moved as well, and not its mirror image, which would have moved the other way.
+Larger ones are made of these: beside and below each photograph stands the same once more, which the
+hand moved as well, and not its mirror image, which would have moved the other way.
 """
 
 import sys
@@ -53,7 +53,9 @@ def case(folder: Path, one: bool) -> Case:
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
     frames = data.photographs(folder, data.LARGE, radius=RADIUS).images.nbytes  # decoded
-    return Case({OURS: lambda: run(ours, OURS)} | theirs, missing, lambda who, _: error(folder, who), frames)
+    return Case(
+        {OURS: lambda: run(ours, OURS)} | theirs, missing, lambda who, _: error(folder, who), frames
+    )
 
 
 def growing(folder: Path, one: bool) -> Case:
@@ -64,7 +66,15 @@ def growing(folder: Path, one: bool) -> Case:
     for size, (down, across) in SIZES.items():
         photographs = enlarge(folder / "jpeg", folder / f"jpeg-{down}-{across}", down, across)
         files = ["-o", str(folder / "large.hdr"), "--picture", str(folder / "large.png")]
-        command = ["-m", "hdrlab", "assemble", str(photographs), "--times", str(folder / "times.csv"), *files]
+        command = [
+            "-m",
+            "hdrlab",
+            "assemble",
+            str(photographs),
+            "--times",
+            str(folder / "times.csv"),
+            *files,
+        ]
         runs[size] = partial(process, [sys.executable, *command], one=one)
         reads[size] = 3 * data.FRAMES * data.LARGE[0] * data.LARGE[1] * down * across
     return Case(runs, {}, reads=reads)
@@ -113,7 +123,10 @@ def error(folder: Path, who: str) -> float:
 def _moved(images: Array, moves: Array, shown: tuple[slice, slice]) -> Array:
     """Return the photographs on that rectangle; what wraps around lies outside it."""
     return np.stack(
-        [np.roll(image, tuple(move), (0, 1))[shown] for image, move in zip(images, moves, strict=True)]
+        [
+            np.roll(image, tuple(move), (0, 1))[shown]
+            for image, move in zip(images, moves, strict=True)
+        ]
     )
 
 

@@ -1,8 +1,9 @@
 """The fast local Laplacian filter (Aubry and others, 2014) in Halide, scheduled by hand.
 
-Every level of every pyramid is a function of its own that is computed whole, in rows side by side and in
-vectors of eight; the remapped pictures of all samples are one function, whose third coordinate is the sample.
-The equations, the kernel and the reflection at the edges are those of `hdrlab.tonemap.local_laplacian`.
+Every level of every pyramid is a function of its own that is computed whole, in rows side by side
+and in vectors of eight; the remapped pictures of all samples are one function, whose third
+coordinate is the sample. The equations, the kernel and the reflection at the edges are those of
+`hdrlab.tonemap.local_laplacian`.
 """
 
 from collections.abc import Callable

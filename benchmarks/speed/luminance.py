@@ -29,6 +29,8 @@ def operator(E: Array, folder: Path, one: bool, name: str, *options: str) -> Run
 
     def spent(name: str, *options: str) -> Usage:
         picture = folder / f"{name}.tif"
-        return process([*start, "--tmo", name, *options, "--output", str(picture), *FLOATS], one=one)
+        return process(
+            [*start, "--tmo", name, *options, "--output", str(picture), *FLOATS], one=one
+        )
 
     return lambda: spent(name, *options).net(spent(SIMPLEST))

@@ -28,7 +28,12 @@ def bilateral_case(folder: Path, one: bool) -> Case:
     """Return the work of Durand's operator; its error is that of the base, against the definition."""
     E = data.scene(folder)
     L = luminance(E)
-    widths = ("--tmoDurSigmaS", f"{WIDTH * max(L.shape):g}", "--tmoDurSigmaR", f"{0.4 * np.log(10):g}")
+    widths = (
+        "--tmoDurSigmaS",
+        f"{WIDTH * max(L.shape):g}",
+        "--tmoDurSigmaR",
+        f"{0.4 * np.log(10):g}",
+    )
     alike = (*widths, "--tmoDurBase", f"{np.log(50):g}")  # our knobs; theirs are in nats
     theirs, missing = peers.present(
         {
@@ -71,7 +76,9 @@ def gradient_case(folder: Path, one: bool) -> Case:
 def histogram_case(folder: Path, one: bool) -> Case:
     """Return the work of Ward's operator beside our own global Reinhard, both on luminance."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: ward.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
+    return Case(
+        {OURS: lambda: ward.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes
+    )
 
 
 def blur_case(folder: Path, one: bool) -> Case:
@@ -86,7 +93,9 @@ def blur_case(folder: Path, one: bool) -> Case:
     theirs, missing = peers.present({peers.OPENCV: opencv})
 
     def error(who: str, blurred: Any) -> float:
-        return float(np.abs(blurred / gaussian_filter(L.astype(np.float64), sigma, truncate=6) - 1).max())
+        return float(
+            np.abs(blurred / gaussian_filter(L.astype(np.float64), sigma, truncate=6) - 1).max()
+        )
 
     return Case({OURS: lambda: blur.gaussian(L, sigma)} | theirs, missing, error, L.nbytes)
 
@@ -94,13 +103,17 @@ def blur_case(folder: Path, one: bool) -> Case:
 def scale_case(folder: Path, one: bool) -> Case:
     """Return the work of Chiu's whole operator, smoothing passes included, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: chiu.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
+    return Case(
+        {OURS: lambda: chiu.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes
+    )
 
 
 def brush_case(folder: Path, one: bool) -> Case:
     """Return the work of the Detail Brush over a whole picture, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: brush.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
+    return Case(
+        {OURS: lambda: brush.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes
+    )
 
 
 def than(peer: str, limit: float, goal: float | None = None) -> Hold:

@@ -56,14 +56,22 @@ def fusing(folder: Path, size: data.Size, one: bool) -> Work:
 def operator(name: str) -> Row:
     """Return the row of an operator of tone mapping; a new one has its row by existing."""
     holds = (POWER, within("12 MP", MOST.get(name, 300)))
-    return Row(f"{name}-12", f"{name}, 2 and 12 megapixels", partial(case, partial(tonemapping, name)), holds)
+    return Row(
+        f"{name}-12",
+        f"{name}, 2 and 12 megapixels",
+        partial(case, partial(tonemapping, name)),
+        holds,
+    )
 
 
 POWER = grows("2 MP", "12 MP", data.PIXELS, 1.15)
 MOST = {"fattal": 400, "local_laplacian": 450}  # MB; any other operator is held to 300
 ROWS = (
     Row(
-        "merge-12", "radiance map, 2 and 12 megapixels", partial(case, merging), (POWER, within("12 MP", 200))
+        "merge-12",
+        "radiance map, 2 and 12 megapixels",
+        partial(case, merging),
+        (POWER, within("12 MP", 200)),
     ),
     Row(
         "picture-12",

@@ -1,6 +1,7 @@
 """Self-calibration: response and ratios from rough times, three channels; pfshdrcalibrate merges as well.
 
-It has one order and no search for another. So ours is told the order in one row, and chooses it in the other.
+It has one order and no search for another. So ours is told the order in one row, and chooses it in
+the other.
 """
 
 from pathlib import Path
@@ -33,7 +34,8 @@ def case(folder: Path, one: bool, order: int | None) -> Case:
         return data.curve_error(read_curve(saved) if who == peers.PFS else g)
 
     return Case(
-        {OURS: lambda: self_calibration.find_response(bracket.images, bracket.times, order=order)} | theirs,
+        {OURS: lambda: self_calibration.find_response(bracket.images, bracket.times, order=order)}
+        | theirs,
         missing,
         error,
         bracket.images.nbytes,
@@ -50,7 +52,11 @@ WORK = f"self-calibration from {data.FRAMES} photographs, three channels"
 ERROR = "error of the curve, % of its top"
 ROWS = (
     Row(
-        "mitsunaga", f"{WORK}, order 6", told, (faster(100), close(0.5, "% error of the curve", 0.15)), ERROR
+        "mitsunaga",
+        f"{WORK}, order 6",
+        told,
+        (faster(100), close(0.5, "% error of the curve", 0.15)),
+        ERROR,
     ),
     Row(
         "mitsunaga-order",

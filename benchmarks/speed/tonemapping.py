@@ -32,7 +32,10 @@ def develop(folder: Path, one: bool) -> Case:
         )  # the others' formulas are not this one
 
     return Case(
-        {OURS: lambda: pipeline.develop(E, "reinhard", way="ratio")} | theirs, missing, error, E.nbytes
+        {OURS: lambda: pipeline.develop(E, "reinhard", way="ratio")} | theirs,
+        missing,
+        error,
+        E.nbytes,
     )
 
 
@@ -61,7 +64,9 @@ def dodge(folder: Path, one: bool) -> Case:
     """Return the work of dodge and burn, radiance to linear display RGB."""
     E = data.scene(folder)
     truth = true_gaussians(luminance(E))
-    theirs, missing = peers.present({peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_reinhard02", "-s")})
+    theirs, missing = peers.present(
+        {peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_reinhard02", "-s")}
+    )
 
     def ours() -> Array:
         L = luminance(E)

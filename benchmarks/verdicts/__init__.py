@@ -2,18 +2,19 @@
 
 warned   a doubt is said, or that something moved, or the bracket is refused
 cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it),
-         each the mean of 4 x 4 pixels, once one is laid on the other, since a map is as good where the camera
-         turned. Pixel by pixel, turning all frames alike, which is no ill, would cost 0.11 to 0.19 stops by
-         resampling, noise and JPEG alone, and 0.04 to 0.10 in these means
+         each the mean of 4 x 4 pixels, once one is laid on the other, since a map is as good where
+         the camera turned. Pixel by pixel, turning all frames alike, which is no ill, would cost
+         0.11 to 0.19 stops by resampling, noise and JPEG alone, and 0.04 to 0.10 in these means
 costly   a cost above 0.1 stops; `missed` is the share of these without a warning, %
 
-An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
+An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs
+no word.
 
 Three rows miss their hold, of 12 brackets each:
 curve     5 of 5 costly ones are missed, and will be: a camera of another response, under times that differ
-          by a twentieth of a stop or less, takes the same photographs. The maps predict their levels as well
-          as the maps of the same photographs unbent do, to 1.1 to 1.9 levels in the median, at a spread of
-          0.006 to 0.027 stops, and sound brackets come to 0.034
+          by a twentieth of a stop or less, takes the same photographs. The maps predict their
+          levels as well as the maps of the same photographs unbent do, to 1.1 to 1.9 levels in the
+          median, at a spread of 0.006 to 0.027 stops, and sound brackets come to 0.034
 parallax  1 of 7: the frames disagree in 1.2 % of the picture, and in 1.15 % of a real, still bracket's
 local     2 of 12: three frames, or three that are left, whose curve takes up most of what was done to them
 """
@@ -38,7 +39,8 @@ from hdrlab.core.colour import luminance
 COUNT, SOUND = 12, 14
 # stops
 COSTLY = 0.1
-# pixels at the border that do not count, where frames were moved, and of the side of those that are compared
+# pixels at the border that do not count, where frames were moved, and of the side of those that are
+# compared
 BORDER, SIDE = 16, 4
 
 
@@ -55,13 +57,18 @@ def assembled(taken: Bracket) -> tuple[Array | None, tuple[str, ...]]:
         found = pipeline.assemble(taken)
     except ValueError as reason:
         return None, (f"refused: {reason}",)
-    return luminance(found.E), (*found.doubts, *(note for note in found.notes if "something moved" in note))
+    return luminance(found.E), (
+        *found.doubts,
+        *(note for note in found.notes if "something moved" in note),
+    )
 
 
 def measure_cost(found: Array, sound: Array) -> float:
     """Return the mean size of log2 (found / sound), up to a factor and a motion, over what both maps show."""
     h, w = np.minimum(found.shape, sound.shape)
-    a, b = (np.log2(np.maximum(_middle(one, h, w), 1e-9)).astype(np.float32) for one in (sound, found))
+    a, b = (
+        np.log2(np.maximum(_middle(one, h, w), 1e-9)).astype(np.float32) for one in (sound, found)
+    )
     cv2, moved = opencv(one=True), np.eye(2, 3, dtype=np.float32)
     with suppress(cv2.error):  # where the two have nothing in common
         _, moved = cv2.findTransformECC(a, b, moved, cv2.MOTION_EUCLIDEAN)
@@ -90,7 +97,9 @@ def judge(i: int, folder: Path, name: str) -> Verdict:
         return Verdict(assembled(brackets.shoot(plan))[1], 0.0)
     ill = ills.ILLS[name]
     E, doubts = assembled(brackets.shoot(plan, ill))
-    sound = assembled(brackets.shoot(plan, ill, at_rest=True) if ill.moves else brackets.shoot(plan))[0]
+    sound = assembled(
+        brackets.shoot(plan, ill, at_rest=True) if ill.moves else brackets.shoot(plan)
+    )[0]
     if E is None:
         return Verdict(doubts, np.inf)
     return Verdict(doubts, 0.0 if sound is None else measure_cost(E, sound))
@@ -101,7 +110,10 @@ def sound(folder: Path, *, count: int = SOUND) -> Mapping[str, ArrayLike]:
     found: dict[str, ArrayLike] = {}
     alarms = []
     for name in brackets.SOUND:
-        said = [one.doubts for one in along(partial(judge, folder=folder, name=name), range(count), name)]
+        said = [
+            one.doubts
+            for one in along(partial(judge, folder=folder, name=name), range(count), name)
+        ]
         alarms += [bool(one) for one in said]
         found[name] = 100 * np.mean(alarms[-count:])
         for k, one in enumerate(said):
@@ -113,7 +125,10 @@ def sound(folder: Path, *, count: int = SOUND) -> Mapping[str, ArrayLike]:
 def told(folder: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLike]:
     """Return the share of costly brackets that nothing is said of, %, and how many there are."""
     each = along(partial(judge, folder=folder, name=name), range(count), name)
-    cost, warned = np.array([one.cost for one in each]), np.array([bool(one.doubts) for one in each])
+    cost, warned = (
+        np.array([one.cost for one in each]),
+        np.array([bool(one.doubts) for one in each]),
+    )
     costly = cost > COSTLY
     return {
         "missed": 100 * np.mean(~warned[costly]) if costly.any() else 0.0,

@@ -4,8 +4,9 @@ E        radiance       (H, W, 3) float32 of an embedded scene, 0.18 MP
 t        times          (P,) s
 Z        photographs    (P, H, W, 3) uint8, through the camera and its JPEG
 
-Bracket i is the same in every run: scene, response, number of frames, steps, quality are drawn with seed i.
-An ill takes part at three places: in the light that a frame sees, in its levels, and in the times stated.
+Bracket i is the same in every run: scene, response, number of frames, steps, quality are drawn with
+seed i. An ill takes part at three places: in the light that a frame sees, in its levels, and in the
+times stated.
 """
 
 import io
@@ -116,7 +117,9 @@ def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
         model = camera.Camera(response=response, full_well=FULL_WELL / iso, read_noise=READ_NOISE)
         Z = camera.shoot(E, [t], model, rng=noise).images[0]
         if plan.sound == "noise reduction":
-            Z = np.rint(gaussian_filter(Z.astype(np.float32), (0.25 * j, 0.25 * j, 0))).astype(np.uint8)
+            Z = np.rint(gaussian_filter(Z.astype(np.float32), (0.25 * j, 0.25 * j, 0))).astype(
+                np.uint8
+            )
         images.append(finish(plan, ill.levels(plan, k, own, Z)))
     stated = ill.times(plan, plan.times)
     order = np.argsort(stated, kind="stable")

@@ -86,7 +86,9 @@ def walk(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     step = 30 * (j - plan.frames // 2)
     if plan.scene != "room":
         return scenes.compose(_layers(plan.scene), (0, step))
-    figure = movers.ball(SHAPE, (SHAPE[0] / 2, SHAPE[1] / 2), SHAPE[0] / 8, np.full(3, 2 * np.median(E)))
+    figure = movers.ball(
+        SHAPE, (SHAPE[0] / 2, SHAPE[1] / 2), SHAPE[0] / 8, np.full(3, 2 * np.median(E))
+    )
     return movers.compose_moment(E, figure, (0, step))[0]
 
 
@@ -99,18 +101,25 @@ def shake(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     """Turn the camera by up to 1.5 degrees and shift it by up to 8 pixels; the middle frame stays."""
     radius, degrees = rng.uniform(-8, 8, 2), rng.uniform(-1.5, 1.5)
     H = np.eye(3) if j == plan.frames // 2 else warp.turn(SHAPE, degrees, radius)
-    far = np.array([warp.turn(SHAPE, phi, at) for phi in (-1.5, 1.5) for at in ((8, 8), (-8, -8), (8, -8))])
+    far = np.array(
+        [warp.turn(SHAPE, phi, at) for phi in (-1.5, 1.5) for at in ((8, 8), (-8, -8), (8, -8))]
+    )
     return np.asarray(views(E, np.concatenate([H[None], far, np.eye(3)[None]]))[0])
 
 
 def step_aside(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     """Move the camera sideways: near things shift by up to 12 pixels, far ones hardly."""
-    depth = _layers(plan.scene).depth if plan.scene != "room" else np.linspace(8, 1.5, SHAPE[0])[:, None]
+    depth = (
+        _layers(plan.scene).depth
+        if plan.scene != "room"
+        else np.linspace(8, 1.5, SHAPE[0])[:, None]
+    )
     near = np.broadcast_to(np.quantile(depth, 0.05) / np.maximum(depth, 1e-3), SHAPE)
     y, x = np.indices(SHAPE)
     dx = rng.uniform(-12, 12) * near * (j != plan.frames // 2)
     return np.stack(
-        [map_coordinates(one, [y, x + dx], order=1, mode="reflect") for one in E.T.swapaxes(1, 2)], -1
+        [map_coordinates(one, [y, x + dx], order=1, mode="reflect") for one in E.T.swapaxes(1, 2)],
+        -1,
     )
 
 

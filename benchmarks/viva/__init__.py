@@ -1,9 +1,9 @@
 """Do the questions of `hdrlab viva` have one right answer, and is it hidden from who does not know the code?
 
-Questions are made of the library's solutions, of the tests' files of equivalents and of the battery of right
-answers, each with one seed after the other from VIVA_SEED on, of many tasks with more of them, until there
-are VIVA_QUESTIONS. They are made as `twice` says, and not five of a submission but all that there are: the
-first five are those of `hdrlab viva`.
+Questions are made of the library's solutions, of the tests' files of equivalents and of the battery
+of right answers, each with one seed after the other from VIVA_SEED on, of many tasks with more of
+them, until there are VIVA_QUESTIONS. They are made as `twice` says, and not five of a submission
+but all that there are: the first five are those of `hdrlab viva`.
 
 again    every version of a question is run once more, in the sandbox: it has its own option's answer, and
          none of the three others
@@ -40,7 +40,8 @@ QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
-# questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a submission
+# questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a
+# submission
 FIVE, USUAL, MOST, LONGEST = examining.QUESTIONS, 8, 16, 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
@@ -58,7 +59,11 @@ def works() -> Iterator[tuple[str, Homework, Submission]]:
         homework = homeworks[path.stem.partition("_")[0]]
         yield path.stem, homework, grading.read_tasks(path, homework, CONDITIONS)[0]
     for k, (homework, chosen) in enumerate(submissions(texts("right"))):
-        yield f"right {k}", homework, as_submission({task: text for task, (_, text) in chosen.items()})
+        yield (
+            f"right {k}",
+            homework,
+            as_submission({task: text for task, (_, text) in chosen.items()}),
+        )
 
 
 def solutions(homework: Homework) -> dict[str, str]:
@@ -80,7 +85,12 @@ def examined(
     """Return a name, and of each seed's sitting the tasks that passed and the questions, `most` of them."""
     name, homework, read, seeds = item
     sittings = [str(plan.seed("viva", name, str(seed))) for seed in seeds]
-    more = {"seed": sittings[0], "sittings": sittings, "most": most, "photographs": pages.photographs([])}
+    more = {
+        "seed": sittings[0],
+        "sittings": sittings,
+        "most": most,
+        "photographs": pages.photographs([]),
+    }
     made: list[tuple[list[str], list[Question]]] = []
     with patch.object(grading, "WHOLE", LONGEST):
         found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, **more))
@@ -101,10 +111,15 @@ def features(question: dict[str, Any]) -> list[np.ndarray]:
     """Return what somebody sees of each option who does not know the code, as numbers."""
     if "figures" in question:
         return [
-            np.array([float(one) for one in figure["parts"].split(", ")]) for figure in question["figures"]
+            np.array([float(one) for one in figure["parts"].split(", ")])
+            for figure in question["figures"]
         ]
-    said = question.get("texts") or [f"row {one // 8} column {one % 8}" for one in question["marks"]]
-    words = [set(re.findall(r"\w+|\W", one)) | {f"length {len(one) // 4}"} for one in [*said, ""][:4]]
+    said = question.get("texts") or [
+        f"row {one // 8} column {one % 8}" for one in question["marks"]
+    ]
+    words = [
+        set(re.findall(r"\w+|\W", one)) | {f"length {len(one) // 4}"} for one in [*said, ""][:4]
+    ]
     every = sorted(set().union(*words))
     return [np.array([float(word in one) for word in every]) for one in words]
 
@@ -134,7 +149,10 @@ def questions(_folder: Path) -> dict[str, Any]:
                 whole += len(passed) >= FIVE
                 if len(passed) >= FIVE > len(made):
                     refused += 1
-                    print(f"  {name}, seed {seed}: {len(made)} questions of {len(passed)} tasks", flush=True)
+                    print(
+                        f"  {name}, seed {seed}: {len(made)} questions of {len(passed)} tasks",
+                        flush=True,
+                    )
         seed = seeds[-1] + 1
     kinds = {kind: sum(one["kind"] == kind for one in asked) for kind in examining.KINDS}
     print("  " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()), flush=True)
@@ -154,7 +172,9 @@ def seconds(_folder: Path) -> dict[str, Any]:
     took = []
     for name, homework, read in islice(works(), 5):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        ((_, made),) = examined((name, homework, read, [0]), "hdrlab.course.viva.examining:Examining")[1]
+        ((_, made),) = examined(
+            (name, homework, read, [0]), "hdrlab.course.viva.examining:Examining"
+        )[1]
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         took.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
         print(f"  {name}: {len(made)} questions, {took[-1]:.1f} s", flush=True)

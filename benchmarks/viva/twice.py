@@ -1,7 +1,7 @@
 """Questions of `hdrlab viva` that are made in one process, and run once more in a sandbox.
 
-The answers of the benchmark are trusted, and to make questions of them in a sandbox costs twenty times as
-long.
+The answers of the benchmark are trusted, and to make questions of them in a sandbox costs twenty
+times as long.
 """
 
 import hashlib
@@ -24,7 +24,8 @@ from hdrlab.course.viva import changed, examining
 
 # seconds and bytes of a call in this process
 PATIENCE, MEMORY = 1, 1 << 32
-# seconds of a call in the sandbox, times a check's, and of the sandbox for a question: no clock decides
+# seconds of a call in the sandbox, times a check's, and of the sandbox for a question: no clock
+# decides
 PATIENT, ENOUGH = 3.0, 60
 FIVE = examining.QUESTIONS
 
@@ -78,7 +79,9 @@ def in_time() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        raise NoAnswer(str(error), "late" if isinstance(error, TimeoutError) else "raised") from None
+        raise NoAnswer(
+            str(error), "late" if isinstance(error, TimeoutError) else "raised"
+        ) from None
     finally:
         signal.alarm(0)
 

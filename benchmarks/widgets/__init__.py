@@ -3,9 +3,10 @@
 latency  from the event of a key on a slider to the frame of the display that shows the new picture
 first    from the start of a run to the first picture on the page, its kernel being ready
 
-Headless, so the screen itself takes up to a frame more. Every slider of every `play` and `tune` is moved
-there and back, and the 95th percentile of the slowest must hold. A picture of `tune` that was made beforehand
-counts: it is shown until Python's comes. With HDRLAB_STORED=1 there are none, and each is Python's.
+Headless, so the screen itself takes up to a frame more. Every slider of every `play` and `tune` is
+moved there and back, and the 95th percentile of the slowest must hold. A picture of `tune` that was
+made beforehand counts: it is shown until Python's comes. With HDRLAB_STORED=1 there are none, and
+each is Python's.
 """
 
 from pathlib import Path

@@ -25,8 +25,9 @@ FIRST_PICTURE = """async () => {
     return (performance.now() - start) / 1000;
 }"""
 
-# The alt text names the position, and is set in the moment in which the pixels are there. To look for it on
-# each frame of the display would keep the page drawing, and the kernel waiting for a processor.
+# The alt text names the position, and is set in the moment in which the pixels are there. To look
+# for it on each frame of the display would keep the page drawing, and the kernel waiting for a
+# processor.
 WATCH = """([el, lost]) => {
     const canvas = el.querySelector("canvas"), text = canvas.getAttribute("aria-label");
     window.latency = new Promise((resolve) => {
@@ -52,7 +53,9 @@ def opened(_folder: Path, name: str) -> Figures:
         figures: Figures = {FIRST: page.evaluate(FIRST_PICTURE)}
         server.until_done(page)
         each = {kind: sliders(page, kind) for kind in WORST}
-    figures |= {WORST[kind]: max(p95 for _, p95 in found.values()) for kind, found in each.items() if found}
+    figures |= {
+        WORST[kind]: max(p95 for _, p95 in found.values()) for kind, found in each.items() if found
+    }
     return figures | each["play"] | each["tune"]
 
 
@@ -64,7 +67,9 @@ def sliders(page: Any, kind: str) -> Figures:
         names = widget.locator(".hdrlab-slider span:first-child").all_inner_texts()
         for name, slider in zip(names, widget.get_by_role("slider").all(), strict=True):
             latencies = moved(page, widget, slider)
-            found[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(latencies, (0.5, 0.95)).tolist()
+            found[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(
+                latencies, (0.5, 0.95)
+            ).tolist()
     return found
 
 

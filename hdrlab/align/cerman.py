@@ -7,8 +7,9 @@ r       radius              from the middle to a corner, pixels: the unknowns ar
 H       homography          (3, 3): the same, where pixel (x, y, 1) of `moving` lies on `fixed`
 e       error               mean square of the difference relative to the light, see `light`
 
-A pyramid makes it fast: the correlation is taken at the coarsest level, and the simplex starts each level
-from what the one above found. Neighbours in exposure are registered, and their homographies chained.
+A pyramid makes it fast: the correlation is taken at the coarsest level, and the simplex starts each
+level from what the one above found. Neighbours in exposure are registered, and their homographies
+chained.
 """
 
 from collections.abc import Iterator
@@ -30,8 +31,9 @@ CALLS = 120
 class State(NamedTuple):
     """One level of one pair, the coarsest first; level 0 is full resolution.
 
-    `path` (n, 3) has the best corner of the simplex after each of its steps, (dy, dx, r phi) in pixels of
-    this level, and `errors` (n,) what it comes to; `H` is where it ended, in pixels of this level.
+    `path` (n, 3) has the best corner of the simplex after each of its steps, (dy, dx, r phi) in
+    pixels of this level, and `errors` (n,) what it comes to; `H` is where it ended, in pixels of
+    this level.
     """
 
     level: int
@@ -44,8 +46,8 @@ class State(NamedTuple):
 def correlation(X: F32) -> F64:
     """Return how well `moving` fits at every shift (dy, dx): the sum of a(p + s) b(p), by FFT.
 
-    Discarded pixels are 0, and so is the mean, or the brightest overlap would win: the mean around each
-    pixel, for light that falls off slowly across the scene would win, too.
+    Discarded pixels are 0, and so is the mean, or the brightest overlap would win: the mean around
+    each pixel, for light that falls off slowly across the scene would win, too.
     """
     a, b = (np.where(np.isfinite(x), x - light.local_mean(x), 0) for x in X)
     h, w = X.shape[1:]
@@ -77,18 +79,30 @@ def descend(X: F32, start: ArrayLike, reach: float, close: float = 0.01) -> tupl
         return found[tuple(unknowns)]
 
     corners = np.asarray(start, float) + reach * np.vstack([np.zeros(3), np.eye(3)])
-    options = {"initial_simplex": corners, "xatol": close, "fatol": 1e-9, "maxfev": CALLS, "return_all": True}
-    path = np.array(scipy.optimize.minimize(e, start, method="Nelder-Mead", options=options).allvecs)
+    options = {
+        "initial_simplex": corners,
+        "xatol": close,
+        "fatol": 1e-9,
+        "maxfev": CALLS,
+        "return_all": True,
+    }
+    path = np.array(
+        scipy.optimize.minimize(e, start, method="Nelder-Mead", options=options).allvecs
+    )
     return path, np.array([found[tuple(unknowns)] for unknowns in path])
 
 
 def search(pyramid: list[F32]) -> Iterator[State]:
     """Yield a State per level: the correlation's best peaks at the coarsest, then the simplex at each."""
-    starts = [(*shift, 0.0) for shift in peaks(correlation(pyramid[-1]), PEAKS)] or [(0.0, 0.0, 0.0)]
+    starts = [(*shift, 0.0) for shift in peaks(correlation(pyramid[-1]), PEAKS)] or [
+        (0.0, 0.0, 0.0)
+    ]
     reach = 2.0
     for level in reversed(range(len(pyramid))):
         X, close = pyramid[level], 0.05 if level else 0.01  # of a pixel
-        path, errors = min((descend(X, one, reach, close) for one in starts), key=lambda found: found[1][-1])
+        path, errors = min(
+            (descend(X, one, reach, close) for one in starts), key=lambda found: found[1][-1]
+        )
         starts, reach = [2 * path[-1]], 1.0
         yield State(level, X.copy(), path, errors, rigid(X.shape[1:], path[-1]))
 
@@ -102,8 +116,8 @@ def align_steps(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[S
 def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
     """Return the homographies that lay every image on the one in the middle of their exposure.
 
-    They turn and shift. Each image is compared with its neighbours in exposure in linear light, and the
-    homographies are chained; `resample.photographs` moves the images.
+    They turn and shift. Each image is compared with its neighbours in exposure in linear light, and
+    the homographies are chained; `resample.photographs` moves the images.
 
     Parameters
     ----------
@@ -112,13 +126,14 @@ def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
     times : (P,) seconds
         Their exposures; `light.exposure_ratio` measures ratios by the histograms.
     g : (n,) or (n, 3)
-        The camera's response, ln exposure of each level. It can be found from photographs that are not
-        aligned, by their histograms: `debevec.recover` does.
+        The camera's response, ln exposure of each level. It can be found from photographs that are
+        not aligned, by their histograms: `debevec.recover` does.
 
     Returns
     -------
     homographies : (P, 3, 3)
-        Where pixel (x, y, 1) of each image lies on the one in the middle, whose own is the identity.
+        Where pixel (x, y, 1) of each image lies on the one in the middle, whose own is the
+        identity.
 
     Raises
     ------
@@ -127,8 +142,8 @@ def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
 
     References
     ----------
-    Cerman and Hlavac, "Exposure Time Estimation for High Dynamic Range Imaging with Hand Held Camera",
-    Computer Vision Winter Workshop 2006.
+    Cerman and Hlavac, "Exposure Time Estimation for High Dynamic Range Imaging with Hand Held
+    Camera", Computer Vision Winter Workshop 2006.
 
     Examples
     --------

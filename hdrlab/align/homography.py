@@ -9,9 +9,9 @@ H   homography            (3, 3): where pixel (x, y, 1) of the moving photograph
 c   corners               (4, 2): where H puts the corners, pixels; the unknowns of the last stage
 d   differences           see `light`
 
-Points are found and described by scikit-image's SIFT, and their homography by its RANSAC, on a small level.
-Then the corners are moved until the light fits, level by level: e as in `cerman`, by least squares, for a
-simplex is slow in eight dimensions.
+Points are found and described by scikit-image's SIFT, and their homography by its RANSAC, on a
+small level. Then the corners are moved until the light fits, level by level: e as in `cerman`, by
+least squares, for a simplex is slow in eight dimensions.
 """
 
 from collections.abc import Iterator
@@ -40,8 +40,9 @@ TRIES = 2000
 class State(NamedTuple):
     """One level of one pair; first that of the points, then down to full resolution, level 0.
 
-    X is the light of both images, H in pixels of this level, e its error. `points` (2, n, 2) are the matches
-    of the first level, of the moving image and of the fixed one, `agree` (n,) those that H explains.
+    X is the light of both images, H in pixels of this level, e its error. `points` (2, n, 2) are
+    the matches of the first level, of the moving image and of the fixed one, `agree` (n,) those
+    that H explains.
     """
 
     level: int
@@ -112,7 +113,10 @@ def enlarge(H: F64, times: float = 2) -> F64:
 def search(pyramid: list[F32]) -> Iterator[State]:
     """Yield a State per level: points and consensus at the first, then light at each."""
     small = next(j for j, X in enumerate(pyramid) if X[0].size <= PIXELS or j == len(pyramid) - 1)
-    for first in (small, max(small - 1, 0)):  # twice the size has more points, and takes four times as long
+    for first in (
+        small,
+        max(small - 1, 0),
+    ):  # twice the size has more points, and takes four times as long
         points = match_points(pyramid[first])
         H, agree = consensus(points)
         if agree.any():
@@ -147,7 +151,8 @@ def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
     Returns
     -------
     homographies : (P, 3, 3)
-        Where pixel (x, y, 1) of each image lies on the one in the middle, whose own is the identity.
+        Where pixel (x, y, 1) of each image lies on the one in the middle, whose own is the
+        identity.
 
     Raises
     ------
@@ -156,8 +161,9 @@ def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
 
     References
     ----------
-    Tomaszewska and Mantiuk, "Image Registration for Multi-exposure High Dynamic Range Image Acquisition",
-    WSCG 2007. Lowe, "Distinctive Image Features from Scale-Invariant Keypoints", IJCV 60(2), 2004.
+    Tomaszewska and Mantiuk, "Image Registration for Multi-exposure High Dynamic Range Image
+    Acquisition", WSCG 2007. Lowe, "Distinctive Image Features from Scale-Invariant Keypoints", IJCV
+    60(2), 2004.
 
     Examples
     --------

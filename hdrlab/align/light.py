@@ -14,8 +14,9 @@ d      differences         (n,): (a - b) / max((a + b) / 2, t), relative to ligh
 t      least light         a thousandth of the largest, so that darkness does not count as contrast
 e      error               mean of d^2
 
-What lies below `low` or above `high` in either photograph is discarded in both, so the same parts of the
-scene are left. Where a level of the pyramid averages, it counts as `low` and `high`, which both share.
+What lies below `low` or above `high` in either photograph is discarded in both, so the same parts
+of the scene are left. Where a level of the pyramid averages, it counts as `low` and `high`, which
+both share.
 """
 
 from collections.abc import Iterator
@@ -49,8 +50,15 @@ def neighbours(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[li
     """Yield the pyramid of X of pair after pair, from the shortest exposure to the longest."""
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     wrong = images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,))
-    if wrong or not images.size or t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
-        raise ValueError(f"expected photographs (P, H, W[, 3]), positive times (P,), got {images.shape}, {t}")
+    if (
+        wrong
+        or not images.size
+        or t.shape != images.shape[:1]
+        or not np.all((t > 0) & (t < np.inf))
+    ):
+        raise ValueError(
+            f"expected photographs (P, H, W[, 3]), positive times (P,), got {images.shape}, {t}"
+        )
     Z, n = images if images.ndim == 3 else images[..., 1], np.iinfo(images.dtype).max + 1
     if g.shape not in ((n,), (n, 3)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
         raise ValueError(f"expected g ({n},) or ({n}, 3) that rises, -80 to 80, got {g.shape}")
@@ -69,7 +77,9 @@ def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:
 
 def pyramid(X: F32, kept: Mask) -> list[F32]:
     """Return X (2, h, w) at every size, full resolution first, each half the one before; NaN unless kept."""
-    smooth = np.where(kept, scipy.ndimage.gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan))
+    smooth = np.where(
+        kept, scipy.ndimage.gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan)
+    )
     h, w = (side // 2 * 2 for side in X.shape[1:])
     if min(h, w) < 2 * SMALLEST:
         return [smooth]

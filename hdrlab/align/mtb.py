@@ -8,7 +8,8 @@ bits    of one photograph   (2, H, W) bool: bitmap Y > t, and exclusion bitmap |
 offset  (dy, dx) pixels     where a photograph must move, down and right, to lie on another
 error   disagreement        bits that differ / bits compared, over the overlap alone
 
-`fast.mtb` does the same with 64 pixels to a machine word; `diagnostics.registration` says what to trust.
+`fast.mtb` does the same with 64 pixels to a machine word; `diagnostics.registration` says what to
+trust.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,8 +33,8 @@ NINE = sorted(product((-1, 0, 1), repeat=2), key=lambda d: d[0] ** 2 + d[1] ** 2
 class State(NamedTuple):
     """One level of one pair, the coarsest first; level 0 is full resolution.
 
-    `fixed` and `moving` (2, H, W) are the bits of both photographs, `errors` those of the nine offsets around
-    twice the one that came from the level above, `offset` is the best of them.
+    `fixed` and `moving` (2, H, W) are the bits of both photographs, `errors` those of the nine
+    offsets around twice the one that came from the level above, `offset` is the best of them.
     """
 
     level: int
@@ -128,24 +129,34 @@ def chain_offsets(order: Sequence[int], steps: ArrayLike) -> NDArray[np.int64]:
 def align_steps(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> Iterator[State]:
     """Yield the States of pair after pair of neighbours in brightness, from dark to bright."""
     images = np.asarray(images)
-    if images.ndim < 3 or images.shape[3:] not in ((), (3,)) or images.dtype.kind != "u" or bits < 1:
-        raise ValueError(f"expected photographs (P, H, W[, 3]) and bits > 0, got {images.shape}, {bits=}")
+    if (
+        images.ndim < 3
+        or images.shape[3:] not in ((), (3,))
+        or images.dtype.kind != "u"
+        or bits < 1
+    ):
+        raise ValueError(
+            f"expected photographs (P, H, W[, 3]) and bits > 0, got {images.shape}, {bits=}"
+        )
     for moving, fixed in pairwise(by_brightness(images)):
-        yield from search(gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits)
+        yield from search(
+            gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+        )
 
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
     """Return the offsets that lay every image on the one in the middle of their brightness.
 
-    Each image is compared with its neighbours in brightness, whose bitmaps are most alike, and the offsets
-    are summed along the chain.
+    Each image is compared with its neighbours in brightness, whose bitmaps are most alike, and the
+    offsets are summed along the chain.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
     bits : int
-        Levels of the pyramid: neighbours are at most 2^bits - 1 pixels apart, fewer in small images.
+        Levels of the pyramid: neighbours are at most 2^bits - 1 pixels apart, fewer in small
+        images.
     luma : bool
         Compare (54 R + 183 G + 19 B) / 256 instead of the green channel.
 
@@ -161,8 +172,8 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
 
     References
     ----------
-    Ward, "Fast, Robust Image Registration for Compositing High Dynamic Range Photographs from Hand-Held
-    Exposures", Journal of Graphics Tools 8(2), 2003.
+    Ward, "Fast, Robust Image Registration for Compositing High Dynamic Range Photographs from
+    Hand-Held Exposures", Journal of Graphics Tools 8(2), 2003.
 
     Examples
     --------
@@ -173,15 +184,17 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     >>> mtb.align(images).tolist()
     [[3, -2], [0, 0]]
     """
-    found = [state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0]
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
     return chain_offsets(by_brightness(np.asarray(images)), found)
 
 
 def percentile(*histograms: Array, near: float = 0.5) -> float | None:
     """Return the q nearest to the median whose threshold divides every one of the photographs, or None.
 
-    Ward goes to the 17th or 83rd percentile where the median is clipped. Any percentile cuts all photographs
-    of a scene along one line of equal light.
+    Ward goes to the 17th or 83rd percentile where the median is clipped. Any percentile cuts all
+    photographs of a scene along one line of equal light.
     """
     q = np.linspace(0, 1, 1001)
     q = q[np.all([divides(h)[threshold(h, q)] for h in histograms], axis=0)]

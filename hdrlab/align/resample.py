@@ -4,10 +4,11 @@ H      (P, 3, 3)        where pixel (x, y, 1) of photograph j lies in the common
 g      (n,) or (n, 3)   response, ln exposure of each level
 Z, X   level, light     X = exp g(Z)
 
-A pixel between pixels is a mean of light, not of levels. So a photograph is linearised by g, resampled, and
-written with g again: it is a photograph of the same camera, and all that takes photographs takes it. Where
-light is even, any g leaves the level as it is; at edges a g that is a little wrong errs a little. So a
-provisional response is enough, as the histograms of photographs that are not aligned give it.
+A pixel between pixels is a mean of light, not of levels. So a photograph is linearised by g,
+resampled, and written with g again: it is a photograph of the same camera, and all that takes
+photographs takes it. Where light is even, any g leaves the level as it is; at edges a g that is a
+little wrong errs a little. So a provisional response is enough, as the histograms of photographs
+that are not aligned give it.
 
 Clipped pixels are not light. Where one takes part in a mean, the nearest pixel is taken as it is.
 """
@@ -27,7 +28,11 @@ BAND = 256
 
 
 def photographs(
-    images: ArrayLike, homographies: ArrayLike, g: ArrayLike | None = None, *, valid: ArrayLike | None = None
+    images: ArrayLike,
+    homographies: ArrayLike,
+    g: ArrayLike | None = None,
+    *,
+    valid: ArrayLike | None = None,
 ) -> tuple[Array, Mask | None]:
     """Return the images moved and cut to what all of them show, and their masks where there are any.
 
@@ -35,12 +40,13 @@ def photographs(
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
     homographies : (P, 3, 3), or offsets (P, 2)
-        As `cerman.align` and `homography.align` return them. An image that moves by whole pixels is cut out
-        as it is.
+        As `cerman.align` and `homography.align` return them. An image that moves by whole pixels is
+        cut out as it is.
     g : (n,) or (n, 3), optional
         A response; that of sRGB where none is given.
     valid : (P, H, W) bool, optional
-        False where an image holds no picture. A mean in which such a pixel takes part is none either.
+        False where an image holds no picture. A mean in which such a pixel takes part is none
+        either.
 
     Returns
     -------
@@ -62,7 +68,9 @@ def photographs(
     H, mask = warp.as_homographies(homographies, len(images)), as_mask(valid, images)
     shown = warp.common_rectangle(H, images.shape[1:3])
     table = _table(g, levels(images), images[0, 0, 0].size)
-    moved = np.stack([one_moved(image, one, shown, table) for image, one in zip(images, H, strict=True)])
+    moved = np.stack(
+        [one_moved(image, one, shown, table) for image, one in zip(images, H, strict=True)]
+    )
     if mask is None:
         return moved, None
     return moved, np.stack([_mask_moved(one, h, shown) for one, h in zip(mask, H, strict=True)])
@@ -97,7 +105,9 @@ def _table(g: ArrayLike | None, n: int, colours: int) -> F64:
     """Return the light of each level (n, C), which rises."""
     light = decode_srgb(np.arange(n) / (n - 1)) if g is None else np.exp(as_table(g, n))
     table = np.maximum.accumulate(light.reshape(n, -1), axis=0)
-    table = table + np.arange(n)[:, None] * 1e-9 * table[-1]  # levels of one light would not come back
+    table = (
+        table + np.arange(n)[:, None] * 1e-9 * table[-1]
+    )  # levels of one light would not come back
     return np.broadcast_to(table[:, 1:2] if colours < table.shape[1] else table, (n, colours))
 
 
@@ -110,7 +120,9 @@ def _whole(H: F64) -> list[int] | None:
 
 def cut(image: Array, offset: Sequence[int], shown: tuple[slice, slice]) -> Array:
     """Return the rectangle `shown` of an image moved by an offset (dy, dx) of whole pixels."""
-    return image[tuple(slice(s.start - by, s.stop - by) for s, by in zip(shown, offset, strict=True))]
+    return image[
+        tuple(slice(s.start - by, s.stop - by) for s, by in zip(shown, offset, strict=True))
+    ]
 
 
 def _back(H: F64, shown: tuple[slice, slice]) -> tuple[F64, tuple[int, int]]:

@@ -12,7 +12,11 @@ from hdrlab.core.arrays import Array, ArrayLike, NDArray
 def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64]:
     """Return `offsets` as int64 (P, 2), one for each image, or raise a ValueError that says what came."""
     array = np.asarray(offsets)
-    if array.shape[1:] != (2,) or len(array) != (count or len(array)) or array.dtype.kind not in "iu":
+    if (
+        array.shape[1:] != (2,)
+        or len(array) != (count or len(array))
+        or array.dtype.kind not in "iu"
+    ):
         wanted = f"expected offsets ({count or 'P'}, 2) of whole pixels, one per image"
         raise ValueError(f"{wanted}, got {array.dtype} {array.shape}")
     return array.astype(np.int64)
@@ -30,7 +34,9 @@ def crop(offsets: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     first = np.maximum(moved.max(axis=0), 0)
     end = np.minimum(moved.min(axis=0), 0) + shape[:2]
     if np.any(first >= end):
-        raise ValueError(f"expected images that overlap, got offsets {moved.tolist()} for {shape[:2]} pixels")
+        raise ValueError(
+            f"expected images that overlap, got offsets {moved.tolist()} for {shape[:2]} pixels"
+        )
     return slice(int(first[0]), int(end[0])), slice(int(first[1]), int(end[1]))
 
 

@@ -8,9 +8,10 @@ Z      level           (H, W) uint8 or uint16
 w      weight          (H, W), 1 / variance of Z / e; 0 where a pixel is full
 E^     what comes back: (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that measure it
 
-One photograph holds what a bracket would, and pays with sharpness: strong light is measured by the dark
-filters alone, weak light by the clear ones. The range grows by log10(max e / min e) decades at the
-bright end, and loses a quarter of a decade at the dark one, where every fourth pixel has to do for all.
+One photograph holds what a bracket would, and pays with sharpness: strong light is measured by the
+dark filters alone, weak light by the clear ones. The range grows by log10(max e / min e) decades at
+the bright end, and loses a quarter of a decade at the dark one, where every fourth pixel has to do
+for all.
 """
 
 import numpy as np
@@ -78,9 +79,13 @@ def shoot(
     """
     E, e = as_radiance(E), _transparency(e, np.shape(E)[:2])
     if (c is None) != (E.ndim == 2) or bits not in (8, 16):
-        raise ValueError(f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}")
+        raise ValueError(
+            f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}"
+        )
     if not (full_well > 0 and 0 <= read_noise < np.inf):
-        raise ValueError(f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}")
+        raise ValueError(
+            f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}"
+        )
     light = E if c is None else sample(E, c)
     X, rng = np.minimum(e * light, 4.0), np.random.default_rng(rng)
     if full_well < np.inf:
@@ -120,12 +125,14 @@ def reconstruct(
     Z : (H, W) uint8 or uint16, linear
     e : (H, W) transparencies
     c : (H, W) channels 0 to 2, or None for a gray sensor
-    sigma : of G, pixels: small, so that it hardly blurs where many pixels measure; it reaches two pixels far
+    sigma : of G, pixels: small, so that it hardly blurs where many pixels measure; it reaches two
+        pixels far
     full_well, read_noise : electrons, for the weights
 
     Returns
     -------
-    E : (H, W) or (H, W, 3) float64; where no pixel in reach is below full, the least that the light can be
+    E : (H, W) or (H, W, 3) float64; where no pixel in reach is below full, the least that the light
+        can be
 
     Raises
     ------
@@ -135,8 +142,8 @@ def reconstruct(
     References
     ----------
     Nayar and Mitsunaga, High dynamic range imaging: spatially varying pixel exposures, CVPR 2000.
-    Narasimhan and Nayar, Enhancing resolution along multiple imaging dimensions using assorted pixels,
-    PAMI 2005.
+    Narasimhan and Nayar, Enhancing resolution along multiple imaging dimensions using assorted
+    pixels, PAMI 2005.
 
     Examples
     --------
@@ -172,5 +179,7 @@ def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) 
 def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> F64:
     checked = np.asarray(e, np.float64)
     if checked.shape != shape or not np.all((checked > 0) & (checked <= 1)):
-        raise ValueError(f"expected transparencies {shape} above 0 and at most 1, got {describe(checked)}")
+        raise ValueError(
+            f"expected transparencies {shape} above 0 and at most 1, got {describe(checked)}"
+        )
     return checked

@@ -7,8 +7,8 @@ P, Q   patches of the sources and of the target
 
     MBDS(T | S) = 1/N sum over P of  w(P) min_Q ||P - Q||^2 / |S|   +   sum over Q of  min_P ||Q - P||^2 / |T|
 
-The first sum, completeness, is small where nothing of the sources is missing in T; the second, coherence,
-where T has nothing that the sources have not.
+The first sum, completeness, is small where nothing of the sources is missing in T; the second,
+coherence, where T has nothing that the sources have not.
 """
 
 from typing import NamedTuple
@@ -52,17 +52,28 @@ def search(
     rng: np.random.Generator,
 ) -> Matches:
     """Return the matches of both ways, looked for from where they begin."""
-    P, Q = patchmatch.cut_patches(T, settings.side), patchmatch.make_sources(S, settings.side, price)
+    P, Q = (
+        patchmatch.cut_patches(T, settings.side),
+        patchmatch.make_sources(S, settings.side, price),
+    )
     back = patchmatch.make_sources(T[None], settings.side)
     rows = Q.rows.reshape(*Q.shape, -1)
     coherence = search_one_way(P, Q, at[0], settings, rng)
-    completeness = (search_one_way(rows[q], back, one, settings, rng) for q, one in enumerate(at[1]))
+    completeness = (
+        search_one_way(rows[q], back, one, settings, rng) for q, one in enumerate(at[1])
+    )
     return Matches(coherence, tuple(completeness))
 
 
-def search_one_way(P: F32, Q: Sources, at: Indices, settings: Search, rng: np.random.Generator) -> Field:
+def search_one_way(
+    P: F32, Q: Sources, at: Indices, settings: Search, rng: np.random.Generator
+) -> Field:
     """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
-    at = at if at.shape[:2] == P.shape[:2] else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
+    at = (
+        at
+        if at.shape[:2] == P.shape[:2]
+        else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
+    )
     first = patchmatch.start_field(P, Q, at)
     steps = patchmatch.search_steps(P, Q, first, radius=settings.radius, rng=rng)
     return last(field for _, field in zip(range(settings.rounds), steps, strict=False))
@@ -71,8 +82,8 @@ def search_one_way(P: F32, Q: Sources, at: Indices, settings: Search, rng: np.ra
 def vote(S: F32, w: F32, matches: Matches, side: int) -> F32:
     """Return the T that is best for these matches: the mean of all that they say [Simakov08 eq. 4].
 
-    Every patch of T brings the pixels of its match; every patch of S its own pixels to its match, with the
-    weight w / N.
+    Every patch of T brings the pixels of its match; every patch of S its own pixels to its match,
+    with the weight w / N.
 
     Examples
     --------

@@ -4,8 +4,9 @@ a, b   pictures   (H, W) float32, boosted to one exposure, values of `ldr_values
 u      flow       (2, H, W), pixels down and right: a(p) is b(p + u(p))
 f      any map    (H, W[, C])
 
-The flow is found coarse to fine, by scikit-image's TV-L1: a pan of many pixels is a small one at the coarsest
-level. The paper fits a global motion first and lets each region deviate from it; the pyramid does the same.
+The flow is found coarse to fine, by scikit-image's TV-L1: a pan of many pixels is a small one at
+the coarsest level. The paper fits a global motion first and lets each region deviate from it; the
+pyramid does the same.
 """
 
 from collections.abc import Callable
@@ -50,7 +51,8 @@ def lands_inside(u: F32) -> Mask:
 def halve_flow(u: F32) -> tuple[F32, F32]:
     """Return the flows from the moment between a and b to either: half the way, back and forth.
 
-    u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u / 2).
+    u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u /
+    2).
     """
     half = (u / 2).astype(np.float32)
     for _ in range(2):

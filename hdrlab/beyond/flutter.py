@@ -7,8 +7,9 @@ A      the same as a matrix     (n + m - 1, n), each column h / m, a row lower t
 H      its transfer             |H(w)| = |sum of h_k e^(-i w k)| / m: what is left of each spatial frequency
 sigma  noise of the sensor, in the unit of y
 
-An open shutter is a box, and a box answers some frequencies with 0: these are lost, and no computation brings
-them back. A code of open and shut that looks random has no such zeros. It lets half of the light in.
+An open shutter is a box, and a box answers some frequencies with 0: these are lost, and no
+computation brings them back. A code of open and shut that looks random has no such zeros. It lets
+half of the light in.
 """
 
 import numpy as np
@@ -17,7 +18,9 @@ from scipy.linalg import solve
 from hdrlab.core.arrays import F64, ArrayLike, describe
 
 # 52 chops
-RASKAR_CODE = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])
+RASKAR_CODE = np.array(
+    [int(chop) for chop in "1010000111000001010000110011110111010111001001100111"]
+)
 FREQUENCY_COUNT = 4096
 
 
@@ -49,7 +52,8 @@ def amplification(h: ArrayLike) -> float:
 def equivalent_pictures(h: ArrayLike) -> float:
     """Return how many pictures of one chop, averaged, are as clean as one picture of this code.
 
-    The average of n of them has a noise of amplification(one) / sqrt(n), so n is the quotient squared.
+    The average of n of them has a noise of amplification(one) / sqrt(n), so n is the quotient
+    squared.
     """
     one = np.zeros(len(as_code(h)))
     one[0] = 1
@@ -75,7 +79,8 @@ def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
 
     Parameters
     ----------
-    y : (n + m - 1[, ...]), a photograph in linear light, less what stands beside and behind the thing, which
+    y : (n + m - 1[, ...]), a photograph in linear light, less what stands beside and behind the
+        thing, which
         moved down the first axis, m pixels, and hid none of it
     h : (m,) the shutter's chops, 0 and 1
 
@@ -90,8 +95,8 @@ def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
 
     References
     ----------
-    Raskar, Agrawal and Tumblin, Coded exposure photography: motion deblurring using fluttered shutter,
-    SIGGRAPH 2006.
+    Raskar, Agrawal and Tumblin, Coded exposure photography: motion deblurring using fluttered
+    shutter, SIGGRAPH 2006.
 
     Examples
     --------
@@ -102,7 +107,9 @@ def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
     y, code = np.asarray(y, np.float64), as_code(h)
     n = len(y) - len(code) + 1
     if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
-        raise ValueError(f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}")
+        raise ValueError(
+            f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}"
+        )
     A = matrix(code, n)
     x: F64 = solve(A.T @ A, A.T @ y.reshape(len(y), -1), assume_a="pos")
     return x.reshape(n, *y.shape[1:])
@@ -126,12 +133,14 @@ def expose(
 def combine(photographs: ArrayLike, gains: ArrayLike) -> F64:
     """Return y of several photographs with different gains: each pixel from those in which it is not full.
 
-    The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the smallest gain's
-    value.
+    The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the
+    smallest gain's value.
     """
     X, g = np.asarray(photographs, np.float64), np.asarray(gains, np.float64)
     if X.ndim < 2 or g.shape != X.shape[:1] or not np.all(g > 0):
-        raise ValueError(f"expected photographs (P, n, ...) and P positive gains, got {describe(X)} and {g}")
+        raise ValueError(
+            f"expected photographs (P, n, ...) and P positive gains, got {describe(X)} and {g}"
+        )
     g = g.reshape(-1, *[1] * (X.ndim - 1))
     w = np.where((X < 0.999) | (g == g.min()), g**2, 0)
     return (w * X / g).sum(axis=0) / w.sum(axis=0)

@@ -12,7 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, as_response, as_stack, as_times, levels
+from hdrlab.core.arrays import (
+    F32,
+    F64,
+    Array,
+    ArrayLike,
+    Mask,
+    as_response,
+    as_stack,
+    as_times,
+    levels,
+)
 from hdrlab.core.optional import skimage_transform as transform
 
 GAMMA = 2.2

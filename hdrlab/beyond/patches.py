@@ -10,12 +10,13 @@ I_k    (P, H, W, C)        photographs that never were: the reference's moment i
 
     E(H) = sum of  alpha (h(L_ref) - H)^2 + (1 - alpha) MBDS(H | L_1, ..., L_P)        [Sen12 sec. 3]
 
-Where the reference is well exposed, H is the reference. Elsewhere H should look, in every exposure, as if it
-were made of patches of the photographs, and leave none of theirs out: `bidirectional` has that measure.
+Where the reference is well exposed, H is the reference. Elsewhere H should look, in every exposure,
+as if it were made of patches of the photographs, and leave none of theirs out: `bidirectional` has
+that measure.
 
-It takes long: time and memory go with pixels x side^2 x P, the time with P once more. Three photographs of
-96 x 144 pixels take two to three seconds and some 30 MB, so a megapixel would take minutes and more than two
-gigabytes: this is for small pictures, to see how it works.
+It takes long: time and memory go with pixels x side^2 x P, the time with P once more. Three
+photographs of 96 x 144 pixels take two to three seconds and some 30 MB, so a megapixel would take
+minutes and more than two gigabytes: this is for small pictures, to see how it works.
 """
 
 from collections.abc import Iterator
@@ -45,7 +46,8 @@ class State(NamedTuple):
     scale, round : from 0, the coarsest scale and what is before its first round
     H : (h, w, C), radiance
     I : (P, h, w, C), what each exposure makes of it, in values
-    mbds : (P,), by how much the exposures were unlike the photographs in this round; NaN before the first
+    mbds : (P,), by how much the exposures were unlike the photographs in this round; NaN before the
+        first
     """
 
     scale: int
@@ -56,7 +58,11 @@ class State(NamedTuple):
 
 
 def improve(
-    state: State, scene: synthesis.Scene, fields: list[Fields], settings: Search, rng: np.random.Generator
+    state: State,
+    scene: synthesis.Scene,
+    fields: list[Fields],
+    settings: Search,
+    rng: np.random.Generator,
 ) -> tuple[State, list[Fields]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures, found, unlike = [], [], []
@@ -79,7 +85,9 @@ def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
     return [(round(shape[0] / ratio), round(shape[1] / ratio)) for ratio in ratios]
 
 
-def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None) -> synthesis.Scene:
+def as_scene(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None
+) -> synthesis.Scene:
     """Return the Scene of photographs in any order, checked."""
     each = ldr_values.as_values(images, times, g)
     order = bracket.short_to_long(np.asarray(images), each.t)
@@ -110,11 +118,17 @@ def synthesise_steps(
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
         raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
     generator, state, fields = np.random.default_rng(rng), None, None
-    for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
+    for scale, (shape, count) in enumerate(
+        zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)
+    ):
         scene = synthesis.resize_scene(finest, shape)
-        H = ldr_values.resize_picture(synthesis.guess_radiance(finest) if state is None else state.H, shape)
+        H = ldr_values.resize_picture(
+            synthesis.guess_radiance(finest) if state is None else state.H, shape
+        )
         H = H if state is None else synthesis.blend_reference(H, scene)
-        state = State(scale, 0, H, synthesis.extract_exposures(H, scene), np.full(len(scene.t), np.nan))
+        state = State(
+            scale, 0, H, synthesis.extract_exposures(H, scene), np.full(len(scene.t), np.nan)
+        )
         yield state
         fields = start_fields(shape, len(scene.t), side) if fields is None else fields
         settings = Search(side, 2, max(shape) if scale == 0 else 4)
@@ -129,7 +143,8 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Photographs in any order, roughly aligned; what moves may be anywhere. Small ones: see above.
+        Photographs in any order, roughly aligned; what moves may be anywhere. Small ones: see
+        above.
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
@@ -153,15 +168,14 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     Raises
     ------
     ValueError
-        For arrays that do not fit together, a reference that is not there, and patches larger than the
-        coarsest scale.
+        For arrays that do not fit together, a reference that is not there, and patches larger than
+        the coarsest scale.
 
     References
     ----------
-    Sen, Kalantari, Yaesoubi, Darabi, Goldman and Shechtman, Robust patch-based HDR reconstruction of dynamic
-    scenes, SIGGRAPH Asia 2012.
-    Barnes, Shechtman, Finkelstein and Goldman, PatchMatch: a randomized correspondence algorithm for
-    structural image editing, SIGGRAPH 2009.
+    Sen, Kalantari, Yaesoubi, Darabi, Goldman and Shechtman, Robust patch-based HDR reconstruction
+    of dynamic scenes, SIGGRAPH Asia 2012. Barnes, Shechtman, Finkelstein and Goldman, PatchMatch: a
+    randomized correspondence algorithm for structural image editing, SIGGRAPH 2009.
 
     Examples
     --------
@@ -178,7 +192,9 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
 def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
     """Return how many rounds each of `count` scales has: as many less from scale to scale."""
     if not min(rounds) >= 0:
-        raise ValueError(f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}")
+        raise ValueError(
+            f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}"
+        )
     return np.rint(np.linspace(*rounds, count)).astype(int).tolist()
 
 
@@ -186,5 +202,6 @@ def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Fields]:
     """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
     h, w = (n - side + 1 for n in shape)
     return [
-        (patchmatch.identity_field(h, w, k), (patchmatch.identity_field(h, w),) * count) for k in range(count)
+        (patchmatch.identity_field(h, w, k), (patchmatch.identity_field(h, w),) * count)
+        for k in range(count)
     ]

@@ -7,9 +7,9 @@ P, Q   patches           rows of side^2 C numbers, of each place (y, x) of its u
 at     the field         (h, w, 3) int: which source, y and x: where the patch like that at (y, x) is
 d      distance          (h, w), ||P - Q||^2 + the price of Q, which is inf where a patch is barred
 
-A random field has a few good matches by chance. What is good spreads: the neighbour of a patch is probably
-like the neighbour of its match. The paper goes through the picture pixel by pixel; here all pixels ask the
-same neighbour at once, so that numpy can do it.
+A random field has a few good matches by chance. What is good spreads: the neighbour of a patch is
+probably like the neighbour of its match. The paper goes through the picture pixel by pixel; here
+all pixels ask the same neighbour at once, so that numpy can do it.
 """
 
 from collections.abc import Iterator
@@ -56,7 +56,10 @@ def cut_patches(picture: F32, side: int) -> F32:
 
 def make_sources(S: F32, side: int, price: F32 | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
-    rows, price = cut_patches(S, side), np.zeros(S.shape[:-1], np.float32) if price is None else price
+    rows, price = (
+        cut_patches(S, side),
+        np.zeros(S.shape[:-1], np.float32) if price is None else price,
+    )
     each = cut_patches(price[..., None], side).sum(axis=-1)
     return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
 
@@ -136,14 +139,17 @@ def upscale_field(at: Indices, shape: tuple[int, int]) -> Indices:
     ratios = np.divide(shape, at.shape[:2])
     own = [(np.arange(n) / r).astype(int) for n, r in zip(shape, ratios, strict=True)]
     coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
-    shift = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
+    shift = (
+        at[np.ix_(*own)] - coarse
+    )  # which source, and how far away in pixels of the coarser scale
     return identity_field(*shape) + np.rint(shift * np.array([1, *ratios])).astype(int)
 
 
 def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F32, F32]:
     """Return the sums (H, W, C) of what the matches in S say of each pixel, and how many say it (H, W).
 
-    Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes inside.
+    Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes
+    inside.
     """
     h, w = at.shape[:2]
     total, count = np.zeros((*shape, S.shape[-1]), np.float32), np.zeros(shape, np.float32)
@@ -154,7 +160,9 @@ def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F
     return total, count
 
 
-def sum_given_votes(S: F32, at: Indices, weight: F32, shape: tuple[int, int], side: int) -> tuple[F32, F32]:
+def sum_given_votes(
+    S: F32, at: Indices, weight: F32, shape: tuple[int, int], side: int
+) -> tuple[F32, F32]:
     """Return the same sums, of the votes that patches of one source S (H, W, C) give to their matches.
 
     `at` leads from the source to the target, and `weight` (h, w) says what each patch is worth.
@@ -164,7 +172,9 @@ def sum_given_votes(S: F32, at: Indices, weight: F32, shape: tuple[int, int], si
     for dy in range(side):
         for dx in range(side):
             pixel = ((at[..., 1] + dy) * shape[1] + at[..., 2] + dx).ravel()
-            for c, plane in enumerate([*np.moveaxis(S[dy : dy + h, dx : dx + w], -1, 0), np.ones((h, w))]):
+            for c, plane in enumerate(
+                [*np.moveaxis(S[dy : dy + h, dx : dx + w], -1, 0), np.ones((h, w))]
+            ):
                 sums[c] += np.bincount(pixel, (weight * plane).ravel(), sums.shape[1])
     total = sums.reshape(-1, *shape).astype(np.float32)
     return np.moveaxis(total[:-1], 0, -1), total[-1]

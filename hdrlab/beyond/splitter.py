@@ -8,12 +8,13 @@ B, D   radiance that a brighter sensor saw, Z / e, and that of all darker ones t
 u      share of the pixels around that are full in B, 0 to 1, in a window of 5 x 5
 P      what a full pixel of B would have shown: D sum B / sum D over those around that are not full
 
-All sensors see one picture at one time, so nothing can leave a ghost. And they see it through splitters that
-throw nearly no light away: the second takes what the first reflects, and what it reflects in turn goes back
-through the first, which lets most of it pass to the third sensor.
+All sensors see one picture at one time, so nothing can leave a ghost. And they see it through
+splitters that throw nearly no light away: the second takes what the first reflects, and what it
+reflects in turn goes back through the first, which lets most of it pass to the third sensor.
 
-Merging does not average all sensors. Where the brightest is not full it is the cleanest, and is taken alone;
-the others come in where it fills, gently, for their noise is greater: [Tocci11 sec. 5] has four cases.
+Merging does not average all sensors. Where the brightest is not full it is the cleanest, and is
+taken alone; the others come in where it fills, gently, for their noise is greater: [Tocci11 sec. 5]
+has four cases.
 """
 
 from collections.abc import Iterator
@@ -101,7 +102,9 @@ def shoot(
     E, each, rng = as_radiance(E), as_shares(e), np.random.default_rng(rng)
     if not 8 <= bits <= 16:
         raise ValueError(f"expected 8 to 16 bits, got {bits}")
-    shoot_one = partial(assorted.shoot, full_well=full_well, read_noise=read_noise, bits=16, rng=rng)
+    shoot_one = partial(
+        assorted.shoot, full_well=full_well, read_noise=read_noise, bits=16, rng=rng
+    )
     Z = np.stack([shoot_one(E, np.full(E.shape[:2], share), c) for share in each])
     step = 65535 / (2**bits - 1)
     return np.round(np.round(Z / step) * step).astype(np.uint16)
@@ -115,7 +118,8 @@ def full_share(full: Mask) -> F64:
 def predict_full(B: F64, D: F64, full: Mask) -> F64:
     """Return P = D sum B / sum D over the window's pixels that are not full [Tocci11 sec. 5].
 
-    The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near zero.
+    The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near
+    zero.
     """
     b, d = (uniform_filter(np.where(full, 0, one), WINDOW_SIDE, mode="nearest") for one in (B, D))
     return np.where(d > 0, D * b / np.where(d > 0, d, 1), D)
@@ -140,7 +144,9 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> 
     """Yield the State from the darkest sensor alone to all of them; parameters are those of `merge`."""
     each, stack = as_shares(e), np.asarray(Z)
     if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(each):
-        raise ValueError(f"expected levels ({len(each)}, H, W), a picture per share, got {describe(stack)}")
+        raise ValueError(
+            f"expected levels ({len(each)}, H, W), a picture per share, got {describe(stack)}"
+        )
     if not 0 < full <= 1:
         raise ValueError(f"expected a level that counts as full, above 0 and at most 1, got {full}")
     X = stack / (levels(stack) - 1)
@@ -151,7 +157,9 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> 
         yield State(j, E, case)
 
 
-def merge(Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float = CLIPPING_LEVEL) -> Array:
+def merge(
+    Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float = CLIPPING_LEVEL
+) -> Array:
     """Return the radiance of one moment, from all sensors.
 
     Parameters
@@ -195,5 +203,7 @@ def as_shares(e: ArrayLike) -> F64:
     each = np.asarray(e, np.float64)
     falling = each.ndim == 1 and len(each) and np.all(each > 0) and np.all(np.diff(each) < 0)
     if not (falling and each.sum() < 1.001):
-        raise ValueError(f"expected positive, falling shares of the light, at most 1 in all, got {each}")
+        raise ValueError(
+            f"expected positive, falling shares of the light, at most 1 in all, got {each}"
+        )
     return each

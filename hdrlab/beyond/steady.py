@@ -10,8 +10,8 @@ Ld_i   display luminance       (H, W) in [0, 1]
 y_i    mean of what stands still in a frame, as it is shown, in display levels, 0 to 255
 
 An operator that adapts to each frame by itself follows its noise, and whatever bright thing comes and goes:
-the room gets darker when a lamp enters. [Kang03 sec. 5] lets the photographic operator adapt to a few frames
-at once. Any operator with the knobs `key` and `white` of `tonemap.reinhard` serves.
+the room gets darker when a lamp enters. [Kang03 sec. 5] lets the photographic operator adapt to a
+few frames at once. Any operator with the knobs `key` and `white` of `tonemap.reinhard` serves.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -113,13 +113,14 @@ def tonemap_steps(
 def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
     """Return the root mean square of (y_(i-1) - 2 y_i + y_(i+1)) / 4, y in levels of 0 to 255.
 
-    A steady change has no second difference. What goes up and down by a level from frame to frame counts
-    one.
+    A steady change has no second difference. What goes up and down by a level from frame to frame
+    counts one.
 
     Parameters
     ----------
     Ld : at least three frames (H, W), display luminance, 0 to 1
-    still : (H, W) bool, where nothing of the scene changes; everywhere by default. An operator that follows
+    still : (H, W) bool, where nothing of the scene changes; everywhere by default. An operator that
+        follows
         each frame keeps the mean of the whole, and changes that of all that did not change.
 
     Examples

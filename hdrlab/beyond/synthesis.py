@@ -87,8 +87,9 @@ def merge_exposures(I: F32, scene: Scene) -> F32:  # noqa: E741
 def blend_reference(H: F32, scene: Scene) -> F32:
     """Return alpha h(L_ref) + (1 - alpha) H~, the H of least energy for given I_k [Sen12 sec. 3].
 
-    H~ is kept within what the reference allows: at least h(L_ref) where that is clipped, and elsewhere what
-    lies within a few levels of it. Otherwise small things that stand in its shadows would be lost.
+    H~ is kept within what the reference allows: at least h(L_ref) where that is clipped, and
+    elsewhere what lies within a few levels of it. Otherwise small things that stand in its shadows
+    would be lost.
     """
     k = scene.reference
     v, t = scene.L[k], scene.t[k]
@@ -99,8 +100,9 @@ def blend_reference(H: F32, scene: Scene) -> F32:
 def guess_radiance(scene: Scene) -> F32:
     """Return what to begin with: h(L_ref), or where it is clipped what a shorter exposure has, if more.
 
-    The paper begins with the reference alone. But a flat, clipped region is like any other flat thing, and
-    would be filled with the nearest wall; so nothing is searched where staying put explains the photographs.
+    The paper begins with the reference alone. But a flat, clipped region is like any other flat
+    thing, and would be filled with the nearest wall; so nothing is searched where staying put
+    explains the photographs.
     """
     k = scene.reference
     H = [radiance(v, t, scene.full) for v, t in zip(scene.L[: k + 1], scene.t, strict=False)]
@@ -115,9 +117,9 @@ def extract_exposures(H: F32, scene: Scene) -> F32:
 def boost_photographs(k: int, scene: Scene) -> tuple[F32, F32]:
     """Return g_k(L_q) of all photographs (P, h, w, C), and the price of each of their pixels (P, h, w).
 
-    The price is the squared noise that a photograph has in exposure k: of two patches that look alike the
-    cleaner one is taken. A pixel that a longer exposure clips has no price: how full it would be in exposure
-    k is unknown.
+    The price is the squared noise that a photograph has in exposure k: of two patches that look
+    alike the cleaner one is taken. A pixel that a longer exposure clips has no price: how full it
+    would be in exposure k is unknown.
     """
     ratios = scene.t[k] / scene.t
     g = np.stack([boost(v, ratio) for v, ratio in zip(scene.L, ratios, strict=True)])
@@ -130,8 +132,8 @@ def boost_photographs(k: int, scene: Scene) -> tuple[F32, F32]:
 def weigh_patches(k: int, scene: Scene, price: F32, side: int) -> F32:
     """Return w (P, h', w'): how much the patches of each photograph have to be found again in I_k.
 
-    As much as they are well exposed, where they are usable; and only those of the neighbouring exposures, for
-    one that is much longer or shorter has little to say about exposure k.
+    As much as they are well exposed, where they are usable; and only those of the neighbouring
+    exposures, for one that is much longer or shorter has little to say about exposure k.
     """
     near = np.abs(np.arange(len(scene.L)) - k) <= 1
     well = triangle(scene.L).min(axis=-1, keepdims=True) * near[:, None, None, None]
@@ -141,6 +143,10 @@ def weigh_patches(k: int, scene: Scene, price: F32, side: int) -> F32:
 
 def resize_scene(scene: Scene, shape: tuple[int, int]) -> Scene:
     """Return the scene at another size; a pixel is clipped where one of those that it stands for is."""
-    L, noise = (np.stack([resize_picture(v, shape) for v in all_]) for all_ in (scene.L, scene.noise))
+    L, noise = (
+        np.stack([resize_picture(v, shape) for v in all_]) for all_ in (scene.L, scene.noise)
+    )
     clipped = np.stack([resize_picture(one, shape) > 1e-3 for one in scene.clipped])
-    return scene._replace(L=L, noise=noise, clipped=clipped, alpha=resize_picture(scene.alpha, shape))
+    return scene._replace(
+        L=L, noise=noise, clipped=clipped, alpha=resize_picture(scene.alpha, shape)
+    )

@@ -10,9 +10,10 @@ alpha  exposure       (H, W, 1), 1 where frame i is well exposed, 0 where it is 
 U      along          neighbours i - 1 and i + 1 warped to frame i, along the flow from i (unidirectional)
 B      between        the same, warped half-way to each other (bidirectional)
 
-Each frame has one exposure, and what it lacks its neighbours have, a moment earlier and later. Where frame i
-is well exposed, its neighbours are boosted to its exposure and followed. Where it is not there is nothing to
-follow; but the neighbours are exposed alike, and half-way between their moments lies that of frame i.
+Each frame has one exposure, and what it lacks its neighbours have, a moment earlier and later.
+Where frame i is well exposed, its neighbours are boosted to its exposure and followed. Where it is
+not there is nothing to follow; but the neighbours are exposed alike, and half-way between their
+moments lies that of frame i.
 """
 
 from collections.abc import Iterable, Iterator
@@ -94,12 +95,17 @@ def consistency(v: F32, v_: F32) -> F32:
 
 def weigh_neighbour(i: Frame, term: Term) -> Term:
     """Return a neighbour weighted by f_W f_MW alpha: as far as frame i is well exposed and agrees."""
-    return term._replace(w=term.w * consistency(i.v, ldr_values.expose(term.R, i.t, i.full)) * i.alpha)
+    return term._replace(
+        w=term.w * consistency(i.v, ldr_values.expose(term.R, i.t, i.full)) * i.alpha
+    )
 
 
 def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
     """Return both frames warped to the moment half-way between them, and trusted where they agree there."""
-    terms = [warp_frame(*each) for each in zip((a, b), halve_flow(estimate_motion(a, b, flow)), strict=True)]
+    terms = [
+        warp_frame(*each)
+        for each in zip((a, b), halve_flow(estimate_motion(a, b, flow)), strict=True)
+    ]
     longer = max(a.t, b.t)
     agree = consistency(*(ldr_values.expose(term.R, longer, a.full) for term in terms))
     return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
@@ -108,10 +114,13 @@ def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
 def clip_to_frame(i: Frame, R: F32) -> tuple[F32, F32]:
     """Return R kept within what frame i allows, and f_MW (H, W, 1) of how far it had to be moved for that.
 
-    Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i elsewhere.
+    Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i
+    elsewhere.
     """
     kept = np.clip(R, *ldr_values.consistent_range(i.v, i.noise, i.clipped, i.t, i.full))
-    return kept, consistency(ldr_values.expose(kept, i.t, i.full), ldr_values.expose(R, i.t, i.full))
+    return kept, consistency(
+        ldr_values.expose(kept, i.t, i.full), ldr_values.expose(R, i.t, i.full)
+    )
 
 
 def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> F32:
@@ -119,7 +128,10 @@ def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> F32
 
     B is asked whether frame i allows it: a badly exposed pixel still says "at least" or "at most".
     """
-    half = [(R, (1 - i.alpha) * np.maximum(clip_to_frame(i, R)[1] * w, LEAST_WEIGHT)) for R, w in between]
+    half = [
+        (R, (1 - i.alpha) * np.maximum(clip_to_frame(i, R)[1] * w, LEAST_WEIGHT))
+        for R, w in between
+    ]
     terms = [(i.R, i.w), *along, *half]
     total = np.sum([w for _, w in terms], axis=0)
     mean = np.sum([w * R for R, w in terms], axis=0) / np.where(total > 0, total, 1)
@@ -182,7 +194,8 @@ def merge(
     Raises
     ------
     ValueError
-        For frames that are not photographs of one size, times that are not positive, and none of either.
+        For frames that are not photographs of one size, times that are not positive, and none of
+        either.
 
     References
     ----------

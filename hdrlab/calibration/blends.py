@@ -1,8 +1,8 @@
 """Blends of two lights, and the curve that joins them (Wilburn, Xu and Matsushita, CVPR 2008, sec. 2).
 
-While the shutter is open a pixel sees one of two lights, L_0 for a share alpha of the time, L_1 for the rest.
-So it gathers I = alpha I_0 + (1 - alpha) I_1 [eq. 4]: an exposure that is known but for a scale and an
-offset.
+While the shutter is open a pixel sees one of two lights, L_0 for a share alpha of the time, L_1 for
+the rest. So it gathers I = alpha I_0 + (1 - alpha) I_1 [eq. 4]: an exposure that is known but for a
+scale and an offset.
 
 I  relative irradiance   (l,), any unit, any zero: alpha, or 0, 1, 2 ... along a ramp, or exposure time
 M  brightness            (l,), 0 to 1: pixel level over the highest one
@@ -42,7 +42,11 @@ class InverseResponse(NamedTuple):
 
 
 def make_blend(
-    irradiance: ArrayLike, brightness: ArrayLike, *, low: float = MIN_BRIGHTNESS, high: float = MAX_BRIGHTNESS
+    irradiance: ArrayLike,
+    brightness: ArrayLike,
+    *,
+    low: float = MIN_BRIGHTNESS,
+    high: float = MAX_BRIGHTNESS,
 ) -> Blend:
     """Return a Blend of the samples whose brightness lies between `low` and `high`.
 
@@ -53,7 +57,9 @@ def make_blend(
     """
     x, M = np.asarray(irradiance, np.float64), np.asarray(brightness, np.float64)
     if x.shape != M.shape or x.ndim != 1 or not np.all(np.isfinite([x, M])):
-        raise ValueError(f"expected finite irradiance and brightness (l,), got {describe(x)}, {describe(M)}")
+        raise ValueError(
+            f"expected finite irradiance and brightness (l,), got {describe(x)}, {describe(M)}"
+        )
     if not 0 <= low < high <= 1:
         raise ValueError(f"expected a range of brightness within 0 to 1, got {low} to {high}")
     inside = (low <= M) & (M <= high)
@@ -63,14 +69,16 @@ def make_blend(
 def select_blends(blends: Sequence[Blend], *, min_samples: int = 3) -> list[Blend]:
     """Return the blends that constrain the curve, or raise a ValueError where there is none.
 
-    A blend has two unknowns of its own, s and r, which take up its first two samples: those with fewer than
-    `min_samples` are left out.
+    A blend has two unknowns of its own, s and r, which take up its first two samples: those with
+    fewer than `min_samples` are left out.
     """
     blends = [make_blend(blend.I, blend.M, low=0, high=1) for blend in blends]
     usable = [b for b in blends if len(b.M) >= min_samples and np.ptp(b.I) > 0 and np.ptp(b.M) > 0]
     if not usable:
         sizes = ", ".join(str(len(blend.M)) for blend in blends)
-        raise ValueError(f"expected a blend with {min_samples} different brightnesses, got {sizes or 'none'}")
+        raise ValueError(
+            f"expected a blend with {min_samples} different brightnesses, got {sizes or 'none'}"
+        )
     return usable
 
 
@@ -92,11 +100,14 @@ def normalize(M: F64, X: F64, s: F64, r: F64) -> InverseResponse:
     return InverseResponse(M, (X - zero) / span, s / span, (r - zero) / span)
 
 
-def build_response(blends: Sequence[Blend], g: F64, s: F64, r: F64, *, ends: float) -> InverseResponse:
+def build_response(
+    blends: Sequence[Blend], g: F64, s: F64, r: F64, *, ends: float
+) -> InverseResponse:
     """Return g, a table over the measured range, without the part `ends` of the samples at either end.
 
-    The lowest and highest brightness measured are there because of their noise, and no curve through such
-    samples is right. So a sample counts where its irradiance puts it, at s_j I_ij + r_j.
+    The lowest and highest brightness measured are there because of their noise, and no curve
+    through such samples is right. So a sample counts where its irradiance puts it, at s_j I_ij +
+    r_j.
 
     Raises
     ------
@@ -106,7 +117,9 @@ def build_response(blends: Sequence[Blend], g: F64, s: F64, r: F64, *, ends: flo
     if not 0 <= ends < 0.25:
         raise ValueError(f"expected ends from 0 to 0.25, got {ends}")
     M = np.linspace(*brightness_range(blends), len(g))
-    X = np.concatenate([scale * blend.I + zero for blend, scale, zero in zip(blends, s, r, strict=True)])
+    X = np.concatenate(
+        [scale * blend.I + zero for blend, scale, zero in zip(blends, s, r, strict=True)]
+    )
     low, high = np.quantile(np.interp(X, g, M), [ends, 1 - ends])
     inner = np.linspace(low, high, TABLE_SIZE)
     return normalize(inner, np.interp(inner, M, g), s, r)
@@ -115,8 +128,9 @@ def build_response(blends: Sequence[Blend], g: F64, s: F64, r: F64, *, ends: flo
 def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = False) -> F64:
     """Return found - truth (1024,) over the brightnesses that both measured; the truth goes from 0 to 1.
 
-    Scale and offset are ambiguous [Wilburn08 sec. 2.1]: both curves go from 0 to 1 [sec. 5], or, with `fit`,
-    those of `found` are the ones that fit best, which separates errors of shape from those of the two ends.
+    Scale and offset are ambiguous [Wilburn08 sec. 2.1]: both curves go from 0 to 1 [sec. 5], or,
+    with `fit`, those of `found` are the ones that fit best, which separates errors of shape from
+    those of the two ends.
 
     Raises
     ------
@@ -125,7 +139,9 @@ def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = Fa
     """
     low, high = max(found.M[0], truth.M[0]), min(found.M[-1], truth.M[-1])
     if not low < high:
-        raise ValueError(f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}")
+        raise ValueError(
+            f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}"
+        )
     M = np.linspace(low, high, TABLE_SIZE)
     X, Y = (np.interp(M, curve.M, curve.X) for curve in (found, truth))
     X, Y = (X - X[0]) / (X[-1] - X[0]), (Y - Y[0]) / (Y[-1] - Y[0])
@@ -145,12 +161,12 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     joined : InverseResponse
         What a join found.
     black : float
-        The X without any light, below the X of the lowest level measured. Blends do not constrain it, their
-        offset is ambiguous [Wilburn08 sec. 2.1]; where their darker light is nearly none, it is their offset,
-        `joined.r.min()`.
+        The X without any light, below the X of the lowest level measured. Blends do not constrain
+        it, their offset is ambiguous [Wilburn08 sec. 2.1]; where their darker light is nearly none,
+        it is their offset, `joined.r.min()`.
     n : int
-        Levels of the table. Below the measured range the curve runs straight to (0, `black`), above it goes
-        on with its last slope; level 0 gets the middle of its cell, for ln 0 has no number.
+        Levels of the table. Below the measured range the curve runs straight to (0, `black`), above
+        it goes on with its last slope; level 0 gets the middle of its cell, for ln 0 has no number.
 
     Raises
     ------
@@ -166,7 +182,9 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     (0.5, np.True_)
     """
     if not black < joined.X[0]:
-        raise ValueError(f"expected a black below {joined.X[0]}, the darkest X measured, got {black}")
+        raise ValueError(
+            f"expected a black below {joined.X[0]}, the darkest X measured, got {black}"
+        )
     M, X = joined.M, joined.X - black
     slope, levels = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0), np.arange(n) / (n - 1)
     levels[0] = 0.25 / (n - 1)

@@ -8,16 +8,16 @@ M        brightness             (4, 6[, 3]) of the patches, 0 to 1
 t        exposure times         (P,) seconds
 X        exposure               R times the light; of one patch in many photographs, t times what it reflects
 
-A plane seen by a camera without distortion is a homography away from the photograph; four corners fix its
-eight numbers. One photograph gives six points of the inverse response, by the reflectances that are known.
-Several with different times need none: along one patch exposure is proportional to time, which is a blend of
-its own with a scale, the patch's brightness in that place under that light, and no offset. `joining` finds
-the scales and one curve: Wilburn's ground truth.
+A plane seen by a camera without distortion is a homography away from the photograph; four corners
+fix its eight numbers. One photograph gives six points of the inverse response, by the reflectances
+that are known. Several with different times need none: along one patch exposure is proportional to
+time, which is a blend of its own with a scale, the patch's brightness in that place under that
+light, and no offset. `joining` finds the scales and one curve: Wilburn's ground truth.
 
-The reflectances are the specification of the chart, McCamy, Marcus and Davidson, A color-rendition chart,
-1976, as the package colour-science lists it ("ColorChecker 1976"). Printed charts differ: BabelColor's mean
-of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above for black. Whoever has measured
-a chart passes its own R.
+The reflectances are the specification of the chart, McCamy, Marcus and Davidson, A color-rendition
+chart, 1976, as the package colour-science lists it ("ColorChecker 1976"). Printed charts differ:
+BabelColor's mean of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above for
+black. Whoever has measured a chart passes its own R.
 """
 
 from pathlib import Path
@@ -72,7 +72,13 @@ def _as_corners(points: ArrayLike) -> F64:
 
 
 def read_patches(
-    image: ArrayLike, corners: ArrayLike, rows: int, columns: int, *, gap: float = 0.0, core: float = 0.6
+    image: ArrayLike,
+    corners: ArrayLike,
+    rows: int,
+    columns: int,
+    *,
+    gap: float = 0.0,
+    core: float = 0.6,
 ) -> F64:
     """Return the mean brightness of each patch's core, 0 to 1, in any grid of patches.
 
@@ -81,14 +87,15 @@ def read_patches(
     image : (H, W) or (H, W, 3) uint8 or uint16
         A photograph of the grid.
     corners : (4, 2)
-        Pixels (x, y), outer corners of the corner patches: top left, top right, bottom right, bottom left as
-        the grid counts them, however the photograph is turned.
+        Pixels (x, y), outer corners of the corner patches: top left, top right, bottom right,
+        bottom left as the grid counts them, however the photograph is turned.
     rows, columns : int
         Of the grid.
     gap : float
         Space between two patches, over a patch's width.
     core : float
-        The fraction of a patch's width and height that is read; the rest is mixed by edges and the lens.
+        The fraction of a patch's width and height that is read; the rest is mixed by edges and the
+        lens.
 
     Returns
     -------
@@ -97,8 +104,8 @@ def read_patches(
     Raises
     ------
     ValueError
-        For arrays that are no image or no corners, corners outside of the image, or patches too small to hold
-        a pixel.
+        For arrays that are no image or no corners, corners outside of the image, or patches too
+        small to hold a pixel.
 
     Examples
     --------
@@ -113,14 +120,18 @@ def read_patches(
     H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
     shape = np.array(stack.shape[1:3])
     if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
-        raise ValueError(f"expected corners within a picture of {shape} pixels, got {describe(corners)}")
+        raise ValueError(
+            f"expected corners within a picture of {shape} pixels, got {describe(corners)}"
+        )
     M = np.empty((rows, columns, *stack.shape[3:]))
     for row, column in np.ndindex(rows, columns):
         core_corners = np.array([column, row]) * (1 + gap) + 0.5 + core * (UNIT_SQUARE - 0.5)
         x, y, w = H @ np.vstack([core_corners.T, np.ones(4)])
         pixels = stack[0][skimage_draw.polygon(y / w, x / w, shape)]
         if len(pixels) == 0:
-            raise ValueError("expected patches of a few pixels at least, one holds none: check the corners")
+            raise ValueError(
+                "expected patches of a few pixels at least, one holds none: check the corners"
+            )
         M[row, column] = pixels.mean(axis=0) / (levels(stack) - 1)
     return M
 
@@ -133,8 +144,8 @@ def read_chart(image: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: 
     image : (H, W) or (H, W, 3) uint8 or uint16
         A photograph of the chart, evenly lit.
     corners : (4, 2)
-        Pixels (x, y): the outer corners of dark skin, bluish green, black and white, in this order; so a
-        chart that stands on its head or lies on its side is read as well.
+        Pixels (x, y): the outer corners of dark skin, bluish green, black and white, in this order;
+        so a chart that stands on its head or lies on its side is read as well.
     gap : float
         Space between two patches over a patch's width.
     core : float
@@ -168,13 +179,14 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
     Returns
     -------
     InverseResponse
-        From the darkest patch measured to the brightest; s is what reflectance 1 has, r what none has, so
-        that `blends.ln_exposure(joined, black=joined.r[0])` is g for every merge.
+        From the darkest patch measured to the brightest; s is what reflectance 1 has, r what none
+        has, so that `blends.ln_exposure(joined, black=joined.r[0])` is g for every merge.
 
     Raises
     ------
     ValueError
-        For fewer than three patches measured, or ones whose brightness does not rise with their reflectance.
+        For fewer than three patches measured, or ones whose brightness does not rise with their
+        reflectance.
 
     Examples
     --------
@@ -188,11 +200,17 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
     order = np.argsort(samples.I)
     x, m = samples.I[order], samples.M[order]
     if len(x) < 3:
-        raise ValueError(f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}")
+        raise ValueError(
+            f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}"
+        )
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
-        raise ValueError(f"expected patches brighter the more they reflect, got {m.round(4).tolist()}")
+        raise ValueError(
+            f"expected patches brighter the more they reflect, got {m.round(4).tolist()}"
+        )
     brightness = np.linspace(m[0], m[-1], blends.TABLE_SIZE)
-    return blends.normalize(brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1))
+    return blends.normalize(
+        brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1)
+    )
 
 
 def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
@@ -201,7 +219,8 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     Parameters
     ----------
     M : (P, K) float
-        Brightness of K patches in P photographs, one channel, 0 to 1. Any patches will do, coloured ones too.
+        Brightness of K patches in P photographs, one channel, 0 to 1. Any patches will do, coloured
+        ones too.
     times : (P,) float
         Seconds.
 
@@ -225,7 +244,9 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     """
     M = np.asarray(M, np.float64)
     if M.ndim != 2:
-        raise ValueError(f"expected brightness (P, K) of K patches in P photographs, got {describe(M)}")
+        raise ValueError(
+            f"expected brightness (P, K) of K patches in P photographs, got {describe(M)}"
+        )
     times = as_times(times, len(M))
     return joining.join([blends.make_blend(times, patch) for patch in M.T], offset=False)
 

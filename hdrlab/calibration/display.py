@@ -5,9 +5,10 @@ T           steps                 pictures in a sequence: 15, of four frames eac
 k           number of a patch     1 ... rows columns, row by row in its grid
 alpha       share of P_hi         (rows, columns): k / T
 
-Patch k shows P_hi in the first k pictures and P_lo in the others: it switches once a sequence, so what a
-display does while it switches is the same for every patch, and little of it. A sequence may be repeated
-without a pause: an exposure as long as the sequence then holds all of it, wherever it begins.
+Patch k shows P_hi in the first k pictures and P_lo in the others: it switches once a sequence, so
+what a display does while it switches is the same for every patch, and little of it. A sequence may
+be repeated without a pause: an exposure as long as the sequence then holds all of it, wherever it
+begins.
 """
 
 from collections.abc import Sequence
@@ -22,8 +23,8 @@ from hdrlab.core.arrays import F64, ArrayLike, NDArray
 class Schedule(NamedTuple):
     """What the display shows: one grid of rows x columns patches for each pixel value of `high`.
 
-    `high` holds the P_hi, of which the brightest should just saturate the camera, `low` is P_lo; `steps` is
-    T; `patch` and `border` are widths in display pixels, and the border is black.
+    `high` holds the P_hi, of which the brightest should just saturate the camera, `low` is P_lo;
+    `steps` is T; `patch` and `border` are widths in display pixels, and the border is black.
     """
 
     high: Sequence[int] = (220, 100)
@@ -53,7 +54,9 @@ def mixing_ratios(rows: int = 3, columns: int = 5, steps: int = 15) -> F64:
            [0.75, 1.  ]])
     """
     if rows < 1 or columns < 1 or steps < rows * columns:
-        raise ValueError(f"expected at least as many steps as patches, got {rows} x {columns} and {steps}")
+        raise ValueError(
+            f"expected at least as many steps as patches, got {rows} x {columns} and {steps}"
+        )
     return np.arange(1, rows * columns + 1).reshape(rows, columns) / steps
 
 
@@ -67,11 +70,15 @@ def draw_patches(
     cell = np.pad(np.ones((patch, patch), np.uint8), (0, border))
     grid = np.kron(values, cell)[: -border or None, : -border or None]
     before = [(whole - part) // 2 for whole, part in zip(shape, grid.shape, strict=True)]
-    after = [whole - part - first for whole, part, first in zip(shape, grid.shape, before, strict=True)]
+    after = [
+        whole - part - first for whole, part, first in zip(shape, grid.shape, before, strict=True)
+    ]
     return np.pad(grid, list(zip(before, after, strict=True)))
 
 
-def draw_schedule(schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480, 640)) -> NDArray[np.uint8]:
+def draw_schedule(
+    schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480, 640)
+) -> NDArray[np.uint8]:
     """Return the pictures (T, H, W) of a sequence, each of `shape`; the grids lie one under the other.
 
     Raises
@@ -87,9 +94,13 @@ def draw_schedule(schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480
     """
     high, low, rows, columns, steps, patch, border = schedule
     if not high or not all(0 <= low < one <= 255 for one in high):
-        raise ValueError(f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}")
+        raise ValueError(
+            f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}"
+        )
     if patch < 1 or border < 0:
-        raise ValueError(f"expected a patch of a pixel and a border of 0 at least, got {patch} and {border}")
+        raise ValueError(
+            f"expected a patch of a pixel and a border of 0 at least, got {patch} and {border}"
+        )
     last_step = np.tile(np.round(mixing_ratios(rows, columns, steps) * steps), (len(high), 1))
     need = [count * (patch + border) - border for count in last_step.shape]
     if need[0] > shape[0] or need[1] > shape[1]:
@@ -102,8 +113,8 @@ def draw_schedule(schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480
 def find_corners(picture: ArrayLike) -> F64:
     """Return the corners (4, 2), (x, y) pixels, of the grid in a picture (H, W) where all patches are bright.
 
-    So they are in the first picture of a sequence. The corners are the bright pixels farthest along the
-    diagonals; half a pixel out, for a pixel has a width.
+    So they are in the first picture of a sequence. The corners are the bright pixels farthest along
+    the diagonals; half a pixel out, for a pixel has a width.
     """
     bright = np.asarray(picture, np.float64)
     *_, y, x = np.nonzero(np.atleast_2d(bright > bright.max() / 4))
@@ -125,8 +136,9 @@ def read_blends(
 ) -> list[list[blends.Blend]]:
     """Return the blends of a photograph of the display: a list per channel, with a Blend per grid.
 
-    `corners` are the outer corners of the corner patches of all grids together, see `chart.read_patches`;
-    `core` is the part of a patch that is read; `low` and `high` are the limits of what counts as measured.
+    `corners` are the outer corners of the corner patches of all grids together, see
+    `chart.read_patches`; `core` is the part of a patch that is read; `low` and `high` are the
+    limits of what counts as measured.
 
     Raises
     ------
@@ -134,18 +146,24 @@ def read_blends(
         As `chart.read_patches` and `mixing_ratios`.
     """
     grids, rows, columns = len(schedule.high), schedule.rows, schedule.columns
-    alpha, gap = mixing_ratios(rows, columns, schedule.steps).ravel(), schedule.border / schedule.patch
+    alpha, gap = (
+        mixing_ratios(rows, columns, schedule.steps).ravel(),
+        schedule.border / schedule.patch,
+    )
     M = chart.read_patches(image, corners, grids * rows, columns, gap=gap, core=core)
     channels = np.moveaxis(M.reshape(grids, rows * columns, -1), -1, 0)
-    return [[blends.make_blend(alpha, grid, low=low, high=high) for grid in channel] for channel in channels]
+    return [
+        [blends.make_blend(alpha, grid, low=low, high=high) for grid in channel]
+        for channel in channels
+    ]
 
 
 def recover_display(P: ArrayLike, joined: blends.InverseResponse) -> tuple[F64, F64]:
     """Return the display's own response: its pixel values (n + 1,), and their light over that of the largest.
 
-    Blend j shows the pixel value P_j for the share alpha and black for the rest, so s_j is the light of P_j
-    above black: several blends calibrate the screen as well as the camera [Wilburn08 sec. 6]. The first of
-    the n + 1 is black itself, 0.
+    Blend j shows the pixel value P_j for the share alpha and black for the rest, so s_j is the
+    light of P_j above black: several blends calibrate the screen as well as the camera [Wilburn08
+    sec. 6]. The first of the n + 1 is black itself, 0.
 
     Raises
     ------
@@ -154,6 +172,8 @@ def recover_display(P: ArrayLike, joined: blends.InverseResponse) -> tuple[F64, 
     """
     P = np.asarray(P, np.float64)
     if P.shape != joined.s.shape:
-        raise ValueError(f"expected {len(joined.s)} pixel values, one per blend, got shape {P.shape}")
+        raise ValueError(
+            f"expected {len(joined.s)} pixel values, one per blend, got shape {P.shape}"
+        )
     order = np.argsort(P)
     return np.r_[0.0, P[order]], np.r_[0.0, joined.s[order]] / joined.s[order[-1]]

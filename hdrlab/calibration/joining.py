@@ -10,15 +10,16 @@ p     predicted brightness  g^-1(s_j I_ij + r_j), g of the iteration before
 v     slope                 g' of the iteration before, v_k at B-spline k
 lambda  `smoothness`
 
-A polynomial of degree 6 is stiff where a response bends and swings where it is straight, and a simplex may
-stop on its way. Here every iteration is least squares in c, s and r with c >= 0,
+A polynomial of degree 6 is stiff where a response bends and swings where it is straight, and a
+simplex may stop on its way. Here every iteration is least squares in c, s and r with c >= 0,
 
     sum_ij ((g(p) - s_j I_ij - r_j) / v(p) + m_ij - p)^2 + lambda sum_k ((c / h)''_k / v_k)^2,
 
-the Gauss-Newton form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m; put into g, as in eq. 5, it
-would be on both sides of the fit and flatten the curve. So g is taken at the predicted brightness p. The
-third differences of the spline's coefficients, second ones of its slopes, are taken relative to the slope: a
-toe a hundred times flatter than the shoulder is smoothed a hundred times less.
+the Gauss-Newton form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m; put into g, as in
+eq. 5, it would be on both sides of the fit and flatten the curve. So g is taken at the predicted
+brightness p. The third differences of the spline's coefficients, second ones of its slopes, are
+taken relative to the slope: a toe a hundred times flatter than the shoulder is smoothed a hundred
+times less.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,7 +29,14 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import nnls
 
-from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
+from hdrlab.calibration.blends import (
+    GRID,
+    Blend,
+    InverseResponse,
+    build_response,
+    rescale,
+    select_blends,
+)
 from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
 
@@ -82,7 +90,10 @@ def build_equations(
 
     p holds the blends' predicted brightnesses one after the other.
     """
-    widest, weight = int(np.argmax([np.ptp(blend.M) for blend in blends])), 1 / np.interp(p, GRID, v)
+    widest, weight = (
+        int(np.argmax([np.ptp(blend.M) for blend in blends])),
+        1 / np.interp(p, GRID, v),
+    )
     A = i_splines(p, count) * weight[:, None]
     systems, start = [], 0
     for j, (I, M) in enumerate(blends):  # noqa: E741, the paper's letter
@@ -106,19 +117,25 @@ def solve_increments(
     """Return c >= 0 and the cost of all blends' equations together; with offsets free, c_0 is 0."""
     rows = [eliminate(*system) for system in systems]
     rows.append(np.pad(penalty, ((0, 0), (0, 1))))
-    R = np.asarray(np.linalg.qr(np.vstack(rows), mode="r"))  # K + 1 rows with the same least squares
+    R = np.asarray(
+        np.linalg.qr(np.vstack(rows), mode="r")
+    )  # K + 1 rows with the same least squares
     R[:, 0] *= not offset
     c, norm = nnls(R[:, :-1], R[:, -1])
     return c, float(norm**2)
 
 
-def update(blends: Sequence[Blend], p: F64, v: F64, *, count: int, smoothness: float, offset: bool) -> State:
+def update(
+    blends: Sequence[Blend], p: F64, v: F64, *, count: int, smoothness: float, offset: bool
+) -> State:
     """Return the State after an iteration, given the predicted brightnesses p and the slope v."""
     systems = build_equations(blends, p, v, count, offset)
     c, cost = solve_increments(systems, np.sqrt(smoothness) * slope_curvature(v, count), offset)
     g = i_splines(GRID, count) @ c
     if not g[-1] > g[0]:
-        raise ValueError("expected brightness that rises with irradiance, the blends fit a flat curve best")
+        raise ValueError(
+            "expected brightness that rises with irradiance, the blends fit a flat curve best"
+        )
     x = [np.linalg.lstsq(F, A @ c - b, rcond=None)[0] for A, F, b in systems]
     s = np.array([one[0] if len(one) == 1 + offset else 1.0 for one in x])
     r = np.array([one[-1] if offset else 0.0 for one in x])
@@ -172,9 +189,11 @@ def join(
     count : int
         K, the number of B-splines.
     smoothness : float
-        lambda, 1e-5 for means over many pixels; it goes with the variance of m: 1e-3 for single pixels.
+        lambda, 1e-5 for means over many pixels; it goes with the variance of m: 1e-3 for single
+        pixels.
     offset : bool
-        Whether blends have offsets of their own (True). Not where I is an exposure time: no time, no light.
+        Whether blends have offsets of their own (True). Not where I is an exposure time: no time,
+        no light.
     ends : float
         The part of the samples at either end that lies outside of the curve returned: see
         `blends.build_response`.
@@ -187,11 +206,13 @@ def join(
     Raises
     ------
     ValueError
-        For blends without three samples of different brightness, or that fall where irradiance rises.
+        For blends without three samples of different brightness, or that fall where irradiance
+        rises.
 
     References
     ----------
-    Wilburn, Xu and Matsushita, CVPR 2008, eq. 5; Ramsay, Monotone regression splines in action, 1988.
+    Wilburn, Xu and Matsushita, CVPR 2008, eq. 5; Ramsay, Monotone regression splines in action,
+    1988.
 
     Examples
     --------

@@ -3,10 +3,10 @@
 row    brightness      (W,), 0 to 1, of one scan line: bright, a dark region, bright
 I      irradiance      0, 1, 2 ... from the dark end of a ramp to the bright one: linear if the motion is
 
-While the edge passes, a pixel sees white for a while and black for the rest; from pixel to pixel that share
-changes evenly, if the edge moves evenly. The two edges of a dark region betray a motion that does not: what
-makes the left ramp too steep at its dark end makes the right one too steep at its bright end, and their
-curves part.
+While the edge passes, a pixel sees white for a while and black for the rest; from pixel to pixel
+that share changes evenly, if the edge moves evenly. The two edges of a dark region betray a motion
+that does not: what makes the left ramp too steep at its dark end makes the right one too steep at
+its bright end, and their curves part.
 """
 
 from collections import Counter, defaultdict
@@ -18,7 +18,14 @@ from scipy.ndimage import median_filter
 from scipy.stats import theilslopes
 
 from hdrlab.calibration import joining
-from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend, rmse
+from hdrlab.calibration.blends import (
+    MAX_BRIGHTNESS,
+    MIN_BRIGHTNESS,
+    Blend,
+    InverseResponse,
+    make_blend,
+    rmse,
+)
 from hdrlab.core.arrays import F64, ArrayLike, NDArray, as_stack, levels
 
 # Fraction of the range: the paper's good example stays below, its bad one has 0.028.
@@ -55,9 +62,10 @@ def classify(row: F64, *, low: float, high: float, width: int) -> NDArray[np.int
 def straighten_edges(found: Sequence[Ramp]) -> list[Ramp]:
     """Return the ramps with ends that lie on straight lines over the rows, as the target's edges do.
 
-    Where a ramp ends by its own noise, noise has chosen its last samples: just before it is bright enough
-    there are those that are too dark. A line through the ends of all rows (Theil and Sen's, the median of all
-    slopes) hardly depends on the noise of a single one. Ramps far off it belong to something else.
+    Where a ramp ends by its own noise, noise has chosen its last samples: just before it is bright
+    enough there are those that are too dark. A line through the ends of all rows (Theil and Sen's,
+    the median of all slopes) hardly depends on the noise of a single one. Ramps far off it belong
+    to something else.
     """
     edges, count = defaultdict(list), Counter[int]()
     for one in found:
@@ -73,7 +81,10 @@ def _straighten(edge: Sequence[Ramp]) -> list[Ramp]:
         return list(edge)
     first, last = np.maximum([_fit_line(row, start), _fit_line(row, stop)], 0)
     near = np.maximum(np.abs(first - start), np.abs(last - stop)) <= (last - first) / 10
-    return [edge[k]._replace(start=int(first[k]), stop=int(last[k])) for k in np.flatnonzero(near).tolist()]
+    return [
+        edge[k]._replace(start=int(first[k]), stop=int(last[k]))
+        for k in np.flatnonzero(near).tolist()
+    ]
 
 
 def _fit_line(x: NDArray[np.intp], y: NDArray[np.intp]) -> F64:
@@ -117,7 +128,9 @@ def find_ramps(
     """
     stack = as_stack(np.asarray(image)[None])
     if stack.ndim != 3:
-        raise ValueError(f"expected one channel of a photograph (R, W), got shape {stack.shape[1:]}")
+        raise ValueError(
+            f"expected one channel of a photograph (R, W), got shape {stack.shape[1:]}"
+        )
     if not 0 <= low < high <= 1 or width < 1 or shortest < 3:
         raise ValueError(f"expected 0 <= {low=} < {high=} <= 1, {width=} >= 1 and {shortest=} >= 3")
     found = []
@@ -138,12 +151,17 @@ def read_blends(image: ArrayLike, ramps: Sequence[Ramp]) -> list[Blend]:
 
 
 def join(
-    image: ArrayLike, ramps: Sequence[Ramp] | None = None, *, smoothness: float = 1e-3, ends: float = 0.025
+    image: ArrayLike,
+    ramps: Sequence[Ramp] | None = None,
+    *,
+    smoothness: float = 1e-3,
+    ends: float = 0.025,
 ) -> InverseResponse:
     """Return the inverse response that all ramps of an image (R, W) join in; see `joining.join`.
 
-    Single pixels are noisier than means over a display's patches, so the spline is stiffer; and each ramp's
-    place is known by its own noise alone, so its first and last two samples or so are left out.
+    Single pixels are noisier than means over a display's patches, so the spline is stiffer; and
+    each ramp's place is known by its own noise alone, so its first and last two samples or so are
+    left out.
     """
     blends = read_blends(image, find_ramps(image) if ramps is None else ramps)
     return joining.join(blends, smoothness=smoothness, ends=ends)
@@ -161,15 +179,15 @@ def compare_edges(
     ramps : sequence of Ramp, optional
         By default those of `find_ramps`.
     limit : float
-        The largest RMSE between the two that passes, 0.01 of the range as in the paper. With 60 noisy lines,
-        linear motion stays below 0.004 and a speed that grows by 15 % above 0.0105, for the response that
-        distinguishes them worst.
+        The largest RMSE between the two that passes, 0.01 of the range as in the paper. With 60
+        noisy lines, linear motion stays below 0.004 and a speed that grows by 15 % above 0.0105,
+        for the response that distinguishes them worst.
 
     Returns
     -------
     Comparison
-        `linear` is True where they agree. Agreement is necessary, not sufficient: an error that is symmetric
-        about the middle of the exposure bends both curves alike.
+        `linear` is True where they agree. Agreement is necessary, not sufficient: an error that is
+        symmetric about the middle of the exposure bends both curves alike.
 
     Raises
     ------

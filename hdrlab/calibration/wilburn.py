@@ -6,13 +6,15 @@ g     inverse response      g(m) = sum_k a_k m^k, a_0 = 0, sum_k a_k = 1: g(0) =
 E     error                 sum_ij (s_j I_ij + r_j - g(m_ij))^2  [eq. 5, where the print has s_i for s_j and
                             lets i run to l_j, one too far]
 
-The paper takes powers of the brightness itself. Its constraint then fixes g at brightness 0 and 1, outside of
-what was measured, and in between the scales can shrink and g lie down flat, with hardly an error. Here the
-two points lie at the ends of the measured range, where the paper compares its curves.
+The paper takes powers of the brightness itself. Its constraint then fixes g at brightness 0 and 1,
+outside of what was measured, and in between the scales can shrink and g lie down flat, with hardly
+an error. Here the two points lie at the ends of the measured range, where the paper compares its
+curves.
 
-For a given g the best s_j and r_j are a straight line through (I_ij, g(m_ij)), so the simplex searches the
-d - 1 free coefficients alone. What the lines leave is linear in a, hence E = a^T Q a, with a table Q
-(d + 1, d + 1) that is made once, however many samples there are. `joining` has a better posed way.
+For a given g the best s_j and r_j are a straight line through (I_ij, g(m_ij)), so the simplex
+searches the d - 1 free coefficients alone. What the lines leave is linear in a, hence E = a^T Q a,
+with a table Q (d + 1, d + 1) that is made once, however many samples there are. `joining` has a
+better posed way.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,7 +24,14 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from scipy.optimize import minimize
 
-from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
+from hdrlab.calibration.blends import (
+    GRID,
+    Blend,
+    InverseResponse,
+    build_response,
+    rescale,
+    select_blends,
+)
 from hdrlab.core.arrays import F64, ArrayLike
 from hdrlab.core.steps import last
 
@@ -67,11 +76,13 @@ def error(a: ArrayLike, Q: F64) -> float:
 def join_steps(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12) -> Iterator[State]:
     """Yield the State after each run of the Nelder-Mead simplex, the next from where the last one stopped.
 
-    A g that falls anywhere has an infinite error, so the simplex stays where g' >= 0. Against that wall it
-    may collapse before the minimum; a new one goes on.
+    A g that falls anywhere has an infinite error, so the simplex stays where g' >= 0. Against that
+    wall it may collapse before the minimum; a new one goes on.
     """
     if degree < 2 or runs < 1:
-        raise ValueError(f"expected a degree of 2 or more and at least 1 run, got {degree} and {runs}")
+        raise ValueError(
+            f"expected a degree of 2 or more and at least 1 run, got {degree} and {runs}"
+        )
     Q = quadratic_form(rescale(select_blends(blends)), degree)
 
     def monotone_error(free: F64) -> float:
@@ -87,7 +98,9 @@ def join_steps(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12) -> I
         yield State(complete(free), float(found.fun), int(found.nfev))
 
 
-def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: float = 0.005) -> InverseResponse:
+def join(
+    blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: float = 0.005
+) -> InverseResponse:
     """Return the inverse response that joins the blends, a monotone polynomial, found by simplex.
 
     Parameters
@@ -114,7 +127,8 @@ def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: floa
 
     References
     ----------
-    Wilburn, Xu and Matsushita, Radiometric calibration using temporal irradiance mixtures, CVPR 2008, eq. 5.
+    Wilburn, Xu and Matsushita, Radiometric calibration using temporal irradiance mixtures, CVPR
+    2008, eq. 5.
 
     Examples
     --------

@@ -6,8 +6,9 @@ B      brightness    (H, W) in [0, 1]: on the sensor, 1 where it was full
 w      weight        (H, W), of the metering mode
 B_pre  the reading, sum of w B;  B_opt  what it should be
 
-One step is the formula EV_opt = EV_pre + log2 B_pre - log2 B_opt, except that it knows of full pixels. They
-stay full until the exposure falls far enough, so the plain formula needs many shots where a window is bright.
+One step is the formula EV_opt = EV_pre + log2 B_pre - log2 B_opt, except that it knows of full
+pixels. They stay full until the exposure falls far enough, so the plain formula needs many shots
+where a window is bright.
 """
 
 from collections.abc import Callable, Iterator
@@ -85,7 +86,8 @@ def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
     start : EV of the first shot
     target : B_opt
     max_shots : shots at most
-    photograph : (E, EV) -> B, the camera; `measure_brightness` with another aperture, ISO speed or noise
+    photograph : (E, EV) -> B, the camera; `measure_brightness` with another aperture, ISO speed or
+        noise
 
     Returns
     -------
@@ -98,7 +100,8 @@ def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
 
     References
     ----------
-    Battiato, Messina and Castorina, Exposure correction for imaging devices: an overview, 2008, eq. 1.2.
+    Battiato, Messina and Castorina, Exposure correction for imaging devices: an overview, 2008, eq.
+    1.2.
 
     Examples
     --------

@@ -10,9 +10,11 @@ offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to 
 
 The light goes through the camera in this order, one function each, those of the sensor in `capture.sensor`:
 
-    E -> views -> falloff -> exposure -> photons -> readout -> (hot pixels) -> f -> grain -> quantise -> Z
+    E -> views -> falloff -> exposure -> photons -> readout -> (hot pixels) -> f -> grain ->
+    quantise -> Z
 
-A `Sensor` puts a converter with a black level after the readout, and a Bayer mosaic before the photons.
+A `Sensor` puts a converter with a black level after the readout, and a Bayer mosaic before the
+photons.
 """
 
 from dataclasses import dataclass
@@ -22,7 +24,17 @@ import numpy as np
 from hdrlab.capture import responses, sensor as stages
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.sensor import Seed, Sensor
-from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, NDArray, as_radiance, as_times, describe
+from hdrlab.core.arrays import (
+    F32,
+    F64,
+    Array,
+    ArrayLike,
+    Mask,
+    NDArray,
+    as_radiance,
+    as_times,
+    describe,
+)
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
 
@@ -30,19 +42,26 @@ from hdrlab.core.colour import luminance
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
     """Return offsets (P, 2) of a shaking hand, up to `radius` pixels each way; frame P // 2 stays at 0."""
     if count < 1 or radius < 0:
-        raise ValueError(f"expected at least one frame and a radius of at least 0, got {count} and {radius}")
+        raise ValueError(
+            f"expected at least one frame and a radius of at least 0, got {count} and {radius}"
+        )
     offsets = np.random.default_rng(rng).integers(-radius, radius, (count, 2), endpoint=True)
     offsets[count // 2] = 0
     return offsets
 
 
 def times_around(
-    E: ArrayLike, count: int = 7, *, stops: float = 2.0, middle: float = 0.1, sensitivity: float = 1.0
+    E: ArrayLike,
+    count: int = 7,
+    *,
+    stops: float = 2.0,
+    middle: float = 0.1,
+    sensitivity: float = 1.0,
 ) -> F64:
     """Return `count` times (P,), seconds, `stops` apart, around the one that suits the scene.
 
-    That one brings the log-average luminance, exp(mean ln L), to X = `middle`: a little below half the levels
-    of a film or an sRGB picture, with three stops left above it.
+    That one brings the log-average luminance, exp(mean ln L), to X = `middle`: a little below half
+    the levels of a film or an sRGB picture, with three stops left above it.
 
     Examples
     --------
@@ -51,7 +70,9 @@ def times_around(
     """
     if count < 1 or not all(0 < knob < np.inf for knob in (stops, middle, sensitivity)):
         got = f"{count}, {stops}, {middle} and {sensitivity}"
-        raise ValueError(f"expected at least one frame, positive stops, middle and sensitivity; got {got}")
+        raise ValueError(
+            f"expected at least one frame, positive stops, middle and sensitivity; got {got}"
+        )
     L = luminance(E).astype(np.float64)
     if not L.any():
         raise ValueError("expected radiance with a positive pixel, got zeros")
@@ -65,19 +86,25 @@ class Camera:
 
     Attributes
     ----------
-    response : f, a name in `responses.RESPONSES` (None: "linear"), a Response, or a rising function on arrays
+    response : f, a name in `responses.RESPONSES` (None: "linear"), a Response, or a rising function
+        on arrays
         of [0, 1]; `responses.true_g` returns what a calibration should find
     bits : 8 or 16
     sensitivity : s, exposure per (radiance unit x second): E t = 1 / s fills the well
-    full_well : electrons a pixel holds, which sets the shot noise; infinitely many have none. A phone's pixel
+    full_well : electrons a pixel holds, which sets the shot noise; infinitely many have none. A
+        phone's pixel
         holds 5 000, a large sensor's 50 000.
     read_noise : electrons, standard deviation; wants a finite full_well
-    gray_noise : pixel levels, standard deviation, after the response; 1 is the noise of [Cerman06 sec. 4.2]
-    hot : share of the sensor's elements (pixels of a gray photograph, channels of pixels of RGB) stuck at a
+    gray_noise : pixel levels, standard deviation, after the response; 1 is the noise of [Cerman06
+        sec. 4.2]
+    hot : share of the sensor's elements (pixels of a gray photograph, channels of pixels of RGB)
+        stuck at a
         full well, the same ones in every photograph
     vignetting : share of the light that the lens loses in the corners, 0 to 1
-    sensor : Sensor with a converter, whose full_well and read_noise count then instead of those above
-    bayer : the sensor has one colour per pixel, R G / G B, and the others are interpolated; wants a sensor
+    sensor : Sensor with a converter, whose full_well and read_noise count then instead of those
+        above
+    bayer : the sensor has one colour per pixel, R G / G B, and the others are interpolated; wants a
+        sensor
     white : gains (3,) of the channels, as of `sensor.balance`; want a sensor
 
     Raises
@@ -109,10 +136,19 @@ class Camera:
             (self.bits in (8, 16), "8 or 16 bits"),
             (0 < self.sensitivity < np.inf, "a positive sensitivity"),
             (self.full_well > 0, "a positive full well"),
-            (0 <= electrons < np.inf and 0 <= levels < np.inf, "read_noise and gray_noise of at least 0"),
+            (
+                0 <= electrons < np.inf and 0 <= levels < np.inf,
+                "read_noise and gray_noise of at least 0",
+            ),
             (0 <= self.hot <= 1 and 0 <= self.vignetting <= 1, "hot and vignetting from 0 to 1"),
-            (not electrons or self.full_well < np.inf, "a finite full_well for read_noise, in electrons"),
-            (self.sensor is not None or not self.coloured, "a sensor for a mosaic and white balance"),
+            (
+                not electrons or self.full_well < np.inf,
+                "a finite full_well for read_noise, in electrons",
+            ),
+            (
+                self.sensor is not None or not self.coloured,
+                "a sensor for a mosaic and white balance",
+            ),
             (self.sensor is None or self.full_well == np.inf, "one full well, not both"),
         ):
             if not valid:
@@ -139,14 +175,17 @@ def shoot(
     E : (H, W) or (H, W, 3), radiance, any linear unit
     times : (P,) seconds, in any order: the photographs come sorted from short to long
     camera : Camera
-    offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
-        relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
-        saw is `hand_motion.views(E, offsets)[j]`. Those (P, 3, 3) of `hand_motion.shake` turn and tilt.
+    offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should
+        answer,
+        relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance
+        that it saw is `hand_motion.views(E, offsets)[j]`. Those (P, 3, 3) of `hand_motion.shake`
+        turn and tilt.
     rng : seed, or a generator, which is advanced
 
     Returns
     -------
-    bracket : Bracket of images (P, h, w[, 3]) uint8 or uint16, where h = H - (max dy - min dy), w likewise;
+    bracket : Bracket of images (P, h, w[, 3]) uint8 or uint16, where h = H - (max dy - min dy), w
+        likewise;
         `linear` where the response is
 
     Raises
@@ -167,7 +206,9 @@ def shoot(
     if moves.shape[:1] != times.shape:
         raise ValueError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
     if E.ndim == 2 and camera.coloured:
-        raise ValueError(f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}")
+        raise ValueError(
+            f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}"
+        )
     rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")
     light = views(E, moves[order])
     stuck, pairs = rng.random(light[0].shape) < camera.hot, zip(light, times[order], strict=True)
@@ -188,6 +229,8 @@ def photograph(E: F32, time: float, camera: Camera, stuck: Mask, rng: np.random.
         N = stages.photons(X, full_well=camera.full_well, rng=rng)
         X = stages.readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
     X = np.clip(X, 0, 1)
-    M = responses.as_response(camera.response).f(X if camera.sensor is not None else np.where(stuck, 1, X))
+    M = responses.as_response(camera.response).f(
+        X if camera.sensor is not None else np.where(stuck, 1, X)
+    )
     M = stages.grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng)
     return stages.quantise(M, bits=camera.bits)

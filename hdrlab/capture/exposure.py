@@ -8,8 +8,9 @@ L   luminance        cd/m^2: of a surface, in one direction; the same from near 
 E   irradiance       lx: what the sensor gets of it, from the whole aperture
 EV  exposure value   stops: one more is half the light
 
-A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers of two, and its names are
-rounded so that people can say them. Times taken from names are wrong by up to 7 %, and a calibration sees it.
+A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers of two, and its names
+are rounded so that people can say them. Times taken from names are wrong by up to 7 %, and a
+calibration sees it.
 """
 
 from collections.abc import Iterable

@@ -4,9 +4,9 @@ E        radiance (H, W[, 3]) float32, any linear unit
 offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
 H        (P, 3, 3) homographies: where pixel (x, y, 1) of frame j lies in the reference, see `filters.warp`
 
-What `align` should answer is the same whichever way it is written. Offsets of whole pixels cut views out of
-the scene; all others resample its light, before the sensor: a camera that moved sees the scene between
-the pixels, not the photograph.
+What `align` should answer is the same whichever way it is written. Offsets of whole pixels cut
+views out of the scene; all others resample its light, before the sensor: a camera that moved sees
+the scene between the pixels, not the photograph.
 """
 
 import numpy as np
@@ -20,12 +20,13 @@ Seed = int | np.random.Generator | None
 def views(E: Array, offsets: ArrayLike) -> list[Array]:
     """Return what each frame of a moved camera sees: P arrays (h, w[, 3]), views of E.
 
-    Frame j sees E from (top + dy, left + dx) on, so that moved by (dy, dx) it lies on a frame of (0, 0). It
-    is smaller than the scene by the span of the offsets, h = H - (max dy - min dy) and w likewise: it holds
-    real content everywhere, and nothing wraps around.
+    Frame j sees E from (top + dy, left + dx) on, so that moved by (dy, dx) it lies on a frame of
+    (0, 0). It is smaller than the scene by the span of the offsets, h = H - (max dy - min dy) and w
+    likewise: it holds real content everywhere, and nothing wraps around.
 
-    With homographies, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the largest
-    rectangle within which every one finds content. `frame_homographies` gives these in pixels of the frames.
+    With homographies, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the
+    largest rectangle within which every one finds content. `frame_homographies` gives these in
+    pixels of the frames.
     """
     given = np.asarray(offsets)
     pairs = given.ndim == 2 and given.shape[1] == 2 and len(given) > 0
@@ -34,19 +35,23 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
         size, first = (rows.stop - rows.start, columns.stop - columns.start), _from((rows, columns))
         return [warp.sample(E, H @ first, size) for H in warp.as_homographies(given)]
     if not pairs or given.dtype.kind not in "iu":
-        raise ValueError(f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(given)}")
+        raise ValueError(
+            f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(given)}"
+        )
     corners = given - given.min(axis=0)
     h, w = E.shape[:2] - corners.max(axis=0)
     if h < 1 or w < 1:
-        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {given.tolist()}")
+        raise ValueError(
+            f"expected offsets that span less than {E.shape[:2]}, got {given.tolist()}"
+        )
     return [E[y : y + h, x : x + w] for y, x in corners]
 
 
 def frame_homographies(homographies: ArrayLike, shape: tuple[int, ...]) -> F64:
     """Return homographies (P, 3, 3) of a scene of `shape` in pixels of the frames that `views` returns.
 
-    These begin at pixel (left, top) of the scene, so H becomes T^-1 H T with the shift T by that much. A
-    shift stays what it is.
+    These begin at pixel (left, top) of the scene, so H becomes T^-1 H T with the shift T by that
+    much. A shift stays what it is.
 
     Examples
     --------
@@ -78,7 +83,8 @@ def shake(
     radius : pixels, at most so far up, down and to either side, in fractions
     degrees : at most so far clockwise, or the other way
     zoom : share by which the picture grows or shrinks at most, as by a step ahead
-    tilt : share by which one side of the picture, left or right, top or bottom, grows at most over its middle
+    tilt : share by which one side of the picture, left or right, top or bottom, grows at most over
+        its middle
     rng : seed, or a generator, which is advanced
 
     Examples
@@ -89,7 +95,9 @@ def shake(
     rng, knobs = np.random.default_rng(rng), np.array([radius, degrees, zoom, tilt], float)
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
-        raise ValueError(f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}")
+        raise ValueError(
+            f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}"
+        )
     homographies = []
     for dy, dx, phi, grown, across, down in rng.uniform(-1, 1, (count, 6)):
         about = warp.turn(shape, degrees * phi, (radius * dy, radius * dx), scale=1 + zoom * grown)

@@ -43,4 +43,6 @@ def add_glare(E: ArrayLike, spread: GlareSpread = FINGERPRINTS) -> F32:
     E = as_radiance(E)
     if share == 0:
         return E.copy()
-    return np.float32(1 - share) * E + np.float32(share) * scatter(E, spread_transform(E.shape, power, core))
+    return np.float32(1 - share) * E + np.float32(share) * scatter(
+        E, spread_transform(E.shape, power, core)
+    )

@@ -6,8 +6,8 @@ B_pre  the reading    sum of w B over the picture
 B_opt  what the reading should be: 0.18, a surface that reflects a fifth of the light
 EV     exposure value, stops: one more halves the light
 
-A meter does not know what it looks at. It takes the world for gray, so snow comes out gray, and a black
-locomotive too; the modes differ in which pixels they ask.
+A meter does not know what it looks at. It takes the world for gray, so snow comes out gray, and a
+black locomotive too; the modes differ in which pixels they ask.
 """
 
 from functools import lru_cache
@@ -20,7 +20,8 @@ At = tuple[float, float]
 
 # B_opt, share of full
 MIDDLE_GRAY = 0.18
-# how bright a full pixel is taken to be: it says "at least 1", and too dark a next shot is soon corrected
+# how bright a full pixel is taken to be: it says "at least 1", and too dark a next shot is soon
+# corrected
 FULL_PIXEL_BRIGHTNESS = 16.0
 
 
@@ -29,7 +30,9 @@ def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
     if len(shape) != 2 or min(shape) < 1:
         raise ValueError(f"expected the shape (H, W) of a picture, got {shape}")
     if not all(0 <= part <= 1 for part in at):
-        raise ValueError(f"expected a place (down, right) as parts of the picture, 0 to 1, got {at}")
+        raise ValueError(
+            f"expected a place (down, right) as parts of the picture, 0 to 1, got {at}"
+        )
     down, right = ((np.arange(n) + 0.5) / n - part for n, part in zip(shape, at, strict=True))
     return down[:, None], right[None, :]
 
@@ -61,13 +64,17 @@ def partial(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.12)
     return spot(shape, at=at, share=share)
 
 
-def centre(shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)) -> F64:
+def centre(
+    shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)
+) -> F64:
     """Return weight of which `inside`, 60 to 80 %, lies in the central `share`, feathered toward the edges.
 
     It falls as a Gaussian of the distance, whose width is found by halving.
     """
     if not share < inside < 1:
-        raise ValueError(f"expected more than {share} of the weight inside, and less than 1, got {inside}")
+        raise ValueError(
+            f"expected more than {share} of the weight inside, and less than 1, got {inside}"
+        )
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = spot(shape, at=at, share=share) > 0
@@ -103,9 +110,10 @@ def zones(shape: tuple[int, int]) -> NDArray[np.int64]:
 def matrix(B: ArrayLike, *, at: At = (0.5, 0.5), near: float = 0.2, tolerance: float = 2.0) -> F64:
     """Return a matrix meter's weights: zones near the focus point count more, zones far from the others less.
 
-    A zone's weight is exp(-d^2 / (2 near^2)) exp(-e^2 / (2 tolerance^2)): d is its distance from the focus
-    point, in pictures, and e its distance in stops from the median zone, which leaves out a bare sun.
-    Makers do not tell their rules; this one has what the text says they take into account.
+    A zone's weight is exp(-d^2 / (2 near^2)) exp(-e^2 / (2 tolerance^2)): d is its distance from
+    the focus point, in pictures, and e its distance in stops from the median zone, which leaves out
+    a bare sun. Makers do not tell their rules; this one has what the text says they take into
+    account.
     """
     B = as_luminance(B)
     labels = zones(B.shape)
@@ -143,7 +151,9 @@ def reading(B: ArrayLike, w: ArrayLike) -> float:
     """Return B_pre = sum w B / sum w."""
     B, w = as_luminance(B), np.asarray(w, np.float64)
     if w.shape != B.shape or not np.all(w >= 0) or not w.sum() > 0:
-        raise ValueError(f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}")
+        raise ValueError(
+            f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}"
+        )
     return float((w * B).sum() / w.sum())
 
 

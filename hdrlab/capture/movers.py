@@ -36,7 +36,8 @@ class Moving(NamedTuple):
     Attributes
     ----------
     bracket : the photographs, from short to long
-    still : (h, w[, 3]), radiance of the scene without the figure, as a frame of offset (0, 0) would see it
+    still : (h, w[, 3]), radiance of the scene without the figure, as a frame of offset (0, 0) would
+        see it
     moments : (P, h, w[, 3]), radiance that each photograph saw
     hidden : (P, h, w) bool, where the figure changed what a photograph saw
     """
@@ -53,7 +54,12 @@ class Moving(NamedTuple):
 
 
 def ball(
-    shape: tuple[int, int], centre: ArrayLike, radius: float, radiance: ArrayLike = 1.0, *, stripes: int = 4
+    shape: tuple[int, int],
+    centre: ArrayLike,
+    radius: float,
+    radiance: ArrayLike = 1.0,
+    *,
+    stripes: int = 4,
 ) -> Figure:
     """Return a striped ball lit from above, whose brightest point has this radiance.
 
@@ -81,7 +87,9 @@ def ball(
     if colour.shape not in ((), (3,)) or not np.all((colour > 0) & (colour < np.inf)):
         raise ValueError(f"expected one positive radiance or three, got {describe(colour)}")
     if not (0 < radius < np.inf) or middle.shape != (2,) or stripes < 0:
-        raise ValueError(f"expected a centre (y, x) and a positive radius, got {centre!r} and {radius}")
+        raise ValueError(
+            f"expected a centre (y, x) and a positive radius, got {centre!r} and {radius}"
+        )
     y, x = np.indices(shape) - middle[:, None, None]
     mask = np.clip(radius + 0.5 - np.hypot(y, x), 0, 1)
     z = np.sqrt(np.maximum(radius**2 - y**2 - x**2, 0))
@@ -103,7 +111,9 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
     """
     stride = np.asarray(step, float)
     if count < 1 or stride.shape != (2,) or not np.all(np.isfinite(stride)):
-        raise ValueError(f"expected at least one frame and a step (dy, dx), got {count} and {step!r}")
+        raise ValueError(
+            f"expected at least one frame and a step (dy, dx), got {count} and {step!r}"
+        )
     return np.rint(np.arange(count)[:, None] * stride - (count - 1) / 2 * stride).astype(np.int64)
 
 
@@ -138,7 +148,8 @@ def shoot(
     E : (H, W) or (H, W, 3), radiance of the still scene
     figure : Figure of the same size
     at : (P, 2) int, where the figure stands in each photograph: `path` has straight ways
-    times : (P,) seconds, in any order: photographs, moments and masks come sorted from short to long
+    times : (P,) seconds, in any order: photographs, moments and masks come sorted from short to
+        long
     model : Camera, without hot pixels: each photograph is a shot of its own
     offsets : (P, 2) int, where the camera stands: see `camera.shoot`
     rng : seed, or a generator, which is advanced
@@ -150,7 +161,8 @@ def shoot(
     Raises
     ------
     ValueError
-        For layers that are no figure of this scene, and numbers of places that do not fit the times.
+        For layers that are no figure of this scene, and numbers of places that do not fit the
+        times.
 
     References
     ----------
@@ -168,20 +180,30 @@ def shoot(
     moves = np.zeros((len(seconds), 2), int) if offsets is None else np.asarray(offsets)
     for what, one in (("places", places), ("offsets", moves)):
         if one.shape != (len(seconds), 2) or one.dtype.kind not in "iu":
-            raise ValueError(f"expected {what} ({len(seconds)}, 2) of whole pixels, got {describe(one)}")
+            raise ValueError(
+                f"expected {what} ({len(seconds)}, 2) of whole pixels, got {describe(one)}"
+            )
     if not np.any(np.all(moves == 0, axis=1)):
         raise ValueError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
     if model.hot:
         raise ValueError("expected no hot pixels: here each photograph would have others")
-    rng, still = np.random.default_rng(rng), views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
+    rng, still = (
+        np.random.default_rng(rng),
+        views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))],
+    )
     moments, masks, shots = [], [], []
     for j in np.argsort(seconds, kind="stable"):
         E_j, mask = (views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
         shots.append(camera.shoot(E_j, seconds[j], model, rng=rng))
         moments.append(E_j)
         masks.append(mask)
-    images, taken = (np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times"))
-    order, taken_in_order = short_to_long(images, taken), bracket(images, taken, linear=shots[0].linear)
+    images, taken = (
+        np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times")
+    )
+    order, taken_in_order = (
+        short_to_long(images, taken),
+        bracket(images, taken, linear=shots[0].linear),
+    )
     return Moving(taken_in_order, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
 
 
@@ -189,7 +211,9 @@ def as_figure(figure: Figure, E: F32) -> Figure:
     """Return the layers of a figure as float32, or raise a ValueError where they do not fit the scene."""
     light, mask = (np.asarray(layer) for layer in figure)
     if light.shape != E.shape or mask.shape != E.shape[:2]:
-        raise ValueError(f"expected light {E.shape} and a mask of it, got {light.shape} and {mask.shape}")
+        raise ValueError(
+            f"expected light {E.shape} and a mask of it, got {light.shape} and {mask.shape}"
+        )
     if not (mask.min() >= 0 and mask.max() <= 1):
         raise ValueError(f"expected a mask from 0 to 1, got {describe(mask)}")
     return Figure(as_radiance(light), mask.astype(np.float32))

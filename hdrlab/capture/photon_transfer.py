@@ -5,12 +5,14 @@ S    signal       (M,) levels: the mean of a pair, less that of the dark pair
 V    variance     (M,) levels^2: half the variance of the difference of a pair
 K    gain         electrons per level;  R  read noise, electrons
 
-Photons come by chance: of N electrons the variance is N. Counted in levels, N / K, it is N / K^2 = S / K, so
+Photons come by chance: of N electrons the variance is N. Counted in levels, N / K, it is N / K^2 =
+S / K, so
 
     V = S / K + (R / K)^2 + 1 / 12
 
-is a straight line, whose slope is 1 / K, and the dark pair lies where it begins. The difference of two
-photographs is taken because dust, vignetting and unlike pixels are the same in both: they cancel.
+is a straight line, whose slope is 1 / K, and the dark pair lies where it begins. The difference of
+two photographs is taken because dust, vignetting and unlike pixels are the same in both: they
+cancel.
 """
 
 from typing import NamedTuple
@@ -55,7 +57,8 @@ def variance(pair: Array) -> float:
 def line(S: F64, V: F64) -> float:
     """Return the slope 1 / K of V - V_0 = S / K, V_0 that of the dark pair, by weighted least squares.
 
-    A variance of n pixels errs by V sqrt(2 / n), so the weights are 1 / V^2; the first pair is the dark one.
+    A variance of n pixels errs by V sqrt(2 / n), so the weights are 1 / V^2; the first pair is the
+    dark one.
     """
     w = 1 / np.maximum(V, ROUNDING_VARIANCE) ** 2
     return float((w * S * (V - V[0])).sum() / (w * S**2).sum())
@@ -66,7 +69,8 @@ def calibrate(Z: ArrayLike) -> Transfer:
 
     Parameters
     ----------
-    Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the others of
+    Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the
+        others of
         an evenly lit surface. At least three brighter pairs; with ten, up to a full well, that too.
         Of a sensor with filters, the pixels of one colour.
 
@@ -77,7 +81,8 @@ def calibrate(Z: ArrayLike) -> Transfer:
     Raises
     ------
     ValueError
-        For levels that are no pairs, or fewer than two bright pairs below the full ones, or no noise to read.
+        For levels that are no pairs, or fewer than two bright pairs below the full ones, or no
+        noise to read.
 
     References
     ----------
@@ -93,16 +98,28 @@ def calibrate(Z: ArrayLike) -> Transfer:
     (2.0, 6, 100)
     """
     Z = np.asarray(Z)
-    if Z.ndim != 4 or Z.shape[1] != 2 or Z.dtype.kind not in "iu" or len(Z) < 4 or Z[0, 0].size < 100:
-        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}")
+    if (
+        Z.ndim != 4
+        or Z.shape[1] != 2
+        or Z.dtype.kind not in "iu"
+        or len(Z) < 4
+        or Z[0, 0].size < 100
+    ):
+        raise ValueError(
+            f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}"
+        )
     mean = Z.mean(axis=(1, 2, 3))
     S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
         got = S.round(1).tolist()
-        raise ValueError(f"expected two pairs between the dark and the brightest, got signals {got}")
+        raise ValueError(
+            f"expected two pairs between the dark and the brightest, got signals {got}"
+        )
     slope = line(S[used], V[used])
     if not slope > 0:
-        raise ValueError("expected noise that grows with the light, as of RAW levels; got one that does not")
+        raise ValueError(
+            "expected noise that grows with the light, as of RAW levels; got one that does not"
+        )
     R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope
     return Transfer(1 / slope, float(R), float(mean[0]), float(S.max() / slope), S, V, used)

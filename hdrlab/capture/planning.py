@@ -9,14 +9,15 @@ The first photograph clips above L_high, each next one lies R - O stops below, t
 
     n = 1 + ceil((log2(L_high / L_low) - R) / (R - O)),  at least 1
 
-Which photographs take the least time, if all of the scene shall come out at some signal over noise? In the
-mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j solve an integer
+Which photographs take the least time, if all of the scene shall come out at some signal over noise?
+In the mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j
+solve an integer
 program (Hasinoff, Durand and Freeman, CVPR 2010):
 
     least sum_j n_j (t_j + pause)   with   sum_j n_j SNR_j(L)^2 >= SNR^2   for all L from L_low to L_high
 
-Each SNR_j rises with L until its photograph is full. So it is enough to ask at L_low and just above each
-luminance where one is.
+Each SNR_j rises with L until its photograph is full. So it is enough to ask at L_low and just above
+each luminance where one is.
 """
 
 import math
@@ -47,7 +48,9 @@ class Plan(NamedTuple):
 class Model(NamedTuple):
     """A camera's noise; the numbers here are those of a good one, and photon transfer finds them."""
 
-    full_well: float = 20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half
+    full_well: float = (
+        20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half
+    )
     read_noise: float = 5.0  # R, electrons, before the amplifier
     gain: float = 5.0  # K, electrons per level at the lowest speed; at twice the speed half of it
     converter_noise: float = 0.0  # q, levels, after the amplifier
@@ -83,10 +86,12 @@ def plan(
 
     Parameters
     ----------
-    L_low, L_high : cd/m^2, the darkest and brightest luminance to hold: spot-metered, or of a radiance map
+    L_low, L_high : cd/m^2, the darkest and brightest luminance to hold: spot-metered, or of a
+        radiance map
     aperture : F, f-number; it stays the same in all, for it changes the depth of field
     iso : S, speed; it stays the same, for it changes the noise
-    usable : R, stops of one photograph. An 8-bit sRGB picture has 11.7 stops from its first level to its
+    usable : R, stops of one photograph. An 8-bit sRGB picture has 11.7 stops from its first level
+        to its
         last; in the upper 7 of them a level is finer than a tenth of a stop.
     overlap : O, stops of agreement between neighbours
     per_stop : settings of the dial per stop, 1 or 3
@@ -109,11 +114,15 @@ def plan(
     if not 0 < L_low <= L_high < math.inf:
         raise ValueError(f"expected luminances 0 < low <= high, got {L_low} and {L_high} cd/m^2")
     if not 0 <= overlap < usable < math.inf:
-        raise ValueError(f"expected an overlap from 0 to below the {usable} usable stops, got {overlap}")
+        raise ValueError(
+            f"expected an overlap from 0 to below the {usable} usable stops, got {overlap}"
+        )
     dial = exposure.shutter_series(per_stop)
     step = math.floor((usable - overlap) * per_stop + 1e-9) / per_stop
     if step <= 0:
-        raise ValueError(f"expected a step of at least 1/{per_stop} stop, got {usable - overlap:.2f}")
+        raise ValueError(
+            f"expected a step of at least 1/{per_stop} stop, got {usable - overlap:.2f}"
+        )
     fills = exposure.saturating_luminance(1.0, F=aperture, S=iso)  # cd/m^2, in one second
     first = math.floor(math.log2(fills / L_high) * per_stop + 1e-9) / per_stop
     reach = math.log2(fills / 2.0**first / L_low)
@@ -142,13 +151,17 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
     if len(set(chosen)) < frames:
         has = f"{len(times)} over {np.ptp(known):.1f} stops"
-        raise ValueError(f"expected {frames} times {stops:g} stops apart, the camera has {has}; take fewer")
+        raise ValueError(
+            f"expected {frames} times {stops:g} stops apart, the camera has {has}; take fewer"
+        )
     return chosen
 
 
 def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:
     """Return N^2 / (N + R^2 + K^2 (q^2 + 1 / 12)) of luminances (K,) in photographs (n,); 0 where full."""
-    share = np.asarray(L)[:, None] / exposure.saturating_luminance(times, F=camera.aperture, S=speeds)
+    share = np.asarray(L)[:, None] / exposure.saturating_luminance(
+        times, F=camera.aperture, S=speeds
+    )
     N, K = (one * min(camera.speeds) / speeds for one in (share * camera.full_well, camera.gain))
     noise = N + camera.read_noise**2 + K**2 * (camera.converter_noise**2 + 1 / 12)
     return np.where(share <= 1, N**2 / noise, 0.0)
@@ -156,7 +169,9 @@ def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:
 
 def settings(L_low: float, L_high: float, snr: float, camera: Model) -> tuple[F64, F64]:
     """Return times and speeds (n,) to choose from: no shorter than photons allow, none full everywhere."""
-    fills = np.array([exposure.saturating_luminance(1, F=camera.aperture, S=one) for one in camera.speeds])
+    fills = np.array(
+        [exposure.saturating_luminance(1, F=camera.aperture, S=one) for one in camera.speeds]
+    )
     first, last = fills.min() / L_high * min(snr**2 / camera.full_well, 1), fills.max() / L_low
     stops = np.arange(np.floor(np.log2(first)), np.ceil(np.log2(last)) + 1)
     t, S = np.meshgrid(2.0**stops, camera.speeds, indexing="ij")
@@ -181,23 +196,26 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     Parameters
     ----------
     L_low, L_high : cd/m^2, the darkest and brightest luminance
-    snr : signal over noise that each luminance between shall have at least, in the mean by inverse variance
+    snr : signal over noise that each luminance between shall have at least, in the mean by inverse
+        variance
     camera : Model, its noise; of its speeds each photograph has the best one
 
     Returns
     -------
     shots : Shots
-        Times are powers of two, as on the dial and beyond. No other such photographs take a hundredth less
-        time, unless those are hard to find.
+        Times are powers of two, as on the dial and beyond. No other such photographs take a
+        hundredth less time, unless those are hard to find.
 
     Raises
     ------
     ValueError
-        For luminances, a ratio or a camera that mean nothing, or where MOST photographs are not enough.
+        For luminances, a ratio or a camera that mean nothing, or where MOST photographs are not
+        enough.
 
     References
     ----------
-    Hasinoff, Durand and Freeman, Noise-optimal capture for high dynamic range photography, CVPR 2010.
+    Hasinoff, Durand and Freeman, Noise-optimal capture for high dynamic range photography, CVPR
+    2010.
 
     Examples
     --------
@@ -208,15 +226,24 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     positive = [L_low, snr, camera.full_well, camera.gain]
     rest = [L_high - L_low, camera.read_noise, camera.converter_noise, camera.pause]
     if not (min(positive) > 0 <= min(rest) and np.isfinite(positive + rest).all()):
-        raise ValueError(f"expected 0 < low <= high, a ratio, a camera, got {L_low, L_high, snr, camera}")
+        raise ValueError(
+            f"expected 0 < low <= high, a ratio, a camera, got {L_low, L_high, snr, camera}"
+        )
     t, S = settings(L_low, L_high, snr, camera)
     A = np.minimum(squared_snr(hardest(L_low, L_high, t, S, camera), t, S, camera) / snr**2, 1)
     enough, whole, some = LinearConstraint(A, 1), np.ones(t.size), Bounds(0, MOST)
     with silence(1):  # HiGHS speaks of its own rounding
-        found = milp(t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH})
+        found = milp(
+            t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH}
+        )
     if found.x is None:
-        raise ValueError(f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}")
-    t, S, dial = *(one.repeat(np.rint(found.x).astype(int)) for one in (t, S)), exposure.shutter_series()
+        raise ValueError(
+            f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}"
+        )
+    t, S, dial = (
+        *(one.repeat(np.rint(found.x).astype(int)) for one in (t, S)),
+        exposure.shutter_series(),
+    )
     return Shots(tuple(_name(one, dial) for one in t), t, S)
 
 

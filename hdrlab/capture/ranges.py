@@ -6,8 +6,9 @@ SNR  N over its noise; below 1 a pixel measures nothing
 Z    level       of the converter
 DR   log10(FWC / NF), decades: a decade is 3.32 stops, and 20 dB
 
-A longer exposure does not widen the range, it moves it down: the shadows come out finer, and more of the
-highlights are full. A shorter one loses the shadows, in noise and in steps that are too coarse for them.
+A longer exposure does not widen the range, it moves it down: the shadows come out finer, and more
+of the highlights are full. A shorter one loses the shadows, in noise and in steps that are too
+coarse for them.
 """
 
 from typing import NamedTuple
@@ -72,10 +73,13 @@ def snr(X: ArrayLike, sensor: Sensor) -> F64:
     return N / np.sqrt(N + noise_floor(sensor) ** 2)
 
 
-def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> ExposedLevels:
+def expose_levels(
+    L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0
+) -> ExposedLevels:
     """Return what an exposure holds of luminances L (K,) [Battiato08 figures 1.10 to 1.12, as data].
 
-    Levels are those without noise. Lost are luminances that are full, and those whose SNR is below 1.
+    Levels are those without noise. Lost are luminances that are full, and those whose SNR is below
+    1.
 
     Raises
     ------
@@ -83,8 +87,12 @@ def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: flo
         For luminances, a time or a sensor that mean nothing.
     """
     L, sensor = np.asarray(L, np.float64), as_sensor(sensor)
-    if not np.all((L >= 0) & np.isfinite(L)) or not (0 < time < np.inf and 0 < sensitivity < np.inf):
-        raise ValueError(f"expected luminances, a time and a sensitivity, got {describe(L)} and {time} s")
+    if not np.all((L >= 0) & np.isfinite(L)) or not (
+        0 < time < np.inf and 0 < sensitivity < np.inf
+    ):
+        raise ValueError(
+            f"expected luminances, a time and a sensitivity, got {describe(L)} and {time} s"
+        )
     X = sensitivity * time * L
     N = np.minimum(sensor.full_well * X, full_electrons(sensor))
     Z, ratio = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black, snr(X, sensor)
@@ -94,7 +102,8 @@ def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: flo
 def levels_per_stop(bits: int) -> NDArray[np.int64]:
     """Return how many levels (bits,) of a linear converter lie in each stop, from the brightest down.
 
-    Half of all levels serve the uppermost stop. The eighth stop of 8 bits has one; of 12 bits it has 16.
+    Half of all levels serve the uppermost stop. The eighth stop of 8 bits has one; of 12 bits it
+    has 16.
 
     Examples
     --------

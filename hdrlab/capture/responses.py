@@ -73,7 +73,9 @@ def as_response(response: str | Curve | Response | None) -> Response:
     made = response if isinstance(response, Response) else Response(response, bisect(response))
     M = np.asarray(made.f(np.linspace(0, 1, 1025)))
     if M.shape != (1025,) or not (np.all(np.diff(M) >= 0) and 0 <= M[0] < M[-1] <= 1):
-        raise ValueError("expected a response that rises from [0, 1] into [0, 1], got one that does not")
+        raise ValueError(
+            "expected a response that rises from [0, 1] into [0, 1], got one that does not"
+        )
     return made
 
 
@@ -87,7 +89,8 @@ def true_g(response: str | Curve | Response | None = "film", n: int = 256) -> F6
 
     Returns
     -------
-    g : (n,) ln exposure of each pixel level, with g[n // 2] = 0. Level 0 holds the brightnesses from 0 to
+    g : (n,) ln exposure of each pixel level, with g[n // 2] = 0. Level 0 holds the brightnesses
+        from 0 to
         half a level; it gets the middle of them, for ln 0 has no number.
 
     Examples

@@ -11,8 +11,9 @@ M    brightness  0 to 1, after the response
     E -> falloff -> exposure -> (mosaic) -> photons -> readout -> digitise -> Z      `raw`
     Z -> less black, times K -> (demosaic) -> white balance -> X                     `develop`
 
-The black level is there for the noise: in the dark N + noise is negative half of the time, and cut off at 0
-its mean would be too high. So the converter adds a little, and what develops the levels takes it off.
+The black level is there for the noise: in the dark N + noise is negative half of the time, and cut
+off at 0 its mean would be too high. So the converter adds a little, and what develops the levels
+takes it off.
 """
 
 from typing import NamedTuple
@@ -54,7 +55,9 @@ def filter_bayer(X: F32) -> F32:
 
 def exposure(E: F32, time: float, *, sensitivity: float = 1.0) -> F32:
     """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
-    with np.errstate(over="ignore"):  # an infinite exposure fills the well like any other too long one
+    with np.errstate(
+        over="ignore"
+    ):  # an infinite exposure fills the well like any other too long one
         return np.float32(sensitivity) * (E * np.float32(time))
 
 
@@ -144,7 +147,9 @@ def raw(
     E, sensor = as_radiance(E), as_sensor(sensor)
     if not (0 <= time < np.inf and 0 < sensitivity < np.inf and 0 <= vignetting <= 1):
         got = f"{time} s, {sensitivity} and {vignetting}"
-        raise ValueError(f"expected a time, a positive sensitivity and a vignetting from 0 to 1, got {got}")
+        raise ValueError(
+            f"expected a time, a positive sensitivity and a vignetting from 0 to 1, got {got}"
+        )
     X = exposure(vignette(E, vignetting), time, sensitivity=sensitivity)
     return read(filter_bayer(X) if bayer else X, sensor, rng=np.random.default_rng(rng))
 
@@ -158,8 +163,9 @@ def develop(
 ) -> F32:
     """Return the exposure X of RAW levels, 0 to 1 where 1 is full, in three channels of balanced white.
 
-    The gains are divided by the least of them, and what exceeds 1 is cut off: a pixel that is full in all
-    channels is white. With gains below 1, or without the cut, burnt-out highlights come out magenta.
+    The gains are divided by the least of them, and what exceeds 1 is cut off: a pixel that is full
+    in all channels is white. With gains below 1, or without the cut, burnt-out highlights come out
+    magenta.
 
     Parameters
     ----------
@@ -183,7 +189,9 @@ def develop(
         raise ValueError(f"expected RAW levels uint16, (H, W) of a mosaic, got {describe(Z)}")
     if gains.shape != (3,) or not np.all((gains > 0) & np.isfinite(gains)):
         raise ValueError(f"expected three positive gains, got {describe(gains)}")
-    X = np.float32(sensor.gain / full_electrons(sensor)) * (Z.astype(np.float32) - np.float32(sensor.black))
+    X = np.float32(sensor.gain / full_electrons(sensor)) * (
+        Z.astype(np.float32) - np.float32(sensor.black)
+    )
     if bayer:
         X = mosaic.demosaic(X, mosaic.tile(mosaic.BAYER, Z.shape)).astype(np.float32)
     if X.ndim == 3:
@@ -196,5 +204,7 @@ def as_sensor(sensor: Sensor) -> Sensor:
     full_well, read_noise, gain, bits, black = sensor
     positive = 0 < full_well < np.inf and 0 < gain < np.inf and 0 <= read_noise < np.inf
     if not (positive and bits in range(1, 17) and 0 <= black < 2**bits - 1):
-        raise ValueError(f"expected a well, a gain and 1 to 16 bits that hold the black level, got {sensor}")
+        raise ValueError(
+            f"expected a well, a gain and 1 to 16 bits that hold the black level, got {sensor}"
+        )
     return sensor

@@ -1,8 +1,8 @@
 """The `hdrlab` command: the library's verbs with files around them.
 
-Nothing is computed here. Chapters are imported inside the commands, so that `hdrlab --help` answers at once.
-Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; files are written whole or not
-at all.
+Nothing is computed here. Chapters are imported inside the commands, so that `hdrlab --help` answers
+at once. Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; files are
+written whole or not at all.
 """
 
 import ctypes
@@ -46,7 +46,10 @@ def run(arguments: Sequence[str] | None = None) -> None:
         said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
     except (ValueError, MemoryError) as error:
         said, code = str(error) or type(error).__name__, 2
-    except (RuntimeError, ImportError) as error:  # wrap what rises while a class, or a module of C, is made
+    except (
+        RuntimeError,
+        ImportError,
+    ) as error:  # wrap what rises while a class, or a module of C, is made
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
         said, code = "interrupted", 130

@@ -77,7 +77,9 @@ def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
     *_, page = overview.write(asked.out, course, found, counted, lost)
     if asked.moodle:
         rows = overview.marks_of(course, found, counted)
-        common.say("note", moodle.write(asked.out, asked.moodle, rows, course.roster, course.homework))
+        common.say(
+            "note", moodle.write(asked.out, asked.moodle, rows, course.roster, course.homework)
+        )
     return page, len(counted.points)
 
 
@@ -93,7 +95,10 @@ def graded(whole: Class, wanted: "Sequence[Piece]", out: Path) -> "list[Done]":
     if rest:
         with _executor(course, asked) as executor:
             journal.forget(folder, rest)
-            steps = (classroom.write_feedback(out, one) for one in journal.done_steps(rest, executor, folder))
+            steps = (
+                classroom.write_feedback(out, one)
+                for one in journal.done_steps(rest, executor, folder)
+            )
             done += common.progress(steps, course.homework.name, len(rest))
     return done
 
@@ -118,14 +123,20 @@ def _executor(course: "Course", asked: Any) -> "Executor":
     from hdrlab.course.classroom.executors import processes
     from hdrlab.course.sandbox import doctor
 
-    grader = classroom.Grader(course.homework, course.conditions, classroom.hidden(course.conditions.hidden))
+    grader = classroom.Grader(
+        course.homework, course.conditions, classroom.hidden(course.conditions.hidden)
+    )
     if asked.cluster is None:
-        found = doctor.examine(course.conditions.tier)  # tried once, and not missed by each submission
+        found = doctor.examine(
+            course.conditions.tier
+        )  # tried once, and not missed by each submission
         if not found.works:
             raise common.no_tier(found.says)
         return processes.Processes(grader.result, asked.jobs)
     if asked.jobs is not None:
-        raise ValueError("expected --jobs or --cluster: a cluster grades as many at a time as it has threads")
+        raise ValueError(
+            "expected --jobs or --cluster: a cluster grades as many at a time as it has threads"
+        )
     common.require("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
 
@@ -135,14 +146,24 @@ def _executor(course: "Course", asked: Any) -> "Executor":
 @common.command()
 @click.argument("results", type=grading.FOLDER)
 @grading.HOMEWORK
-@common.choice("--policy", ["replace", "never-lower", "only-listed"], help="Which new results are to count.")
-@click.option("--only", metavar="WHO", multiple=True, help="Of only-listed, a student or team. Repeatable.")
-@click.option("--requests", type=grading.FILE, multiple=True, help="CSV with student, task and words.")
+@common.choice(
+    "--policy", ["replace", "never-lower", "only-listed"], help="Which new results are to count."
+)
+@click.option(
+    "--only", metavar="WHO", multiple=True, help="Of only-listed, a student or team. Repeatable."
+)
+@click.option(
+    "--requests", type=grading.FILE, multiple=True, help="CSV with student, task and words."
+)
 @click.option("--why", default="", help="A sentence for the journal.")
-@click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
+@click.option(
+    "--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]"
+)
 @click.option("--cluster", metavar="ADDRESS", help="On this Dask cluster, tcp://HOST:8786.")
 @click.option("--apply", is_flag=True, help="Let it count, with a signed line in the journal.")
-def regrade(results: Path, requests: Sequence[Path], only: Sequence[str], policy: str, **how: Any) -> None:
+def regrade(
+    results: Path, requests: Sequence[Path], only: Sequence[str], policy: str, **how: Any
+) -> None:
     """Grade anew what the checks have changed of a class, and show who would move, by how much and why.
 
     RESULTS is what `hdrlab grade` has written of the class. Nothing in it changes before --apply.
@@ -174,12 +195,16 @@ def _as_graded(results: Path, how: dict[str, Any]) -> Class:
     """Return a class as it was graded, by the options of then but for those that are given."""
     file = results / "asked.json"
     if not file.is_file():
-        raise ValueError(f"{results}: expected the results of a class that `hdrlab grade` has graded")
+        raise ValueError(
+            f"{results}: expected the results of a class that `hdrlab grade` has graded"
+        )
     folder, said = json.loads(file.read_bytes())
     given = {name: value for name, value in how.items() if value is not None}
     context = grading.grade.make_context("grade", [folder], default_map=said)
     asked = SimpleNamespace(**context.params | given | {"out": results})
     # a class's own secret is never made anew: all inputs would be others
-    secret = plans.read_secret(asked.secret_file.resolve(strict=True))[0] if asked.secret_file else ""
+    secret = (
+        plans.read_secret(asked.secret_file.resolve(strict=True))[0] if asked.secret_file else ""
+    )
     conditions = plans.Conditions(asked.tier, "", secret, asked.hidden, asked.timeout)
     return class_of(conditions, asked)

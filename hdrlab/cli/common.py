@@ -22,11 +22,17 @@ OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the 
 OPERATORS = ["photograph", *catalogue.names("tonemap")]
 SUFFIXES = ".hdr, .exr, .pfm or .tif"
 PIXELS = 400_000  # of a map, on an even grid, by which its range is told
-MASK = click.option("--mask", metavar="RRGGBB", help="Exactly this colour is no picture (borders of scans).")
-CLEAN = click.option("--clean", is_flag=True, help="Repair even a map of which most is NaN or below 0.")
+MASK = click.option(
+    "--mask", metavar="RRGGBB", help="Exactly this colour is no picture (borders of scans)."
+)
+CLEAN = click.option(
+    "--clean", is_flag=True, help="Repair even a map of which most is NaN or below 0."
+)
 
 
-def choice(name: str, values: Sequence[str], default: str | None = None, help: str | None = None) -> Option:
+def choice(
+    name: str, values: Sequence[str], default: str | None = None, help: str | None = None
+) -> Option:
     """Return the option that takes one of some values, by default the first."""
     return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
 
@@ -60,7 +66,9 @@ class Group(click.Group):
     group_class = type
 
 
-@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
+@click.group(
+    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True}
+)
 @click.version_option(__version__, prog_name="hdrlab")
 def main() -> None:
     """High dynamic range imaging: photographs to a radiance map to a picture."""
@@ -89,7 +97,9 @@ def no_tier(reason: str) -> ValueError:
 
     helps = "; ".join(filter(None, (doctor.remedy(reason), "hdrlab doctor says more")))
     line = reason.strip().partition("\n")[0].rstrip(".")
-    other = "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
+    other = (
+        "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
+    )
     return ValueError(f"{line}; {helps}{other}")
 
 
@@ -113,7 +123,9 @@ def list_files(files: Iterable[Path]) -> None:
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
-    if not sys.stderr.isatty():  # where tqdm would say nothing, it takes a tenth of a second to import
+    if (
+        not sys.stderr.isatty()
+    ):  # where tqdm would say nothing, it takes a tenth of a second to import
         return items
     from tqdm import tqdm
 
@@ -123,7 +135,8 @@ def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iter
 def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
     """Yield `items`, while a terminal shows which of `names` is being made, and for how long.
 
-    A bar moves when an item is done; where there are few and each takes seconds, that looks like standstill.
+    A bar moves when an item is done; where there are few and each takes seconds, that looks like
+    standstill.
     """
     from hdrlab.cli.terminal import elapsed
 
@@ -145,11 +158,18 @@ def read_map(source: Path, clean: bool) -> Any:
 
     E, *counts = radiance.read_sanitized(source)
     unknown, infinite, _, black = counts
-    what = ("unknown pixels", "infinite values", "pixels with a negative channel", "pixels below black")
+    what = (
+        "unknown pixels",
+        "infinite values",
+        "pixels with a negative channel",
+        "pixels below black",
+    )
     said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
     pixels = E.shape[0] * E.shape[1]
     if not clean and 2 * (unknown + black + infinite / (E.size / pixels)) >= pixels:
-        raise ValueError(f"{source}: expected radiance, got {said} of {pixels} pixels; --clean repairs all")
+        raise ValueError(
+            f"{source}: expected radiance, got {said} of {pixels} pixels; --clean repairs all"
+        )
     if said:
         click.echo(f"note: {source}: cleaned {said}, of {pixels} pixels", err=True)
     elif clean:
@@ -163,7 +183,9 @@ def size(E: Any) -> str:
 
     every = max(1, int((E.shape[0] * E.shape[1] / PIXELS) ** 0.5))
     few = E[::every, ::every]
-    return f"{E.shape[1]} x {E.shape[0]}, " + (f"{decades(few):.1f} decades" if few.any() else "all black")
+    return f"{E.shape[1]} x {E.shape[0]}, " + (
+        f"{decades(few):.1f} decades" if few.any() else "all black"
+    )
 
 
 def agreement(spread: float) -> str:
@@ -180,7 +202,9 @@ def colour(text: str | None) -> tuple[int, int, int] | None:
     try:
         red, green, blue = bytes.fromhex(text.removeprefix("#"))
     except ValueError:
-        raise ValueError(f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}") from None
+        raise ValueError(
+            f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}"
+        ) from None
     return red, green, blue
 
 

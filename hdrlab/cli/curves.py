@@ -9,7 +9,9 @@ import click
 from hdrlab.cli import common
 from hdrlab.pipeline import catalogue
 
-METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
+METHODS = [
+    name for name in catalogue.names("response") if name != "linear"
+]  # which asks no photograph
 TIMES = "exif|estimate|FILE"
 SUFFIXES = ".csv or .m (pfstools)"
 
@@ -19,7 +21,9 @@ class Response(click.ParamType):  # type: ignore[type-arg]  # it takes arguments
 
     name = "NAME|FILE"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | Path:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str | Path:
         """Return a method's name as it is, and anything with the suffix of a curve as a path."""
         names = ["auto", *catalogue.names("response")]
         if value in names:
@@ -28,7 +32,9 @@ class Response(click.ParamType):  # type: ignore[type-arg]  # it takes arguments
 
         if str(value).lower().endswith(tuple(response_files.FORMS)):
             return Path(value)
-        self.fail(f"expected one of {', '.join(names)}, or a file: {SUFFIXES}; got {value!r}", param, ctx)
+        self.fail(
+            f"expected one of {', '.join(names)}, or a file: {SUFFIXES}; got {value!r}", param, ctx
+        )
 
 
 def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
@@ -43,13 +49,21 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 
 @common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
-@click.option("-o", "--out", multiple=True, type=common.OUT, help=f"Curve to write: {SUFFIXES}. Repeatable.")
-@click.option("--times", metavar=TIMES, default="exif", help="Exposure times: EXIF, corrected, or a list.")
-@click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
+@click.option(
+    "-o", "--out", multiple=True, type=common.OUT, help=f"Curve to write: {SUFFIXES}. Repeatable."
+)
+@click.option(
+    "--times", metavar=TIMES, default="exif", help="Exposure times: EXIF, corrected, or a list."
+)
+@click.option(
+    "--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too."
+)
 @common.MASK
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
 @common.choice("--response", METHODS, "debevec")
-@click.option("--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg.")
+@click.option(
+    "--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg."
+)
 def calibrate(asked: Any) -> None:
     """Find the camera's response in PHOTOS (files, or one folder), and how far it is to be trusted.
 
@@ -62,7 +76,9 @@ def calibrate(asked: Any) -> None:
     from hdrlab.show.plots import calibration
 
     for path in asked.out:
-        response_files.suffix_of(path)  # an unknown suffix is better known before the work than after it
+        response_files.suffix_of(
+            path
+        )  # an unknown suffix is better known before the work than after it
     if asked.plot:
         calibration.check_suffix(asked.plot)
     bracket = read_bracket(asked.photos, asked.times, asked.mask, None)
@@ -72,8 +88,12 @@ def calibrate(asked: Any) -> None:
     state = next(one for one in steps if one.stage == ready)
     common.say("note", (*state.notes, *state.doubts))
     # an aligned bracket under the plausible response that the method finds
-    g = recovery.find_validated_method(asked.response)(*state.bracket[:2], valid=state.bracket.valid)
-    found = pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
+    g = recovery.find_validated_method(asked.response)(
+        *state.bracket[:2], valid=state.bracket.valid
+    )
+    found = pipeline.assemble(
+        state.bracket, align="none", response=lambda *_, **__: g, times="stated"
+    )
     common.say("warning", found.doubts)
     g, medians, (_, seconds, names, *_) = found.g, found.medians, found.bracket
     click.echo(f"{asked.response}, from {len(seconds)} photographs")
@@ -82,5 +102,7 @@ def calibrate(asked: Any) -> None:
         response_files.write_curve(path, g)
         click.echo(path)
     if asked.plot:
-        calibration.write_plot(asked.plot, calibration.calibration(g, medians, seconds, title=asked.response))
+        calibration.write_plot(
+            asked.plot, calibration.calibration(g, medians, seconds, title=asked.response)
+        )
         click.echo(asked.plot)

@@ -13,17 +13,25 @@ if TYPE_CHECKING:
 
 FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
 FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
-PLAN = click.option("--plan", type=FILE, help="A plan of your own instead of the package's plan.toml.")
-HOMEWORK = click.option("--homework", metavar="NAME", help="Such as hw2; by default the file's name says it.")
+PLAN = click.option(
+    "--plan", type=FILE, help="A plan of your own instead of the package's plan.toml."
+)
+HOMEWORK = click.option(
+    "--homework", metavar="NAME", help="Such as hw2; by default the file's name says it."
+)
 
-SECRET = click.option("--secret-file", type=common.FILE, help="Draws students' inputs; made on first use.")
+SECRET = click.option(
+    "--secret-file", type=common.FILE, help="Draws students' inputs; made on first use."
+)
 
 
 @common.command()
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
 @click.option("--task", metavar="NAME", help="Only this one, such as gsolve.")
-@click.option("--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold.")
+@click.option(
+    "--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold."
+)
 @click.option("--page", type=common.OUT, help="The same as a page with pictures: a .html file.")
 @PLAN
 def check(asked: Any) -> None:
@@ -50,38 +58,60 @@ def check(asked: Any) -> None:
 @common.command()
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
-@common.choice("--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor.")
+@common.choice(
+    "--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor."
+)
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
 @click.option("-o", "--out", type=common.OUT, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
 @SECRET
-@click.option("--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for an answer, see above.")
-@click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
-@click.option("--received", type=FILE, help="Of a class: CSV with file and received, for files' own times.")
-@click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
-@click.option("--moodle", type=FILE, help="Of a class: the assignment's grading worksheet, to be filled in.")
-@click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
+@click.option(
+    "--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for an answer, see above."
+)
+@click.option(
+    "--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted."
+)
+@click.option(
+    "--received", type=FILE, help="Of a class: CSV with file and received, for files' own times."
+)
+@click.option(
+    "--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable."
+)
+@click.option(
+    "--moodle", type=FILE, help="Of a class: the assignment's grading worksheet, to be filled in."
+)
+@click.option(
+    "--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable."
+)
 @click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
 @click.option("--regrade", is_flag=True, help="Of a class, anew what was graded before.")
-@click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
-@click.option("--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786.")
+@click.option(
+    "--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]"
+)
+@click.option(
+    "--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786."
+)
 @PLAN
 def grade(asked: Any) -> None:
     """Grade SUBMISSION, a notebook or a Python file, and write the results in every form.
 
-    Its code never runs in the process that scores it. A tier that this machine cannot give is an error. An
-    answer may take the seconds of --timeout, a check 3 times and a submission 20 times as many.
+    Its code never runs in the process that scores it. A tier that this machine cannot give is an
+    error. An answer may take the seconds of --timeout, a check 3 times and a submission 20 times as
+    many.
 
     The file of --secret-file holds a line that nobody else knows, and is not to be lost.
 
-    A folder is a class: with --roster, every submission in it is graded, several at a time, and a gradebook
-    and a page about the class are written. Stopped at any moment, the next run finishes the rest.
+    A folder is a class: with --roster, every submission in it is graded, several at a time, and a
+    gradebook and a page about the class are written. Stopped at any moment, the next run finishes
+    the rest.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
     if asked.student and asked.secret_file is None:
-        raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
+        raise ValueError(
+            "expected --secret-file with --student: else anybody could draw the same inputs"
+        )
     secret, note = secret_of(asked.secret_file)
     conditions = plans.Conditions(asked.tier, asked.student, secret, asked.hidden, asked.timeout)
     if asked.submission.is_dir():
@@ -133,7 +163,10 @@ def secret_of(file: Path | None) -> tuple[str, str]:
     if file is None:
         return "", "note: for practice: without --secret-file the inputs are public"
     secret, made = plans.read_secret(file)
-    return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
+    return (
+        secret,
+        f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made,
+    )
 
 
 def _graded(submission: Path, homework: plans.Homework, conditions: plans.Conditions) -> "Result":

@@ -25,14 +25,16 @@ def demo(out: Path, seed: int, real: bool) -> None:
 
 
 @common.command()
-@click.option("--folder", type=common.FILE, default="hdrlab-course", help="Your copy of the notebooks.")
+@click.option(
+    "--folder", type=common.FILE, default="hdrlab-course", help="Your copy of the notebooks."
+)
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks and do not start JupyterLab.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED)
 def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
 
-    What you changed in your copy stays. JupyterLab saves what the widgets show, unless your own settings say
-    otherwise. OPTIONS go to JupyterLab.
+    What you changed in your copy stays. JupyterLab saves what the widgets show, unless your own
+    settings say otherwise. OPTIONS go to JupyterLab.
     """
     from hdrlab.course.material import materials
 
@@ -42,21 +44,32 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
         from jupyterlab.labapp import LabApp
 
         own = os.environ.get("JUPYTER_CONFIG_PATH")
-        os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(filter(None, [str(materials.JUPYTER), own]))
+        os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(
+            filter(None, [str(materials.JUPYTER), own])
+        )
         where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
         LabApp.launch_instance([*where, *options])
 
 
 @common.command()
-@click.option("--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before.")
-@click.option("--notebooks", multiple=True, type=grading.FILE, help="One in place of all. Repeatable.")
-@click.option("--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Runs at a time.")
-@click.option("--address", default="", help="Where it will stand, https:// and all, for a link's preview.")
+@click.option(
+    "--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before."
+)
+@click.option(
+    "--notebooks", multiple=True, type=grading.FILE, help="One in place of all. Repeatable."
+)
+@click.option(
+    "--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Runs at a time."
+)
+@click.option(
+    "--address", default="", help="Where it will stand, https:// and all, for a link's preview."
+)
 def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
     """Make a site of the course: notebooks that were run, guides, and the reference.
 
-    Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any web server.
-    What has been run is kept beside it, in .NAME.cache, so that the next build runs only what has changed.
+    Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any
+    web server. What has been run is kept beside it, in .NAME.cache, so that the next build runs
+    only what has changed.
     """
     common.require("site", NEEDS)
     from hdrlab.cli.terminal import elapsed
@@ -66,7 +79,9 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
     if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
-        raise ValueError(f"expected notebooks of different names, and none called {pages.FRONT.name}")
+        raise ValueError(
+            f"expected notebooks of different names, and none called {pages.FRONT.name}"
+        )
     os.getcwd()  # Jupyter needs one: where it is gone, nothing is begun
     cache = pages.claim(out)
     running = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
@@ -89,6 +104,8 @@ def _commands() -> str:
 
     text = (pages.PAGES / "commands.md").read_text("utf-8")
     for name, command in sorted(common.main.commands.items()):
-        context = click.Context(command, info_name=f"hdrlab {name}", terminal_width=88, max_content_width=88)
+        context = click.Context(
+            command, info_name=f"hdrlab {name}", terminal_width=88, max_content_width=88
+        )
         text += f"\n## {name}\n\n```text\n{command.get_help(context)}\n```\n"
     return text

@@ -16,17 +16,24 @@ def course() -> None:
 
 
 @course.command()
-@click.option("--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework.")
+@click.option(
+    "--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework."
+)
 @click.option("--out", type=common.OUT, default="assignments", help="Folder for the handouts.")
-@click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
+@click.option(
+    "--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it."
+)
 @click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
-@click.option("--variants", type=FILE, metavar="ROSTER", help="A sheet for each team of this class.")
+@click.option(
+    "--variants", type=FILE, metavar="ROSTER", help="A sheet for each team of this class."
+)
 @SECRET
 @PLAN
 def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_class: Any) -> None:
     """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates.
 
-    With --variants, sheets of which the plan's parameters are drawn by --secret-file, a folder for each team.
+    With --variants, sheets of which the plan's parameters are drawn by --secret-file, a folder for
+    each team.
     """
     from hdrlab.course.classroom import roster
     from hdrlab.course.material import handouts, solutions as filled
@@ -39,7 +46,9 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_clas
         if file is not None:
             secret, note = secret_of(of_class["secret_file"])
             if not secret:
-                raise ValueError("expected --secret-file with --variants, which draws them, as for grade")
+                raise ValueError(
+                    "expected --secret-file with --variants, which draws them, as for grade"
+                )
             click.echo(note, nl=bool(note), err=True)
             teams = roster.read(file).teams()
             made = filled.build_for_teams_steps(plan, sources, teams, secret, out, solutions)
@@ -49,9 +58,15 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_clas
 
 
 @course.command()
-@click.option("--nbgrader", type=common.OUT, metavar="DIR", help="A course for nbgrader, in this folder.")
-@click.option("--gradescope", type=common.OUT, metavar="DIR", help="An autograder zip for each homework.")
-@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
+@click.option(
+    "--nbgrader", type=common.OUT, metavar="DIR", help="A course for nbgrader, in this folder."
+)
+@click.option(
+    "--gradescope", type=common.OUT, metavar="DIR", help="An autograder zip for each homework."
+)
+@click.option(
+    "--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope."
+)
 @SECRET
 @PLAN
 def export(asked: Any) -> None:
@@ -73,7 +88,9 @@ def export(asked: Any) -> None:
 
 @course.command("new-task")
 @click.argument("task")
-@click.option("--folder", type=common.FILE, default="our-tasks", help="Its place, beside the package.")
+@click.option(
+    "--folder", type=common.FILE, default="our-tasks", help="Its place, beside the package."
+)
 @click.option("--homework", default="extra", help="The homework that it belongs to.")
 def new_task(task: str, folder: Path, homework: str) -> None:
     """Begin a task of your own: an example that works, whole, to be changed file by file."""
@@ -101,7 +118,9 @@ def toy(folder: Path) -> None:
     from hdrlab.course.sandbox import doctor
 
     made = classes.write(folder)
-    click.echo(f"{folder / 'README.md'}: what each of {len(made)} submissions of {classes.HOMEWORK} is")
+    click.echo(
+        f"{folder / 'README.md'}: what each of {len(made)} submissions of {classes.HOMEWORK} is"
+    )
     command, strict = classes.COMMAND.format(folder=folder), doctor.examine("strict")
     if not strict.works:
         click.echo(f"note: {common.no_tier(strict.says)}", err=True)

@@ -16,28 +16,36 @@ WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see above.")
 
 @common.command()
 @click.argument("source", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl.")
+@click.option(
+    "-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl."
+)
 @common.choice("--to", TO, help="All but picture light up on a bright screen, see above.")
 @click.option("--headroom", default=8.0, help="Of a bright screen: the brightest light over white.")
 @common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see above.")
 @common.operator("--operator")
-@click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
-@click.option("--saturation", type=float, help="1: the colours' ratios, 0: gray.  [default: the operator's]")
+@click.option(
+    "--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36."
+)
+@click.option(
+    "--saturation", type=float, help="1: the colours' ratios, 0: gray.  [default: the operator's]"
+)
 @WAY
 @common.CLEAN
 def tonemap(asked: Any) -> None:
     """Make a picture of the radiance map SOURCE.
 
-    Bright colours may want more of a channel than a display has. By --way hue they become a little darker and
-    a little paler, and keep their hue. By --way ratio the channel is clipped: the picture stays colourful,
-    but a bright blue turns toward cyan.
+    Bright colours may want more of a channel than a display has. By --way hue they become a little
+    darker and a little paler, and keep their hue. By --way ratio the channel is clipped: the
+    picture stays colourful, but a bright blue turns toward cyan.
 
-    An Ultra HDR picture (ISO 21496-1) is the picture for any program, with gains that lead from it to the
-    map, up to --headroom, for screens that can be brighter than white. Such a .jpg can be SOURCE as well.
+    An Ultra HDR picture (ISO 21496-1) is the picture for any program, with gains that lead from it
+    to the map, up to --headroom, for screens that can be brighter than white. Such a .jpg can be
+    SOURCE as well.
 
-    By --to png (16 bits) and avif (10 bits) the light of the map itself is coded by PQ (SMPTE ST 2084), with
-    white at 203 cd/m2 and as bright as the operator made it; a program that knows no PQ shows it pale. By
-    --to jxl it is kept for the archive, as floats without loss or headroom. A suffix .avif or .jxl is enough.
+    By --to png (16 bits) and avif (10 bits) the light of the map itself is coded by PQ (SMPTE ST
+    2084), with white at 203 cd/m2 and as bright as the operator made it; a program that knows no PQ
+    shows it pale. By --to jxl it is kept for the archive, as floats without loss or headroom. A
+    suffix .avif or .jxl is enough.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
@@ -63,7 +71,9 @@ def tonemap(asked: Any) -> None:
         else:
             light = screens.light(made.picture, E, headroom=asked.headroom)
             v = screens.signal(light, primaries=asked.primaries)
-            (codes.write_png if to == "png" else codes.write_avif)(asked.out, v, primaries=asked.primaries)
+            (codes.write_png if to == "png" else codes.write_avif)(
+                asked.out, v, primaries=asked.primaries
+            )
     click.echo(f"{asked.out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 
@@ -79,15 +89,21 @@ def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, A
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Contact sheet to write: .png.")
-@click.option("--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]")
-@click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see above.")
+@click.option(
+    "--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]"
+)
+@click.option(
+    "--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see above."
+)
 @WAY
 @common.CLEAN
-def compare(source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool) -> None:
+def compare(
+    source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
+) -> None:
     """Make a contact sheet of the radiance map SOURCE under every operator, with time and quality.
 
-    The operators see the map at up to --size pixels along a side: time and quality are of that size. For
-    --way see `hdrlab tonemap --help`.
+    The operators see the map at up to --size pixels along a side: time and quality are of that
+    size. For --way see `hdrlab tonemap --help`.
     """
     from hdrlab.show.pages import contact, sheet
     from hdrlab.show.plots import figures
@@ -103,7 +119,9 @@ def compare(source: Path, out: Path, operators: str | None, size: int, way: str,
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.argument("target", type=common.OUT)
-@click.option("--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504.")
+@click.option(
+    "--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504."
+)
 @common.CLEAN
 def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
     """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr, .pfm or .tif."""

@@ -21,37 +21,62 @@ FUSION = "the picture is an exposure fusion of the photographs"
 
 @common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help=f"Radiance map: {common.SUFFIXES}.")
-@click.option("--times", metavar="exif|stated|estimate|FILE", default="exif", help="Exposure, see above.")
+@click.option(
+    "-o", "--out", required=True, type=common.OUT, help=f"Radiance map: {common.SUFFIXES}."
+)
+@click.option(
+    "--times", metavar="exif|stated|estimate|FILE", default="exif", help="Exposure, see above."
+)
 @click.option("--keep-times", is_flag=True, help="Take the times of a FILE as they are, too.")
-@click.option("--stops", type=click.FloatRange(0, min_open=True), help="No times, but frames so far apart.")
+@click.option(
+    "--stops", type=click.FloatRange(0, min_open=True), help="No times, but frames so far apart."
+)
 @common.MASK
-@common.choice("--align", ["auto", *catalogue.names("align"), "none"], help="What may move, see above.")
-@click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
+@common.choice(
+    "--align", ["auto", *catalogue.names("align"), "none"], help="What may move, see above."
+)
+@click.option(
+    "--response", type=curves.Response(), default="auto", help="A method, or a saved curve."
+)
 @common.choice("--weight", ["gaussian", "hat", "flat", "snr"])
 @common.choice("--merge", ["log", "likelihood", "mean", "shot"])
-@common.choice("--ghosts", ["none", "auto", "regions", "reference"], "auto", help="What moved, see above.")
-@common.choice("--flare", ["none", "glare"], help="Remove veiling glare, the light that the lens scattered.")
-@click.option("--calibrate", metavar="X,Y=CD", help="What a meter read at a pixel, cd/m^2: the map's unit.")
+@common.choice(
+    "--ghosts", ["none", "auto", "regions", "reference"], "auto", help="What moved, see above."
+)
+@common.choice(
+    "--flare", ["none", "glare"], help="Remove veiling glare, the light that the lens scattered."
+)
+@click.option(
+    "--calibrate", metavar="X,Y=CD", help="What a meter read at a pixel, cd/m^2: the map's unit."
+)
 @common.operator("--tonemap")
-@click.option("--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif.")
-@click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
-@click.option("--uncertainty", type=common.OUT, help="Map and standard deviation as two layers: .exr.")
-@click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")
+@click.option(
+    "--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
+)
+@click.option(
+    "--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture."
+)
+@click.option(
+    "--uncertainty", type=common.OUT, help="Map and standard deviation as two layers: .exr."
+)
+@click.option(
+    "--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too."
+)
 def assemble(asked: Any) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
-    Exposure comes from EXIF (time, ISO, f-number), or from a list in the folder. The pixels correct its times
-    (--times exif), or leave them as they are (stated), or are asked for all of them (estimate). A FILE is a
-    list with lines such as `a.jpg 1/60`; one that is called exif or estimate is reached as ./exif.
+    Exposure comes from EXIF (time, ISO, f-number), or from a list in the folder. The pixels correct
+    its times (--times exif), or leave them as they are (stated), or are asked for all of them
+    (estimate). A FILE is a list with lines such as `a.jpg 1/60`; one that is called exif or
+    estimate is reached as ./exif.
 
-    By --align mtb the photographs are shifted onto each other; cerman rotates them, too, and homography tilts
-    them; auto is mtb, and more where that is too little. By --ghosts regions, what moved is taken region by
-    region from the photograph that exposed it best, with auto only if much moved; by reference, all of it
-    from the middle photograph.
+    By --align mtb the photographs are shifted onto each other; cerman rotates them, too, and
+    homography tilts them; auto is mtb, and more where that is too little. By --ghosts regions, what
+    moved is taken region by region from the photograph that exposed it best, with auto only if much
+    moved; by reference, all of it from the middle photograph.
 
-    The map is written even where it is doubtful: then warnings say why and what to do, the report and the
-    header of .hdr and .exr repeat them, and --strict makes them an exit code.
+    The map is written even where it is doubtful: then warnings say why and what to do, the report
+    and the header of .hdr and .exr repeat them, and --strict makes them an exit code.
     """
     from hdrlab import pipeline
     from hdrlab.io import photos as files, radiance
@@ -68,7 +93,9 @@ def assemble(asked: Any) -> None:
     methods = {stage: getattr(asked, stage) for stage in ("align", "weight", "ghosts", "flare")}
     methods |= {"method": asked.merge, "times": "estimate" if asked.times == "estimate" else kept}
     knobs = {"response": recover, "release": not (asked.report or asked.uncertainty)}
-    assembly = _assembled(read_bracket(asked.photos, asked.times, asked.mask, asked.stops), methods | knobs)
+    assembly = _assembled(
+        read_bracket(asked.photos, asked.times, asked.mask, asked.stops), methods | knobs
+    )
     if asked.uncertainty:
         assembly = pipeline.measure_deviation(assembly)
     if metered:
@@ -114,7 +141,9 @@ def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
     return pictures.Developed(fused, FUSION)
 
 
-def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None) -> "Bracket":
+def read_bracket(
+    photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None
+) -> "Bracket":
     """Return the bracket of PHOTOS with times by --times or --stops; all are 1 where there are none."""
     from hdrlab import pipeline
     from hdrlab.io import album, photos as files
@@ -156,7 +185,9 @@ def _shorten(doubts: tuple[str, ...], most: int = 3) -> tuple[str, ...]:
     """Return the doubts in at most so many lines; the last one counts those that are left out."""
     if len(doubts) <= most:
         return doubts
-    return *doubts[: most - 1], f"{len(doubts) - most + 1} more doubts stand in the report (--report FOLDER)"
+    return *doubts[
+        : most - 1
+    ], f"{len(doubts) - most + 1} more doubts stand in the report (--report FOLDER)"
 
 
 def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":

@@ -11,12 +11,14 @@ PROJECT = click.argument("project", type=common.FILE, default=".")
 
 @common.command()
 @PROJECT
-@click.option("--example", is_flag=True, help="Write report.md with the headings that are asked for.")
+@click.option(
+    "--example", is_flag=True, help="Write report.md with the headings that are asked for."
+)
 def report(project: Path, example: bool) -> None:
     """Make report.html of PROJECT's report.md or report.ipynb.
 
-    The artifact (artifact.jpg), the bracket (photographs/), the response (response.csv) and the radiance map
-    (map.hdr) are placed by themselves. The page travels alone.
+    The artifact (artifact.jpg), the bracket (photographs/), the response (response.csv) and the
+    radiance map (map.hdr) are placed by themselves. The page travels alone.
     """
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course.projects import project as projects, report as reports
@@ -37,30 +39,45 @@ def report(project: Path, example: bool) -> None:
 @common.command()
 @PROJECT
 @click.option("-o", "--out", type=common.OUT, default="submission.zip", help="The archive.")
-@click.option("--keep-metadata", is_flag=True, help="Leave location and serial numbers in the photographs.")
+@click.option(
+    "--keep-metadata", is_flag=True, help="Leave location and serial numbers in the photographs."
+)
 @click.option("--force", is_flag=True, help="Make the archive though something is missing.")
 def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     """Look at PROJECT, say what is missing, and make one archive of it.
 
-    Pictures go in without location, serial numbers and the notes of their makers; their pixels and exposures
-    stay as they are.
+    Pictures go in without location, serial numbers and the notes of their makers; their pixels and
+    exposures stay as they are.
     """
     from hdrlab.course.projects import project as projects, review, submit as handing
 
     if out.exists() and not handing.is_archive(out):
-        raise ValueError(f"{out}: expected a new name or an archive of before, this is another file")
+        raise ValueError(
+            f"{out}: expected a new name or an archive of before, this is another file"
+        )
     found = projects.look(project)
-    found = found._replace(files=tuple(one for one in found.files if one.resolve() != out.resolve()))
+    found = found._replace(
+        files=tuple(one for one in found.files if one.resolve() != out.resolve())
+    )
     findings = review.review(found)
     for part, good, said in findings:
         indented = said.replace("\n", "\n" + " " * 24).rstrip()
         click.echo(f"{'  ok     ' if good else '  MISSING'}  {part:<12} {indented}")
     missing = sum(not one.good for one in findings)
     if missing and not (force and found.artifact):
-        raise ValueError(f"{missing} to mend; nothing was written (--force makes the archive as it is)")
-    files = list(common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files)))
-    digest, removed = handing.write(found, out, files), [one.removed for one in files if one.removed]
+        raise ValueError(
+            f"{missing} to mend; nothing was written (--force makes the archive as it is)"
+        )
+    files = list(
+        common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files))
+    )
+    digest, removed = (
+        handing.write(found, out, files),
+        [one.removed for one in files if one.removed],
+    )
     if removed:
-        click.echo(f"left out of {len(removed)} pictures: {', '.join(sorted(set().union(*removed)))}")
+        click.echo(
+            f"left out of {len(removed)} pictures: {', '.join(sorted(set().union(*removed)))}"
+        )
     common.say("warning", [f"{one.name}: {one.remains}" for one in files if one.remains])
     click.echo(f"{out}: {len(files)} files, {out.stat().st_size / 1e6:.1f} MB, {digest[:12]}")

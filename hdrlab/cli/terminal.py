@@ -20,7 +20,9 @@ def visible(text: object) -> str:
     a \x1b[2J of a title
     """
     letters = str(text)[: LONGEST_MESSAGE + 1]
-    shown = "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in letters)
+    shown = "".join(
+        one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in letters
+    )
     return shown if len(letters) <= LONGEST_MESSAGE else f"{shown[:LONGEST_MESSAGE]} ..."
 
 

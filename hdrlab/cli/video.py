@@ -12,24 +12,34 @@ from hdrlab.cli import common, curves
 
 @common.command()
 @click.argument("frames", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help="Film to write, .gif or .mp4; see above.")
-@click.option("--times", required=True, metavar="SECONDS,...", help="Exposure times of a turn: 1/1000,1/60.")
-@click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
-@click.option("--rate", type=float, default=25.0, help="Frames a second of the film that is written.")
+@click.option(
+    "-o", "--out", required=True, type=common.OUT, help="Film to write, .gif or .mp4; see above."
+)
+@click.option(
+    "--times", required=True, metavar="SECONDS,...", help="Exposure times of a turn: 1/1000,1/60."
+)
+@click.option(
+    "--response", type=curves.Response(), default="auto", help="A method, or a saved curve."
+)
+@click.option(
+    "--rate", type=float, default=25.0, help="Frames a second of the film that is written."
+)
 @click.option("--key", type=float, default=0.18, help="What the log average of the frames becomes.")
-@click.option("--span", type=click.IntRange(0), default=1, help="Frames before and after to adapt to, too.")
+@click.option(
+    "--span", type=click.IntRange(0), default=1, help="Frames before and after to adapt to, too."
+)
 def video(asked: Any) -> None:
     """Make a film of high dynamic range out of FRAMES whose exposures take turns.
 
     FRAMES is a folder of photographs, sorted by name, or a film, which wants the extra `video`. The
     first frame has the first of --times, the next one the second, and so on in turns.
 
-    Each frame gets from its neighbours what its own exposure lacks, brought along the motion between them.
-    An --out of .gif or .mp4 is tone-mapped; a name without a suffix becomes a folder of radiance maps,
-    0001.exr and so on.
+    Each frame gets from its neighbours what its own exposure lacks, brought along the motion
+    between them. An --out of .gif or .mp4 is tone-mapped; a name without a suffix becomes a folder
+    of radiance maps, 0001.exr and so on.
 
-    The response is found in the frames of the first turn (auto: in the space of measured curves), which
-    should show nearly the same. Better is a curve that `hdrlab calibrate` has saved.
+    The response is found in the frames of the first turn (auto: in the space of measured curves),
+    which should show nearly the same. Better is a curve that `hdrlab calibrate` has saved.
     """
     from hdrlab.beyond import video as merging
     from hdrlab.io import sequence
@@ -43,7 +53,9 @@ def video(asked: Any) -> None:
     steps = merging.merge_steps(chain(begun, film), turn, g)
     maps = (state.E for state in common.progress(steps, "merging", count))
     if asked.out.suffix:
-        written = sequence.write(asked.out, pictures(maps, key=asked.key, span=asked.span), rate=asked.rate)
+        written = sequence.write(
+            asked.out, pictures(maps, key=asked.key, span=asked.span), rate=asked.rate
+        )
     else:
         written = sequence.write_maps(asked.out, maps)
     click.echo(f"{asked.out}: {written} frames, {begun[0].shape[1]} x {begun[0].shape[0]}")

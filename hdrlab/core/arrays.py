@@ -29,7 +29,11 @@ LARGEST_LN_EXPOSURE = 80
 
 def hidden(array: object) -> str:
     """Return what keeps the values from being levels: a mask, or the palette of a Pillow picture; else ""."""
-    return "a palette" if getattr(array, "mode", "") == "P" else "some of it masked" * np.ma.is_masked(array)
+    return (
+        "a palette"
+        if getattr(array, "mode", "") == "P"
+        else "some of it masked" * np.ma.is_masked(array)
+    )
 
 
 def describe(array: ArrayLike) -> str:
@@ -37,7 +41,9 @@ def describe(array: ArrayLike) -> str:
     array, masked = np.asarray(array), np.ma.is_masked(array)
     if array.size == 0 or array.dtype.kind not in "biuf" or masked:
         return f"shape {array.shape}, dtype {array.dtype}" + ", some of it masked" * masked
-    return f"shape {array.shape}, dtype {array.dtype}, values {array.min():.6g} to {array.max():.6g}"
+    return (
+        f"shape {array.shape}, dtype {array.dtype}, values {array.min():.6g} to {array.max():.6g}"
+    )
 
 
 def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
@@ -45,14 +51,25 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     if not isinstance(images, np.ndarray):
         given = list(images) if isinstance(images, Iterable) else [images]
         frames = list(map(np.asanyarray, given))
-        kinds = {f"{frame.shape} {frame.dtype}" for frame in frames} | {*filter(None, map(hidden, given))}
-        # np.stack would take 8 and 16 bits together, and make the former nearly black; and it forgets masks
+        kinds = {f"{frame.shape} {frame.dtype}" for frame in frames} | {
+            *filter(None, map(hidden, given))
+        }
+        # np.stack would take 8 and 16 bits together, and make the former nearly black; and it
+        # forgets masks
         if len(kinds) > 1:
             got = ", ".join(sorted(kinds))
-            raise ValueError(f"expected frames of one size and type, no mask and no palette, got {got}")
+            raise ValueError(
+                f"expected frames of one size and type, no mask and no palette, got {got}"
+            )
         images = np.stack(frames) if frames else np.empty(0)
-    if images.ndim not in (3, 4) or (images.ndim == 4 and images.shape[-1] != 3) or 0 in images.shape:
-        raise ValueError(f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}")
+    if (
+        images.ndim not in (3, 4)
+        or (images.ndim == 4 and images.shape[-1] != 3)
+        or 0 in images.shape
+    ):
+        raise ValueError(
+            f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}"
+        )
     if images.dtype not in (np.uint8, np.uint16) or np.ma.is_masked(images):
         raise ValueError(f"expected images of uint8 or uint16, got {describe(images)}")
     return np.asarray(images)
@@ -66,13 +83,19 @@ def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.f
     >>> as_times([0.5, 1], 2).tolist()
     [0.5, 1.0]
     """
-    if np.shape(times) != (count,) or np.asarray(times).dtype.kind not in "biufO" or np.ma.is_masked(times):
+    if (
+        np.shape(times) != (count,)
+        or np.asarray(times).dtype.kind not in "biufO"
+        or np.ma.is_masked(times)
+    ):
         raise ValueError(f"expected {count} exposure times, one per image, got {describe(times)}")
     checked = np.asarray(times, dtype=np.float64)
     if not np.all(np.isfinite(checked) & (checked > 0)):
         raise ValueError(f"expected positive exposure times in seconds, got {checked.tolist()}")
     if len(np.unique(checked)) < distinct:
-        raise ValueError(f"expected at least {distinct} different exposure times, got {checked.tolist()} s")
+        raise ValueError(
+            f"expected at least {distinct} different exposure times, got {checked.tolist()} s"
+        )
     return checked
 
 
@@ -106,7 +129,9 @@ def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
     Z, why = np.asarray(picture), hidden(picture)
     if why or Z.dtype != np.uint8 or Z.ndim < 2 or Z.shape[2:] not in ((), (3,)) or not Z.size:
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}")
+        raise ValueError(
+            f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}"
+        )
     return Z
 
 
@@ -117,10 +142,14 @@ def _finite(array: Array, what: str) -> NDArray[np.float32]:
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
         array = np.asarray(array).astype(np.float32, copy=False)
     # one pass tells it in most cases: infinity, NaN and what has a minus have the largest bits
-    if array.view(np.uint32).max() >= 0x7F800000 and not (array.min() >= 0 and array.max() < np.inf):
+    if array.view(np.uint32).max() >= 0x7F800000 and not (
+        array.min() >= 0 and array.max() < np.inf
+    ):
         wrong = map(np.count_nonzero, (np.isnan(array), np.isinf(array), array < 0))
         counts = "{} NaN, {} infinite and {} negative values".format(*wrong)
-        raise ValueError(f"expected finite {what} that is not negative, got {counts} in shape {array.shape}")
+        raise ValueError(
+            f"expected finite {what} that is not negative, got {counts} in shape {array.shape}"
+        )
     return array
 
 
@@ -131,7 +160,11 @@ def levels(images: Array) -> int:
 
 def to_256(images: Array) -> NDArray[np.uint8]:
     """Return the images at 256 levels: 16-bit level z becomes round(z / 257)."""
-    return images if images.dtype == np.uint8 else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
+    return (
+        images
+        if images.dtype == np.uint8
+        else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
+    )
 
 
 def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
@@ -144,7 +177,9 @@ def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
         raise ValueError(f"expected a response of {n} levels, or of 256, got {describe(g)}")
     if not np.all(table[-1] > table[0]) or np.abs(table).max() > LARGEST_LN_EXPOSURE:
         most = LARGEST_LN_EXPOSURE
-        raise ValueError(f"expected ln exposures that rise, from -{most} to {most}, got {describe(table)}")
+        raise ValueError(
+            f"expected ln exposures that rise, from -{most} to {most}, got {describe(table)}"
+        )
     return np.broadcast_to(table, (n, channels))
 
 
@@ -158,7 +193,9 @@ def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
         raise ValueError(f"expected a table of numbers, all of them known, got {describe(given)}")
     array = np.asarray(given, dtype=np.float64)
     if array.ndim not in (1, 2) or len(array) < 2 or not np.all(np.isfinite(array)):
-        raise ValueError(f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}")
+        raise ValueError(
+            f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}"
+        )
     if len(array) == n:
         return array
     at, own = np.linspace(0, 1, n), np.linspace(0, 1, len(array))

@@ -20,7 +20,8 @@ class Bracket(NamedTuple):
     names : P strings, where each photograph came from
     valid : (P, H, W) bool, or None where every pixel is a photograph's; False at pixels that are
         not (the border of a registered scan)
-    linear : True where the values are proportional to exposure (RAW), so that there is no response to recover
+    linear : True where the values are proportional to exposure (RAW), so that there is no response
+        to recover
     """
 
     images: Array
@@ -43,7 +44,8 @@ def bracket(
     Raises
     ------
     ValueError
-        For images, times, names or masks that do not fit together; it says what was expected and what came.
+        For images, times, names or masks that do not fit together; it says what was expected and
+        what came.
 
     Examples
     --------
@@ -53,7 +55,9 @@ def bracket(
     """
     images = as_stack(images)
     times = as_times(times, len(images))
-    names = tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
+    names = (
+        tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
+    )
     if len(names) != len(images):
         raise ValueError(f"expected {len(images)} names, one per image, got {len(names)}")
     mask, order = as_mask(valid, images), short_to_long(images, times)
@@ -66,7 +70,8 @@ def bracket(
 def short_to_long(images: Array, times: F64) -> Indices:
     """Return the order of the frames (P,) that makes all that follows independent of the order given.
 
-    Frames of one time are ordered by their checksums, for even a sum depends on its order in the last bit.
+    Frames of one time are ordered by their checksums, for even a sum depends on its order in the
+    last bit.
     """
     if len(np.unique(times)) == len(times):
         return np.argsort(times)

@@ -45,7 +45,8 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
     E : (H, W, 3) radiance, or (H, W), which passes as gray
     L : (H, W) luminance of E
     Ld : (H, W) display luminance, linear, 1 = white
-    saturation : s >= 0; below 1 it takes from colours the contrast that tone mapping took from luminance
+    saturation : s >= 0; below 1 it takes from colours the contrast that tone mapping took from
+        luminance
 
     Returns
     -------
@@ -55,11 +56,13 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
     Raises
     ------
     ValueError
-        For shapes that do not fit together, values that are not finite or negative, a negative saturation.
+        For shapes that do not fit together, values that are not finite or negative, a negative
+        saturation.
 
     References
     ----------
-    Tumblin and Turk, LCIS: a boundary hierarchy for detail-preserving contrast reduction, SIGGRAPH 1999.
+    Tumblin and Turk, LCIS: a boundary hierarchy for detail-preserving contrast reduction, SIGGRAPH
+    1999.
 
     Examples
     --------
@@ -75,7 +78,9 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
 def encode_srgb(linear: ArrayLike) -> Array:
     """Return 12.92 c up to c = 0.0031308 and 1.055 c^(1/2.4) - 0.055 above it [IEC 61966-2-1]."""
     c = np.asarray(linear)
-    return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055)
+    return np.where(
+        c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055
+    )
 
 
 def decode_srgb(encoded: ArrayLike) -> Array:
@@ -117,7 +122,9 @@ def render(
 
     def fill(top: int) -> None:
         band = slice(top, top + ROWS)
-        picture[band] = _codes(Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation))
+        picture[band] = _codes(
+            Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation)
+        )
 
     for _ in each(fill, range(0, len(E), ROWS), pixels=L.size):
         pass
@@ -156,8 +163,12 @@ def _pale(C: F32, M: F32, Ld: F32) -> F32:
     """Return colours (N, 3) whose largest channel M, (N, 1) like Ld, no longer exceeds 1."""
     fit = _power(np.maximum(M, 1), -0.85)
     C, M, Ld = C * fit, M * fit, Ld * fit
-    full = np.minimum((M - Ld) / np.maximum(1 - Ld, DARK), 1000)  # of the room between the luminance and 1
-    return np.asarray(Ld + (C - Ld) * _power(1 + np.square(np.square(np.square(full))), -1 / 8), np.float32)
+    full = np.minimum(
+        (M - Ld) / np.maximum(1 - Ld, DARK), 1000
+    )  # of the room between the luminance and 1
+    return np.asarray(
+        Ld + (C - Ld) * _power(1 + np.square(np.square(np.square(full))), -1 / 8), np.float32
+    )
 
 
 def _power(x: F32, exponent: float) -> F32:
@@ -173,10 +184,14 @@ def _codes(display: F32) -> Array:
     return CODES.take(index, mode="clip")  # which is faster than to look for an index out of range
 
 
-def _as_fitting(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float) -> tuple[F32, F32, F32]:
+def _as_fitting(
+    E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float
+) -> tuple[F32, F32, F32]:
     E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
     if not E.shape[:2] == L.shape == Ld.shape:
-        raise ValueError(f"expected L and Ld of shape {E.shape[:2]}, got {describe(L)} and {describe(Ld)}")
+        raise ValueError(
+            f"expected L and Ld of shape {E.shape[:2]}, got {describe(L)} and {describe(Ld)}"
+        )
     if not 0 <= saturation < np.inf:
         raise ValueError(f"expected a saturation that is finite and not negative, got {saturation}")
     return E, L, Ld

@@ -44,7 +44,9 @@ def _ranked(values: F32, cut: float, *, from_top: bool) -> float:
     if not values.size:
         return 0.0
     values = values[:: -(-values.size // ENOUGH)]
-    left_out = min(max(1, int(cut * values.size)), (values.size - 1) // 2)  # of a tiny picture, some stay
+    left_out = min(
+        max(1, int(cut * values.size)), (values.size - 1) // 2
+    )  # of a tiny picture, some stay
     rank = values.size - 1 - left_out if from_top else left_out
     return float(np.partition(values, rank)[rank])
 
@@ -55,7 +57,8 @@ def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
     Parameters
     ----------
     E : (H, W) or (H, W, 3), radiance
-    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing; with 0,
+    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing;
+        with 0,
         L_high and L_low are the maximum and the minimum
 
     Returns
@@ -65,7 +68,8 @@ def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
     Raises
     ------
     ValueError
-        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0, 0.5).
+        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0,
+        0.5).
 
     Examples
     --------

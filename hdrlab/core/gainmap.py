@@ -11,8 +11,8 @@ gamma      of g: above 1 it gives codes to    1 = to all gains alike
 k          offsets of sdr and of hdr          unit of sdr; black then has a gain that is finite
 W          share of the gain                  0 = none, the screen shows sdr; 1 = all, it shows hdr
 
-A photograph so holds two: whoever knows nothing of gains sees sdr. Both offsets are alike, or black would
-be gray where W is between 0 and 1, and small, or hdr would lose dark places beside them.
+A photograph so holds two: whoever knows nothing of gains sees sdr. Both offsets are alike, or black
+would be gray where W is between 0 and 1, and small, or hdr would lose dark places beside them.
 """
 
 import numpy as np
@@ -43,7 +43,13 @@ def find_range(G: Array) -> tuple[Array, Array]:
 
 
 def gain_map(
-    sdr: Array, hdr: Array, low: ArrayLike, high: ArrayLike, *, gamma: float = 1.0, k: ArrayLike = OFFSETS
+    sdr: Array,
+    hdr: Array,
+    low: ArrayLike,
+    high: ArrayLike,
+    *,
+    gamma: float = 1.0,
+    k: ArrayLike = OFFSETS,
 ) -> Array:
     """Return g = ((G - low) / (high - low))^gamma, the quotient clipped to 0 ... 1 [ISO 21496-1].
 

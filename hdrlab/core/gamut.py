@@ -6,13 +6,14 @@ t          how much of its colour a pixel keeps     1 all, 0 none: (1 - t) L + t
 n          how far its least channel is below 0     >= 0, unit of E
 primaries  x and y of red, green, blue and white    8 numbers, CIE 1931
 
-A channel below 0 is a colour more saturated than the primaries can mix, or noise around black. To cut it off
-would raise the luminance and leave the pixel as saturated as can be: dark places would teem with magenta and
-green. So such a pixel moves toward the gray of its own luminance. With t = L / (L + n) it stops where no
-channel is below 0: right for a colour that other primaries did mix (`desaturate`). For noise that is not
-enough, for the channel that becomes 0 was a random one; t is squared (`sanitize`), and the deeper n is under
-a small L, the less remains of a colour that nobody knows. Luminance stays, but where channels below 0 take
-more than half of the light that the others show: there the half stands, and shadows keep their detail.
+A channel below 0 is a colour more saturated than the primaries can mix, or noise around black. To
+cut it off would raise the luminance and leave the pixel as saturated as can be: dark places would
+teem with magenta and green. So such a pixel moves toward the gray of its own luminance. With t = L
+/ (L + n) it stops where no channel is below 0: right for a colour that other primaries did mix
+(`desaturate`). For noise that is not enough, for the channel that becomes 0 was a random one; t is
+squared (`sanitize`), and the deeper n is under a small L, the less remains of a colour that nobody
+knows. Luminance stays, but where channels below 0 take more than half of the light that the others
+show: there the half stands, and shadows keep their detail.
 """
 
 from collections.abc import Sequence
@@ -25,10 +26,13 @@ from hdrlab.core.arrays import F32, F64, ArrayLike, Mask, describe
 from hdrlab.core.colour import LUMINANCE
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
-# of screens that show more colours: ITU-R BT.2020, and Display P3, whose primaries are of SMPTE RP 431-2
+# of screens that show more colours: ITU-R BT.2020, and Display P3, whose primaries are of SMPTE RP
+# 431-2
 WIDE = {"bt2020": (0.708, 0.292, 0.170, 0.797, 0.131, 0.046, *SRGB[6:])}
 WIDE |= {"p3": (0.680, 0.320, 0.265, 0.690, 0.150, 0.060, *SRGB[6:])}
-BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
+BRADFORD = np.array(
+    [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
+)
 
 
 class Sanitized(NamedTuple):
@@ -37,7 +41,8 @@ class Sanitized(NamedTuple):
     Attributes
     ----------
     E : (H, W) or (H, W, 3) float32, finite and not negative
-    unknown : pixels with a NaN or a negative infinity, which took the mean of their known neighbours
+    unknown : pixels with a NaN or a negative infinity, which took the mean of their known
+        neighbours
     infinite : values that took the largest finite one
     negative : pixels with a channel below 0 and one above, which moved toward gray
     black : pixels with a channel below 0 and none above, which became black
@@ -61,9 +66,10 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
     Returns
     -------
     Sanitized
-        The radiance, and counts. An infinite value becomes the largest finite one of the map. A pixel with a
-        NaN or -inf is not known in any channel; it becomes the mean of those of its eight neighbours that are
-        known, and black where none is. Then channels below 0 make their pixel less colourful, or black.
+        The radiance, and counts. An infinite value becomes the largest finite one of the map. A
+        pixel with a NaN or -inf is not known in any channel; it becomes the mean of those of its
+        eight neighbours that are known, and black where none is. Then channels below 0 make their
+        pixel less colourful, or black.
 
     Raises
     ------
@@ -100,7 +106,9 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
 def mean_known(planes: F32, known: Mask) -> F32:
     """Return the mean of the known pixels of each 3 x 3, (H, W, C); 0 where there is none."""
     share = scipy.ndimage.uniform_filter(known.astype(np.float32), 3, mode="constant")
-    light = np.where(known[..., None], planes, 0).astype(np.float64)  # sums of which float32 may not hold
+    light = np.where(known[..., None], planes, 0).astype(
+        np.float64
+    )  # sums of which float32 may not hold
     total = scipy.ndimage.uniform_filter(light, (3, 3, 1), mode="constant")
     return np.where(share[..., None] > 0.05, total / np.maximum(share, 0.05)[..., None], 0)
 
@@ -108,8 +116,8 @@ def mean_known(planes: F32, known: Mask) -> F32:
 def desaturate(E: F32, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> F32:
     """Return (1 - t) L + t E, t = (L / (L + n))^power, where a channel is n below 0; E itself elsewhere.
 
-    Hue, the direction away from gray, stays, and luminance as far as it is to be trusted. Without a channel
-    above 0 a pixel is black.
+    Hue, the direction away from gray, stays, and luminance as far as it is to be trusted. Without a
+    channel above 0 a pixel is black.
     """
     planes = E.reshape(*E.shape[:2], -1)
     below = planes.min(axis=-1) < 0

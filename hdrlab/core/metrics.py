@@ -5,8 +5,8 @@ E        radiance    (H, W[, 3]), any linear unit
 offsets  (P, 2) int, (dy, dx) pixels
 well     (H, W) bool, pixels that at least one frame exposed well
 
-Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or one common
-shift, is taken off before anything is compared; each function documents which.
+Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or
+one common shift, is taken off before anything is compared; each function documents which.
 """
 
 from typing import NamedTuple
@@ -39,8 +39,8 @@ class Truth(NamedTuple):
 def response_rmse(g: ArrayLike, truth: ArrayLike) -> F64:
     """Return the RMSE of f^-1 over the levels 10 to 250, in percent of the true f^-1(250), per channel.
 
-    Each channel is first multiplied by the factor that fits it best (least squares), for a response is known
-    only up to one.
+    Each channel is first multiplied by the factor that fits it best (least squares), for a response
+    is known only up to one.
 
     Parameters
     ----------
@@ -99,9 +99,13 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     E, truth = arrays.as_radiance(E).astype(np.float64), arrays.as_radiance(truth)
     well = np.asarray(well)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
-        raise ValueError(f"expected maps of one shape, got {E.shape}, {truth.shape}, {arrays.describe(well)}")
+        raise ValueError(
+            f"expected maps of one shape, got {E.shape}, {truth.shape}, {arrays.describe(well)}"
+        )
     ratio = E / np.where(truth > 0, truth, np.nan)
-    median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
+    median = (
+        np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
+    )
     if not median > 0:
         raise ValueError("expected a well exposed pixel with light, got none")
     return ratio / median - 1

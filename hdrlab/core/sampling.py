@@ -5,11 +5,11 @@ valid   (P, H, W) bool, False where a photograph holds no picture; None: all is 
 N       number of samples
 Z       (N, P[, 3]) intp, 0 ... 255: sample i as frame j shows it; 16 bits are rounded to these 256 levels
 
-Debevec and Malik picked pixels by hand: well distributed in level, from even regions. Both ways here do it
-without hands. `by_grid` follows single pixels through the frames, so the frames must be aligned. `by_rank`
-matches equal ranks of the frames' histograms [Grossberg03]: brightness is monotone in exposure, so the k-th
-darkest pixel of one frame is the k-th darkest of every other. It needs no alignment, averages noise away, and
-spends its samples where the pictures have pixels.
+Debevec and Malik picked pixels by hand: well distributed in level, from even regions. Both ways
+here do it without hands. `by_grid` follows single pixels through the frames, so the frames must be
+aligned. `by_rank` matches equal ranks of the frames' histograms [Grossberg03]: brightness is
+monotone in exposure, so the k-th darkest pixel of one frame is the k-th darkest of every other. It
+needs no alignment, averages noise away, and spends its samples where the pictures have pixels.
 """
 
 import numpy as np
@@ -62,18 +62,28 @@ def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
     """Raise a ValueError unless a sample has weight at two levels, at two times: such connect the levels."""
     Z, times, has_weight = np.asarray(Z), np.asarray(times), np.asarray(w) > 0
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or times.shape != Z.shape[1:]:
-        raise ValueError(f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}")
+        raise ValueError(
+            f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}"
+        )
     for z in (Z[:50], Z):  # the first few connect levels, as a rule
         values = [np.where(has_weight[z], one, np.nan) for one in (times, z)]
-        if np.any(np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)):
+        if np.any(
+            np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)
+        ):
             return
-    raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
+    raise ValueError(
+        "expected samples seen well in two exposures, which connect the levels; got none"
+    )
 
 
 def _shown_in_all(valid: ArrayLike, images: Array) -> Mask:
     """Return where every frame shows something, (H, W)."""
     valid = np.asarray(valid, bool)
     if valid.shape != images.shape[:3] or not valid.all(axis=0).any():
-        got = "but the mask leaves none" if valid.shape == images.shape[:3] else f"got {valid.shape}"
-        raise ValueError(f"expected a mask of shape {images.shape[:3]} with pixels that all show, {got}")
+        got = (
+            "but the mask leaves none" if valid.shape == images.shape[:3] else f"got {valid.shape}"
+        )
+        raise ValueError(
+            f"expected a mask of shape {images.shape[:3]} with pixels that all show, {got}"
+        )
     return np.asarray(valid.all(axis=0))

@@ -11,7 +11,9 @@ Answer = TypeVar("Answer")
 
 # of a picture: with fewer, threads cost what they gain
 PIXELS = 1 << 22
-PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+PROCESSORS = (
+    len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+)
 # each may hold a photograph in memory
 THREADS = min(PROCESSORS, 4)
 
@@ -33,10 +35,13 @@ def beside(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Callable[[], 
     return begun.result
 
 
-def each(work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = PIXELS) -> Generator[Answer]:
+def each(
+    work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = PIXELS
+) -> Generator[Answer]:
     """Yield work(item) of every item, in their order, with no threads where all are of fewer than PIXELS.
 
-    A thread of its own has a memory pool of its own, which is slower: with one processor there is none.
+    A thread of its own has a memory pool of its own, which is slower: with one processor there is
+    none.
 
     Examples
     --------
@@ -50,7 +55,9 @@ def each(work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = P
     pool = ThreadPoolExecutor(THREADS)
     try:
         for item in items:
-            begun.append(pool.submit(copy_context().run, work, item))  # np.errstate is the context's
+            begun.append(
+                pool.submit(copy_context().run, work, item)
+            )  # np.errstate is the context's
             if len(begun) > THREADS:
                 yield begun.popleft().result()
         while begun:

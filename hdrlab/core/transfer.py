@@ -5,12 +5,14 @@ H   cumulative histogram          (n + 1,), H[z] is the share of the pixels belo
 T   brightness transfer function  (n,), the level in B of what has level m in A; between levels where need be
 n   number of levels              256 or 65536
 
-Light is monotone in level, whatever the camera's response: the k-th darkest pixel of A is the k-th darkest
-of B, so T = H_B^-1(H_A) [Grossberg03 sec. 3]. That needs no alignment, only that both show the same light.
+Light is monotone in level, whatever the camera's response: the k-th darkest pixel of A is the k-th
+darkest of B, so T = H_B^-1(H_A) [Grossberg03 sec. 3]. That needs no alignment, only that both show
+the same light.
 
-Levels are steps: level z holds the light from z - 1/2 to z + 1/2, and a rank lies somewhere on a step.
-`brightness_transfer` takes the middle of A's step. `literal_transfer` takes a cumulated count for that of its
-level, though the count belongs to the step's upper edge: so m + 1/2 is paired with T(m) + 1/2.
+Levels are steps: level z holds the light from z - 1/2 to z + 1/2, and a rank lies somewhere on a
+step. `brightness_transfer` takes the middle of A's step. `literal_transfer` takes a cumulated count
+for that of its level, though the count belongs to the step's upper edge: so m + 1/2 is paired with
+T(m) + 1/2.
 """
 
 import numpy as np
@@ -40,8 +42,8 @@ def cumulate(h: ArrayLike, n: int) -> F64:
 def brightness_transfer(h_A: ArrayLike, h_B: ArrayLike) -> F64:
     """Return T = H_B^-1(H_A) (n,), where the middle of A's step m lies between the edges of B's steps.
 
-    NaN on B's lowest and highest level, which have no outer edge, as they hold all that is darker or
-    brighter. NaN, too, for levels below or above all of A's pixels, which have no rank.
+    NaN on B's lowest and highest level, which have no outer edge, as they hold all that is darker
+    or brighter. NaN, too, for levels below or above all of A's pixels, which have no rank.
 
     Examples
     --------

@@ -4,8 +4,8 @@ z  pixel level, 0 ... n - 1
 w  weight (n,), how far to trust it; 0 at both ends, where a value is only a bound
 g  response (n, ...), ln exposure of each level
 
-Which pixels are clipped is another question, and it is asked elsewhere (`radiance.merge`): a weight says how
-much, validity says whether.
+Which pixels are clipped is another question, and it is asked elsewhere (`radiance.merge`): a weight
+says how much, validity says whether.
 """
 
 import numpy as np
@@ -42,8 +42,8 @@ def flat(n: int = 256) -> F64:
 def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
     """Return w with 0 above and below these fractions of the top level [Cerman06 sec. 4.2 cuts above 0.98].
 
-    Noise turns clipped pixels into nearly clipped ones, so a photograph lies a little below its top level
-    too.
+    Noise turns clipped pixels into nearly clipped ones, so a photograph lies a little below its top
+    level too.
     """
     if not 0 <= below < above <= 1:
         raise ValueError(f"expected 0 <= below < above <= 1, got below={below} and above={above}")
@@ -55,17 +55,20 @@ def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
 def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
     """Return w = f / f', the signal over a noise that has one size at all levels [Mitsunaga99 eq. 14].
 
-    f = exp g is the exposure of each level, of the channels' mean where g is (n, 3). Its slope f' is taken
-    over `span` levels on either side, in units of the mean slope, and held at `least` or above: where a curve
-    was levelled it is not certain without bound. Scaled to 1 in the middle, and 0 at both ends. It grows with
-    the level: noise that is not clipped matters least in bright pixels.
+    f = exp g is the exposure of each level, of the channels' mean where g is (n, 3). Its slope f'
+    is taken over `span` levels on either side, in units of the mean slope, and held at `least` or
+    above: where a curve was levelled it is not certain without bound. Scaled to 1 in the middle,
+    and 0 at both ends. It grows with the level: noise that is not clipped matters least in bright
+    pixels.
     """
     g = np.asarray(g, dtype=np.float64)
     if g.ndim not in (1, 2) or len(g) < 3 or not np.all(np.isfinite(g)):
         raise ValueError(f"expected a finite response (n,) or (n, 3), got shape {g.shape}")
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     if not f[-1] > f[0]:
-        raise ValueError("expected a response that rises, got one that ends where it began, or below")
+        raise ValueError(
+            "expected a response that rises, got one that ends where it began, or below"
+        )
     z = np.arange(len(g))
     low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])

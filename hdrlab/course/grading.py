@@ -1,7 +1,8 @@
 """Checking a submission: its tasks are read, the specification is run on them, and a Result comes of it.
 
-The specification runs under pytest in a process of its own, which the student's code never enters: that one
-answers from a sandbox (`subject`). How far it is kept apart is said in the Result, by the tier's name.
+The specification runs under pytest in a process of its own, which the student's code never enters:
+that one answers from a sandbox (`subject`). How far it is kept apart is said in the Result, by the
+tier's name.
 """
 
 import base64
@@ -52,12 +53,16 @@ def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT)
     return last(grade_steps(path, homework, conditions))
 
 
-def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Iterator[Result]:
+def grade_steps(
+    path: str | Path, homework: Homework, conditions: Conditions = STRICT
+) -> Iterator[Result]:
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
     yield from check_steps(*read_tasks(path, homework, conditions), conditions)
 
 
-def read_tasks(path: str | Path, homework: Homework, conditions: Conditions) -> tuple[Submission, Homework]:
+def read_tasks(
+    path: str | Path, homework: Homework, conditions: Conditions
+) -> tuple[Submission, Homework]:
     """Return what a file holds of a homework's tasks, and the homework as its student was given it."""
     tasks = [task.id for task in homework.tasks]
     read = submission.read(Path(path), homework.name, tasks, handouts.given_cells(homework.name))
@@ -78,7 +83,9 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
     yield _result(heard, read, homework, conditions)
 
 
-def heard_steps(read: Submission, homework: Homework, conditions: Conditions, **more: Any) -> Iterator[Any]:
+def heard_steps(
+    read: Submission, homework: Homework, conditions: Conditions, **more: Any
+) -> Iterator[Any]:
     """Yield what the checks write down as they run, and first their digest; `more` stands in the job."""
     if conditions.hidden is not None and not conditions.hidden.is_dir():
         raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
@@ -119,7 +126,9 @@ def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[P
     return asked
 
 
-def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions, **more: Any) -> Path:
+def _job(
+    folder: Path, read: Submission, homework: Homework, conditions: Conditions, **more: Any
+) -> Path:
     job = {
         "sources": read.sources,
         "modules": read.modules,
@@ -142,7 +151,9 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
 def _seeds(homework: Homework, conditions: Conditions) -> dict[str, str]:
     """Return each task's seed, as text: it has more bits than JSON's numbers."""
     _, student, secret, *_ = conditions
-    return {one.id: str(plan.seed(secret, student, one.id) if student else 0) for one in homework.tasks}
+    return {
+        one.id: str(plan.seed(secret, student, one.id) if student else 0) for one in homework.tasks
+    }
 
 
 def _seed_id(homework: Homework, conditions: Conditions) -> str:
@@ -152,14 +163,18 @@ def _seed_id(homework: Homework, conditions: Conditions) -> str:
     return hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16]
 
 
-def _result(heard: Sequence[Any], read: Submission, homework: Homework, conditions: Conditions) -> Result:
+def _result(
+    heard: Sequence[Any], read: Submission, homework: Homework, conditions: Conditions
+) -> Result:
     return Result(
         student=conditions.student,
         homework=homework.name,
         title=homework.title,
         tier=conditions.tier,
         checks=tuple(_checks(heard, homework)),
-        misconceptions={line["recognised"]: line["sentence"] for line in heard if "recognised" in line},
+        misconceptions={
+            line["recognised"]: line["sentence"] for line in heard if "recognised" in line
+        },
         problems=read.problems,
         submission=read.hash,
         specification=heard[0]["specification"],
@@ -172,11 +187,15 @@ def _result(heard: Sequence[Any], read: Submission, homework: Homework, conditio
 def _drawn(line: dict[str, Any]) -> Drawing:
     """Return the pictures of a difference whose arrays came as text.
 
-    They are drawn here and not beside the checks: a notebook has matplotlib at hand, which takes its time.
+    They are drawn here and not beside the checks: a notebook has matplotlib at hand, which takes
+    its time.
     """
     from hdrlab.show.plots import differences
 
-    differs, task = line["differs"], Path(line["ended"].partition("::")[0]).stem.removeprefix("test_")
+    differs, task = (
+        line["differs"],
+        Path(line["ended"].partition("::")[0]).stem.removeprefix("test_"),
+    )
     both = [np.frombuffer(base64.b64decode(differs[name]), "<f8") for name in ("expected", "came")]
     draw = differences.image if differs["kind"] == "image" else differences.curve
     try:
@@ -199,8 +218,12 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
     for line in heard:
         if "check" in line:
             cases.setdefault((line["task"], line["name"], line["hidden"]), []).append(line)
-    ended = {line["ended"]: line for line in heard if "ended" in line and line["outcome"] == "holds"}
-    ended |= {line["ended"]: line for line in heard if "ended" in line and line["outcome"] != "holds"}
+    ended = {
+        line["ended"]: line for line in heard if "ended" in line and line["outcome"] == "holds"
+    }
+    ended |= {
+        line["ended"]: line for line in heard if "ended" in line and line["outcome"] != "holds"
+    }
     named = {line["recognised"]: line for line in heard if "recognised" in line}
     for task in homework.tasks:
         own = [each for key, each in cases.items() if key[0] == task.id]
@@ -212,7 +235,9 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
         yield from causes.traced(checks, needs, named=task.id in named, once=once)
 
 
-def _check(each: Sequence[dict[str, Any]], ended: dict[str, dict[str, Any]], whole: Fraction) -> Check:
+def _check(
+    each: Sequence[dict[str, Any]], ended: dict[str, dict[str, Any]], whole: Fraction
+) -> Check:
     """Return a promise with the first of its cases that does not hold."""
     endings = [ended.get(one["check"], SILENT) for one in each]
     shown = next((one for one in endings if one["outcome"] != "holds"), endings[0])

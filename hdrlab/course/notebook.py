@@ -1,7 +1,8 @@
 """check("gsolve") in a notebook: what of the specification a function keeps that was just written.
 
-The text of what was run is taken, with the helpers it needs, and called in a process of its own; what is in
-the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and its points are no grade yet.
+The text of what was run is taken, with the helpers it needs, and called in a process of its own;
+what is in the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and its
+points are no grade yet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +15,9 @@ from hdrlab.course.reports import feedback, results
 
 PRACTICE = plans.Conditions(tier="practice")
 _latest: dict[str, results.Result] = {}  # of each task in this kernel, for the homework's bar
-_plan: dict[str, plans.Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
+_plan: dict[
+    str, plans.Homework
+] = {}  # the homeworks whose sheets said in this kernel what is asked
 
 
 class Feedback:
@@ -65,7 +68,10 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
-    steps, shown = grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE), DisplayHandle()
+    steps, shown = (
+        grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE),
+        DisplayHandle(),
+    )
     shown.display(HTML(feedback.bar(0, 1, f"{name}, checking", "of its promises")))
     for done, result in enumerate(steps, 1):  # the last one always comes
         asked = len(result.checks)
@@ -86,26 +92,33 @@ def use_plan(
 ) -> None:
     """Take a homework's tasks and points from its sheet; without any, from hdrlab's own plan.
 
-    Of the points, `at_most` so many count. Tasks that are not hdrlab's stand in the file `plan`, with their
-    checks beside it. `variants` are those of the tasks of which not everybody is asked the same.
+    Of the points, `at_most` so many count. Tasks that are not hdrlab's stand in the file `plan`,
+    with their checks beside it. `variants` are those of the tasks of which not everybody is asked
+    the same.
     """
     own = plans.read(plan)
     tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
-    known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(name=name, title=name)
+    known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(
+        name=name, title=name
+    )
     asked = known._replace(tasks=tasks, at_most=at_most) if tasks else known
     _plan[name] = choices.draw(asked, "", "", variants)
 
 
 def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
     """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
-    homeworks = _plan | {key: one for key, one in plans.read().homeworks.items() if key not in _plan}
+    homeworks = _plan | {
+        key: one for key, one in plans.read().homeworks.items() if key not in _plan
+    }
     if name in homeworks:
         return homeworks[name], [task.id for task in homeworks[name].tasks]
     for homework in homeworks.values():
         if name in [task.id for task in homework.tasks]:
             return homework, [name]
     tasks = ", ".join(task.id for homework in homeworks.values() for task in homework.tasks)
-    raise ValueError(f"expected a homework ({', '.join(homeworks)}) or a task ({tasks}), got {name!r}")
+    raise ValueError(
+        f"expected a homework ({', '.join(homeworks)}) or a task ({tasks}), got {name!r}"
+    )
 
 
 def _history() -> Sequence[closure.Cell]:
@@ -116,4 +129,6 @@ def _history() -> Sequence[closure.Cell]:
     if shell is None:
         raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
     entered: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
-    return [closure.Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()]
+    return [
+        closure.Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()
+    ]

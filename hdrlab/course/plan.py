@@ -1,9 +1,10 @@
 """The course's plan: homeworks, tasks, points and dates, read from plan.toml, and what each student draws.
 
-An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the solution is
-that function, the handout its signature, and the checks are in
-course/checks/specification/test_<id>.py. Or it is a function of the instructor's own, "vignette.py:vignette",
-in a file beside the plan; its checks are test_<id>.py in the same folder, and its mistakes in `mistakes`.
+An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the
+solution is that function, the handout its signature, and the checks are in
+course/checks/specification/test_<id>.py. Or it is a function of the instructor's own,
+"vignette.py:vignette", in a file beside the plan; its checks are test_<id>.py in the same folder,
+and its mistakes in `mistakes`.
 """
 
 import hmac
@@ -28,9 +29,10 @@ PATIENCE = 10.0  # seconds for one answer
 class Task(NamedTuple):
     """One function to write: what it is called in the checks, where the library has it, and its points.
 
-    A function that is not the library's is written as the path of its file, a colon, and its name. `minimum`
-    marks what everybody is to write, also those who write little. `parameters` are those in which students'
-    sheets differ, and `variant` is what one of them asks; see `checks.rewording`.
+    A function that is not the library's is written as the path of its file, a colon, and its name.
+    `minimum` marks what everybody is to write, also those who write little. `parameters` are those
+    in which students' sheets differ, and `variant` is what one of them asks; see
+    `checks.rewording`.
     """
 
     id: str
@@ -137,14 +139,19 @@ def read(path: str | Path | None = None) -> Plan:
     path = PLAN if path is None else Path(path)
     try:
         sheets = tomllib.loads(path.read_text(encoding="utf8"))
-    except (ValueError, RecursionError) as error:  # of digits beyond counting, and brackets in brackets
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # of digits beyond counting, and brackets in brackets
         raise ValueError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
     plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     twice = sorted({id for id in ids if ids.count(id) > 1})
     if not ids or twice:
-        raise ValueError(f"{path}: expected tasks, each once, got {', '.join(twice) or 'none':.200}")
+        raise ValueError(
+            f"{path}: expected tasks, each once, got {', '.join(twice) or 'none':.200}"
+        )
     return plan
 
 
@@ -153,7 +160,9 @@ def _late(table: dict[str, Any], path: Path) -> Late:
         late = Late(**table)
         if late.free_days >= 0 and late.points_a_day >= 0:
             return late
-    raise ValueError(f"{path}: expected free_days and points_a_day, at least 0, in [late], got {table!s:.80}")
+    raise ValueError(
+        f"{path}: expected free_days and points_a_day, at least 0, in [late], got {table!s:.80}"
+    )
 
 
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
@@ -167,23 +176,37 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
         at_most = float(sheet["at_most"]) if "at_most" in sheet else None
         made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand, at_most)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{path}: expected title, due and tasks in {here}, {error!r:.200}") from None
+        raise ValueError(
+            f"{path}: expected title, due and tasks in {here}, {error!r:.200}"
+        ) from None
     if not isinstance(made.due, datetime) or made.due.tzinfo is None:
-        raise ValueError(f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}")
+        raise ValueError(
+            f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}"
+        )
     points = [one.points for one in tasks] + [one.points for one in by_hand]
     if not (points and min(points) >= 0 and sum(points) < math.inf):
-        raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}")
+        raise ValueError(
+            f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}"
+        )
     if at_most is not None and not 0 < at_most <= sum(points):
         most = sum(points)
-        raise ValueError(f"{path}: expected at_most of {here} above 0 and at most {most:g}, got {at_most:g}")
+        raise ValueError(
+            f"{path}: expected at_most of {here} above 0 and at most {most:g}, got {at_most:g}"
+        )
     return made
 
 
 def _task(one: dict[str, Any], plan: Path) -> Task:
-    id, function, parameters = one["id"], _placed(one["function"], plan), tuple(one.get("parameters", ()))
+    id, function, parameters = (
+        one["id"],
+        _placed(one["function"], plan),
+        tuple(one.get("parameters", ())),
+    )
     known = {} if ":" in function else rewording.parameters(id)
     if not {*parameters} <= {*known}:
-        raise ValueError(f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}")
+        raise ValueError(
+            f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}"
+        )
     return Task(id, function, float(one["points"]), one.get("minimum") is True, parameters)
 
 
@@ -191,7 +214,9 @@ def _placed(function: str, plan: Path) -> str:
     """Return a function as a plan names it, the file of one that is not the library's with its folder."""
     file, colon, name = function.rpartition(":")
     if colon and not (file.endswith(".py") and file == Path(file).name and name):
-        raise ValueError(f"expected a function of hdrlab, or FILE.py:NAME beside the plan, got {function}")
+        raise ValueError(
+            f"expected a function of hdrlab, or FILE.py:NAME beside the plan, got {function}"
+        )
     return f"{plan.resolve().parent / file}:{name}" if colon else function
 
 
@@ -215,7 +240,9 @@ def read_secret(path: Path) -> tuple[str, bool]:
     """
     made = not path.exists()
     if made:
-        with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf8") as file:
+        with open(
+            os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf8"
+        ) as file:
             file.write(secrets.token_urlsafe(32) + "\n")
     secret = path.read_text(encoding="utf8").strip()
     if not secret:
@@ -226,7 +253,8 @@ def read_secret(path: Path) -> tuple[str, bool]:
 def seed(secret: str, student: str, task: str) -> int:
     """Return what a student's inputs to a task are drawn from: HMAC(course secret, student, task).
 
-    Nobody without the secret can tell another's inputs, and the same three give the same inputs again.
+    Nobody without the secret can tell another's inputs, and the same three give the same inputs
+    again.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """A folder for all that a command writes on its way, which is gone when it ends, however it ended.
 
-A command that was killed cannot clear up. So its folder is locked as long as it lives, and the next one
-removes the folders that nobody holds any more.
+A command that was killed cannot clear up. So its folder is locked as long as it lives, and the next
+one removes the folders that nobody holds any more.
 """
 
 import contextlib

@@ -1,8 +1,8 @@
 """What a student handed in, read and never run: the cells of the tasks, with what they need of other cells.
 
-A notebook or a Python file is text. Its cells are found, and `closure` finds in them what each task needs. An
-archive is opened for the one file in it. `read` does so in a process with limits: whatever is handed in costs
-the grader a few seconds at most.
+A notebook or a Python file is text. Its cells are found, and `closure` finds in them what each task
+needs. An archive is opened for the one file in it. `read` does so in a process with limits:
+whatever is handed in costs the grader a few seconds at most.
 """
 
 import hashlib
@@ -26,12 +26,17 @@ LARGEST = 50_000_000  # bytes: a notebook with pictures has a few
 MOST_CODE = 1_000_000  # characters in all cells
 MOST_SOURCE = 900_000  # bytes of a task with all that it needs, on its way to the sandbox
 UNPACKED = Limits(total=1 << 28)  # of an archive: a notebook, and the photographs that it reads
-SECONDS, MEMORY = 2, 500 << 20  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
+SECONDS, MEMORY = (
+    2,
+    500 << 20,
+)  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
 UNPACKING = 3  # seconds more for an archive
 TRIES = 3  # of a process that somebody else ends
 PATIENCE = 25.0  # seconds by the clock: it is read twice, and costs 300 s at most with its checks
 TOLD = 12  # problems that are told
-VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"')  # as a sheet names it in its call of use_plan
+VARIANT = re.compile(
+    r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"'
+)  # as a sheet names it in its call of use_plan
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
@@ -48,7 +53,9 @@ class Submission(NamedTuple):
     variants: dict[str, str] | None = None
 
 
-def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[closure.Cell] = ()) -> Submission:
+def read(
+    path: Path, homework: str, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
+) -> Submission:
     """Return what a notebook, a Python file or an archive of one holds, read in a process with limits.
 
     Raises
@@ -59,7 +66,9 @@ def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[closur
     limits = {"CPU": SECONDS + UNPACKING * (path.suffix.lower() in PACKED), "AS": MEMORY}
     for tried in range(1, TRIES + 1):
         try:
-            with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
+            with tempfile.TemporaryDirectory(
+                prefix="hdrlab-read-", ignore_cleanup_errors=True
+            ) as scratch:
                 order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
                 said = json.loads(alone.run(_read, order, patience=PATIENCE, limits=limits))
             break
@@ -76,7 +85,9 @@ def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) 
     path, scratch, homework, tasks, given = order
     opened_path, refused = opened(path, scratch, homework)
     found = Submission({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
-    return json.dumps(found._replace(modules=tuple(names.imported(found.sources.values())))).encode()
+    return json.dumps(
+        found._replace(modules=tuple(names.imported(found.sources.values())))
+    ).encode()
 
 
 def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
@@ -95,7 +106,9 @@ def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
     return scratch / "files" / named[0], ""
 
 
-def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cell] = ()) -> Submission:
+def tasks_of(
+    path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
+) -> Submission:
     """Return what a file holds of the tasks; what cannot be read is told, and the rest is still there.
 
     Parameters
@@ -109,7 +122,9 @@ def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cel
     """
     data, problems = _bytes_of(Path(path))
     cells, told = cells_of(data, Path(path).name) if data else ([], [])
-    sources, said = closure.closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
+    sources, said = (
+        closure.closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
+    )
     for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
         del sources[task]
         said.append(f"{task} needs more than {MOST_SOURCE:,} characters of code")
@@ -177,7 +192,9 @@ def _cell(n: int, read: dict[str, Any]) -> closure.Cell:
     marked = metadata.get("hdrlab") if isinstance(metadata, dict) else None
     marked = marked if isinstance(marked, dict) else {}
     task = marked.get("task")
-    return closure.Cell(text, task if isinstance(task, str) else "", marked.get("given") is True, f"cell {n}")
+    return closure.Cell(
+        text, task if isinstance(task, str) else "", marked.get("given") is True, f"cell {n}"
+    )
 
 
 def _percent(text: str) -> list[closure.Cell]:

@@ -9,11 +9,13 @@ from hdrlab.course.checks import rewording
 from hdrlab.course.plan import Homework, Task, seed
 
 
-def draw(homework: Homework, student: str, secret: str, said: Mapping[str, str] | None = None) -> Homework:
+def draw(
+    homework: Homework, student: str, secret: str, said: Mapping[str, str] | None = None
+) -> Homework:
     """Return a homework with the variants that a student's sheet asks.
 
-    Where there is a secret, it draws the parameters that the plan names. Else the sheet is believed in what
-    it has `said`, by task.
+    Where there is a secret, it draws the parameters that the plan names. Else the sheet is believed
+    in what it has `said`, by task.
     """
 
     def asked(task: Task) -> str:
@@ -24,9 +26,15 @@ def draw(homework: Homework, student: str, secret: str, said: Mapping[str, str] 
         known = rewording.parameters(task.id).items() if drawn else ()
         return "/".join([*values][drawn.get(name, 0) % len(values)] for name, values in known)
 
-    return homework._replace(tasks=tuple(one._replace(variant=asked(one)) for one in homework.tasks))
+    return homework._replace(
+        tasks=tuple(one._replace(variant=asked(one)) for one in homework.tasks)
+    )
 
 
 def others(homework: Homework, said: Mapping[str, str] | None) -> list[str]:
     """Return the tasks of which a sheet asks another variant; where it has `said` nothing, none."""
-    return [task.id for task in homework.tasks if said is not None and said.get(task.id, "") != task.variant]
+    return [
+        task.id
+        for task in homework.tasks
+        if said is not None and said.get(task.id, "") != task.variant
+    ]

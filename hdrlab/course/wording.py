@@ -1,15 +1,23 @@
 """What students write, made fit to be shown: plain characters, no longer than a page or a terminal bears.
 
-Escaping is the page's affair, and it is done there; this keeps out what escaping does not mend: control
-characters, half a character, marks without shape or that turn the direction of the text around them, and
-stacks of accents. Whatever comes from outside goes through here before it is told: names of files, messages,
-prints.
+Escaping is the page's affair, and it is done there; this keeps out what escaping does not mend:
+control characters, half a character, marks without shape or that turn the direction of the text
+around them, and stacks of accents. Whatever comes from outside goes through here before it is told:
+names of files, messages, prints.
 """
 
 import re
 import unicodedata
 
-DROPPED = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}  # controls, direction marks, surrogates, the unassigned
+DROPPED = {
+    "Cc",
+    "Cf",
+    "Cs",
+    "Co",
+    "Cn",
+    "Zl",
+    "Zp",
+}  # controls, direction marks, surrogates, the unassigned
 ACCENTS = 2  # in a row: as many as any living script needs over one letter
 MARKS = 4  # in a row, with vowels that are written above and below
 CODES = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]")  # which colour a terminal, or move its cursor

@@ -4,9 +4,10 @@ Z   pixel levels       (P, H, W[, 3])
 t   exposure times     (P,) seconds
 E   radiance           (H, W[, 3])
 
-A pixel of level z received the exposure f^-1(z), whichever frame it stands in. So for each level the median
-of log2(E t) over the pixels of that level must be the same in every frame. Where it is not, the times, the
-response or the alignment contradict the pixels; in photographic stops, and frame by frame.
+A pixel of level z received the exposure f^-1(z), whichever frame it stands in. So for each level
+the median of log2(E t) over the pixels of that level must be the same in every frame. Where it is
+not, the times, the response or the alignment contradict the pixels; in photographic stops, and
+frame by frame.
 """
 
 import warnings
@@ -101,10 +102,11 @@ def measure_deviations(medians: F64) -> F64:
 def measure_residuals(medians: F64, g: ArrayLike) -> F64:
     """Return what g and the times leave unexplained of each frame, channel and level, (P, C, 256) stops.
 
-    All are 0 where the camera is the one that g and the times describe. A frame that lies off as a whole has
-    a wrong time; a level that lies off in all frames, a wrong g; a level that lies off differently from frame
-    to frame belongs to a camera that treats each photograph in its own way. Where two frames contradict each
-    other by a stop, each shows a part of it, for both have a share in E.
+    All are 0 where the camera is the one that g and the times describe. A frame that lies off as a
+    whole has a wrong time; a level that lies off in all frames, a wrong g; a level that lies off
+    differently from frame to frame belongs to a camera that treats each photograph in its own way.
+    Where two frames contradict each other by a stop, each shows a part of it, for both have a share
+    in E.
 
     Examples
     --------

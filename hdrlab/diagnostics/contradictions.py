@@ -8,20 +8,20 @@ corners  change        (P - 1,), stops from the middle to the corners
 tints    another white balance   (P,), stops by which one channel is too bright, and another too dark
 cost     in the map    stops, RMS over the picture: what the errors change where each frame has its weight
 
-The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in the
-deviations of `consistency` as .1. Neighbours are compared here by themselves, through a response that fits
-them as well as any response and one factor per frame can. The factors hold an unknown straight line in ln t
-(unit and exponent of the response). As most times of a bracket are right, the line taken is that of least
-square roots, which passes through most frames and leaves the wrong ones standing out: one large error is
-likelier than several middling ones.
+The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in
+the deviations of `consistency` as .1. Neighbours are compared here by themselves, through a
+response that fits them as well as any response and one factor per frame can. The factors hold an
+unknown straight line in ln t (unit and exponent of the response). As most times of a bracket are
+right, the line taken is that of least square roots, which passes through most frames and leaves the
+wrong ones standing out: one large error is likelier than several middling ones.
 
-If factors explain all, times are wrong. If parts of one picture ask for different factors, none are: the
-corners, where the aperture changed and with it the vignetting; or light, or a camera's processing by place.
-If channels ask for factors of their own, one up and one down in the same frame, white balance changed. A
-curve for each channel hides that from the map's spread.
+If factors explain all, times are wrong. If parts of one picture ask for different factors, none
+are: the corners, where the aperture changed and with it the vignetting; or light, or a camera's
+processing by place. If channels ask for factors of their own, one up and one down in the same
+frame, white balance changed. A curve for each channel hides that from the map's spread.
 
-An error counts by what it costs. An end frame that is nearly black measures little, and bends by a camera's
-own processing: half a stop there leaves the map sound.
+An error counts by what it costs. An end frame that is nearly black measures little, and bends by a
+camera's own processing: half a stop there leaves the map sound.
 """
 
 from collections.abc import Sequence
@@ -55,7 +55,8 @@ SLIGHT, SIGNIFICANT = 0.02, 4.0
 SMALLEST_ERROR = 0.003
 # of the variance by place, that the distance from the middle explains
 CORNERS = 0.5
-# stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
+# stops of the map's spread: below, the map explains its photographs, and what is slight needs no
+# word
 SOUND = 0.1
 # stops of the map's spread: below, no time can be wrong that matters
 EXPLAINED = 0.015
@@ -98,8 +99,9 @@ def find_contradictions(
     Returns
     -------
     Contradictions
-        Of the longest run of frames that patches or histograms connect, if these are three or more. Of three
-        frames any one may be wrong: then the middle one is named, or an end by twice as much.
+        Of the longest run of frames that patches or histograms connect, if these are three or more.
+        Of three frames any one may be wrong: then the middle one is named, or an end by twice as
+        much.
 
     Examples
     --------
@@ -145,15 +147,17 @@ def measure_cost(stack: Array, stops: F64) -> float:
 def find_longest_run(informative: Mask) -> tuple[int, int]:
     """Return start and stop of the longest run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], informative, [False]]).astype(int)))
-    start, stop = max(edges.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0], default=(0, 0))
+    start, stop = max(
+        edges.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0], default=(0, 0)
+    )
     return start, stop
 
 
 def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
     """Return each pair's disagreement by place, (3, P - 1).
 
-    Where a quarter of the tiles are off by more, in stops and in standard errors, 0 where few are flat; and
-    in stops from the middle to the corners, 0 where that distance does not explain most.
+    Where a quarter of the tiles are off by more, in stops and in standard errors, 0 where few are
+    flat; and in stops from the middle to the corners, 0 where that distance does not explain most.
     """
     h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
@@ -182,7 +186,8 @@ def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response
 def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
     """Return the median of r over each tile of at least FEWEST patches, and its standard error.
 
-    That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal errors.
+    That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal
+    errors.
     """
     _, place, n = np.unique(tile, return_inverse=True, return_counts=True)
     first = np.cumsum(n) - n
@@ -196,10 +201,13 @@ def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
     return medians[large], np.maximum(1.25 * sigma / np.sqrt(n), SMALLEST_ERROR)[large]
 
 
-def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: float = np.inf) -> str:
+def warn_of_contradictions(
+    found: Contradictions, names: Sequence[str], spread: float = np.inf
+) -> str:
     """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing.
 
-    Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
+    Of a map whose spread is small, stops, only times that are wrong need a word, and places that
+    differ much.
     """
     if found.tints.max() > WRONG:
         return say("white_balance", frame=names[int(found.tints.argmax())], stops=found.tints.max())

@@ -5,8 +5,8 @@ x       corrections       (P,), ln(time / stated time): see `response_steps`, fo
 spread  of the frames in the map that times make, stops: a function of the caller
 
 An estimate fits the pixels that it was made from better than any stated times, and may still be worse:
-motion, flare and a response that differs from frame to frame pass for wrong times. So it is validated
-twice: on held-out tiles of the picture, and in the map. Otherwise the stated times stay.
+motion, flare and a response that differs from frame to frame pass for wrong times. So it is
+validated twice: on held-out tiles of the picture, and in the map. Otherwise the stated times stay.
 """
 
 from collections.abc import Callable, Sequence
@@ -66,14 +66,15 @@ def estimate_times(
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Aligned photographs, from short to long.
     times : (P,) float
-        Stated times in seconds. Their geometric mean stays, and so does their span where g is not known: the
-        corrections are orthogonal to 1, and to ln times. But where one of four or more is wrong alone, the
-        others stay.
+        Stated times in seconds. Their geometric mean stays, and so does their span where g is not
+        known: the corrections are orthogonal to 1, and to ln times. But where one of four or more
+        is wrong alone, the others stay.
     spread : function, optional
-        times -> stops, how far the frames contradict each other in the map that these times make; the
-        estimate must not raise it. It is asked only where the held-out pixels agree better.
+        times -> stops, how far the frames contradict each other in the map that these times make;
+        the estimate must not raise it. It is asked only where the held-out pixels agree better.
     g : (n,) or (n, 3) float, optional
-        The response, ln exposure, where it is known (a linear camera); otherwise it is fitted as well.
+        The response, ln exposure, where it is known (a linear camera); otherwise it is fitted as
+        well.
     sd : float
         How far a stated time may be off, stops: to this the estimate is shrunk.
     gain : float
@@ -107,7 +108,9 @@ def estimate_times(
         g = as_response(g, 256, stack[0, 0, 0].size).T
     kept = Estimate(times, np.zeros(len(times)), False, "")
     if Q.shape[1] == 0:
-        return kept._replace(reason="two photographs do not determine both their times and their response")
+        return kept._replace(
+            reason="two photographs do not determine both their times and their response"
+        )
     found = flat_patches.find_flat_patches(stack, valid=valid)
     H = flat_patches.count_pairs(found.Z, found.best)
     if not response_steps.find_informative(H).any():
@@ -129,7 +132,8 @@ def estimate_times(
 def single_out(x: F64, B: F64) -> F64:
     """Return corrections of the same pixels that leave all times but one, where there are such; else x.
 
-    The pixels leave a straight line in B open. Where one time is wrong, x spreads its error over all.
+    The pixels leave a straight line in B open. Where one time is wrong, x spreads its error over
+    all.
 
     Examples
     --------
@@ -144,22 +148,30 @@ def single_out(x: F64, B: F64) -> F64:
     return r if alone else x
 
 
-def _check_spread(kept: Estimate, times: F64, change: str, spread: Callable[[F64], float] | None) -> Estimate:
+def _check_spread(
+    kept: Estimate, times: F64, change: str, spread: Callable[[F64], float] | None
+) -> Estimate:
     """Return the Estimate with other times, unless they raise the spread."""
     if spread is not None:
         kept = kept._replace(spread_before=spread(kept.times), spread_after=spread(times))
         spreads = f"from {kept.spread_before:.3f} to {kept.spread_after:.3f} stops"
         if not kept.spread_after <= kept.spread_before:
             return kept._replace(reason=f"the map's spread would rise {spreads}")
-    return kept._replace(times=times, accepted=True, reason=f"held-out pixels disagree less, {change}")
+    return kept._replace(
+        times=times, accepted=True, reason=f"held-out pixels disagree less, {change}"
+    )
 
 
-def cross_validate(found: flat_patches.FlatPatches, B: F64, Q: F64, *, g: F64 | None, sd: float) -> float:
+def cross_validate(
+    found: flat_patches.FlatPatches, B: F64, Q: F64, *, g: F64 | None, sd: float
+) -> float:
     """Return the mean absolute bias, in stops, of the fit to each half of the flat patches in the other."""
     half = flat_patches.checkerboard(found.flat.shape[1:])
     H = [flat_patches.count_pairs(found.Z, found.best & part) for part in (half, ~half)]
     fits = [response_steps.fit_steps(one, B, Q, g=g, sd=sd) for one in H]
-    biases = [response_steps.measure_biases(one, B, fit) for one, fit in zip(H[::-1], fits, strict=True)]
+    biases = [
+        response_steps.measure_biases(one, B, fit) for one, fit in zip(H[::-1], fits, strict=True)
+    ]
     return float(np.nanmean(np.abs(biases))) if np.isfinite(biases).any() else float("nan")
 
 

@@ -6,10 +6,10 @@ flat    of each frame        (P, h, w) bool
 best    of each pair         (P - 1, h, w) bool: flat in a frame and in the next, and static
 H       pair tables          (P - 1, C, 256, 256): patches of level a in frame j and of level b in frame j + 1
 
-At an edge a shift of half a pixel, sharpening and JPEG change levels; in a flat patch they change nothing.
-And a longer exposure makes nothing darker: where it seems to, something moved. Each pair of neighbours has
-its own flat patches, for hardly a patch is exposed well in all frames of a long bracket. Where a pair has too
-few, equal ranks of the two histograms take their place [Grossberg03].
+At an edge a shift of half a pixel, sharpening and JPEG change levels; in a flat patch they change
+nothing. And a longer exposure makes nothing darker: where it seems to, something moved. Each pair
+of neighbours has its own flat patches, for hardly a patch is exposed well in all frames of a long
+bracket. Where a pair has too few, equal ranks of the two histograms take their place [Grossberg03].
 """
 
 from collections.abc import Sequence
@@ -57,8 +57,12 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
     n = int(np.minimum(SIDE, stack.shape[1:3]).prod())
 
     def find(j: int) -> tuple[Flags, Mask]:
-        low, high = (to_256(_reduce_patches(stack[j], apart, one)) for one in (np.minimum, np.maximum))
-        mean = to_256(((_reduce_patches(stack[j], apart, np.add) + n // 2) // n).astype(stack.dtype))
+        low, high = (
+            to_256(_reduce_patches(stack[j], apart, one)) for one in (np.minimum, np.maximum)
+        )
+        mean = to_256(
+            ((_reduce_patches(stack[j], apart, np.add) + n // 2) // n).astype(stack.dtype)
+        )
         whole = ((low >= BLACK) & (high <= TOP)).all(axis=0)
         if mask is not None:
             whole &= _reduce_patches(mask[j], apart, np.minimum)[0]
@@ -80,10 +84,15 @@ def _reduce_patches(frame: Array, apart: int, ufunc: np.ufunc) -> Array:
 
     Sums have twice the bits. A frame that is smaller than a patch is one.
     """
-    few, wide = np.moveaxis(frame.reshape(*frame.shape[:2], -1), -1, 0), np.dtype(f"u{2 * frame.itemsize}")
+    few, wide = (
+        np.moveaxis(frame.reshape(*frame.shape[:2], -1), -1, 0),
+        np.dtype(f"u{2 * frame.itemsize}"),
+    )
     for axis in (1, 2):  # whole rows first, as they lie in memory
         side = min(SIDE, n := few.shape[axis])
-        parts = [few[(*[np.s_[:]] * axis, np.s_[j : n - side + 1 + j : apart])] for j in range(side)]
+        parts = [
+            few[(*[np.s_[:]] * axis, np.s_[j : n - side + 1 + j : apart])] for j in range(side)
+        ]
         few = parts[0].astype(wide if ufunc is np.add else few.dtype, "K" if axis == 1 else "C")
         for part in parts[1:]:
             ufunc(few, part, out=few)

@@ -8,12 +8,13 @@ R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so 
 d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
 b    of a row       (P, h), sum w r / sum w over a row of blocks, less the frame's best cubic in y
 
-Leaves, water and people make d large where they are, though most pixels of each level agree, so that a median
-over levels, as in `consistency`, does not see them. An edge that is off by a pixel does so along a line;
-what counts is at least two blocks wide and high.
+Leaves, water and people make d large where they are, though most pixels of each level agree, so
+that a median over levels, as in `consistency`, does not see them. An edge that is off by a pixel
+does so along a line; what counts is at least two blocks wide and high.
 
-Lamps flicker, and most cameras read row after row: then b has bands, and the same of columns has none. A sky
-above the ground, where a response is a little wrong, makes no bands, for a cubic explains it.
+Lamps flicker, and most cameras read row after row: then b has bands, and the same of columns has
+none. A sky above the ground, where a response is a little wrong, makes no bands, for a cubic
+explains it.
 """
 
 import numpy as np
@@ -32,15 +33,20 @@ FAINT = 0.2
 STILL = 0.2 * np.log(2)
 # of the blocks: where fewer are measured by two frames, nothing is known
 FEWEST = 0.1
-# of the blocks measured: of a still scene up to 0.012 deviate; of film scanned frame by frame 0.09, for its
-# response does, and then `radiance.deghosting.ghosts` finds nothing to remove
+# of the blocks measured: of a still scene up to 0.012 deviate; of film scanned frame by frame 0.09,
+# for its response does, and then `radiance.deghosting.ghosts` finds nothing to remove
 MOVED = 0.015
 # stops of b, and times what columns show: still scenes under steady light stay below 0.04, and 1.8
 BANDED, ACROSS = 0.055, 2.5
 
 
 def measure_motion(
-    images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike, *, valid: ArrayLike | None = None
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike,
+    *,
+    valid: ArrayLike | None = None,
 ) -> tuple[float, float]:
     """Return the share of the picture in which the photographs contradict each other, and by bands of light.
 
@@ -55,9 +61,9 @@ def measure_motion(
     Returns
     -------
     share, bands : float
-        The share is one of the blocks that two photographs measure; 0 where these are few. Above MOVED, it is
-        motion. Bands are the RMS of b in stops, 0 unless it is ACROSS times that of columns. Above BANDED,
-        lamps flicker.
+        The share is one of the blocks that two photographs measure; 0 where these are few. Above
+        MOVED, it is motion. Bands are the RMS of b in stops, 0 unless it is ACROSS times that of
+        columns. Above BANDED, lamps flicker.
 
     Raises
     ------
@@ -75,19 +81,26 @@ def measure_motion(
     True
     """
     stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
-    mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0].size / curves.shape[1] / PIXELS)))
+    mask, every = (
+        as_mask(valid, stack),
+        max(1, int(np.sqrt(stack[0].size / curves.shape[1] / PIXELS))),
+    )
     few = np.s_[:, ::every, ::every]
     Z = np.moveaxis(stack[few].reshape(*stack[few].shape[:3], -1), -1, 0).copy()
     seen = (Z < top).all(axis=0) if mask is None else (Z < top).all(axis=0) & mask[few]
     weight = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
-    R, W = np.zeros((2, len(t), *(n // BLOCK for n in Z.shape[2:])), np.float32)  # sums of w r, and of w
+    R, W = np.zeros(
+        (2, len(t), *(n // BLOCK for n in Z.shape[2:])), np.float32
+    )  # sums of w r, and of w
     for levels, x in zip(Z, curves.T.astype(np.float32), strict=True):
         trust = weight.take(levels) * seen
         r = x.take(levels) - np.log(t).astype(np.float32)[:, None, None]
         r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
         R += sum_blocks(trust * r)
         W += sum_blocks(trust)
-    rows, columns = (measure_bands(R.sum(axis=k), W.sum(axis=k), len(Z) * R.shape[k]) for k in (2, 1))
+    rows, columns = (
+        measure_bands(R.sum(axis=k), W.sum(axis=k), len(Z) * R.shape[k]) for k in (2, 1)
+    )
     W[W < FAINT * BLOCK**2 * len(Z)] = 0
     R /= np.maximum(W, 1e-9)
     for one, own in zip(R, W, strict=True):

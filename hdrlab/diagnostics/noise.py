@@ -5,15 +5,16 @@ E     radiance            (H, W, C), the map of these frames
 y     of two frames       (x_j - x_k) / E, what neighbours in exposure contradict each other by
 S     of a group          the variance of y, over pixels that are flat and of like light
 
-Photon transfer wants an evenly lit wall (`capture.photon_transfer`); a bracket has flat parts of many lights
+Photon transfer wants an evenly lit wall (`capture.photon_transfer`); a bracket has flat parts of
+many lights
 instead, and each of them in neighbouring frames. The variances of the two add:
 
     S = a_1 / N + a_2 (R / N)^2 + a_3 rho^2 + a_0
 
-where each a is what `radiance.uncertainty.variance` multiplies there, summed over the two. What is fitted is
-log S, for the error of a variance grows with it, and groups far off count little: there something moved. The
-mean of y tells how response and times err, or how a camera treats each photograph in its own way: its square,
-in the median group, adds to rho^2.
+where each a is what `radiance.uncertainty.variance` multiplies there, summed over the two. What is
+fitted is log S, for the error of a variance grows with it, and groups far off count little: there
+something moved. The mean of y tells how response and times err, or how a camera treats each
+photograph in its own way: its square, in the median group, adds to rho^2.
 """
 
 from itertools import pairwise, product
@@ -66,17 +67,19 @@ def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLi
     Returns
     -------
     Noise
-        What `radiance.uncertainty.merge_with_deviation` takes. Where rounding hides the noise, N is hardly
-        known, and hardly matters.
+        What `radiance.uncertainty.merge_with_deviation` takes. Where rounding hides the noise, N is
+        hardly known, and hardly matters.
 
     Raises
     ------
     ValueError
-        For arrays that do not fit together, and where too little is flat and measured by two photographs.
+        For arrays that do not fit together, and where too little is flat and measured by two
+        photographs.
 
     References
     ----------
-    Granados and others, Optimal HDR reconstruction with linear digital cameras, CVPR 2010, for the model.
+    Granados and others, Optimal HDR reconstruction with linear digital cameras, CVPR 2010, for the
+    model.
 
     Examples
     --------
@@ -127,7 +130,9 @@ def scatter(y: F64) -> tuple[float, float]:
     return float(kept.var()), float(kept.mean() ** 2)
 
 
-def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tuple[float, float, float]:
+def _fit(
+    Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int
+) -> tuple[float, float, float]:
     """Return N, R and rho of one channel, from levels Z (P, M) of the light E (M,)."""
     X, measured, rows = np.exp(g), (Z > 0) & (Z < top), []
     D = np.gradient(X)

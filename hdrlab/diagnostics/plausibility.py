@@ -6,19 +6,29 @@ Z       ranks         (N, P, C), levels of equal rank in every frame: see `core.
 g       response      (256,) or (256, 3), ln exposure of each level
 error   stops         (P - 1,), by how much g(Z_j+1) - g(Z_j) departs from ln t_j+1 / t_j; median of size
 
-Whatever it is given, least squares gives a curve. Three things show that it is none of a camera: light that
-grows fainter as the exposure grows longer; neighbours that the curve itself leaves stops apart; and a curve
-that spans more stops than any camera's, which is how two frames with a wrong ratio explain each other. The
-limits are wide: times that are off by a stop or two give a curve, and the map a doubt, see
-`contradictions`. Times that are off by a factor of 100 give an error, with one exception. A linear
-camera, under ratios of 400 for 4, looks like one with a gamma of 4.3, and nothing in its photographs says
-that there is no such thing.
+Whatever it is given, least squares gives a curve. Three things show that it is none of a camera:
+light that grows fainter as the exposure grows longer; neighbours that the curve itself leaves stops
+apart; and a curve that spans more stops than any camera's, which is how two frames with a wrong
+ratio explain each other. The limits are wide: times that are off by a stop or two give a curve, and
+the map a doubt, see `contradictions`. Times that are off by a factor of 100 give an error, with one
+exception. A linear camera, under ratios of 400 for 4, looks like one with a gamma of 4.3, and
+nothing in its photographs says that there is no such thing.
 """
 
 import numpy as np
 
 from hdrlab.core import bracket, metrics, sampling
-from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_response, as_stack, as_times
+from hdrlab.core.arrays import (
+    F64,
+    Array,
+    ArrayLike,
+    Indices,
+    Mask,
+    as_mask,
+    as_response,
+    as_stack,
+    as_times,
+)
 from hdrlab.diagnostics.doubts import say
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
@@ -59,11 +69,16 @@ def neighbour_errors(Z: Indices, t: F64, g: F64) -> tuple[F64, F64]:
     darker, measured = np.diff(Z, axis=1) < -RANK_NOISE, both.sum(axis=(0, 2)) >= FEWEST_RANKS
     error, darker_share = np.full(len(measured), np.nan), np.full(len(measured), np.nan)
     for j in np.flatnonzero(measured):
-        error[j], darker_share[j] = np.median(apart[:, j][both[:, j]]), np.mean(darker[:, j][both[:, j]])
+        error[j], darker_share[j] = (
+            np.median(apart[:, j][both[:, j]]),
+            np.mean(darker[:, j][both[:, j]]),
+        )
     return error, darker_share
 
 
-def validate_response(g: F64, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
+def validate_response(
+    g: F64, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+) -> F64:
     """Return g as it is, or raise a ValueError that says where the photographs contradict it.
 
     Parameters
@@ -80,8 +95,8 @@ def validate_response(g: F64, images: ArrayLike, times: ArrayLike, *, valid: Arr
     Raises
     ------
     ValueError
-        Where a longer exposure is the darker one, where two neighbours are left more than 4 stops apart,
-        or half of them more than 3, and where the curve spans more than 13 stops.
+        Where a longer exposure is the darker one, where two neighbours are left more than 4 stops
+        apart, or half of them more than 3, and where the curve spans more than 13 stops.
 
     Examples
     --------

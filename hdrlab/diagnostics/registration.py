@@ -2,16 +2,18 @@
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 p        pixels              (n, 2): those at which light is compared, spread evenly over an overview, half a
-                             megapixel at most; bitmaps are compared with no offset at full resolution, too
+                             megapixel at most; bitmaps are compared with no offset at full
+                             resolution, too
 d        differences         of light (n,): relative to it, NaN where one measures none; of bitmaps (4, 2):
                              in each quarter of the picture the bits that differ, and those compared
 e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
 
-Of Ward's brackets 84 % came out well; the others had turned, moved too far, or were all fine texture. So: is
-H better than the identity, better than what lies around it, do the four quarters of the picture agree (in a
-rotation each of them moves another way), and does a texture that repeats fit elsewhere as well?
+Of Ward's brackets 84 % came out well; the others had turned, moved too far, or were all fine
+texture. So: is H better than the identity, better than what lies around it, do the four quarters of
+the picture agree (in a rotation each of them moves another way), and does a texture that repeats
+fit elsewhere as well?
 """
 
 from collections.abc import Callable, Sequence
@@ -27,17 +29,21 @@ from hdrlab.core.filters import blur, warp
 NEAR, FAR = 2, 8
 # standard errors by which an error is clearly lower
 SURE = 3
-# confidence below which an answer is lost; wrong ones stay below 0.1, and right ones come to 0.6 and more
+# confidence below which an answer is lost; wrong ones stay below 0.1, and right ones come to 0.6
+# and more
 LOST = 0.3
 # shifts at which a texture resembles itself most
 RIVALS = 4
 # of the way up to the error elsewhere: a rival this low fits as well
 ALIKE = 0.1
-# pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are looked for
+# pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are
+# looked for
 BITS_TILE, LIGHT_TILE = 64, 512
-# error of photographs that clearly lie apart: of bits an eighth as fine, where noise is none, and of light
+# error of photographs that clearly lie apart: of bits an eighth as fine, where noise is none, and
+# of light
 BITS_APART, LIGHT_APART = 0.1, 0.1
-# quarters of a picture: so many fit better elsewhere where the camera rotated; fewer, where something moved
+# quarters of a picture: so many fit better elsewhere where the camera rotated; fewer, where
+# something moved
 ROTATED = 3
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
@@ -93,9 +99,11 @@ class Comparison(NamedTuple):
     ----------
     moving, fixed, shape : which two images, and the size of the fixed one
     scale : pixels that are one of the overview
-    differences : function of H that returns d of the overview, or of the size whose pixel is so many wide
+    differences : function of H that returns d of the overview, or of the size whose pixel is so
+        many wide
     error : function of d that returns e, and `light.NONE` where the two share too little
-    lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in the whole
+    lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in
+        the whole
     middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
     apart : e above which photographs clearly do not lie on each other
     """
@@ -134,15 +142,23 @@ def compare_light(moving: int, fixed: int, X: F32, scale: int = 1) -> Comparison
         return np.asarray((n >= 20) & (gained > rate / 20 + SURE * error))
 
     shape, middle = tuple(scale * n for n in X.shape[1:]), _middle(X[0], LIGHT_TILE)
-    return Comparison(moving, fixed, shape, scale, differences, light.error, lower, middle, LIGHT_APART)
+    return Comparison(
+        moving, fixed, shape, scale, differences, light.error, lower, middle, LIGHT_APART
+    )
 
 
 def compare_bits(
-    moving: int, fixed: int, Y: list[Array], overview: int, t: int, count: Callable[[Array, int], Array]
+    moving: int,
+    fixed: int,
+    Y: list[Array],
+    overview: int,
+    t: int,
+    count: Callable[[Array, int], Array],
 ) -> Comparison:
     """Return the Comparison of the bitmaps of two gray photographs; its H shift by whole pixels.
 
-    Y are the fixed one's levels, t the threshold of the overview; count(offset, level) returns d of a level.
+    Y are the fixed one's levels, t the threshold of the overview; count(offset, level) returns d of
+    a level.
     """
     tile, scale = _middle(Y[overview], BITS_TILE), 2**overview
     signs = np.where(mtb.exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
@@ -158,9 +174,13 @@ def compare_bits(
     def lower(d: F64, other: F64) -> Mask:
         d, other = (np.vstack([one, one.sum(axis=0)]) for one in (d, other))
         own, rate = (one[:, 0] / np.maximum(one[:, 1], 1) for one in (d, other))
-        return np.asarray(rate - own > rate / 20 + SURE * np.sqrt(rate / np.maximum(other[:, 1], 1)))
+        return np.asarray(
+            rate - own > rate / 20 + SURE * np.sqrt(rate / np.maximum(other[:, 1], 1))
+        )
 
-    return Comparison(moving, fixed, Y[0].shape, scale, differences, error, lower, signs, BITS_APART)
+    return Comparison(
+        moving, fixed, Y[0].shape, scale, differences, error, lower, signs, BITS_APART
+    )
 
 
 def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
@@ -176,7 +196,9 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     d = pair.differences(H, fine)
     near = [pair.differences(shift(H, NEAR * fine * to), fine) for to in EIGHT]
     elsewhere = [pair.error(pair.differences(shift(H, FAR * coarse * to))) for to in EIGHT]
-    if (e := pair.error(after)) == light.NONE or not any(elsewhere + [pair.error(one) for one in near]):
+    if (e := pair.error(after)) == light.NONE or not any(
+        elsewhere + [pair.error(one) for one in near]
+    ):
         return uninformative(pair.moving, pair.fixed)
     middle = (np.array(pair.shape[::-1]) - 1) / 2
     dx, dy = (float(by) for by in warp.apply(H, [middle])[0] - middle)
@@ -186,14 +208,20 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     reason = failure_reason(pair, H, elsewhere, all(pair.lower(d, one)[-1] for one in near), away)
     if max(abs(dx), abs(dy)) >= limit:
         reason = f"the offset lies at the end of the range, {limit} pixels"
-    apart = away >= ROTATED if sure >= LOST else pair.error(pair.differences(still, 8 * coarse)) > pair.apart
+    apart = (
+        away >= ROTATED
+        if sure >= LOST
+        else pair.error(pair.differences(still, 8 * coarse)) > pair.apart
+    )
     numbers = (dy, dx), degrees, pair.error(before), e, sure
     return Validation(pair.moving, pair.fixed, H, *numbers, True, reason, apart)
 
 
 def uninformative(moving: int, fixed: int) -> Validation:
     """Return the Validation of a pair that cannot be compared."""
-    reason = "uninformative: both measure too little of the scene, or no threshold divides both pictures"
+    reason = (
+        "uninformative: both measure too little of the scene, or no threshold divides both pictures"
+    )
     return Validation(moving, fixed, np.eye(3), (0.0, 0.0), 0.0, 0.0, 0.0, 0.0, False, reason)
 
 
@@ -205,7 +233,9 @@ def failure_reason(pair: Comparison, H: F64, elsewhere: list[float], clear: bool
     if (sure := confidence(e, elsewhere)) < LOST:
         return f"{FAR * n} pixels away the photographs fit nearly as well (confidence {sure:.2f})"
     if away:
-        return f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
+        return (
+            f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
+        )
     if not clear:
         return f"{NEAR * max(n // 2, 1)} pixels away the photographs fit as well"
     for rival in rivals(pair.middle):
@@ -233,10 +263,14 @@ def rivals(middle: F32) -> list[Array]:
     (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.NEIGHBOURHOOD)
     k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.NEIGHBOURHOOD) ** 2)
     down, across = (blur.blur_matrix(n, k / k.sum()) for n in (h, w))
-    total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
+    total, share = (
+        down @ one @ across for one in (np.where(kept, middle, 0), kept)
+    )  # `light.local_mean`
     x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
     c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)
-    near = np.max([np.pad(c, 2, "edge")[j : j + 2 * h] for j in range(5)], axis=0)  # of 5 x 5: of rows, then
+    near = np.max(
+        [np.pad(c, 2, "edge")[j : j + 2 * h] for j in range(5)], axis=0
+    )  # of 5 x 5: of rows, then
     near = np.max([near[:, j : j + w] for j in range(5)], axis=0)
     y, x = np.nonzero((c == near) & (c > 0))
     found = np.stack([y - h, x], axis=-1)[np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]]
@@ -251,5 +285,7 @@ def shift(H: F64, offset: ArrayLike) -> F64:
 
 def _middle(image: Array, side: int) -> Array:
     """Return the middle of a picture (H, W), of this side at most."""
-    rows, columns = (slice(max(n - side, 0) // 2, max(n - side, 0) // 2 + side) for n in image.shape)
+    rows, columns = (
+        slice(max(n - side, 0) // 2, max(n - side, 0) // 2 + side) for n in image.shape
+    )
     return image[rows, columns]

@@ -10,12 +10,13 @@ v   level balance   (C, P - 1, 256): patches that come to a level, less those th
 T   total weight    (P - 1,), the sum of V over a pair's table
 sd  prior           how far a stated time may be off, 1/6 stop
 
-A patch measures g(b) - g(a) = b_j + x_j+1 - x_j. Least squares over all patches, with smooth g and x of
-size sd, is quadratic in both. The best g for given x is linear in x; put in, there remain K equations.
+A patch measures g(b) - g(a) = b_j + x_j+1 - x_j. Least squares over all patches, with smooth g and
+x of size sd, is quadratic in both. The best g for given x is linear in x; put in, there remain K
+equations.
 
-The gauge: pixels do not determine the unit of light, nor, where the response is unknown too, the exponent u
-((g, B) and (u g, u B) explain the same pixels). So the corrections are kept orthogonal to 1, and to B where g
-is not known: the geometric mean of the times stays, and so does their span.
+The gauge: pixels do not determine the unit of light, nor, where the response is unknown too, the
+exponent u ((g, B) and (u g, u B) explain the same pixels). So the corrections are kept orthogonal
+to 1, and to B where g is not known: the geometric mean of the times stays, and so does their span.
 """
 
 from itertools import combinations
@@ -28,7 +29,8 @@ from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask, as_times
 from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)
-# of w(a) w(b): below, a level is of the response's ends, where the floor of a scan stays when light grows
+# of w(a) w(b): below, a level is of the response's ends, where the floor of a scan stays when light
+# grows
 TRUSTED = 0.03
 # trust in a patch of level a that becomes b, (256, 256)
 PAIR = np.where(W[:, None] * W > TRUSTED, W[:, None] * W, 0)
@@ -107,7 +109,9 @@ def remove_trend(x: F64, B: F64) -> F64:
 
 def trust_pairs(H: F64) -> Pairs:
     """Return what stands in H, of weight w(a) w(b) H, or 0 where a level is not trusted."""
-    j, c, a, b = np.unravel_index(np.flatnonzero(H.ravel() != 0), H.shape)  # of one axis it is found fastest
+    j, c, a, b = np.unravel_index(
+        np.flatnonzero(H.ravel() != 0), H.shape
+    )  # of one axis it is found fastest
     return Pairs(j, c, a, b, PAIR[a, b] * H[j, c, a, b], H.shape[:2])
 
 
@@ -124,7 +128,9 @@ def find_informative(H: F64) -> Mask:
     return np.asarray(found.total(found.V).mean(axis=1) >= FEWEST)
 
 
-def solve_steps(V: Pairs, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoothness: float) -> Fit:
+def solve_steps(
+    V: Pairs, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoothness: float
+) -> Fit:
     """Return the Fit of least squares: sum V (g(b) - g(a) - step)^2 + (smoothness w g'')^2 + (x / sd)^2."""
     b, F = np.diff(B), np.diff(Q, axis=0)
     v = np.zeros((V.shape[1], V.shape[0], 256))
@@ -132,8 +138,12 @@ def solve_steps(V: Pairs, B: F64, Q: F64, *, g: F64 | None = None, sd: float, sm
     np.subtract.at(v, (V.c, V.j, V.a), V.V)
     T = np.diag(V.total(V.V).sum(axis=1))
     if g is None:
-        answers = np.stack([np.linalg.solve(_penalty(V, c, smoothness), v[c].T) for c in range(len(v))])
-        left = T - (v @ answers).sum(axis=0)  # of the weight, when each response has explained its part
+        answers = np.stack(
+            [np.linalg.solve(_penalty(V, c, smoothness), v[c].T) for c in range(len(v))]
+        )
+        left = T - (v @ answers).sum(
+            axis=0
+        )  # of the weight, when each response has explained its part
         target = left @ b
     else:
         left, target = T, T @ b - (v @ g[..., None]).sum(axis=(0, 2))

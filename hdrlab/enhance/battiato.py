@@ -7,9 +7,10 @@ M, D   its mean, and its mean distance from it, levels: contrast
 F      mean of what a Laplacian leaves above the noise, levels: focus
 R      relevance       (blocks, blocks), from D and F
 
-Three steps. Brighten the picture until its mean is 128: in this visibility image dark regions get a fair
-look. Find in it the regions that matter: skin where there is some, else the blocks of most contrast and
-focus. Give all pixels the light that brings the mean of those regions to 128 (`enhance.relight`).
+Three steps. Brighten the picture until its mean is 128: in this visibility image dark regions get a
+fair look. Find in it the regions that matter: skin where there is some, else the blocks of most
+contrast and focus. Give all pixels the light that brings the mean of those regions to 128
+(`enhance.relight`).
 """
 
 from collections.abc import Callable
@@ -113,7 +114,8 @@ def correct(
 
     Parameters
     ----------
-    picture : (H, W, 3) or (H, W) uint8, as the camera made it; for a Bayer mosaic see `correct_mosaic`
+    picture : (H, W, 3) or (H, W) uint8, as the camera made it; for a Bayer mosaic see
+        `correct_mosaic`
     target : mean level that the relevant regions get
     by : "skin", "blocks" (contrast and focus), or "auto": skin where it covers 1 % of the picture
     find_skin : function of a picture that returns the mask of skin, one of `skin.FINDERS`
@@ -128,11 +130,13 @@ def correct(
     Raises
     ------
     ValueError
-        For a picture that is not uint8, a target outside 1 to 254, or skin that is asked for and not found.
+        For a picture that is not uint8, a target outside 1 to 254, or skin that is asked for and
+        not found.
 
     References
     ----------
-    Battiato, Messina and Castorina, Exposure correction for imaging devices: an overview, 2008, sec. 1.3.
+    Battiato, Messina and Castorina, Exposure correction for imaging devices: an overview, 2008,
+    sec. 1.3.
 
     Examples
     --------
@@ -143,7 +147,9 @@ def correct(
     ('contrast and focus', True)
     """
     if not (1 <= target <= 254 and by in ("auto", "skin", "blocks")):
-        raise ValueError(f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}")
+        raise ValueError(
+            f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}"
+        )
     Z, (a, c) = as_picture(picture), shape
     Y, visible = brightness(Z), brighten(Z, a=a, c=c)
     faces = find_skin(visible) if Z.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
@@ -151,7 +157,9 @@ def correct(
         raise ValueError("expected a colour picture with skin in it, found none")
     by = "skin" if by == "skin" or faces.mean() >= SMALLEST_FACE else "contrast and focus"
     relevant = faces if by == "skin" else find_relevant_blocks(brightness(visible), noise=noise)
-    inner = relevant & (Y > 0) & (Y < 255)  # black and white stay what they are, and would drag the mean
+    inner = (
+        relevant & (Y > 0) & (Y < 255)
+    )  # black and white stay what they are, and would drag the mean
     inner = inner if inner.any() else relevant
     *_, state = relight.settle_steps(relight.shares(Y[inner]), target, a=a, c=c)
     delta = state.delta if abs(state.delta) >= least else 0.0
@@ -164,7 +172,9 @@ def quarter_size(mosaic: ArrayLike) -> Array:
     """Return the quarter-size picture (H/2, W/2, 3) of a Bayer mosaic R G / G B: a cell becomes a pixel."""
     Z = np.asarray(mosaic)
     if Z.ndim != 2 or min(Z.shape) < 2 or Z.dtype != np.uint8:
-        raise ValueError(f"expected a Bayer mosaic (H, W) of uint8, at least 2 x 2, got {describe(Z)}")
+        raise ValueError(
+            f"expected a Bayer mosaic (H, W) of uint8, at least 2 x 2, got {describe(Z)}"
+        )
     Z = Z[: Z.shape[0] // 2 * 2, : Z.shape[1] // 2 * 2]
     green = (Z[::2, 1::2].astype(np.uint16) + Z[1::2, ::2] + 1) // 2
     return np.stack([Z[::2, ::2], green.astype(np.uint8), Z[1::2, 1::2]], axis=-1)
@@ -175,4 +185,6 @@ def correct_mosaic(
 ) -> Correction:
     """Return the Correction of a Bayer mosaic by its quarter-size picture; knobs are those of `correct`."""
     found = correct(quarter_size(mosaic), shape=shape, **knobs)
-    return found._replace(picture=relight.table(found.delta, a=shape[0], c=shape[1])[np.asarray(mosaic)])
+    return found._replace(
+        picture=relight.table(found.delta, a=shape[0], c=shape[1])[np.asarray(mosaic)]
+    )

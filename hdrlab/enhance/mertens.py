@@ -8,9 +8,9 @@ W_j,k     its Gaussian pyramid          level k
 L_j,k     Laplacian pyramid of F_j      level k
 R         fused picture                 (H, W[, 3]) float32, about [0, 1]
 
-Neither exposure times nor a response are needed: pixels are never turned into light. Blending the photographs
-themselves, R = sum_j W_j F_j, shows seams wherever a weight jumps; blending their Laplacian pyramids shows
-none, as each detail is blended by weights as smooth as it is wide.
+Neither exposure times nor a response are needed: pixels are never turned into light. Blending the
+photographs themselves, R = sum_j W_j F_j, shows seams wherever a weight jumps; blending their
+Laplacian pyramids shows none, as each detail is blended by weights as smooth as it is wide.
 """
 
 from collections.abc import Iterator, Sequence
@@ -67,12 +67,16 @@ def contrast(F: F32) -> F32:
 def saturation(F: F32) -> F32:
     """Return S, the standard deviation of R, G and B [Mertens07]; 1 where there are no colours.
 
-    As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of the three it
-    would be what rounding left, and decide alone in places that are gray in every photograph.
+    As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of
+    the three it would be what rounding left, and decide alone in places that are gray in every
+    photograph.
     """
     if len(F) == 1:
         return np.ones_like(F[0])
-    a, b = F[0] - F[1], F[1] - F[2]  # the third difference is -(a + b), and the sum 2 (a (a + b) + b b)
+    a, b = (
+        F[0] - F[1],
+        F[1] - F[2],
+    )  # the third difference is -(a + b), and the sum 2 (a (a + b) + b b)
     return np.sqrt((a * (a + b) + b * b) * np.float32(2 / 9))
 
 
@@ -111,7 +115,9 @@ def fuse_steps(
     """
     stack, powers = as_stack(images), (contrast, saturation, exposedness)
     if not all(0 <= power < np.inf for power in powers):
-        raise ValueError(f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}")
+        raise ValueError(
+            f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}"
+        )
     depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns
     blended: list[F32] = []
     for j, W in enumerate(weights(stack, powers)):
@@ -131,14 +137,15 @@ def fuse(
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Photographs of one scene from one place, with different exposures, in any order.
     contrast, saturation, exposedness : float
-        Powers of the three measures in the weight; 0 leaves one out. Gray photographs have no saturation.
+        Powers of the three measures in the weight; 0 leaves one out. Gray photographs have no
+        saturation.
 
     Returns
     -------
     R : (H, W) or (H, W, 3) float32
-        Encoded like the photographs, 1 = their top level. It is not clipped, and does leave [0, 1] next to
-        strong edges, where the details of one photograph stand on the light of another: real brackets reach
-        -0.5 and 1.8, often in a quarter of the pixels. Clip it for a display.
+        Encoded like the photographs, 1 = their top level. It is not clipped, and does leave [0, 1]
+        next to strong edges, where the details of one photograph stand on the light of another:
+        real brackets reach -0.5 and 1.8, often in a quarter of the pixels. Clip it for a display.
 
     Raises
     ------
@@ -147,9 +154,10 @@ def fuse(
 
     References
     ----------
-    Mertens, Kautz, Van Reeth, Exposure fusion, Pacific Graphics 2007. Two things it leaves open are as in
-    OpenCV: the pyramids go down to one or two rows or columns, and all filters reflect at the edges. The two
-    differ where every photograph is gray or flat: there rounding decides in OpenCV, and here all weigh alike.
+    Mertens, Kautz, Van Reeth, Exposure fusion, Pacific Graphics 2007. Two things it leaves open are
+    as in OpenCV: the pyramids go down to one or two rows or columns, and all filters reflect at the
+    edges. The two differ where every photograph is gray or flat: there rounding decides in OpenCV,
+    and here all weigh alike.
 
     Examples
     --------

@@ -7,8 +7,9 @@ delta  how much more light the photograph should have had, stops
 p      share of the pixels at each level, (256,)
 target where their mean belongs, level 128
 
-Every level moves along f by delta stops, as it would have with a longer exposure. Black and white stay where
-they are, which a factor or an added constant would not do; what was clipped stays clipped.
+Every level moves along f by delta stops, as it would have with a longer exposure. Black and white
+stay where they are, which a factor or an added constant would not do; what was clipped stays
+clipped.
 """
 
 from collections.abc import Iterator
@@ -19,7 +20,8 @@ from scipy.special import expit, logit
 
 from hdrlab.core.arrays import F64, Array, ArrayLike
 
-# A and C for which f lies within 4 levels of the curve of sRGB from level 20 to 200, by least squares.
+# A and C for which f lies within 4 levels of the curve of sRGB from level 20 to 200, by least
+# squares.
 A, C = 1.79, 0.192
 # level
 TARGET = 128.0
@@ -49,7 +51,9 @@ def f_inv(Y: ArrayLike, *, a: float = A, c: float = C) -> F64:
 
 def offset(average: float, target: float = TARGET, *, a: float = A, c: float = C) -> float:
     """Return delta = f^-1(target) - f^-1(average) [Battiato08 eq. 1.10], DELTA_LIMIT stops at most."""
-    return float(np.clip(f_inv(target, a=a, c=c) - f_inv(average, a=a, c=c), -DELTA_LIMIT, DELTA_LIMIT))
+    return float(
+        np.clip(f_inv(target, a=a, c=c) - f_inv(average, a=a, c=c), -DELTA_LIMIT, DELTA_LIMIT)
+    )
 
 
 def curve(delta: float, *, a: float = A, c: float = C) -> F64:
@@ -76,9 +80,9 @@ def shares(Y: ArrayLike) -> F64:
 def settle_steps(p: F64, target: float = TARGET, *, a: float = A, c: float = C) -> Iterator[State]:
     """Yield the State before any light and after each round of eq. 1.10, until the mean is on target.
 
-    One round, as the paper has it, moves the *average level* to the target. The mean of the moved levels is
-    another thing, for f is curved: it is off by 10 levels and more where the regions hold light and shade.
-    So the round is repeated with the mean that resulted, a dozen times at most.
+    One round, as the paper has it, moves the *average level* to the target. The mean of the moved
+    levels is another thing, for f is curved: it is off by 10 levels and more where the regions hold
+    light and shade. So the round is repeated with the mean that resulted, a dozen times at most.
     """
     delta, mean = 0.0, float(p @ LEVELS)
     for _ in range(13):

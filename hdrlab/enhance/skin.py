@@ -7,14 +7,15 @@ d      Mahalanobis distance of a pixel from them
 p      density p(x | skin)
 r, g   R / (R + G + B), G / (R + G + B): colour without brightness
 
-Two ways. A Gaussian over the chrominance says how likely a colour is skin's. And the colours of skin under
-many lamps, from candle to sky, lie in the (r, g) plane in a crescent between two parabolas: the skin locus.
-It is wider, for it takes any lamp: it finds more skin, and wood, hair and orange cloth too.
+Two ways. A Gaussian over the chrominance says how likely a colour is skin's. And the colours of
+skin under many lamps, from candle to sky, lie in the (r, g) plane in a crescent between two
+parabolas: the skin locus. It is wider, for it takes any lamp: it finds more skin, and wood, hair
+and orange cloth too.
 
-The Gaussian comes from a training set. The default one is computed: skin is a stack of filters, melanin over
-blood, so its log reflectance moves along a line from light to dark. The line goes through the two skins of
-the ColorChecker and a little beyond, with more or less blood, shade and white balance. `fit` takes one of
-your own.
+The Gaussian comes from a training set. The default one is computed: skin is a stack of filters,
+melanin over blood, so its log reflectance moves along a line from light to dark. The line goes
+through the two skins of the ColorChecker and a little beyond, with more or less blood, shade and
+white balance. `fit` takes one of your own.
 """
 
 from typing import NamedTuple
@@ -24,7 +25,9 @@ import numpy as np
 from hdrlab.core.arrays import F64, ArrayLike, Mask
 
 LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
-CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])  # Cb, Cr of RGB [BT.601]
+CHROMA = np.array(
+    [[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]]
+)  # Cb, Cr of RGB [BT.601]
 LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
 UPPER, LOWER = (-1.3767, 1.0743, 0.1452), (-0.776, 0.5601, 0.1766)  # parabolas in r [Soriano03]
 # squared radius of the white that is left out of the locus
@@ -41,13 +44,16 @@ class Skin(NamedTuple):
 
 
 # Of the computed training set, at the brightness of a visibility image; a test computes it again.
-DEFAULT = Skin(np.array([-17.12975, 23.91754]), np.array([[20.25376, -25.10826], [-25.10826, 49.34927]]))
+DEFAULT = Skin(
+    np.array([-17.12975, 23.91754]), np.array([[20.25376, -25.10826], [-25.10826, 49.34927]])
+)
 
 
 def chrominance(Z: ArrayLike) -> F64:
     """Return x = 128 (Cb, Cr) / Y of levels (..., 3): the chrominance that a colour would have at level 128.
 
-    Cb and Cr alone shrink in the shade, and so would the distance from gray; divided by Y they do not.
+    Cb and Cr alone shrink in the shade, and so would the distance from gray; divided by Y they do
+    not.
     """
     Z = np.asarray(Z, np.float64)
     return 128 * (Z @ CHROMA.T) / np.maximum(Z @ LUMA, 1)[..., None]
@@ -67,7 +73,9 @@ def fit(Z: ArrayLike) -> Skin:
     x = chrominance(Z)
     S = np.cov(x.T)
     if not np.linalg.det(S) > 1e-9:
-        raise ValueError(f"expected training pixels of different colours, got a covariance of {S.tolist()}")
+        raise ValueError(
+            f"expected training pixels of different colours, got a covariance of {S.tolist()}"
+        )
     return Skin(x.mean(axis=0), S)
 
 

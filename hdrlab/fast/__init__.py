@@ -23,7 +23,9 @@ def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
     """
     plain: Any = lesson
     if strange := parts.keys() - set(plain.__code__.co_names):
-        raise ValueError(f"expected functions that {plain.__name__} calls, got {', '.join(sorted(strange))}")
+        raise ValueError(
+            f"expected functions that {plain.__name__} calls, got {', '.join(sorted(strange))}"
+        )
     names = {**plain.__globals__, **parts}
     fast: Any = FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__)
     update_wrapper(fast, plain)

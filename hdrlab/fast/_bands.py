@@ -1,7 +1,8 @@
 """An equation over a picture, a band of rows at a time, which stays in the processor's cache.
 
-Written for a whole picture, an equation of neighbours gives the same answer in the rows of a band if the
-slab it is given reaches `margin` rows further on either side, and ends only where the picture does.
+Written for a whole picture, an equation of neighbours gives the same answer in the rows of a band
+if the slab it is given reaches `margin` rows further on either side, and ends only where the
+picture does.
 """
 
 from collections.abc import Callable

@@ -4,8 +4,8 @@ v        signal                (H, W), and g, w, k as in `core.filters.bilateral
 h        node spacing          pixels, odd, at most SPACING sigma_s
 z        level of a node       low, low + step, ...: Z of them, step at most sigma_r / 2
 
-Take the level as a third axis, and what differs much is far away: the filter is a Gaussian blur of that space
-(Paris and Durand, ECCV 2006), and what is blurred is known from few nodes.
+Take the level as a third axis, and what differs much is far away: the filter is a Gaussian blur of
+that space (Paris and Durand, ECCV 2006), and what is blurred is known from few nodes.
 """
 
 from collections.abc import Iterator
@@ -92,7 +92,9 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
     """
     g = blur._taps((a.sigma_s**2 - (a.h**2 - 1) / 4) ** 0.5 / a.h)
     r, w, K = len(g) // 2, _closeness(a), blur._band(g, blur.NODES)
-    recent = np.zeros((len(g), a.X * 2 * a.Z), np.float32)  # the rows in reach; row j stands at j mod len(g)
+    recent = np.zeros(
+        (len(g), a.X * 2 * a.Z), np.float32
+    )  # the rows in reach; row j stands at j mod len(g)
     row = np.zeros((a.X + -a.X % blur.NODES + 2 * r, 2 * a.Z), np.float32)
     counted, area = _histograms(v, a), np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
     for j in range(a.Y + r):
@@ -110,7 +112,8 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
 def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     """Return mean and k of the h rows v between two rows of nodes, each pixel at its place and level.
 
-    The mean is read along lines between the nodes, k at a node nearby: it is right to about a tenth.
+    The mean is read along lines between the nodes, k at a node nearby: it is right to about a
+    tenth.
     """
     y, x = np.arange(len(v))[:, None], np.arange(v.shape[1])
     z = (v - np.float32(a.low)) * np.float32(1 / a.step)

@@ -6,8 +6,9 @@ k      taps (2r + 1,) of the kernel, sum 1; r = 4 sigma, on the coarse grid 5
 K      band matrix (n, (n - 1) step + 2r + 1), K[i, i step + j] = k[j]: row i holds the kernel of output i
 h      spacing of the coarse grid, pixels
 
-A blur of rows is a product with a band matrix, the same at every height. Cut into tiles of a few rows it is
-small and dense, which is what a processor's matrix product does at full speed; a loop over the taps does not.
+A blur of rows is a product with a band matrix, the same at every height. Cut into tiles of a few
+rows it is small and dense, which is what a processor's matrix product does at full speed; a loop
+over the taps does not.
 """
 
 import numpy as np
@@ -24,13 +25,17 @@ NODES = 8
 def gaussian(image: ArrayLike, sigma: float) -> F32:
     """Return the lesson's blur.
 
-    Below sigma = 4 it is the plain sum to the accuracy of float32. Wider ones go over a coarse grid, and
-    their kernel differs from the Gaussian by less than 0.2 % of its peak.
+    Below sigma = 4 it is the plain sum to the accuracy of float32. Wider ones go over a coarse
+    grid, and their kernel differs from the Gaussian by less than 0.2 % of its peak.
     """
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
-        raise ValueError(f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}")
-    h = 2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1  # the largest power of two up to sigma / 2
+        raise ValueError(
+            f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}"
+        )
+    h = (
+        2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1
+    )  # the largest power of two up to sigma / 2
     return _direct(image, sigma) if h == 1 else _coarse(image, sigma, h)
 
 
@@ -62,7 +67,9 @@ def _spline(h: int, n: int) -> F32:
 
 def _product(K: F32, step: int, image: F32) -> F32:
     """Return K times each window of rows of `image`, a window every `step` rows, one below the other."""
-    windows = sliding_window_view(image, K.shape[1], axis=0)[::step].swapaxes(1, 2)  # (windows, rows, W)
+    windows = sliding_window_view(image, K.shape[1], axis=0)[::step].swapaxes(
+        1, 2
+    )  # (windows, rows, W)
     return np.matmul(K, windows).reshape(-1, image.shape[1])
 
 
@@ -90,11 +97,14 @@ def _direct(image: F32, sigma: float) -> F32:
 def _coarse(image: F32, sigma: float, h: int) -> F32:
     """Return the blur through a grid of spacing h: blurred at its nodes alone, then B-splines between them.
 
-    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add: the nodes take what is
-    left, to five sigma, as beside a lamp a million times as bright the tail is most of the light.
+    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add: the nodes take
+    what is left, to five sigma, as beside a lamp a million times as bright the tail is most of the
+    light.
     """
     k = _taps((sigma**2 - h**2 / 3) ** 0.5, reach=5)
-    few = _sampled(np.ascontiguousarray(_sampled(image, k, h).T), k, h)  # (nodes across, nodes down)
+    few = _sampled(
+        np.ascontiguousarray(_sampled(image, k, h).T), k, h
+    )  # (nodes across, nodes down)
     U, W = _spline(h, NODES), image.shape[1]
     across = np.ascontiguousarray(_product(U, NODES, few)[:W].T)  # (nodes down, W)
     blurred = np.empty_like(image)

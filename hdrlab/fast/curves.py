@@ -14,4 +14,6 @@ def _of(curve: Callable[..., F32]) -> Callable[..., F32]:
 
 
 _parts = {"CURVES": {name: _of(curve) for name, curve in curves.CURVES.items()}}
-tonemap = with_parts(__name__, curves.tonemap, **_parts, decode_srgb=partial(_bands.banded, decode_srgb))
+tonemap = with_parts(
+    __name__, curves.tonemap, **_parts, decode_srgb=partial(_bands.banded, decode_srgb)
+)

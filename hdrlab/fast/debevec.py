@@ -1,8 +1,8 @@
 """Debevec and Malik's response from n unknowns instead of n + N, and on any input: see `response.debevec`.
 
-For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put into the
-normal equations it leaves a system S g = r in g alone (a Schur complement). A sample has P levels, and so it
-adds to P x P entries of S.
+For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put
+into the normal equations it leaves a system S g = r in g alone (a Schur complement). A sample has P
+levels, and so it adds to P x P entries of S.
 """
 
 from itertools import product
@@ -31,9 +31,15 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
     D[~has_weight] = 1
     means = (W @ B) / D
     both = np.bincount(  # what two levels of a sample have in common
-        (n * Z[:, :, None] + Z[:, None]).ravel(), (W[:, :, None] * (W / D[:, None])[:, None]).ravel(), n * n
+        (n * Z[:, :, None] + Z[:, None]).ravel(),
+        (W[:, :, None] * (W / D[:, None])[:, None]).ravel(),
+        n * n,
     )
-    S = np.diag(np.bincount(Z.ravel(), W.ravel(), n)) - both.reshape(n, n) + _stiffness(w, smoothness)
+    S = (
+        np.diag(np.bincount(Z.ravel(), W.ravel(), n))
+        - both.reshape(n, n)
+        + _stiffness(w, smoothness)
+    )
     r = np.zeros(n)
     np.add.at(r, Z, W * (B - means[:, None]))
     g = _solve_with_gauge(S, r)
@@ -59,14 +65,18 @@ def _solve_with_gauge(S: F64, r: F64) -> F64:
     try:
         g = np.linalg.solve(S, r)
     except np.linalg.LinAlgError as error:
-        raise ValueError("expected more levels, frames or smoothness: the samples leave g open") from error
+        raise ValueError(
+            "expected more levels, frames or smoothness: the samples leave g open"
+        ) from error
     return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
 
 
 recover = with_parts(__name__, debevec.recover, gsolve=gsolve)
 
 
-def _validate(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tuple[Indices, F64, F64]:
+def _validate(
+    Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike
+) -> tuple[Indices, F64, F64]:
     """Return Z, B and w as arrays that fit together, or raise a ValueError."""
     Z, B, w = np.asarray(Z), np.asarray(B, dtype=np.float64), np.asarray(w, dtype=np.float64)
     if not 0 <= smoothness < np.inf:
@@ -76,7 +86,9 @@ def _validate(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tu
     if w.ndim != 1 or not np.all((w >= 0) & (w < np.inf)):
         raise ValueError(f"expected weights w (n,), finite and not negative, got {describe(w)}")
     if Z.min() < 0 or Z.max() >= len(w):
-        raise ValueError(f"expected pixel levels 0 to {len(w) - 1}, as many as weights, got {describe(Z)}")
+        raise ValueError(
+            f"expected pixel levels 0 to {len(w) - 1}, as many as weights, got {describe(Z)}"
+        )
     if B.shape != Z.shape[1:] or not np.all(np.isfinite(B)):
         raise ValueError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
     return Z.astype(np.intp, copy=False), B, w

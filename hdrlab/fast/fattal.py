@@ -36,4 +36,6 @@ def divergence(lL: F32, Phi: F32) -> F32:
 
 _parts = {"slope": _slope, "attenuation": _attenuation, "pyramid": pyramid}
 attenuation_steps = with_parts(__name__, fattal.attenuation_steps, **_parts)
-tonemap = with_parts(__name__, fattal.tonemap, attenuation_steps=attenuation_steps, divergence=divergence)
+tonemap = with_parts(
+    __name__, fattal.tonemap, attenuation_steps=attenuation_steps, divergence=divergence
+)

@@ -6,9 +6,9 @@ planes                    (K, C, rows, W) uint16: of each channel, one frame or 
 shown                     (P, rows, W) bool, or None where the frames show every pixel
 E       radiance          (rows, W, C) float32
 
-Every method is a quotient of two sums over the frames, sum_j a_j(Z_j) / sum_j b_j(Z_j). A pixel costs one
-look-up a frame, a as the real and b as the imaginary part of one number, and two frames of 8 bits cost one
-together.
+Every method is a quotient of two sums over the frames, sum_j a_j(Z_j) / sum_j b_j(Z_j). A pixel
+costs one look-up a frame, a as the real and b as the imaginary part of one number, and two frames
+of 8 bits cost one together.
 """
 
 import ctypes
@@ -94,9 +94,14 @@ def merge_with_quality(
 
 def _release(rows: Array) -> None:
     """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
-    start, stop = -(-rows.ctypes.data // PAGE) * PAGE, (rows.ctypes.data + rows.nbytes) // PAGE * PAGE
+    start, stop = (
+        -(-rows.ctypes.data // PAGE) * PAGE,
+        (rows.ctypes.data + rows.nbytes) // PAGE * PAGE,
+    )
     if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
-        ctypes.CDLL(None).madvise(ctypes.c_void_p(start), ctypes.c_size_t(stop - start), mmap.MADV_DONTNEED)
+        ctypes.CDLL(None).madvise(
+            ctypes.c_void_p(start), ctypes.c_size_t(stop - start), mmap.MADV_DONTNEED
+        )
 
 
 def _plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:
@@ -124,12 +129,14 @@ def _pair_tables(tables: Array) -> list[Array]:
 def _planes(frames: list[Array]) -> Array:
     """Return the frames' rows (rows, W, C) as planes (K, C, rows, W): colour never in an inner loop.
 
-    Two 8-bit frames make one plane, z1 + 256 z2: half as many elements to copy, and the index into the pair's
-    table.
+    Two 8-bit frames make one plane, z1 + 256 z2: half as many elements to copy, and the index into
+    the pair's table.
     """
     paired = frames[0].dtype == np.uint8
     rows, width, channels = frames[0].shape
-    planes = np.empty((-(-len(frames) // 2) if paired else len(frames), channels, rows, width), np.uint16)
+    planes = np.empty(
+        (-(-len(frames) // 2) if paired else len(frames), channels, rows, width), np.uint16
+    )
     for k, plane in enumerate(planes):
         first, *second = frames[2 * k : 2 * k + 2] if paired else frames[k : k + 1]
         both = np.multiply(second[0], 256, dtype=np.uint16) + first if second else first
@@ -139,14 +146,18 @@ def _planes(frames: list[Array]) -> Array:
 
 def _drop_clipped(planes: Array, n: int, top: int) -> Array:
     """Return the planes with level 0, which weighs nothing, in all channels where a frame clips one."""
-    Z = planes.view(np.uint8 if n == 256 else np.uint16)  # each element a level: of pairs, (K, C, rows, 2 W)
+    Z = planes.view(
+        np.uint8 if n == 256 else np.uint16
+    )  # each element a level: of pairs, (K, C, rows, 2 W)
     whole = Z.max(axis=1, keepdims=True) < top
     return np.multiply(Z, whole.view(np.uint8), out=Z).view(np.uint16)
 
 
 def _sums(planes: Array, tables: list[Array]) -> Array:
     """Return sum_j a_j(Z_j) + i sum_j b_j(Z_j) of one channel, (rows, W), from its planes (K, rows, W)."""
-    total = tables[0].take(planes[0], mode="clip")  # "clip" only spares the check: no level lies outside
+    total = tables[0].take(
+        planes[0], mode="clip"
+    )  # "clip" only spares the check: no level lies outside
     term = np.empty_like(total)
     for index, table in zip(planes[1:], tables[1:], strict=True):
         table.take(index, out=term, mode="clip")
@@ -154,7 +165,9 @@ def _sums(planes: Array, tables: list[Array]) -> Array:
     return total
 
 
-def _merge_block(frames: list[Array], shown: Mask | None, plan: _Plan, E: Array, quality: Flags) -> None:
+def _merge_block(
+    frames: list[Array], shown: Mask | None, plan: _Plan, E: Array, quality: Flags
+) -> None:
     """Fill a block of rows, E (rows, W, C) and quality (rows, W), from the frames' rows (rows, W, C)."""
     masked = frames
     if shown is not None:

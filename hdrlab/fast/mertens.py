@@ -13,7 +13,9 @@ _BAND = 16  # rows
 
 def _split_planes(Z: Array) -> F32:
     """Return F = Z / top level, the channels as planes, each in one piece."""
-    return np.ascontiguousarray(np.moveaxis(np.atleast_3d(Z), -1, 0)) * np.float32(1 / (levels(Z) - 1))
+    return np.ascontiguousarray(np.moveaxis(np.atleast_3d(Z), -1, 0)) * np.float32(
+        1 / (levels(Z) - 1)
+    )
 
 
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
@@ -22,7 +24,9 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
     def measure(Z: Array) -> F32:
         return mertens.weight(_split_planes(np.moveaxis(Z, 0, -1)), powers)
 
-    each: list[F32] = [_bands.banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
+    each: list[F32] = [
+        _bands.banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images
+    ]
     total: F32 = np.zeros(images.shape[1:3], np.float32)
     for W in each:
         total += W
@@ -40,6 +44,11 @@ def add_term(blended: F32, W: F32, detail: F32) -> F32:
     return total
 
 
-_parts = {"weights": weights, "add_term": add_term, "pyramid": pyramid, "split_planes": _split_planes}
+_parts = {
+    "weights": weights,
+    "add_term": add_term,
+    "pyramid": pyramid,
+    "split_planes": _split_planes,
+}
 fuse_steps = with_parts(__name__, mertens.fuse_steps, **_parts)
 fuse = with_parts(__name__, mertens.fuse, fuse_steps=fuse_steps, pyramid=pyramid)

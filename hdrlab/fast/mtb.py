@@ -5,8 +5,8 @@ words   a bitmap, packed     (..., H, ceil(W / 64)) uint64; a row's first pixel 
 bits    of one photograph    (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
 offset  (dy, dx) pixels      down and right
 
-Of photographs above 2^17 pixels the histogram is counted on rows spread evenly: their median is that of all
-to a code. Of levels above 2^19 pixels bits are compared on such rows.
+Of photographs above 2^17 pixels the histogram is counted on rows spread evenly: their median is
+that of all to a code. Of levels above 2^19 pixels bits are compared on such rows.
 """
 
 from functools import partial
@@ -41,7 +41,9 @@ class Photograph:
         while len(self.Y) < bits and min(self.Y[-1].shape) >= lesson.SMALLEST:
             self.Y.append(_shrink(self.Y[-1]))
         self.h = [_histogram(Y) for Y in self.Y]
-        self.overview = next((j for j, Y in enumerate(self.Y) if Y.size <= OVERVIEW), len(self.Y) - 1)
+        self.overview = next(
+            (j for j, Y in enumerate(self.Y) if Y.size <= OVERVIEW), len(self.Y) - 1
+        )
         self._bits: dict[tuple[int, ...], Words] = {}
         self._thresholds: dict[tuple[float, int], int] = {}
 
@@ -60,10 +62,13 @@ class Photograph:
             self._bits[key] = _bitmaps(self.Y[level][first :: _every(self.Y[level])], key[1])
         return self._bits[key]
 
-    def compare(self, fixed: Self, offset: Offset, level: int, q: float) -> tuple[Words, Words, int]:
+    def compare(
+        self, fixed: Self, offset: Offset, level: int, q: float
+    ) -> tuple[Words, Words, int]:
         """Return where bits differ after an offset, where they are compared, and the rows of the upper half.
 
-        What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap counts.
+        What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap
+        counts.
         """
         (dy, dx), H, every = offset, len(self.Y[level]), _every(self.Y[level])
         top = -(-max(dy, 0) // every)
@@ -94,7 +99,9 @@ class Photograph:
         differ, kept, n = self.compare(fixed, offset, level, q)
         ones, half = (np.bitwise_count(differ), np.bitwise_count(kept)), kept.shape[1] // 2
         quarters = product((slice(n), slice(n, None)), (slice(half), slice(half, None)))
-        return np.array([[one[quarter].sum(dtype=np.int64) for one in ones] for quarter in quarters])
+        return np.array(
+            [[one[quarter].sum(dtype=np.int64) for one in ones] for quarter in quarters]
+        )
 
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
@@ -103,8 +110,12 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     if bits < 1:
         raise ValueError(f"expected at least 1 bit for the largest offset, got bits={bits}")
     order = lesson.by_brightness(images)
-    taken = each(lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size)
-    found = [moving.offset_onto(fixed) for moving, fixed in pairwise(taken)]  # a few at a time in memory
+    taken = each(
+        lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size
+    )
+    found = [
+        moving.offset_onto(fixed) for moving, fixed in pairwise(taken)
+    ]  # a few at a time in memory
     return lesson.chain_offsets(order, found)
 
 
@@ -159,5 +170,7 @@ def _slide(words: Words, dx: int) -> Words:
     moved = np.zeros_like(words)
     for by, bits in ((whole, part), (whole + 1, part - 64)) if part else ((whole, 0),):
         end, source = max(n + min(by, 0), 0), words[..., max(-by, 0) : max(n - by, 0)]
-        moved[..., max(by, 0) : end] |= source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
+        moved[..., max(by, 0) : end] |= (
+            source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
+        )
     return moved

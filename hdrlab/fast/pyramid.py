@@ -70,7 +70,9 @@ def _combine(operation: np.ufunc, fine: F32, coarse: F32) -> F32:
     return result.reshape(fine.shape)
 
 
-def _finer(coarse: F32, shape: Sequence[int], side: float = 1 / 8) -> Iterator[tuple[int, slice, F32]]:
+def _finer(
+    coarse: F32, shape: Sequence[int], side: float = 1 / 8
+) -> Iterator[tuple[int, slice, F32]]:
     """Yield the next finer level, of this shape, in bands: the plane, the rows and their values."""
     planes = coarse.reshape(-1, *coarse.shape[-2:])
     padded = np.pad(planes, ((0, 0), (1, 0), (1, 0)), "reflect")

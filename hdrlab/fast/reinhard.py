@@ -1,6 +1,7 @@
 """Photographic tone reproduction, fast: statistics of some pixels, neighbourhoods a band of rows at a time.
 
-Letters as in `tonemap.reinhard`. All is float32, and a pixel beyond all measure is white like any other.
+Letters as in `tonemap.reinhard`. All is float32, and a pixel beyond all measure is white like any
+other.
 """
 
 from functools import partial
@@ -46,18 +47,30 @@ def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
     return _bands.banded(partial(reinhard.display, white=white), Lm, adaptation)
 
 
-def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
+def local_adaptation(
+    Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
+) -> F32:
     """Return V1 of each pixel at its own width."""
     padded, V1 = blur._pad(Lm, REACH), np.empty_like(Lm)
     for top in range(0, len(Lm), BAND):
         rows, near = V1[top : top + BAND], padded[top : top + BAND + 2 * REACH]
         blurred = (blur._inside(near, k, REACH) for k in KERNELS)
-        found = steps.last(reinhard.scale_steps(blurred, key=key, phi=phi, threshold=threshold)).adaptation
+        found = steps.last(
+            reinhard.scale_steps(blurred, key=key, phi=phi, threshold=threshold)
+        ).adaptation
         rows[:] = found[: len(rows), : rows.shape[1]]
     return V1
 
 
 automatic_key = with_parts(__name__, reinhard.automatic_key, log_average=log_average)
-_parts: dict[str, Any] = {"as_light": as_luminance, "automatic_key": automatic_key, "display": display}
-_parts |= {"scale_to_key": scale_to_key, "white_point": white_point, "local_adaptation": local_adaptation}
+_parts: dict[str, Any] = {
+    "as_light": as_luminance,
+    "automatic_key": automatic_key,
+    "display": display,
+}
+_parts |= {
+    "scale_to_key": scale_to_key,
+    "white_point": white_point,
+    "local_adaptation": local_adaptation,
+}
 tonemap = with_parts(__name__, reinhard.tonemap, **_parts)

@@ -6,10 +6,10 @@ w       weights            (n,), 0 where a level is not to be trusted
 f_inv   f^-1               (n,), the exposure of each level
 d       each sample's sum of w(Z_ij) t_j^2 over its frames, (N,)
 
-An iteration goes over all pixels twice, from f^-1 to irradiances and back. But it is linear in f^-1, and what
-it adds up for a level m of one frame and a level z of another is the same number in every iteration. Summed
-once, in the frames' joint histograms with weight 1 / d, it makes an iteration a product with an (n, n)
-matrix, for a thousand samples as for a million.
+An iteration goes over all pixels twice, from f^-1 to irradiances and back. But it is linear in
+f^-1, and what it adds up for a level m of one frame and a level z of another is the same number in
+every iteration. Summed once, in the frames' joint histograms with weight 1 / d, it makes an
+iteration a product with an (n, n) matrix, for a thousand samples as for a million.
 """
 
 from collections.abc import Callable, Iterator
@@ -31,7 +31,8 @@ PIXELS = 2**16
 class Joint:
     """The matrix S (n, n), sums of t_j t_k / d_i over Z_ij = m, Z_ik = z, and the pixels of each level.
 
-    S is symmetric, so a pair of frames is counted once. Called with f^-1 it returns the means of the next.
+    S is symmetric, so a pair of frames is counted once. Called with f^-1 it returns the means of
+    the next.
     """
 
     def __init__(self, Z: Indices, t: F64, w: F64) -> None:
@@ -62,8 +63,8 @@ recover_steps = with_parts(__name__, robertson.recover_steps, alternate=Joint)
 class Smooth:
     """`recover_steps` with a penalty on second differences, which connects what equal steps leave open.
 
-    After each iteration r = ln f^-1, less that of a linear camera, becomes the s of least
-    sum (s - r)^2 + sum (lambda w s'')^2, r at the levels that have a mean. 100 is right for photographs.
+    After each iteration r = ln f^-1, less that of a linear camera, becomes the s of least sum (s -
+    r)^2 + sum (lambda w s'')^2, r at the levels that have a mean. 100 is right for photographs.
 
     Examples
     --------
@@ -76,11 +77,19 @@ class Smooth:
 
     def __init__(self, smoothness: float) -> None:
         if not 0 <= smoothness < np.inf:
-            raise ValueError(f"expected a smoothness that is finite and not negative, got {smoothness}")
+            raise ValueError(
+                f"expected a smoothness that is finite and not negative, got {smoothness}"
+            )
         self.smoothness = smoothness
 
     def __call__(
-        self, Z: Indices, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
+        self,
+        Z: Indices,
+        times: ArrayLike,
+        w: F64,
+        *,
+        tolerance: float = 1e-4,
+        max_iterations: int = 200,
     ) -> Iterator[robertson.State]:
         """Yield the States of one channel; parameters as of `recover_steps`."""
         matrix, line = None, robertson.linear(len(w))
@@ -127,4 +136,6 @@ def recover(
     """Return the response g of the lesson, whose parameters these are, with the `recover_steps` above."""
     stack = as_stack(images)
     t = as_times(times, len(stack))
-    return robertson.recover(stack, t, samples=samples, w=w, choose=choose, valid=valid, steps=steps)
+    return robertson.recover(
+        stack, t, samples=samples, w=w, choose=choose, valid=valid, steps=steps
+    )

@@ -1,7 +1,7 @@
 """Which files of a folder are the photographs of one bracket.
 
-A camera's folder holds more than the bracket: a RAW file and a JPEG of each photograph, thumbnails, edited
-copies, side-car files. What does not belong to it is left out, and a sentence says so.
+A camera's folder holds more than the bracket: a RAW file and a JPEG of each photograph, thumbnails,
+edited copies, side-car files. What does not belong to it is left out, and a sentence says so.
 """
 
 import re
@@ -14,7 +14,9 @@ from hdrlab.io import decode, files, raw
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
 SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif", ".jxl"}
 # what programs add to the name of a photograph: IMG_1-edited, IMG_1_thumb, IMG_1~2
-EDITED = re.compile(r"(.+?)([-_ .]*(edit|edited|bearbeitet|hdr|thumb|thumbnail|small|preview)|~\d+)", re.I)
+EDITED = re.compile(
+    r"(.+?)([-_ .]*(edit|edited|bearbeitet|hdr|thumb|thumbnail|small|preview)|~\d+)", re.I
+)
 # ... and Apple within it: IMG_E0001 is IMG_0001, edited
 APPLE = re.compile(r"(img_)e(\d{4})", re.I)
 
@@ -25,9 +27,10 @@ Selection = tuple[list[Path], list[str]]  # the photographs, and sentences on wh
 def select(paths: Paths) -> Selection:
     """Return the paths of a bracket, and notes: those given, or what belongs together of a folder.
 
-    Of a folder files are left out whose names say that they are edited copies of another; all but one of
-    those that differ by their suffix alone, as a RAW file and a JPEG do; pictures with a palette, of CMYK or
-    of floats; and those of another size or kind than more than half of all, as thumbnails are.
+    Of a folder files are left out whose names say that they are edited copies of another; all but
+    one of those that differ by their suffix alone, as a RAW file and a JPEG do; pictures with a
+    palette, of CMYK or of floats; and those of another size or kind than more than half of all, as
+    thumbnails are.
 
     Raises
     ------
@@ -40,7 +43,9 @@ def select(paths: Paths) -> Selection:
             given, said = choose(given)
             notes += said
         if len(given) < 2:
-            raise ValueError(f"expected two photographs or more, got {'; '.join([*map(str, given), *notes])}")
+            raise ValueError(
+                f"expected two photographs or more, got {'; '.join([*map(str, given), *notes])}"
+            )
     return given, notes
 
 
@@ -57,9 +62,13 @@ def photographs(paths: Paths) -> list[Path]:
             raise ValueError(f"{folder}: expected a folder with photographs, it holds none{where}")
     for path in given:
         if path.is_dir():
-            raise ValueError(f"{path}: expected photographs or one folder, this is a folder among others")
+            raise ValueError(
+                f"{path}: expected photographs or one folder, this is a folder among others"
+            )
     if len(given) < 2:
-        raise ValueError(f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}")
+        raise ValueError(
+            f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}"
+        )
     return given
 
 
@@ -69,10 +78,14 @@ def _originals(paths: list[Path]) -> Selection:
 
     def origin(path: Path) -> str | None:
         edited, apple = EDITED.fullmatch(path.stem), APPLE.fullmatch(path.stem)
-        return known.get((edited[1] if edited else "".join(apple.groups()) if apple else "").lower())
+        return known.get(
+            (edited[1] if edited else "".join(apple.groups()) if apple else "").lower()
+        )
 
     copies = {path: name for path in paths if (name := origin(path))}
-    notes = [f"{path.name}: left out, it is named as a copy of {name}" for path, name in copies.items()]
+    notes = [
+        f"{path.name}: left out, it is named as a copy of {name}" for path, name in copies.items()
+    ]
     return [path for path in paths if path not in copies], notes
 
 
@@ -88,7 +101,9 @@ def _one_of_each(paths: list[Path]) -> Selection:
 
     several = [max(group, key=rank) for group in each.values() if len(group) > 1]
     suffixes = ", ".join(sorted({path.suffix.lower() for path in several}))
-    notes = [f"{len(several)} photographs are there in several formats: {suffixes} is taken"] * bool(several)
+    notes = [
+        f"{len(several)} photographs are there in several formats: {suffixes} is taken"
+    ] * bool(several)
     return [max(group, key=rank) for group in each.values()], notes
 
 
@@ -111,13 +126,18 @@ def _alike(paths: list[Path]) -> Selection:
 def turn_alike(headers: list[decode.Header]) -> tuple[list[decode.Header], list[str]]:
     """Return headers turned as most of them are, and a note, where some of one size stand and some lie.
 
-    A camera that looks straight down or up does not know which way is up, and says now this and now that.
+    A camera that looks straight down or up does not know which way is up, and says now this and now
+    that.
     """
-    stored = {header.shape[:2] if header.orientation < 5 else header.shape[1::-1] for header in headers}
+    stored = {
+        header.shape[:2] if header.orientation < 5 else header.shape[1::-1] for header in headers
+    }
     if len(stored) != 1 or len({header.shape[:2] for header in headers}) == 1:
         return headers, []
     most, _ = Counter(header.orientation for header in headers).most_common(1)[0]
     shape = next(header.shape[:2] for header in headers if header.orientation == most)
     odd = [header.path.name for header in headers if header.orientation != most]
     notes = [f"{', '.join(odd)}: turned as the other photographs are, their EXIF says otherwise"]
-    return [one._replace(orientation=most, shape=(*shape, *one.shape[2:])) for one in headers], notes
+    return [
+        one._replace(orientation=most, shape=(*shape, *one.shape[2:])) for one in headers
+    ], notes

@@ -1,8 +1,8 @@
 """The pixels of one file as they are stored, by a decoder for each kind of file.
 
-JPEG and PNG are decoded by imagecodecs, which keeps all 16 bits (Pillow cuts RGB to 8) and writes into an
-array that is there; so is AVIF of more bits than 8. Pillow decodes WebP and other AVIF, pillow-heif HEIC,
-tifffile TIFF.
+JPEG and PNG are decoded by imagecodecs, which keeps all 16 bits (Pillow cuts RGB to 8) and writes
+into an array that is there; so is AVIF of more bits than 8. Pillow decodes WebP and other AVIF,
+pillow-heif HEIC, tifffile TIFF.
 """
 
 import io
@@ -40,7 +40,8 @@ def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
 def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
     """Yield (marker, from, to) of what the JPEG at `start` is made of, without markers and lengths.
 
-    What stands between two segments has marker 0: coded pixels, bytes that fill, or what damage left there.
+    What stands between two segments has marker 0: coded pixels, bytes that fill, or what damage
+    left there.
 
     Raises
     ------
@@ -118,13 +119,24 @@ def _tiff(data: bytes, out: Array | None) -> Array:
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         page = file.pages.first
         ends = map(sum, zip(page.dataoffsets, page.databytecounts, strict=True))
-        if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(4 * np.prod(page.shape), 1 << 24):
-            raise ValueError("its pixels go past the end of the file, or its tiles far beyond its picture")
+        if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(
+            4 * np.prod(page.shape), 1 << 24
+        ):
+            raise ValueError(
+                "its pixels go past the end of the file, or its tiles far beyond its picture"
+            )
         pixels = page.asarray()
     if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
         pixels = np.moveaxis(pixels, 0, -1)
     return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
 
 
-DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff, "WEBP": _pillow, "AVIF": _avif, "HEIF": _heic}
+DECODERS = {
+    "JPEG": _jpeg,
+    "PNG": _png,
+    "TIFF": _tiff,
+    "WEBP": _pillow,
+    "AVIF": _avif,
+    "HEIF": _heic,
+}
 DECODERS["JXL"] = _jxl

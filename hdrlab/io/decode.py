@@ -1,8 +1,8 @@
 """One photograph, in two steps: look at its header, then decode its pixels straight into their place.
 
-What a file is, its first bytes say and not its suffix. Its pixels are decoded by hdrlab.io.codecs, those of
-RAW by hdrlab.io.raw. Pillow reads EXIF. Colours of another space than sRGB are converted by their ICC
-profile, see hdrlab.io.profiles.
+What a file is, its first bytes say and not its suffix. Its pixels are decoded by hdrlab.io.codecs,
+those of RAW by hdrlab.io.raw. Pillow reads EXIF. Colours of another space than sRGB are converted
+by their ICC profile, see hdrlab.io.profiles.
 """
 
 import re
@@ -22,7 +22,11 @@ from hdrlab.io.files import OtherPixels, check_size
 
 # what the first bytes of a file of each kind are
 MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
-MAGIC |= {"WEBP": rb"RIFF....WEBP", "AVIF": rb"....ftyp.*avi[fs]", "HEIF": rb"....ftyp(he[iv]|mif1|msf1)"}
+MAGIC |= {
+    "WEBP": rb"RIFF....WEBP",
+    "AVIF": rb"....ftyp.*avi[fs]",
+    "HEIF": rb"....ftyp(he[iv]|mif1|msf1)",
+}
 MAGIC |= {"JXL": rb"\xff\n|\0\0\0\x0cJXL \r\n\x87\n"}
 # bytes of a picture in one of the file: more than any of these formats reaches
 BEST_COMPRESSION_RATIO = 1 << 12
@@ -35,7 +39,8 @@ CODED = "is coded for an HDR screen, by PQ or HLG"
 BEYOND_GAMMA = re.compile(rb"cICP.[\x10\x12]|nclx\0.\0[\x10\x12]", re.DOTALL)
 LONGEST_HEADER = 1 << 18
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
-# EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of Apple]
+# EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of
+# Apple]
 BLENDED = (2, 3, 6, 7)
 MODES |= {"F": "floating point", "I": "32-bit integers"}
 KINDS = {1: "MINISBLACK", 3: "RGB"}  # channels without alpha, and what TIFF calls them
@@ -44,7 +49,8 @@ KINDS = {1: "MINISBLACK", 3: "RGB"}  # channels without alpha, and what TIFF cal
 class Header(NamedTuple):
     """What a photograph says before its pixels; `shape` is upright, (H, W) or (H, W, 3).
 
-    `icc` is the profile of its colours, empty for sRGB; `processing` says what makes it useless in a bracket.
+    `icc` is the profile of its colours, empty for sRGB; `processing` says what makes it useless in
+    a bracket.
     """
 
     path: Path
@@ -69,7 +75,9 @@ def look(path: str | Path, *, light: bool | None = False) -> Header:
         return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)
     with open(path, "rb") as file:
         head = file.read(LONGEST_HEADER)
-    kind = next((kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), "")
+    kind = next(
+        (kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), ""
+    )
     if not kind:
         raise ValueError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
     header = {"TIFF": _look_tiff, "JXL": _look_jxl}.get(kind, _look_pillow)(path, kind, head)
@@ -77,11 +85,15 @@ def look(path: str | Path, *, light: bool | None = False) -> Header:
     check_size(path, shape[0], shape[1], int(np.prod(shape)) * header.dtype.itemsize // ratio)
     if light not in (None, header.dtype.kind == "f"):
         wanted, n = "floating-point samples" if light else "8 or 16 bits", (*header.shape, 1)[2]
-        raise OtherPixels(f"{path}: expected gray or RGB of {wanted}, got {n} x {header.dtype}, {KINDS[n]}")
+        raise OtherPixels(
+            f"{path}: expected gray or RGB of {wanted}, got {n} x {header.dtype}, {KINDS[n]}"
+        )
     if header.orientation > 4:
         shape = (shape[1], shape[0], *shape[2:])
     gains = any(word in head for word in GAIN_MAPS)
-    processing = "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
+    processing = (
+        "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
+    )
     processing = CODED if BEYOND_GAMMA.search(head) else processing
     return header._replace(shape=shape, processing=processing)
 
@@ -91,7 +103,9 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
     if header.kind == "RAW":
         pixels = raw.decode(header.path, balance)
     else:
-        stored = codecs.stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
+        stored = codecs.stored_pixels(
+            header.path, header.kind, out if header.orientation == 1 else None
+        )
         pixels = upright(opaque(header.path, stored), header.orientation)
         if header.icc and pixels.dtype.kind == "u":
             pixels = profiles.to_srgb(header.path, pixels, header.icc)
@@ -114,7 +128,9 @@ def opaque(path: Path, pixels: Array) -> Array:
     if pixels.ndim < 3 or pixels.shape[2] == 3:
         return pixels
     if pixels.dtype.kind == "u" and (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
-        raise ValueError(f"{path}: expected gray or RGB, got an alpha channel with transparent pixels")
+        raise ValueError(
+            f"{path}: expected gray or RGB, got an alpha channel with transparent pixels"
+        )
     return pixels[..., 0] if pixels.shape[2] < 3 else pixels[..., :3]
 
 
@@ -127,17 +143,23 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
             warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
             with Image.open(path, formats=(kind,)) as image:
                 (width, height), mode, info = image.size, image.mode, dict(image.info)
-        depth = {"PNG": lambda: head[24], "AVIF": lambda: codecs.avif_depth(head)}.get(kind, lambda: 8)()
+        depth = {"PNG": lambda: head[24], "AVIF": lambda: codecs.avif_depth(head)}.get(
+            kind, lambda: 8
+        )()
     except Image.DecompressionBombError as error:
         raise ValueError(f"{path}: its header claims an absurd size ({error})") from None
     except Exception as error:  # on damaged files Pillow raises what it likes
-        raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
+        raise ValueError(
+            f"{path}: expected a photograph, its header is damaged ({error})"
+        ) from None
     depth = info.get("bit_depth", depth)
     mode = "an alpha channel" if "transparency" in info else mode
     if depth < 8 or mode not in ("L", "LA", "RGB", "RGBA", "I;16"):
         what = MODES.get(mode, mode) if depth >= 8 else f"{depth}-bit pixels"
         raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
-    colour = head[25] & 2 if kind == "PNG" else mode.startswith("RGB")  # of deep gray Pillow makes RGBA
+    colour = (
+        head[25] & 2 if kind == "PNG" else mode.startswith("RGB")
+    )  # of deep gray Pillow makes RGBA
     shape = (height, width, 3) if colour else (height, width)
     dtype = np.dtype(np.uint8 if depth == 8 else np.uint16)
     exif = _exif(lambda exif: exif.load(info.get("exif") or b""), info.get("icc_profile"))
@@ -162,19 +184,27 @@ def _look_tiff(path: Path, form: str, head: bytes) -> Header:
             height, width, deep = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
             channels, alpha = int(page.samplesperpixel), len(page.extrasamples)
             kind = str(getattr(page.photometric, "name", page.photometric))[:40]
-            dtype, icc, comments = np.dtype(page.dtype), page.iccprofile or b"", page.description.splitlines()
+            dtype, icc, comments = (
+                np.dtype(page.dtype),
+                page.iccprofile or b"",
+                page.description.splitlines(),
+            )
     except Exception as error:  # on damaged files tifffile raises what it likes
         why = str(error)[:200]
         raise ValueError(f"{path}: expected a photograph, its header is damaged ({why})") from None
     light = dtype.kind == "f"
     colours = channels - (alpha if light else alpha == 1)
     if KINDS.get(colours) != kind or not (light or dtype in ("u1", "u2")):
-        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {kind}")
+        raise OtherPixels(
+            f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {kind}"
+        )
     if deep != 1:
         raise OtherPixels(f"{path}: expected one picture, got {deep} on one another")
     with open(path, "rb") as stream:
         exif = _exif(lambda exif: exif.load_from_fp(stream), icc)
-    return Header(path, form, (height, width, 3)[: 2 + (colours == 3)], dtype, comments=comments, **exif)
+    return Header(
+        path, form, (height, width, 3)[: 2 + (colours == 3)], dtype, comments=comments, **exif
+    )
 
 
 def _exif(load: Callable[[Image.Exif], None], icc: bytes | None) -> dict[str, Any]:

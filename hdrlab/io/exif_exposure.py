@@ -5,8 +5,9 @@ N   f-number        focal length over aperture
 S   ISO speed       what the sensor's signal was amplified by, 100 = 1
 Tv, Av   the APEX values (EXIF 2.3, annex C), t = 2^-Tv and N = 2^(Av / 2)
 
-The equivalent exposure t S / N^2 is given in seconds at the first photograph's S and N. The exposure bias
-of EXIF is never used: it says what the photographer wished for, not what the camera did.
+The equivalent exposure t S / N^2 is given in seconds at the first photograph's S and N. The
+exposure bias of EXIF is never used: it says what the photographer wished for, not what the camera
+did.
 """
 
 import math
@@ -18,7 +19,12 @@ from PIL import ExifTags, Image
 HINT = "give them by --times FILE (times= in Python), or without a list by --stops 2 or --times estimate"
 SHUTTER, SHUTTER_APEX = ExifTags.Base.ExposureTime, ExifTags.Base.ShutterSpeedValue
 APERTURE, APERTURE_APEX = ExifTags.Base.FNumber, ExifTags.Base.ApertureValue
-SPEEDS = (ExifTags.Base.ISOSpeedRatings, 34867, 34866, 34865)  # and ISO speed, recommended index, output
+SPEEDS = (
+    ExifTags.Base.ISOSpeedRatings,
+    34867,
+    34866,
+    34865,
+)  # and ISO speed, recommended index, output
 UNKNOWN_SPEED = 65535  # what the first tag holds when the speed does not fit its 16 bits
 
 
@@ -40,7 +46,11 @@ def exif_exposure(exif: Image.Exif) -> Exposure:
     speed = next((speed for speed in speeds if speed and speed != UNKNOWN_SPEED), None)
     seconds = positive(tags.get(SHUTTER)) or _apex(tags.get(SHUTTER_APEX), lambda Tv: 2**-Tv)
     stated = APERTURE in tags
-    N = positive(tags[APERTURE]) if stated else _apex(tags.get(APERTURE_APEX), lambda Av: 2 ** (Av / 2))
+    N = (
+        positive(tags[APERTURE])
+        if stated
+        else _apex(tags.get(APERTURE_APEX), lambda Av: 2 ** (Av / 2))
+    )
     return Exposure(seconds, N, speed)
 
 
@@ -55,11 +65,16 @@ def equivalent(names: Sequence[str], exposures: Sequence[Exposure]) -> list[floa
         Where a time is missing, or S or N is known of some photographs only.
     """
     if untimed := [name for name, one in zip(names, exposures, strict=True) if one.seconds is None]:
-        raise ValueError(f"{untimed[0]}: expected an exposure time in its EXIF, there is none; {HINT}")
+        raise ValueError(
+            f"{untimed[0]}: expected an exposure time in its EXIF, there is none; {HINT}"
+        )
     seconds = [exposure.seconds for exposure in exposures if exposure.seconds is not None]
     stops = _alike(names, [exposure.f_number for exposure in exposures], "f-number")
     speeds = _alike(names, [exposure.iso for exposure in exposures], "ISO speed")
-    return [t * (S / speeds[0]) * (stops[0] / N) ** 2 for t, S, N in zip(seconds, speeds, stops, strict=True)]
+    return [
+        t * (S / speeds[0]) * (stops[0] / N) ** 2
+        for t, S, N in zip(seconds, speeds, stops, strict=True)
+    ]
 
 
 def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> list[float]:
@@ -67,7 +82,9 @@ def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> l
     known = [value for value in values if value is not None]
     if known and len(known) < len(values):
         missing = names[values.index(None)]
-        raise ValueError(f"{missing[:200]}: expected the {what}, which other photographs state; {HINT}")
+        raise ValueError(
+            f"{missing[:200]}: expected the {what}, which other photographs state; {HINT}"
+        )
     return known or [1.0] * len(values)
 
 

@@ -21,8 +21,8 @@ class OtherPixels(ValueError):
 def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     """Yield a temporary name beside `path`, which takes the place of `path` when the block ends well.
 
-    When the block fails, or is interrupted, the temporary file is removed and what stood at `path` stays.
-    A private file is for its owner's eyes, from the first byte on.
+    When the block fails, or is interrupted, the temporary file is removed and what stood at `path`
+    stays. A private file is for its owner's eyes, from the first byte on.
 
     Raises
     ------
@@ -44,8 +44,12 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise FileNotFoundError(f"cannot write {path.name}: there is no folder {path.parent}")
     if path.exists() and not path.is_file():
-        raise ValueError(f"cannot write {path}: expected the name of a file, this is a folder or a device")
-    temporary = path.with_name(f".hdrlab-{secrets.token_hex(6)}{path.suffix}")  # codecs look at the suffix
+        raise ValueError(
+            f"cannot write {path}: expected the name of a file, this is a folder or a device"
+        )
+    temporary = path.with_name(
+        f".hdrlab-{secrets.token_hex(6)}{path.suffix}"
+    )  # codecs look at the suffix
     try:
         if private:
             temporary.touch(mode=0o600)
@@ -82,7 +86,9 @@ def write(path: str | Path, content: str | bytes, *, private: bool = False) -> P
     'half a character: ?'
     """
     with replacing(path, private=private) as temporary:
-        temporary.write_bytes(content.encode("utf8", "replace") if isinstance(content, str) else content)
+        temporary.write_bytes(
+            content.encode("utf8", "replace") if isinstance(content, str) else content
+        )
     return Path(path)
 
 
@@ -90,7 +96,9 @@ def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
     """Return the suffix of a file's name in small letters, or raise a ValueError where it is not known."""
     suffix = Path(path).suffix.lower()
     if suffix not in known:
-        raise ValueError(f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}")
+        raise ValueError(
+            f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}"
+        )
     return suffix
 
 
@@ -102,7 +110,9 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
     inputs = [path for path in read if os.path.exists(path)]
     for path, source in product(filter(os.path.exists, written), inputs):
         if os.path.samefile(path, source):
-            raise ValueError(f"{path}: expected another name to write to, {source} is read and would be lost")
+            raise ValueError(
+                f"{path}: expected another name to write to, {source} is read and would be lost"
+            )
 
 
 def reserve(file: BinaryIO, size: int) -> None:
@@ -133,4 +143,6 @@ def check_size(
         raise ValueError(f"{claim}, expected at most {MAX_PIXELS} in all")
     size = Path(path).stat().st_size if available is None else available
     if size < least:
-        raise ValueError(f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged")
+        raise ValueError(
+            f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged"
+        )

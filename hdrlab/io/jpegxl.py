@@ -1,9 +1,10 @@
 """What a JPEG XL says before its pixels: size, samples, colours, frames [ISO 18181-1 annexes D and F].
 
-A file is a codestream, or boxes of which one holds it, or several its parts. A header is bits, the lowest of
-each byte first. Colours are those of sRGB, whatever their curve, but that floats are linear, or those of
-Display P3; others are refused, as are alpha and animations. Of a frame libjxl believes any size, so that a
-few hundred bytes keep it busy for hours: a picture is read that is one frame of its own size.
+A file is a codestream, or boxes of which one holds it, or several its parts. A header is bits, the
+lowest of each byte first. Colours are those of sRGB, whatever their curve, but that floats are
+linear, or those of Display P3; others are refused, as are alpha and animations. Of a frame libjxl
+believes any size, so that a few hundred bytes keep it busy for hours: a picture is read that is one
+frame of its own size.
 """
 
 import struct
@@ -74,7 +75,11 @@ class Bits:
         self.take(-self.at % 8)
         if self.take(1):  # all is as usual
             return True
-        regular, modular, _ = not self.take(2), self.take(1), self.pick((0, 0), (1, 4), (17, 8), (0, 12))
+        regular, modular, _ = (
+            not self.take(2),
+            self.take(1),
+            self.pick((0, 0), (1, 4), (17, 8), (0, 12)),
+        )
         if not xyb and self.take(1):
             self.take(6)  # how YCbCr is sampled
         self.take(2 + (2 if modular else 6 * xyb))
@@ -107,20 +112,27 @@ def exif(data: bytes) -> bytes:
     """Return EXIF, which may be packed by Brotli, or nothing."""
     for name, box in boxes(data):
         if name == b"brob" and box[:4] == b"Exif":
-            name, box = b"Exif", bytes(imagecodecs.brotli_decode(box[4:], out=bytearray(LONGEST_EXIF)))
+            name, box = (
+                b"Exif",
+                bytes(imagecodecs.brotli_decode(box[4:], out=bytearray(LONGEST_EXIF))),
+            )
         if name == b"Exif":
             return box[4:]
     return b""
 
 
-def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int, int]:
+def look(
+    path: str | Path, head: bytes
+) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int, int]:
     """Return shape, dtype and bits of the samples as they are stored, orientation, curve and primaries.
 
     `head` is the beginning of the file. What is not read is an `OtherPixels`.
     """
     data = codestream(head)
     if not data:
-        raise ValueError(f"{path}: expected a photograph, its header is damaged (it has no codestream)")
+        raise ValueError(
+            f"{path}: expected a photograph, its header is damaged (it has no codestream)"
+        )
     bits, orientation = Bits(data[2:ENOUGH]), 1
     size = bits.size()
     if bits.take(1):  # all is as usual, as 11 bits would say
@@ -130,21 +142,30 @@ def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any],
         if bits.take(1):
             bits.size()  # on a page
         if bits.take(2):
-            raise OtherPixels(f"{path}: expected one picture, got an animation or a preview as well")
+            raise OtherPixels(
+                f"{path}: expected one picture, got an animation or a preview as well"
+            )
     floats = bits.take(1)
-    depth, _ = bits.pick(*DEPTHS[floats]), bits.take(4 * floats + 1)  # an exponent's bits, and the decoder's
+    depth, _ = (
+        bits.pick(*DEPTHS[floats]),
+        bits.take(4 * floats + 1),
+    )  # an exponent's bits, and the decoder's
     others, xyb = bits.pick((0, 0), (1, 0), (2, 4), (1, 12)), bits.take(1)
     if others or depth not in READ[floats]:
         got = f"{depth} bits and {others} more channels"
         raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {got}")
     primaries, gray, curve = bits.colours()
     if primaries != OF_SRGB and (primaries, curve, floats) != (OF_P3, SRGB, 0):
-        raise OtherPixels(f"{path}: expected the primaries of sRGB or Display P3, got others or a profile")
+        raise OtherPixels(
+            f"{path}: expected the primaries of sRGB or Display P3, got others or a profile"
+        )
     if floats and curve != LINEAR:
         raise OtherPixels(f"{path}: expected floats that are linear, got the curve number {curve}")
     if more and not bits.take(1):
         bits.take(49)  # how bright it is meant to be
     if bits.take(2) or not bits.take(1) or not bits.lone(xyb):  # extensions, the usual transforms
-        raise OtherPixels(f"{path}: expected one frame of the picture's size, got several or another")
+        raise OtherPixels(
+            f"{path}: expected one frame of the picture's size, got several or another"
+        )
     dtype = np.dtype(f"{'uf'[floats]}{(depth + 7) // 8}")
     return (*size, 3)[: 3 - gray], dtype, depth, orientation, curve, primaries

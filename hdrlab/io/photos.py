@@ -1,7 +1,7 @@
 """Photographs in, as arrays, and pictures out.
 
-A bracket's headers are read first: they say whether the frames go together and in which order. Then each is
-decoded once, straight into its place, several at a time.
+A bracket's headers are read first: they say whether the frames go together and in which order. Then
+each is decoded once, straight into its place, several at a time.
 """
 
 import warnings
@@ -30,7 +30,8 @@ def read_photo(path: str | Path) -> Array:
 
     Parameters
     ----------
-    path : a JPEG, PNG, TIFF, WebP, AVIF, HEIC or JPEG XL file, gray or RGB, of 8 to 16 bits, or a RAW file;
+    path : a JPEG, PNG, TIFF, WebP, AVIF, HEIC or JPEG XL file, gray or RGB, of 8 to 16 bits, or a
+        RAW file;
         colours of another space than sRGB are converted by the file's profile
 
     Returns
@@ -68,12 +69,16 @@ def read_bracket(
 
     Parameters
     ----------
-    paths : the photographs, or one folder, of which all photographs are taken, sorted by name; see `select`
-    times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the photographs
-        or by file name, or the path of a list (see `hdrlab.io.times.read_times`), of which numbers without
-        a unit are seconds or 1/seconds, whichever the brightness of the photographs says
-    mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered scan
-    note : what is called with each sentence to know: what was left out, and what the camera had changed
+    paths : the photographs, or one folder, of which all photographs are taken, sorted by name; see
+        `select`
+    times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the
+        photographs
+        or by file name, or the path of a list (see `hdrlab.io.times.read_times`), of which numbers
+        without a unit are seconds or 1/seconds, whichever the brightness of the photographs says
+    mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered
+        scan
+    note : what is called with each sentence to know: what was left out, and what the camera had
+        changed
     progress : what to wrap the paths in while they are decoded, such as tqdm
 
     Returns
@@ -83,7 +88,8 @@ def read_bracket(
     Raises
     ------
     ValueError
-        For files that are no photographs or do not go together, and for times missing or not positive.
+        For files that are no photographs or do not go together, and for times missing or not
+        positive.
 
     Examples
     --------
@@ -99,7 +105,10 @@ def read_bracket(
     _check_alike(headers)
     for said in (*notes, *more, *_processed(headers)):
         note(said)
-    names, exposures = [header.path.name for header in headers], [header.exposure for header in headers]
+    names, exposures = (
+        [header.path.name for header in headers],
+        [header.exposure for header in headers],
+    )
     seconds, inverse = bracket_times(names, exposures, times)
     order = np.argsort(seconds, kind="stable")
     headers = [headers[j] for j in order]
@@ -147,7 +156,9 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     """
     suffix, picture = files.require_suffix(path, PICTURES, "a picture file"), as_picture(image)
     with files.replacing(path) as name:
-        if suffix == ".png" and imagecodecs:  # no search for repetitions, which photographs hardly have
+        if (
+            suffix == ".png" and imagecodecs
+        ):  # no search for repetitions, which photographs hardly have
             name.write_bytes(imagecodecs.png_encode(picture, level=1, strategy=2, filter=128))
         else:
             Image.fromarray(picture).save(name, **PICTURES[suffix])

@@ -1,6 +1,7 @@
 """Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF.
 
-Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read; a .jxl of floats is read, too.
+Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read; a .jxl of floats is
+read, too.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +14,13 @@ from hdrlab.core import arrays, gamut
 from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
-SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
+SUFFIXES: dict[str, ModuleType] = {
+    ".hdr": rgbe,
+    ".pic": rgbe,
+    ".rad": rgbe,
+    ".pfm": pfm,
+    ".exr": exr,
+}
 SUFFIXES |= {".tif": tiff, ".tiff": tiff}
 # which to write takes a picture as well, or is for a screen
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
@@ -24,9 +31,12 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> arrays.F32:
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm, .exr, .tif, .tiff or .jxl file, or a .jpg or .jpeg with a gain map
-    clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the mean of its
-        neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif, .tiff or .jxl file, or a .jpg or .jpeg with a gain
+        map
+    clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the
+        mean of its
+        neighbours, infinity the largest finite value, and a negative channel makes its pixel less
+        colourful
 
     Returns
     -------
@@ -35,8 +45,8 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> arrays.F32:
     Raises
     ------
     ValueError
-        For another suffix, a file that is damaged or not of its format, and, unless `clean`, values that
-        are no radiance; the message counts them.
+        For another suffix, a file that is damaged or not of its format, and, unless `clean`, values
+        that are no radiance; the message counts them.
 
     Examples
     --------

@@ -3,10 +3,10 @@
     raw    sensor values of one colour per pixel, above the black level, proportional to exposure
     Z      (H, W, 3) uint16, linear RGB with the primaries of sRGB
 
-All frames of a bracket must be developed alike: LibRaw's brightening, which looks at the picture, is off;
-the white level is the camera's, not the brightest value found; one white balance, of the shortest exposure,
-serves all. Once the camera's colours are mixed into those of sRGB, clipped ones are no longer known: so a
-pixel that is clipped in any colour is made white in all.
+All frames of a bracket must be developed alike: LibRaw's brightening, which looks at the picture,
+is off; the white level is the camera's, not the brightest value found; one white balance, of the
+shortest exposure, serves all. Once the camera's colours are mixed into those of sRGB, clipped ones
+are no longer known: so a pixel that is clipped in any colour is made white in all.
 """
 
 import re
@@ -42,7 +42,9 @@ def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
         height, width = (sizes.iheight, sizes.iwidth)[:: -1 if sizes.flip in (5, 6) else 1]
         values = (other.shutter_speed, other.aperture, other.iso_speed)
     check_size(path, height, width, height * width // 64)
-    return (height, width, 3), Exposure(*(float(value) if 0 < value < np.inf else None for value in values))
+    return (height, width, 3), Exposure(
+        *(float(value) if 0 < value < np.inf else None for value in values)
+    )
 
 
 def balance(path: str | Path) -> Balance:
@@ -60,7 +62,12 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> arrays.NDA
     white_balance = balance(path) if white_balance is None else white_balance
     with _open(path) as file:
         matrix = file.color_matrix[:, :3].astype(np.float32)
-        alike = {"gamma": (1, 1), "no_auto_bright": True, "adjust_maximum_thr": 0.0, "output_bps": 16}
+        alike = {
+            "gamma": (1, 1),
+            "no_auto_bright": True,
+            "adjust_maximum_thr": 0.0,
+            "output_bps": 16,
+        }
         sensor = optional.rawpy.ColorSpace.raw
         camera = file.postprocess(output_color=sensor, user_wb=list(white_balance), **alike)
     return to_srgb(camera, matrix)
@@ -69,10 +76,14 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> arrays.NDA
 def to_srgb(camera: arrays.NDArray[np.uint16], matrix: arrays.F32) -> arrays.NDArray[np.uint16]:
     """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
-    for y in range(0, len(camera), BAND_ROWS):  # of a whole photograph the float values would fill the memory
+    for y in range(
+        0, len(camera), BAND_ROWS
+    ):  # of a whole photograph the float values would fill the memory
         band = camera[y : y + BAND_ROWS]
         mixed = np.clip(np.rint(band @ matrix.T), 0, WHITE_LEVEL)
-        Z[y : y + BAND_ROWS] = np.where((band == WHITE_LEVEL).any(axis=-1, keepdims=True), WHITE_LEVEL, mixed)
+        Z[y : y + BAND_ROWS] = np.where(
+            (band == WHITE_LEVEL).any(axis=-1, keepdims=True), WHITE_LEVEL, mixed
+        )
     return Z
 
 

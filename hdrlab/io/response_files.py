@@ -25,7 +25,9 @@ MAX_FILE_BYTES = 32 << 20
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
 UNIT = " (ln exposure)"
 MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
-BLOCK = re.compile(r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M)
+BLOCK = re.compile(
+    r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M
+)
 NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?\s*", re.ASCII | re.IGNORECASE)
 
 
@@ -66,8 +68,9 @@ def read_curve(path: str | Path) -> F64:
     Returns
     -------
     (n,) or (n, 3) float64
-        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools leaves the channels in
-        other proportions. Levels of no exposure, where it found nothing, are filled from their neighbours.
+        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools leaves the
+        channels in other proportions. Levels of no exposure, where it found nothing, are filled
+        from their neighbours.
 
     Raises
     ------
@@ -85,7 +88,9 @@ def read_curve(path: str | Path) -> F64:
     _, read = FORMS[suffix_of(path)]
     size = Path(path).stat().st_size
     if size > MAX_FILE_BYTES:
-        raise ValueError(f"{path}: expected a response of at most {MAX_FILE_BYTES} bytes, got {size}")
+        raise ValueError(
+            f"{path}: expected a response of at most {MAX_FILE_BYTES} bytes, got {size}"
+        )
     try:
         g = as_curve(read(Path(path)))
     except ValueError as error:
@@ -101,7 +106,11 @@ def suffix_of(path: str | Path) -> str:
 def as_curve(g: ArrayLike) -> F64:
     """Return g as float64 (n,) or (n, 3), n = 256 or 65536, within float32, or raise a ValueError."""
     curve = np.asarray(g)
-    if curve.dtype.kind not in "iuf" or curve.ndim not in (1, 2) or curve.shape[1:] not in ((), (3,)):
+    if (
+        curve.dtype.kind not in "iuf"
+        or curve.ndim not in (1, 2)
+        or curve.shape[1:] not in ((), (3,))
+    ):
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
         raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
@@ -122,17 +131,23 @@ def _read_csv(path: Path) -> F64:
     header, _, body = path.read_text(encoding="latin-1").partition("\n")
     names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
     if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
-        raise ValueError(f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}")
+        raise ValueError(
+            f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}"
+        )
     table = numbers(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
-        raise ValueError(f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ...")
+        raise ValueError(
+            f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ..."
+        )
     return squeeze_gray(table[:, 1:])
 
 
 def _write_pfstools(path: Path, g: F64) -> None:
     """Write g as pfstools does, with 10 digits."""
     columns, z = g.reshape(len(g), -1), np.arange(len(g))
-    about = "Camera response curve, channel {}\ndata layout: log10(response) | camera output | response"
+    about = (
+        "Camera response curve, channel {}\ndata layout: log10(response) | camera output | response"
+    )
     with open(path, "w", encoding="ascii") as file:
         for name, one in zip(MATRICES[columns.shape[1]], columns.T, strict=True):
             table = np.column_stack([one / np.log(10), z, np.exp(one)])
@@ -156,7 +171,9 @@ def _read_pfstools(path: Path) -> F64:
     rows = {int(head[2]) for head in heads}
     if tuple(head[1] for head in heads) not in MATRICES.values() or len(rows) != 1:
         got = ", ".join(f"{head[1]} of {head[2]} levels" for head in heads[:4]) or "none"
-        raise ValueError(f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}")
+        raise ValueError(
+            f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}"
+        )
     f = [_read_block(text[head.end() :], *rows) for head in heads]
     return squeeze_gray(ln_exposure(np.stack(f, axis=-1)))
 
@@ -166,7 +183,9 @@ def _read_block(text: str, rows: int) -> F64:
     *lines, _ = text.split("\n", rows)
     table = numbers("\n".join([*lines, ""]), 3)
     if not np.array_equal(table[:, 1], np.arange(rows)):
-        raise ValueError(f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?")
+        raise ValueError(
+            f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?"
+        )
     return table[:, 2]
 
 
@@ -184,7 +203,9 @@ def ln_exposure(f: F64) -> F64:
     [0.0, 0.693, 1.386]
     """
     if np.any(f < 0) or not np.all(np.any(f > 0, axis=0)):
-        raise ValueError(f"expected exposures that are not negative, and not all zero, got {describe(f)}")
+        raise ValueError(
+            f"expected exposures that are not negative, and not all zero, got {describe(f)}"
+        )
     level = np.arange(len(f))
     filled = [np.interp(level, level[one > 0], np.log(one[one > 0])) for one in f.T]
     return np.stack(filled, axis=-1)
@@ -201,7 +222,9 @@ def numbers(text: str, columns: int, separator: str | None = None) -> F64:
     for count, row in enumerate(rows, 1):
         if len(row) != columns or not all(map(NUMBER.fullmatch, row)):
             got = (separator or " ").join(row)[:60]
-            raise ValueError(f"expected {columns} numbers in line {count} of its table, got {got!r}")
+            raise ValueError(
+                f"expected {columns} numbers in line {count} of its table, got {got!r}"
+            )
     return np.array(rows, np.float64).reshape(-1, columns)
 
 

@@ -1,8 +1,9 @@
 """Pictures for screens that are brighter than white: PNG and AVIF of PQ's codes, JPEG XL of floats.
 
-A PNG or an AVIF says by three numbers what its codes mean: primaries, curve and matrix [ITU-T H.273]. The PNG
-says it in a chunk cICP [PNG 3rd edition 11.3.2.6], the AVIF in a box nclx. A program that does not know them
-shows the codes as they are, gray and pale. A JPEG XL here holds no codes but the light itself.
+A PNG or an AVIF says by three numbers what its codes mean: primaries, curve and matrix [ITU-T
+H.273]. The PNG says it in a chunk cICP [PNG 3rd edition 11.3.2.6], the AVIF in a box nclx. A
+program that does not know them shows the codes as they are, gray and pale. A JPEG XL here holds no
+codes but the light itself.
 """
 
 import struct
@@ -15,10 +16,12 @@ from hdrlab.core.arrays import ArrayLike
 from hdrlab.core.optional import imagecodecs
 from hdrlab.io import files
 
-# primaries, and the matrix from them to what an AVIF holds [H.273 tables 2 and 4]; PQ is a curve [table 3]
+# primaries, and the matrix from them to what an AVIF holds [H.273 tables 2 and 4]; PQ is a curve
+# [table 3]
 PRIMARIES, PQ = {"bt2020": (9, 9), "p3": (12, 6)}, 16
 HEADER = 33  # bytes of a PNG before its second chunk
-QUALITY = 100  # of AVIF: off by half a code in the mean, by a code and a half at most; 99 by twice as much
+# of AVIF: off by half a code in the mean, by a code and a half at most; 99 by twice as much
+QUALITY = 100
 
 
 def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> None:

@@ -1,9 +1,10 @@
 """Frames in and out: a folder of photographs, a film, an animation.
 
-Films are read and written through imageio by PyAV, which is an extra (`pip install hdrlab[video]`), for it
-brings 35 MB of codecs that no still picture needs. PyAV rather than an ffmpeg program beside Python: frames
-come as arrays without a pipe, an error has a name, and there is nothing to find on the path. An animation,
-.gif, is written by Pillow, and is not read: its 256 colours are no exposures.
+Films are read and written through imageio by PyAV, which is an extra (`pip install hdrlab[video]`),
+for it brings 35 MB of codecs that no still picture needs. PyAV rather than an ffmpeg program beside
+Python: frames come as arrays without a pipe, an error has a name, and there is nothing to find on
+the path. An animation, .gif, is written by Pillow, and is not read: its 256 colours are no
+exposures.
 
 Frames are decoded one at a time: a film need not fit into memory.
 """
@@ -35,13 +36,14 @@ def read(path: str | Path) -> Iterator[Array]:
 
     Returns
     -------
-    frames (H, W) or (H, W, 3) uint8, or uint16 from photographs of 16 bits, all of one size, one at a time
+    frames (H, W) or (H, W, 3) uint8, or uint16 from photographs of 16 bits, all of one size, one at
+    a time
 
     Raises
     ------
     ValueError
-        For something else, a damaged file, no frames, or frames that do not go together. What is wrong with a
-        file's beginning is said at once, what is wrong later when it is reached.
+        For something else, a damaged file, no frames, or frames that do not go together. What is
+        wrong with a file's beginning is said at once, what is wrong later when it is reached.
 
     Examples
     --------
@@ -57,7 +59,9 @@ def read(path: str | Path) -> Iterator[Array]:
         files = album.photographs(path)
         return require_alike((photos.read_photo(file) for file in files), path)
     if path.suffix.lower() not in FILMS:
-        raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILMS))})")
+        raise ValueError(
+            f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILMS))})"
+        )
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     frames = require_alike(decode_frames(path), path)
@@ -124,7 +128,8 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
     Raises
     ------
     ValueError
-        For another suffix, a rate that is not positive, or frames that are not pictures of one size.
+        For another suffix, a rate that is not positive, or frames that are not pictures of one
+        size.
 
     Examples
     --------

@@ -6,8 +6,9 @@
         camera.fix("mode")
         camera.photograph(names[3], Path("room/1"))
 
-What is automatic differs between the photographs of a bracket, so it is fixed first; when the block ends,
-whatever was changed is put back. Makers name and spell settings differently: what a camera has is taken.
+What is automatic differs between the photographs of a bracket, so it is fixed first; when the block
+ends, whatever was changed is put back. Makers name and spell settings differently: what a camera
+has is taken.
 """
 
 import tomllib
@@ -65,8 +66,8 @@ class Camera:
     def fix(self, part: str) -> list[str]:
         """Fix what is automatic, and return in words what was changed, or has to be by hand.
 
-        First "light", which is ISO, focus and white balance: the meter's time depends on ISO. Then, when the
-        shutter has been read, the "mode".
+        First "light", which is ISO, focus and white balance: the meter's time depends on ISO. Then,
+        when the shutter has been read, the "mode".
         """
         notes = []
         for name, fixed in SPELLINGS[part].items():
@@ -92,7 +93,9 @@ class Camera:
             Where the time cannot be set, or the camera stops answering; no file is left half.
         """
         if self._set(self._setting(*SHUTTER).get_name(), time) != time:
-            raise ValueError(f"the camera does not take the shutter time {time}: turn its dial to M")
+            raise ValueError(
+                f"the camera does not take the shutter time {time}: turn its dial to M"
+            )
         with _told():
             places = [self._device.capture(gphoto2.GP_CAPTURE_IMAGE)]
             for _ in range(100):  # some cameras never fall silent

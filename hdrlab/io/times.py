@@ -38,7 +38,8 @@ def bracket_times(
 ) -> tuple[list[float], list[float] | None]:
     """Return the equivalent exposure of each photograph: what was given, else what its EXIF says.
 
-    The second list is there where a list of numbers may as well be 1/seconds, and EXIF does not decide it.
+    The second list is there where a list of numbers may as well be 1/seconds, and EXIF does not
+    decide it.
 
     Raises
     ------
@@ -53,10 +54,14 @@ def bracket_times(
     if isinstance(times, Mapping):
         times = _look_up(times, names, where)
     if len(times) != len(names):
-        raise ValueError(f"expected {len(names)} exposure times, one per photograph, got {len(times)}")
+        raise ValueError(
+            f"expected {len(names)} exposure times, one per photograph, got {len(times)}"
+        )
     for name, t in zip(names, times, strict=True):
         if not 0 < t < np.inf:
-            raise ValueError(f"{name}: expected a positive exposure time in seconds, got {t}; {HINT}")
+            raise ValueError(
+                f"{name}: expected a positive exposure time in seconds, got {t}; {HINT}"
+            )
     seconds = [float(t) for t in times]
     if inverse is None:
         return seconds, None
@@ -66,7 +71,9 @@ def bracket_times(
     return (other if are_inverse(seconds, equivalent(names, exposures), where) else seconds), None
 
 
-def are_inverse(seconds: Sequence[float], brightness: ArrayLike, where: str = "the list of times") -> bool:
+def are_inverse(
+    seconds: Sequence[float], brightness: ArrayLike, where: str = "the list of times"
+) -> bool:
     """Return whether numbers are 1/seconds: where the photographs get darker as they rise.
 
     Examples
@@ -76,7 +83,9 @@ def are_inverse(seconds: Sequence[float], brightness: ArrayLike, where: str = "t
     """
     if np.ptp(seconds) == 0 or np.ptp(brightness) == 0:
         return False
-    r = float(np.corrcoef(np.argsort(np.argsort(seconds)), np.argsort(np.argsort(brightness)))[0, 1])
+    r = float(
+        np.corrcoef(np.argsort(np.argsort(seconds)), np.argsort(np.argsort(brightness)))[0, 1]
+    )
     if abs(r) < CORRELATION:
         why = "to distinguish seconds from 1/seconds; write them as 1/60 or as 0.5 s"
         raise ValueError(
@@ -90,11 +99,12 @@ def read_times(path: str | Path) -> TimeList:
 
     Parameters
     ----------
-    path : a text file, a photograph a line: its name and its time, between them a comma, semicolon, tab or
-        space. A time is 1/60, 1/60 s, 0.0166, or 60, which may mean either 60 s or 1/60 s. There may be a
-        heading (file, exposure_time_s or 1/seconds, f_number, iso), or the f-number and the ISO speed
-        behind the time. Debevec's list (name, exposure, 1/seconds, f-stop, gain in dB, ND filters) is read,
-        too. # begins a comment.
+    path : a text file, a photograph a line: its name and its time, between them a comma, semicolon,
+        tab or
+        space. A time is 1/60, 1/60 s, 0.0166, or 60, which may mean either 60 s or 1/60 s. There
+        may be a heading (file, exposure_time_s or 1/seconds, f_number, iso), or the f-number and
+        the ISO speed behind the time. Debevec's list (name, exposure, 1/seconds, f-stop, gain in
+        dB, ND filters) is read, too. # begins a comment.
 
     Returns
     -------
@@ -116,10 +126,14 @@ def read_times(path: str | Path) -> TimeList:
     try:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: expected a list of exposure times, this is not a text file") from None
+        raise ValueError(
+            f"{path}: expected a list of exposure times, this is not a text file"
+        ) from None
     lines = text.splitlines()
     if (longest := max(map(len, lines), default=0)) > LONGEST_LINE:
-        raise ValueError(f"{path}: expected lines with a file and its time, got one of {longest} letters")
+        raise ValueError(
+            f"{path}: expected lines with a file and its time, got one of {longest} letters"
+        )
     numbered = [(n, _split(line.partition("#")[0])) for n, line in enumerate(lines, 1)]
     rows = [(f"{path}, line {n}", cells) for n, cells in numbered if cells]
     heading = _heading(rows[0][1]) if rows else None
@@ -128,9 +142,15 @@ def read_times(path: str | Path) -> TimeList:
         cell = _named_cells(where, heading, cells)
         if cell["file"] in read:
             raise ValueError(f"{where}: expected each file once, got {cell['file']:.80} again")
-        number = {what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)}
+        number = {
+            what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)
+        }
         certain |= "rate" not in number or not cell["rate"][-1:].isdigit() or "/" in cell["rate"]
-        seconds = number.get("seconds") or number.get("rate") or 1 / _number(where, cell.get("inverse", ""))
+        seconds = (
+            number.get("seconds")
+            or number.get("rate")
+            or 1 / _number(where, cell.get("inverse", ""))
+        )
         read[cell["file"]] = Exposure(seconds, number.get("f_number"), number.get("iso"))
     if not read:
         raise ValueError(f"{path}: expected a list of exposure times, it is empty")
@@ -146,9 +166,14 @@ def _look_up(times: Mapping[str, float], names: Sequence[str], where: str) -> li
     """Return the time of each name; the list may leave out folders and suffixes, and differ in case."""
     known = {Path(name).stem.lower(): t for name, t in times.items()}
     known |= {Path(name).name.lower(): t for name, t in times.items()}
-    found = [times.get(name, known.get(name.lower(), known.get(Path(name).stem.lower()))) for name in names]
+    found = [
+        times.get(name, known.get(name.lower(), known.get(Path(name).stem.lower())))
+        for name in names
+    ]
     if missing := [name for name, t in zip(names, found, strict=True) if t is None]:
-        raise ValueError(f"{where}: expected a time for each photograph, none for {', '.join(missing)}")
+        raise ValueError(
+            f"{where}: expected a time for each photograph, none for {', '.join(missing)}"
+        )
     return [t for t in found if t is not None]
 
 
@@ -167,7 +192,10 @@ def _split(line: str) -> list[str]:
 
 def _heading(cells: list[str]) -> list[str] | None:
     """Return what each column holds, where these cells head a table of times."""
-    found = [next((key for key, how in HEADINGS.items() if re.search(how, one.lower())), "") for one in cells]
+    found = [
+        next((key for key, how in HEADINGS.items() if re.search(how, one.lower())), "")
+        for one in cells
+    ]
     timed = {"seconds", "rate", "inverse"} & set(found) and not any(map(VALUE.fullmatch, cells))
     return found if "file" in found and timed else None
 
@@ -180,12 +208,18 @@ def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dic
         raise ValueError(f"{where}: expected {what}, got {' '.join(cells):.80}")
     cell = dict(zip(columns, cells, strict=True))
     if cell.get("gain", "0").strip("0.") or cell.get("filters", "0").strip("0."):
-        raise ValueError(f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}")
+        raise ValueError(
+            f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}"
+        )
     if not heading and len(cells) == 3:
         t, other = (_number(where, one) for one in cells[1:])
         if abs(t * other - 1) < 0.05:  # the beginning of Debevec's list: a time and its inverse
             return {"file": cells[0], "seconds": cells[1]}
-        return {"file": cells[0], "rate": cells[1], "iso" if other >= LEAST_ISO else "f_number": cells[2]}
+        return {
+            "file": cells[0],
+            "rate": cells[1],
+            "iso" if other >= LEAST_ISO else "f_number": cells[2],
+        }
     return cell
 
 

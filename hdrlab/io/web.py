@@ -37,8 +37,8 @@ def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:
 def encode_runs(image: Image) -> bytes:
     """Return `image` as runs of one colour, row after row, which a script paints at once and without loss.
 
-    These are words of four bytes, little endian: width, height, and then red, green, blue and length of each
-    run, 1 to 255 pixels.
+    These are words of four bytes, little endian: width, height, and then red, green, blue and
+    length of each run, 1 to 255 pixels.
 
     Examples
     --------
@@ -59,15 +59,20 @@ def encode_runs(image: Image) -> bytes:
 def encode_frame(image: Image) -> bytes:
     """Return `image` as it is soonest on a page: a plot as its runs, what has too many of these as JPEG."""
     found = encode_runs(image)
-    return found if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1] else encode_jpeg(image)
+    return (
+        found
+        if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1]
+        else encode_jpeg(image)
+    )
 
 
 def encode_halves(values: ArrayLike) -> tuple[bytes, float]:
     """Return values (H, W[, 3]) times a power of two as half floats, deflated, and that power of two.
 
-    What is deflated is the step of their bits from one pixel to the next: first all low bytes, then all high
-    ones. The largest comes to lie between 16384 and 32768, so none overflows, and eight decades below it keep
-    eleven bits. A half float ends at 65504, which a photograph of the sun does not.
+    What is deflated is the step of their bits from one pixel to the next: first all low bytes, then
+    all high ones. The largest comes to lie between 16384 and 32768, so none overflows, and eight
+    decades below it keep eleven bits. A half float ends at 65504, which a photograph of the sun
+    does not.
 
     Examples
     --------

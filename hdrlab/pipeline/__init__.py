@@ -1,6 +1,7 @@
 """Where the chapters meet: a bracket of photographs -> a radiance map -> a picture.
 
-Its functions are loaded when they are first used, so that the command line lists the methods at once.
+Its functions are loaded when they are first used, so that the command line lists the methods at
+once.
 """
 
 from importlib import import_module

@@ -1,8 +1,9 @@
 """Alignment of a bracket pair by pair, where every answer is validated.
 
-"mtb" shifts by whole pixels. "auto" does so, too, and looks once more at the pairs that no shift lays on each
-other: with rotation, then with a homography, in an overview of half a megapixel. It takes their answer
-where the light of the two photographs then agrees clearly better than after the shift.
+"mtb" shifts by whole pixels. "auto" does so, too, and looks once more at the pairs that no shift
+lays on each other: with rotation, then with a homography, in an overview of half a megapixel. It
+takes their answer where the light of the two photographs then agrees clearly better than after the
+shift.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,7 +33,8 @@ OTHERS = (0.83, 0.17)
 # confidence of what is taken from them
 CERTAIN = 0.9
 Curve = ArrayLike | Callable[[], F64 | None] | None  # of one's own, or found where it is asked for
-# from the numbers and the gray photographs of a darker and a brighter one to the pyramid of their light
+# from the numbers and the gray photographs of a darker and a brighter one to the pyramid of their
+# light
 AsLight = Callable[[int, int, Array, Array], list[F32]]
 
 
@@ -59,17 +61,19 @@ def register(
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
     method : str
-        "mtb", "cerman", "homography", or "auto": "mtb", and the others for pairs that no shift serves.
+        "mtb", "cerman", "homography", or "auto": "mtb", and the others for pairs that no shift
+        serves.
     times : (P,) seconds, optional
         Their exposures. Without them the ratios come out of the histograms.
     g : (n,) or (n, 3), optional
-        The camera's response, ln exposure of each level, or a function that finds it where light is compared.
-        Without it the histograms of each pair are matched.
+        The camera's response, ln exposure of each level, or a function that finds it where light is
+        compared. Without it the histograms of each pair are matched.
 
     Raises
     ------
     ValueError
-        For images that are not a stack of photographs, and for times or a response that do not fit them.
+        For images that are not a stack of photographs, and for times or a response that do not fit
+        them.
 
     Examples
     --------
@@ -83,7 +87,10 @@ def register(
     images = as_stack(images)
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
-    as_light, by_bits = light_scale(images, times, g), starmap(best_percentile, photograph_pairs(images))
+    as_light, by_bits = (
+        light_scale(images, times, g),
+        starmap(best_percentile, photograph_pairs(images)),
+    )
     pairs = tuple(register_by_light(images, as_light, method) if method in SEARCHES else by_bits)
     if method == "auto":
         names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
@@ -96,13 +103,19 @@ def register(
     return Registration(warp.chain_homographies(order, [one.step for one in pairs]), pairs, method)
 
 
-def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Photograph, int, Photograph]]:
+def photograph_pairs(
+    images: Array, bits: int = BITS
+) -> Iterator[tuple[int, Photograph, int, Photograph]]:
     """Yield the numbers and Photographs of neighbours from dark to bright, a few at a time in memory."""
-    taken = each(lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images))
+    taken = each(
+        lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images)
+    )
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
 
 
-def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator[judgement.Validation]:
+def register_by_light(
+    images: Array, as_light: AsLight, method: str
+) -> Iterator[judgement.Validation]:
     """Yield the Validation of pair after pair from dark to bright, by one of SEARCHES at full resolution."""
     Z = images if images.ndim == 3 else images[..., 1]
     for moving, fixed in pairwise(mtb.by_brightness(images)):
@@ -115,13 +128,24 @@ def improve(
     best: judgement.Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
 ) -> tuple[judgement.Validation, str]:
     """Return the Validation of a pair by the simplest method that serves, and its name."""
-    scale, pyramid = 2**A.overview, as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
+    scale, pyramid = (
+        2**A.overview,
+        as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview]),
+    )
     pair = judgement.compare_light(best.moving, best.fixed, pyramid[0], scale)
     d = pair.differences(best.step)
     for method, search in SEARCHES.items():
         found = judgement.validate(pair, homography.enlarge(steps.last(search(pyramid)).H, scale))
-        left, overlaps = pair.differences(found.H), max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
-        if found.known and overlaps and found.confidence >= judgement.LOST and pair.lower(left, d)[-1]:
+        left, overlaps = (
+            pair.differences(found.H),
+            max(map(abs, found.offset)) < min(B.Y[0].shape) / 2,
+        )
+        if (
+            found.known
+            and overlaps
+            and found.confidence >= judgement.LOST
+            and pair.lower(left, d)[-1]
+        ):
             best, name, d = found, method, left
         if not best.apart:
             break
@@ -158,17 +182,22 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> ju
 def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
     """Return the function that brings the light of two photographs to one scale, at every size.
 
-    Without a response the darker photograph is brought to the brighter one by histograms alone, both are read
-    by the curve of sRGB, and each pixel is divided by the mean around it: what is wrong with that is wrong in
-    both alike, and cancels.
+    Without a response the darker photograph is brought to the brighter one by histograms alone,
+    both are read by the curve of sRGB, and each pixel is divided by the mean around it: what is
+    wrong with that is wrong in both alike, and cancels.
     """
     n, seconds = levels(images), None if times is None else as_times(times, len(images))
     given = g if g is None or callable(g) else as_table(g, n)
 
     def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
-        table, curve = colour.decode_srgb(np.arange(n) / (n - 1)), given() if callable(given) else given
+        table, curve = (
+            colour.decode_srgb(np.arange(n) / (n - 1)),
+            given() if callable(given) else given,
+        )
         if curve is not None:
-            table = np.exp(as_table(curve, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
+            table = np.exp(
+                as_table(curve, n).reshape(n, -1)[:, :2][:, -1]
+            )  # the only one, or green
         f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
         if curve is None:
             T = transfer.brightness_transfer(*transfer.histograms([dark, bright])[0])

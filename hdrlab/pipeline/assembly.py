@@ -18,7 +18,8 @@ class Assembly(NamedTuple):
 
     Attributes
     ----------
-    stage : the one of STAGES that was done last; "ghosts" or "flare" after "merge" where these are removed
+    stage : the one of STAGES that was done last; "ghosts" or "flare" after "merge" where these are
+        removed
     bracket : the photographs, moved and cut to what all of them show
     offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
     g : (n,) or (n, 3), response, ln exposure of each level
@@ -27,11 +28,15 @@ class Assembly(NamedTuple):
     medians : (P, C, 256), log2 exposure of each level by each frame: see `diagnostics.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
-    homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions included
-    moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
+    homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions
+        included
+    moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody
+        asked
     glare : (h, w) bool, where veiling glare was removed; None where nobody asked
-    s : (h, w) or (h, w, 3) float32, standard deviation of E, infinite where unknown; None where nobody asked
-    fallback : why the map is not worth a picture, and the photographs are fused instead; "" where it is
+    s : (h, w) or (h, w, 3) float32, standard deviation of E, infinite where unknown; None where
+        nobody asked
+    fallback : why the map is not worth a picture, and the photographs are fused instead; "" where
+        it is
     """
 
     stage: str
@@ -52,7 +57,9 @@ class Assembly(NamedTuple):
     @property
     def spread(self) -> float:
         """How far the frames contradict each other, in stops; NaN before the last stage."""
-        return consistency.measure_spread(self.medians) if self.medians is not None else float("nan")
+        return (
+            consistency.measure_spread(self.medians) if self.medians is not None else float("nan")
+        )
 
 
 def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
@@ -62,4 +69,6 @@ def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
     images, times, names, valid, linear = state.bracket
     valid = None if valid is None else valid[order]
     some = Bracket(images[order], times[order], tuple(names[j] for j in order), valid, linear)
-    return state._replace(bracket=some, offsets=state.offsets[order], homographies=state.homographies[order])
+    return state._replace(
+        bracket=some, offsets=state.offsets[order], homographies=state.homographies[order]
+    )

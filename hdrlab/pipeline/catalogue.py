@@ -1,7 +1,7 @@
 """Which methods there are: a method is a module of its chapter that has the chapter's verb.
 
-So a new operator is one new file, and everything that offers a choice finds it there. Where `fast` has the
-same verb in a module of the same name, that one runs: its answer is the same, sooner.
+So a new operator is one new file, and everything that offers a choice finds it there. Where `fast`
+has the same verb in a module of the same name, that one runs: its answer is the same, sooner.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,9 @@ VERBS = {"align": "align", "response": "recover", "tonemap": "tonemap"}
 def names(chapter: str) -> list[str]:
     """Return the names of a chapter's methods, sorted; the modules are read as text, not imported."""
     folder, verb = Path(__file__).parents[1] / chapter, f"\ndef {VERBS[chapter]}("
-    return sorted(file.stem for file in folder.glob("*.py") if verb in file.read_text(encoding="utf8"))
+    return sorted(
+        file.stem for file in folder.glob("*.py") if verb in file.read_text(encoding="utf8")
+    )
 
 
 def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
@@ -37,7 +39,9 @@ def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
     if callable(name):
         return name
     if name not in names(chapter):
-        raise ValueError(f"expected a method of {chapter} out of {', '.join(names(chapter))}, got {name!r}")
+        raise ValueError(
+            f"expected a method of {chapter} out of {', '.join(names(chapter))}, got {name!r}"
+        )
     fast = find_spec(f"hdrlab.fast.{name}") and import_module(f"hdrlab.fast.{name}")
     own = getattr(fast, VERBS[chapter], None) if fast else None
     return own or getattr(import_module(f"hdrlab.{chapter}.{name}"), VERBS[chapter])

@@ -18,8 +18,8 @@ ROWS = 64
 def measure_deviation(state: Assembly) -> Assembly:
     """Return a finished Assembly with E by inverse variance, and s.
 
-    s is infinite, and E as it was, where no frame measures, something moved or glare was removed; and
-    everywhere, with a note, where the photographs do not tell their noise.
+    s is infinite, and E as it was, where no frame measures, something moved or glare was removed;
+    and everywhere, with a note, where the photographs do not tell their noise.
     """
     images, times, _, valid, _ = state.bracket
     if valid is not None:  # what shows nothing measures as little as what clips
@@ -28,7 +28,9 @@ def measure_deviation(state: Assembly) -> Assembly:
     try:
         noise = estimate_noise(images, times, state.g, state.E)
     except ValueError as error:
-        return state._replace(s=np.full_like(state.E, np.inf), notes=(*state.notes, f"not sure: {error}"))
+        return state._replace(
+            s=np.full_like(state.E, np.inf), notes=(*state.notes, f"not sure: {error}")
+        )
     strips = np.array_split(images, range(ROWS, len(state.E), ROWS), axis=1)
     merged = each(lambda one: merge_with_deviation(one, times, state.g, *noise), strips)
     E, s = (np.concatenate(parts) for parts in zip(*merged, strict=True))

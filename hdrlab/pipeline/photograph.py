@@ -6,9 +6,10 @@ x       lL - (1 - share) light    (H, W): the light's contrast is multiplied by 
 Lm      scaled luminance          key 10^(CONTRAST (x - mean of x)), 1 about where the curve bends
 Ld      (curve of Lm - black) / (1 - black), by the curve of `tonemap.reinhard` and its `white`
 
-The defaults of Reinhard's paper are flat for a photograph: black is not set, and half of the display's range
-is kept for the brightest pixels. A guided filter reverses no gradients beside soft edges, unlike a bilateral
-one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 2015).
+The defaults of Reinhard's paper are flat for a photograph: black is not set, and half of the
+display's range is kept for the brightest pixels. A guided filter reverses no gradients beside soft
+edges, unlike a bilateral one; its a and b are found on a coarse grid (He and Sun, Fast guided
+filter, 2015).
 """
 
 from collections.abc import Callable
@@ -43,8 +44,10 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     """Return the knobs of `photograph` for a map E (H, W[, 3]), and its saturation, all from percentiles.
 
     share : of the light's contrast that stays, 1 where it spans at most RANGE decades
-    key : MIDDLE; up to twice that where most of the map is bright for its range, half of it where dark
-    white, black : the scaled and the display luminance that WHITE and BLACK of the pixels lie beyond
+    key : MIDDLE; up to twice that where most of the map is bright for its range, half of it where
+        dark
+    white, black : the scaled and the display luminance that WHITE and BLACK of the pixels lie
+        beyond
     saturation : 1.25 of grays, 0.95 where half of the pixels have the purest of colours
 
     Examples
@@ -82,7 +85,8 @@ def find_logarithm(L: F32) -> Callable[[F32], F32]:
 def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> tuple[Array, Array, F32]:
     """Return the light's a and b at nodes, (h, W), and the weights (H, h) of these in each row [He15].
 
-    `take` returns lL from L (H, W), which is looked at in nodes; a is near 1 at edges of light, 0 in detail.
+    `take` returns lL from L (H, W), which is looked at in nodes; a is near 1 at edges of light, 0
+    in detail.
     """
     reach = max(1, round(REACH * max(L.shape)))
     step = max(1, reach // NODES)
@@ -135,7 +139,9 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
     numbers = all(isinstance(knob, int | float) for knob in (share, key, white, black))
     if not (numbers and 0 < share <= 1 and key > 0 and white > 0 and 0 <= black < 1):
         got = f"{share=}, {key=}, {white=}, {black=}"
-        raise ValueError(f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}")
+        raise ValueError(
+            f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}"
+        )
     L = as_luminance(L)
     take, some = find_logarithm(L), np.s_[:: max(1, len(L) // ENOUGH)]
     a, b, down = filter_light(L, take)

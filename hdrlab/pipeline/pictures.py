@@ -32,16 +32,17 @@ def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.
     E : (H, W) or (H, W, 3)
         Radiance, any linear unit.
     tonemap : str or function
-        "photograph", which chooses its settings by the map; a method of `tonemap`, with the defaults of its
-        paper; or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
+        "photograph", which chooses its settings by the map; a method of `tonemap`, with the
+        defaults of its paper; or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
     saturation : float, optional
-        1 keeps the ratios of the channels, 0 is gray. By default "photograph" chooses it, and an operator
-        has the SATURATION of its module, or else 1.
+        1 keeps the ratios of the channels, 0 is gray. By default "photograph" chooses it, and an
+        operator has the SATURATION of its module, or else 1.
     way : {"hue", "ratio"}
-        How colour comes back, and what becomes of colours beyond the display: "hue" darkens them a little
-        and makes them paler, "ratio" clips a channel; see `core.colour`.
+        How colour comes back, and what becomes of colours beyond the display: "hue" darkens them a
+        little and makes them paler, "ratio" clips a channel; see `core.colour`.
     **knobs
-        Those of the operator; of "photograph" share, key, white and black, instead of what it chooses.
+        Those of the operator; of "photograph" share, key, white and black, instead of what it
+        chooses.
 
     Returns
     -------
@@ -56,7 +57,12 @@ def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.
 
 
 def develop_and_describe(
-    E: ArrayLike, tonemap: Method = AUTO, *, saturation: float | None = None, way: str = "hue", **knobs: Any
+    E: ArrayLike,
+    tonemap: Method = AUTO,
+    *,
+    saturation: float | None = None,
+    way: str = "hue",
+    **knobs: Any,
 ) -> Developed:
     """Return the picture of `develop`, and its settings in words, for a report; the parameters are the same.
 
@@ -73,7 +79,9 @@ def develop_and_describe(
     saturation = own if saturation is None else float(saturation)
     L = colour.luminance(E)
     picture = colour.render(E, L, operator(L, **settings), saturation=saturation, way=way)
-    name = tonemap if isinstance(tonemap, str) else getattr(tonemap, "__name__", "your own operator")
+    name = (
+        tonemap if isinstance(tonemap, str) else getattr(tonemap, "__name__", "your own operator")
+    )
     said = (
         f"{knob} {value:.2g}" if isinstance(value, float) else f"{knob} {value}"
         for knob, value in (settings | {"saturation": saturation}).items()

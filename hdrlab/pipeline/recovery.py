@@ -1,13 +1,14 @@
 """The response of a bracket: by a method of `response`, by a function of the reader's, or "auto".
 
-For "auto" held-out pixels choose, and of two that explain them alike, the simpler is taken. A neutral surface
-has one level in all channels, and so should have one radiance. Three curves, each recovered by itself,
-disagree where few frames leave them open, and a gray wall gets coloured patches. One curve for all channels
-cannot. Cameras have one, as a rule; scanned film has three. So one curve is taken where it explains pixels
-that it was not recovered from nearly as well as three do, by `consistency.measure_spread` of each channel.
+For "auto" held-out pixels choose, and of two that explain them alike, the simpler is taken. A
+neutral surface has one level in all channels, and so should have one radiance. Three curves, each
+recovered by itself, disagree where few frames leave them open, and a gray wall gets coloured
+patches. One curve for all channels cannot. Cameras have one, as a rule; scanned film has three. So
+one curve is taken where it explains pixels that it was not recovered from nearly as well as three
+do, by `consistency.measure_spread` of each channel.
 
-A map needs some response. So where a method finds none, or one that no camera has, one that a prior settles
-takes its place, with a doubt: that of `response.space`.
+A map needs some response. So where a method finds none, or one that no camera has, one that a prior
+settles takes its place, with a doubt: that of `response.space`.
 """
 
 from collections.abc import Callable
@@ -58,9 +59,13 @@ def find_validated_method(response: Method) -> Recover:
     return found if callable(response) or response == "linear" else partial(_recover, found)
 
 
-def _recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
+def _recover(
+    method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+) -> F64:
     """Return the response that a method finds, or raise a ValueError: see `validate_response`."""
-    return plausibility.validate_response(method(images, times, valid=valid), images, times, valid=valid)
+    return plausibility.validate_response(
+        method(images, times, valid=valid), images, times, valid=valid
+    )
 
 
 def share_curve(method: Recover) -> Recover:
@@ -123,13 +128,16 @@ def find_widest_gap(Z: ArrayLike) -> int:
 def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
     """Return the spread in stops that a method's response leaves in held-out pixels; inf if there is none.
 
-    It is the mean of the channels' spreads: the median over all levels hides a curve that one channel denies.
+    It is the mean of the channels' spreads: the median over all levels hides a curve that one
+    channel denies.
     """
     try:
         g = method(fit.images, fit.times, valid=fit.valid)
     except ValueError:
         return np.inf
-    E = merge.merge_with_quality(held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid).E
+    E = merge.merge_with_quality(
+        held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid
+    ).E
     medians = consistency.measure_level_exposures(held.images, held.times, E, valid=held.valid)
     spreads = [consistency.measure_spread(one[:, None]) for one in medians.swapaxes(0, 1)]
     return float(np.nan_to_num(np.mean(spreads), nan=np.inf))
@@ -138,8 +146,8 @@ def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
 def choose_response(response: Method, bracket: Bracket) -> Choice:
     """Return the Choice for an aligned bracket: what "auto" stands for, or the method that was named.
 
-    Debevec's curve does not count where smoothness alone connects its levels: a prior settles them. Where
-    nothing can be compared it is taken.
+    Debevec's curve does not count where smoothness alone connects its levels: a prior settles them.
+    Where nothing can be compared it is taken.
     """
     fit, held = split_stripes(bracket)
     if response != "auto" or bracket.linear:
@@ -164,7 +172,9 @@ def choose_response(response: Method, bracket: Bracket) -> Choice:
     return Choice(partial(_recover, CANDIDATES[name]), spreads[name], (said,))
 
 
-def find_response(response: Method, choice: Choice, bracket: Bracket) -> tuple[F64, tuple[str, ...], str]:
+def find_response(
+    response: Method, choice: Choice, bracket: Bracket
+) -> tuple[F64, tuple[str, ...], str]:
     """Return the response of an aligned bracket, doubts about it, and why it is worth no map, or "".
 
     Raises

@@ -21,7 +21,9 @@ LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
 ROWS = 32
 
 
-def aligned(bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False) -> Assembly:
+def aligned(
+    bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False
+) -> Assembly:
     """Return the Assembly after alignment: by a method's name, a function, or "none"; see `moved`."""
     curve = cache(partial(provisional, bracket, response))  # found where it is asked for, and once
     H, pairs, notes = registered(bracket, align, curve)
@@ -38,8 +40,8 @@ def describe(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return doubts and notes on the pairs of a bracket, one sentence at most in both together.
 
-    A pair of which nothing is known is no reason for a doubt: it stays as it is, and where its neighbours
-    stand still this is where it belongs.
+    A pair of which nothing is known is no reason for a doubt: it stays as it is, and where its
+    neighbours stand still this is where it belongs.
     """
 
     def which(found: list[Validation]) -> str:
@@ -51,7 +53,9 @@ def describe(
         return (f"{which(apart)} do not lie on each other: {apart[0].failure}; {advice}",), ()
     unknown = [one for one in pairs if not one.known]
     if unknown and any(np.any(one.step != np.eye(3)) for one in pairs):
-        return (), (f"{which(unknown)}: too dark or too bright to be laid on each other; moved as one",)
+        return (), (
+            f"{which(unknown)}: too dark or too bright to be laid on each other; moved as one",
+        )
     return (), ()
 
 
@@ -64,7 +68,11 @@ def registered(
         return np.zeros((len(images), 2), np.int64), (), ()
     if callable(align):
         answer = np.asarray(align(images))
-        return (warp.as_homographies if answer.ndim == 3 else as_offsets)(answer, len(images)), (), ()
+        return (
+            (warp.as_homographies if answer.ndim == 3 else as_offsets)(answer, len(images)),
+            (),
+            (),
+        )
     found = alignment.register(images, align, times=times, g=g)
     if found.method in ("none", "mtb"):
         return found.homographies[:, 1::-1, 2].astype(np.int64), found.pairs, ()
@@ -78,7 +86,11 @@ def provisional(bracket: Bracket, response: Method) -> F64 | None:
     A function is asked for its own.
     """
     if not callable(response):
-        response = "linear" if response == "linear" or (response == "auto" and bracket.linear) else "debevec"
+        response = (
+            "linear"
+            if response == "linear" or (response == "auto" and bracket.linear)
+            else "debevec"
+        )
     recover = recovery.find_validated_method(response)
     try:
         return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
@@ -89,8 +101,8 @@ def provisional(bracket: Bracket, response: Method) -> F64 | None:
 def moved(bracket: Bracket, H: Array, g: F64 | None = None, *, in_place: bool = False) -> Bracket:
     """Return the bracket with its photographs, and their masks, moved and cut to what all of them show.
 
-    Offsets (P, 2) shift them as they are, `in_place` in the memory of those given, which are lost then;
-    homographies resample their light by the response g.
+    Offsets (P, 2) shift them as they are, `in_place` in the memory of those given, which are lost
+    then; homographies resample their light by the response g.
     """
     images, valid = bracket.images, bracket.valid
     if H.ndim == 3:

@@ -1,7 +1,8 @@
 """The stages from a bracket to its radiance map, one after the other.
 
-Each stage may be a method's name or a function of the same signature, so a reader's own plugs in wherever the
-library's does. `assemble_steps` yields what is known after each stage; `assemble` returns the last of it.
+Each stage may be a method's name or a function of the same signature, so a reader's own plugs in
+wherever the library's does. `assemble_steps` yields what is known after each stage; `assemble`
+returns the last of it.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,7 +33,9 @@ WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "flat": lambda g: weights.flat(len(g)),
     "snr": weights.snr,
 }
-CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
+CONTRADICTION = (
+    0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
+)
 
 
 def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
@@ -43,28 +46,29 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     bracket : Bracket
         At least two photographs of different exposure.
     align : str or function
-        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or
-        homographies (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns
-        too, and "homography" takes scale and tilt; both resample light, by a provisional response
-        out of the histograms. "auto" is "mtb", and "cerman" or "homography" for the photographs that no
-        shift lays on each other, see `pipeline.alignment`.
+        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels
+        or homographies (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is.
+        "cerman" turns too, and "homography" takes scale and tilt; both resample light, by a
+        provisional response out of the histograms. "auto" is "mtb", and "cerman" or "homography"
+        for the photographs that no shift lays on each other, see `pipeline.alignment`.
     response : str or function
-        A method of `response`, "auto" (linear where the bracket is, else see `recovery`), or your own
-        `recover(images, times, *, valid) -> g`.
+        A method of `response`, "auto" (linear where the bracket is, else see `recovery`), or your
+        own `recover(images, times, *, valid) -> g`.
     weight : {"gaussian", "hat", "flat", "snr"}
-        How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of
-        real brackets contradict each other least.
+        How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the
+        frames of real brackets contradict each other least.
     method : {"log", "likelihood", "mean", "shot"}
         How the frames are merged, see `radiance.merge`.
     times : {"correct", "stated", "estimate"}
-        "correct" corrects rough times by the pixels, where held-out pixels prove it; times that are all the
-        same, or contradict the pixels everywhere, give way to relative ones, see `timing`. "stated" leaves
-        them as they are. "estimate" also replaces times that fall while the photographs get brighter.
+        "correct" corrects rough times by the pixels, where held-out pixels prove it; times that are
+        all the same, or contradict the pixels everywhere, give way to relative ones, see `timing`.
+        "stated" leaves them as they are. "estimate" also replaces times that fall while the
+        photographs get brighter.
     ghosts : {"none", "auto", "regions", "reference"}
-        What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
-        the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
-        "auto" is "regions" where much moved, see `diagnostics.motion`, and leaves a map that contradicts
-        itself nearly everywhere.
+        What becomes of what moved: it stays half transparent; or the map shows it as in a reference
+        frame, the best exposure of each region, or the middle photograph in all: see
+        `radiance.deghosting.ghosts`. "auto" is "regions" where much moved, see
+        `diagnostics.motion`, and leaves a map that contradicts itself nearly everywhere.
     flare : {"none", "glare"}
         Whether veiling glare, the light that the lens scattered, is removed: see `radiance.flare`.
 
@@ -76,8 +80,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     Raises
     ------
     ValueError
-        For brackets that hold fewer than two exposures, nothing that two of them see well, or times in
-        the wrong order, and for names that no method has.
+        For brackets that hold fewer than two exposures, nothing that two of them see well, or times
+        in the wrong order, and for names that no method has.
 
     Examples
     --------
@@ -106,16 +110,28 @@ def assemble_steps(
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`.
 
-    in_place : whether shifts may overwrite the photographs of `bracket`, which spares a copy of them all
-    release : whether the merge may give their memory back, too, where nothing asks for them any more
+    in_place : whether shifts may overwrite the photographs of `bracket`, which spares a copy of
+        them all
+    release : whether the merge may give their memory back, too, where nothing asks for them any
+        more
     """
-    asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}.items()
-    for (what, given), known in zip(asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True):
+    asked = {
+        "a weight": weight,
+        "a method": method,
+        "times": times,
+        "ghosts": ghosts,
+        "flare": flare,
+    }.items()
+    for (what, given), known in zip(
+        asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True
+    ):
         if given not in known:
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
     state = registration.aligned(bracket, align, response, in_place=in_place)
-    apart = bool(state.doubts)  # photographs that do not lie on each other contradict each other, too
+    apart = bool(
+        state.doubts
+    )  # photographs that do not lie on each other contradict each other, too
     yield (state := state._replace(notes=(*said, *state.notes)))
     judged, contrary = state.bracket, find_contrary(state.bracket)
     choice = recovery.choose_response(response, state.bracket)
@@ -136,14 +152,19 @@ def assemble_steps(
     yield (state := state._replace(stage="response", g=g, notes=notes, doubts=doubts))
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     images, seconds, _, valid, _ = state.bracket
-    few = np.s_[:, *consistency.choose_grid(images.shape[1:3])]  # judged while there are photographs
+    few = np.s_[
+        :, *consistency.choose_grid(images.shape[1:3])
+    ]  # judged while there are photographs
     some, shown = images[few].copy(), None if valid is None else valid[few]
     E = merge(some, seconds, g, w(g), valid=shown, repair=False).E
     judges: list[Callable[..., Any]] = [
         lambda: motion.measure_motion(images, seconds, g, w(g), valid=valid),
         lambda: consistency.measure_level_exposures(some, seconds, E, valid=shown),
     ]
-    (moved, bands), medians, told = *each(lambda judge: judge(), judges, pixels=images[0].size), contrary()
+    (moved, bands), medians, told = (
+        *each(lambda judge: judge(), judges, pixels=images[0].size),
+        contrary(),
+    )
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
         state = state._replace(bracket=state.bracket._replace(images=images[:0].copy()))
@@ -156,19 +177,24 @@ def assemble_steps(
         yield (state := remove_glare(state))
     left = (0.0, 0.0) if state.moving is not None or apart else (moved, bands)
     found = assess(state, medians, told, *left)
-    yield found._replace(doubts=state.doubts) if apart else found  # what it says would follow from that
+    yield (
+        found._replace(doubts=state.doubts) if apart else found
+    )  # what it says would follow from that
 
 
 def find_contrary(bracket: Bracket) -> Callable[[], contradictions.Contradictions]:
     """Return a function that waits for the contradictions in a bracket, which no response is needed for."""
-    find = partial(contradictions.find_contradictions, bracket.images, bracket.times, valid=bracket.valid)
+    find = partial(
+        contradictions.find_contradictions, bracket.images, bracket.times, valid=bracket.valid
+    )
     return beside(find, pixels=bracket.images[0].size)
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
     """Return the Assembly without the frames that contradict all others, and a note on them, or a doubt.
 
-    Of two frames either of which may be wrong, relative times make none: they are as rough as all others.
+    Of two frames either of which may be wrong, relative times make none: they are as rough as all
+    others.
     """
     images, times, names, valid, _ = state.bracket
     found, rivals = outlying_frames.find_outlying_frames(images, times, valid=valid)
@@ -181,7 +207,9 @@ def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
 
-def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:
+def deghost(
+    state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]
+) -> Assembly:
     """Return the Assembly without the ghosts of what moved; the reference is the middle photograph."""
     from hdrlab.radiance.deghosting import ghosts as moving  # SciPy's filters: a fifth of a second
 
@@ -200,7 +228,9 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
     if way == "auto" and 100 * np.mean(found.labels > 0) >= moving.WIDESPREAD:
         return state._replace(stage="ghosts")
     notes = (*state.notes, moving.note(found, names))
-    return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
+    return state._replace(
+        stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes
+    )
 
 
 def remove_glare(state: Assembly) -> Assembly:
@@ -213,7 +243,9 @@ def remove_glare(state: Assembly) -> Assembly:
 def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     """Return the Assembly with E in cd/m^2, by what a meter read at a pixel of it: see `scales.fit_unit`."""
     if state.quality[y : y + 1, x : x + 1].any():
-        raise ValueError(f"expected a place that the photographs measured, got {x},{y}, which none did")
+        raise ValueError(
+            f"expected a place that the photographs measured, got {x},{y}, which none did"
+        )
     k = scales.fit_unit(state.E, x, y, reading)
     note = f"1 in the map is 1 cd/m^2: {reading:g} cd/m^2 were read at {x},{y}"
     s = None if state.s is None else state.s * np.float32(k)
@@ -225,12 +257,14 @@ def assess(
 ) -> Assembly:
     """Return the Assembly with the medians of each level, and the warnings that follow from what was found.
 
-    `moved` is the share of the picture in which ghosts are left, `bands` those of light, stops; each counts
-    where nothing before it explains what is there.
+    `moved` is the share of the picture in which ghosts are left, `bands` those of light, stops;
+    each counts where nothing before it explains what is there.
     """
     state = state._replace(stage="compare", medians=medians)
     if state.spread > timing.WORTHLESS:
-        state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
+        state = state._replace(
+            fallback=f"the photographs contradict each other by {state.spread:.2f} stops"
+        )
     names = state.bracket.names
     if np.isnan(state.spread):
         return state._replace(doubts=(*state.doubts, say("alone")), fallback=say("alone"))

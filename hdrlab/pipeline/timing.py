@@ -1,8 +1,9 @@
 """Exposure times by the pixels: stated ones corrected, and relative ones for photographs that come with none.
 
-The histograms of two photographs of one scene give their exposure ratio, if the response is known. Taken is
-that of a usual camera: its JPEGs are steeper than the curve of sRGB, in three by a power of 1.3 to 1.5. So
-these times are true up to a power, and `diagnostics.exposure_times` then improves each of them.
+The histograms of two photographs of one scene give their exposure ratio, if the response is known.
+Taken is that of a usual camera: its JPEGs are steeper than the curve of sRGB, in three by a power
+of 1.3 to 1.5. So these times are true up to a power, and `diagnostics.exposure_times` then improves
+each of them.
 """
 
 from itertools import pairwise
@@ -22,7 +23,8 @@ from hdrlab.pipeline.assembly import Assembly, Method, take_frames
 STEEPNESS = 1.4
 # stops: less between the darkest and the brightest photograph is one exposure
 LEAST_SPAN = 0.3
-# stops of spread in held-out pixels: what true times show, and a map that shows what no photograph does
+# stops of spread in held-out pixels: what true times show, and a map that shows what no photograph
+# does
 TRUE, WORTHLESS = 0.01, 0.5
 # pixels of a frame, on an even grid
 PIXELS = 400_000
@@ -50,7 +52,10 @@ def space_by_stops(bracket: Bracket, stops: arrays.ArrayLike) -> Bracket:
     images, _, names, valid, linear = bracket
     if not np.all(np.asarray(stops) >= 0):
         raise ValueError(f"expected positive steps between the photographs in stops, got {stops!r}")
-    times, steps = np.empty(len(images)), np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
+    times, steps = (
+        np.empty(len(images)),
+        np.broadcast_to(np.asarray(stops, float), (len(images) - 1,)),
+    )
     times[mtb.by_brightness(images)] = 2 ** np.cumsum([0, *steps])
     return make_bracket(images, times, names, valid=valid, linear=linear)
 
@@ -71,8 +76,8 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
     Raises
     ------
     ValueError
-        For photographs of one exposure, for times that fall while the photographs get brighter, unless
-        they are to be estimated, and for times that are all the same, if "stated".
+        For photographs of one exposure, for times that fall while the photographs get brighter,
+        unless they are to be estimated, and for times that are all the same, if "stated".
     """
     images, seconds, names, valid, _ = bracket
     equal, falls = np.ptp(seconds) == 0, np.zeros(0, np.intp)
@@ -101,8 +106,8 @@ def describe_steps(times: arrays.F64) -> str:
 def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
     """Return the Assembly with times by the pixels, where these prove it, and a note on what was found.
 
-    `before` is the spread that its times leave in held-out pixels. Where that is of a map worth nothing, and
-    corrections do not help, relative times take their place, with a doubt.
+    `before` is the spread that its times leave in held-out pixels. Where that is of a map worth
+    nothing, and corrections do not help, relative times take their place, with a doubt.
     """
     found, spread = correct_times(state.bracket, response, before)
     doubts = exposure_times.doubts(found)
@@ -116,12 +121,16 @@ def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
             state, found, doubts = rising, other, (f"{off}, but {describe_steps(relative)}",)
     notes = (*state.notes, exposure_times.note(found, state.bracket.names))
     state = state._replace(
-        bracket=state.bracket._replace(times=found.times), notes=notes, doubts=(*state.doubts, *doubts)
+        bracket=state.bracket._replace(times=found.times),
+        notes=notes,
+        doubts=(*state.doubts, *doubts),
     )
     return take_frames(state, np.argsort(found.times, kind="stable"))
 
 
-def correct_times(bracket: Bracket, response: Method, before: float | None) -> tuple[Estimate, float]:
+def correct_times(
+    bracket: Bracket, response: Method, before: float | None
+) -> tuple[Estimate, float]:
     """Return the Estimate of an aligned bracket's times, and the spread that its times leave."""
 
     def measure(times: arrays.F64) -> float:

@@ -6,12 +6,12 @@ K       glare spread function        falls with a power of the distance: see `co
 ratio   F / (K * E)                  (H, W[, 3]): share + (1 - share) E / (K * E), never below the share
 region  (H, W) bool                  where glare is more than a part of what was photographed
 
-A map is needed, not a photograph: the glare in the dark corner comes from a sun that only the shortest frame
-holds. Glare is everywhere, so nothing in the map is darker than it [Reinhard05 on lens flare]: the lowest
-ratios are the share, if there are dark places. Whether it is glare shows in how they agree. Under glare many
-places, far from each other, come down to one ratio; without it the lowest are a few odd pixels'. The power is
-the one under which most can be removed: under another the glare meets the floor at one distance from the
-lights, and lies below it at all others.
+A map is needed, not a photograph: the glare in the dark corner comes from a sun that only the
+shortest frame holds. Glare is everywhere, so nothing in the map is darker than it [Reinhard05 on
+lens flare]: the lowest ratios are the share, if there are dark places. Whether it is glare shows in
+how they agree. Under glare many places, far from each other, come down to one ratio; without it the
+lowest are a few odd pixels'. The power is the one under which most can be removed: under another
+the glare meets the floor at one distance from the lights, and lies below it at all others.
 """
 
 from collections.abc import Iterator
@@ -75,8 +75,8 @@ def block_means(E: F32, factor: int) -> F32:
 def lowest_ratio(F: F32, G: F32) -> tuple[float, float]:
     """Return the lowest ratio F / G, and how far those above it lie: the share, and the agreement.
 
-    Two low quantiles, ten apart, are continued to none at all, as far again below: so a floor that slopes, as
-    of dark places that are not quite black, does not count as glare.
+    Two low quantiles, ten apart, are continued to none at all, as far again below: so a floor that
+    slopes, as of dark places that are not quite black, does not count as glare.
     """
     positive = G > 0
     if np.count_nonzero(positive) < 1 / LOW:
@@ -101,7 +101,11 @@ def glare_steps(
     transform, factor = spread_transform(F.shape, power, core), max(1, F.shape[1] // WIDTH)
     for _ in range(ROUNDS):
         G = scatter(E, transform)
-        now = lowest_ratio(block_means(F, factor), block_means(G, factor))[0] if share is None else share
+        now = (
+            lowest_ratio(block_means(F, factor), block_means(G, factor))[0]
+            if share is None
+            else share
+        )
         E = subtract_glare(F, G, now)
         yield State(now, np.float32(now) * G, E)
 
@@ -129,7 +133,9 @@ def fit_power(F: ArrayLike, power: float, *, core: float = 1.0) -> Fit:
     return Fit(power, state.share, agreement, float(-np.log1p(-part).mean()))
 
 
-def estimate_spread(F: ArrayLike, *, powers: tuple[float, ...] = POWERS) -> tuple[GlareSpread, float]:
+def estimate_spread(
+    F: ArrayLike, *, powers: tuple[float, ...] = POWERS
+) -> tuple[GlareSpread, float]:
     """Return the GlareSpread of the lens that took a map, of share 0 where there is none, and the agreement.
 
     Parameters
@@ -155,12 +161,16 @@ def estimate_spread(F: ArrayLike, *, powers: tuple[float, ...] = POWERS) -> tupl
         raise ValueError("expected at least one power")
     factor = max(1, F.shape[1] // WIDTH)
     small = block_means(F, factor)
-    best = max((fit_power(small, power, core=1 / factor) for power in powers), key=lambda one: one.removed)
+    best = max(
+        (fit_power(small, power, core=1 / factor) for power in powers), key=lambda one: one.removed
+    )
     found = best.agreement < AGREE and best.share > LEAST
     return GlareSpread(best.share if found else 0.0, best.power), best.agreement
 
 
-def remove_glare(F: ArrayLike, *, spread: GlareSpread | None = None, part: float = 0.02) -> Deglared:
+def remove_glare(
+    F: ArrayLike, *, spread: GlareSpread | None = None, part: float = 0.02
+) -> Deglared:
     """Return the radiance map without veiling glare, the light that the lens scattered.
 
     Parameters
@@ -180,8 +190,9 @@ def remove_glare(F: ArrayLike, *, spread: GlareSpread | None = None, part: float
 
     References
     ----------
-    Chuang, High dynamic range imaging (slides), "Lens flare removal"; Reinhard, Ward, Pattanaik and Debevec,
-    High Dynamic Range Imaging, 2005, on lens flare; Talvala, Adams, Horowitz and Levoy, SIGGRAPH 2007.
+    Chuang, High dynamic range imaging (slides), "Lens flare removal"; Reinhard, Ward, Pattanaik and
+    Debevec, High Dynamic Range Imaging, 2005, on lens flare; Talvala, Adams, Horowitz and Levoy,
+    SIGGRAPH 2007.
 
     Examples
     --------

@@ -10,8 +10,8 @@ shown  (P, H, W, C) bool, False where a frame shows nothing of the scene
 E      radiance          (H, W[, C]) float32: 1 brings a pixel to level n / 2 in one second
 
 A frame that does not measure a pixel still bounds it: clipped in frame j, its radiance is at least
-f^-1(top) / t_j; dark in frame j, at most f^-1(1) / t_j. So a clipped sun is never darker than the sky that
-was measured beside it. `fast.merge` makes the same map by look-up tables.
+f^-1(top) / t_j; dark in frame j, at most f^-1(1) / t_j. So a clipped sun is never darker than the
+sky that was measured beside it. `fast.merge` makes the same map by look-up tables.
 """
 
 from enum import IntFlag
@@ -35,7 +35,9 @@ class Quality(IntFlag):
 
     MEASURED = 0
     CLIPPED = 1  # in every frame that shows it: the shortest frame's lower bound
-    DARK = 2  # in every frame: the longest frame's upper bound; together with CLIPPED: between the two
+    DARK = (
+        2  # in every frame: the longest frame's upper bound; together with CLIPPED: between the two
+    )
     STUCK = 4  # does not follow the exposure: the median of its neighbours
     UNSEEN = 8  # no frame shows it: 0
 
@@ -79,8 +81,8 @@ METHODS = {"log": log_mean, "likelihood": likelihood, "mean": frame_mean, "shot"
 def weigh(Z: Array, w: F64, top: int, shown: Mask | bool = True) -> F64:
     """Return W: w(Z) where a frame measures a pixel, 0 elsewhere.
 
-    A frame with a clipped channel is dropped for all channels, lest highlights take a tint, as long as
-    another frame measures the pixel.
+    A frame with a clipped channel is dropped for all channels, lest highlights take a tint, as long
+    as another frame measures the pixel.
     """
     usable = (Z > 0) & (Z < top) & shown
     whole = usable & np.all(Z < top, axis=-1, keepdims=True)
@@ -90,9 +92,9 @@ def weigh(Z: Array, w: F64, top: int, shown: Mask | bool = True) -> F64:
 def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
     """Return E (M,) and flags (M,) of pixels Z (P, M) that no frame measures, from the tightest bounds.
 
-    ln E >= g(top) - B_j where frame j is clipped, ln E <= g(1) - B_j where it is dark. E is the one bound, or
-    the middle of the logarithms of two, or 0. The flags are the sum of 1 where a frame is clipped and 2 where
-    one is dark, or else 8.
+    ln E >= g(top) - B_j where frame j is clipped, ln E <= g(1) - B_j where it is dark. E is the one
+    bound, or the middle of the logarithms of two, or 0. The flags are the sum of 1 where a frame is
+    clipped and 2 where one is dark, or else 8.
     """
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
@@ -106,8 +108,8 @@ def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
     """Return the radiance map, ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
 
-    Where no frame measures a pixel, E is what the tightest bounds allow. Images are (P, H, W[, 3]), in any
-    order; w is the hat by default.
+    Where no frame measures a pixel, E is what the tightest bounds allow. Images are (P, H, W[, 3]),
+    in any order; w is the hat by default.
 
     Examples
     --------
@@ -117,14 +119,25 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     True
     """
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    if images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,)) or not images.size:
+    if (
+        images.dtype.kind != "u"
+        or images.ndim < 3
+        or images.shape[3:] not in ((), (3,))
+        or not images.size
+    ):
         raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
         raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
     c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
-    if g.shape not in ((n,), (n, 1), (n, c.size)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
-        raise ValueError(f"expected g ({n},) or ({n}, {len(c)}) that rises, -80 to 80, got {g.shape}")
+    if (
+        g.shape not in ((n,), (n, 1), (n, c.size))
+        or not np.all(np.abs(g) < 80)
+        or not np.all(g[-1] > g[0])
+    ):
+        raise ValueError(
+            f"expected g ({n},) or ({n}, {len(c)}) that rises, -80 to 80, got {g.shape}"
+        )
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -177,8 +190,8 @@ def merge_with_quality(
 
     References
     ----------
-    Debevec and Malik, SIGGRAPH 1997, sec. 2.2; Robertson, Borman and Stevenson, Journal of Electronic Imaging
-    2003, eq. 8.
+    Debevec and Malik, SIGGRAPH 1997, sec. 2.2; Robertson, Borman and Stevenson, Journal of
+    Electronic Imaging 2003, eq. 8.
 
     Examples
     --------
@@ -194,7 +207,9 @@ def merge_with_quality(
     bounds, flags = bound(Z, np.log(t), curves, first, shown)
     measured = W.any(axis=0)
     with np.errstate(invalid="ignore"):
-        E = np.where(measured, METHODS[method](W, X, t[:, None, None, None]), bounds).astype(np.float32)
+        E = np.where(measured, METHODS[method](W, X, t[:, None, None, None]), bounds).astype(
+            np.float32
+        )
     quality = np.bitwise_or.reduce(np.where(measured, np.uint8(0), flags), axis=-1)
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
@@ -207,9 +222,14 @@ def as_tables(
     """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
     stack = arrays.as_stack(images)
     n, channels = arrays.levels(stack), stack[0, 0, 0].size
-    weights, curves = arrays.as_table(hat(n) if w is None else w, n), arrays.as_response(g, n, channels)
+    weights, curves = (
+        arrays.as_table(hat(n) if w is None else w, n),
+        arrays.as_response(g, n, channels),
+    )
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
-        raise ValueError(f"expected weights (n,), not negative and not all 0, got shape {weights.shape}")
+        raise ValueError(
+            f"expected weights (n,), not negative and not all 0, got shape {weights.shape}"
+        )
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:

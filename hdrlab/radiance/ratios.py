@@ -6,14 +6,15 @@ k     exposure ratio    t_B / t_A > 1
 x, y  equations         y = k x, with weights v: the square roots of the histogram's shares
 V     mean square error of the equations in use
 
-A linear camera's level is its exposure, so T is a straight line through 0, and its slope is k. Each level of
-A gives an equation k m = T(m), each level of B gives z = k T^-1(z). Ranks alone make T: the frames need not
-be aligned, and no time need be known. Rounds throw out equations that miss by much more than the rest.
+A linear camera's level is its exposure, so T is a straight line through 0, and its slope is k. Each
+level of A gives an equation k m = T(m), each level of B gives z = k T^-1(z). Ranks alone make T:
+the frames need not be aligned, and no time need be known. Rounds throw out equations that miss by
+much more than the rest.
 
-Two schemes differ in where they read the ranks. The paper's takes a level's cumulated count for the level's
-own, though it belongs to the level's upper edge; so for a true ratio of 4 its pairs lie on T = 4 m + 1.5. The
-corrected one takes the middle of each step, stays away from the noise of the darkest levels, and keeps more
-equations: a limit of 3 V drops good ones.
+Two schemes differ in where they read the ranks. The paper's takes a level's cumulated count for the
+level's own, though it belongs to the level's upper edge; so for a true ratio of 4 its pairs lie on
+T = 4 m + 1.5. The corrected one takes the middle of each step, stays away from the noise of the
+darkest levels, and keeps more equations: a limit of 3 V drops good ones.
 """
 
 from collections.abc import Callable, Iterator
@@ -41,7 +42,10 @@ class Scheme(NamedTuple):
     limit: float
 
 
-SCHEMES = {"paper": Scheme(literal_transfer, 1, 1, 3.0), "mid-step": Scheme(brightness_transfer, 16, 64, 9.0)}
+SCHEMES = {
+    "paper": Scheme(literal_transfer, 1, 1, 3.0),
+    "mid-step": Scheme(brightness_transfer, 16, 64, 9.0),
+}
 
 
 class Equations(NamedTuple):
@@ -110,7 +114,9 @@ def estimate_ratio(A: ArrayLike, B: ArrayLike, *, scheme: str = "mid-step") -> f
     return float(estimate_ratios(as_stack([A, B]), scheme=scheme)[0])
 
 
-def estimate_ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | None = None) -> F64:
+def estimate_ratios(
+    images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | None = None
+) -> F64:
     """Return the exposure ratios of a linear camera's photographs from their histograms.
 
     Parameters
@@ -130,11 +136,13 @@ def estimate_ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: Array
     Raises
     ------
     ValueError
-        For frames that do not overlap in brightness, and for arrays that are no stack of photographs.
+        For frames that do not overlap in brightness, and for arrays that are no stack of
+        photographs.
 
     References
     ----------
-    Cerman and Hlavac, Exposure time estimation for high dynamic range imaging with hand held camera, 2006.
+    Cerman and Hlavac, Exposure time estimation for high dynamic range imaging with hand held
+    camera, 2006.
 
     Examples
     --------
@@ -158,7 +166,11 @@ def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
         return 1 / _estimate_pair(h_B, h_A, scheme)
     parts = [collect_equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
     found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
-    overlap = len(np.unique(np.round(found.x)))  # levels of the darker frame that the brighter one has, too
+    overlap = len(
+        np.unique(np.round(found.x))
+    )  # levels of the darker frame that the brighter one has, too
     if overlap < FEWEST:
-        raise ValueError(f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}")
+        raise ValueError(
+            f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}"
+        )
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k

@@ -4,9 +4,9 @@ F   radiance, as photographed    (H, W[, 3]), E(x) + r E(-x), x from the middle 
 E   radiance without it          (H, W[, 3])
 r   share of the light           that two surfaces of glass reflect, one after the other
 
-Other than veiling glare it is no haze: a sharp window stands in the dark corner across from the window. That
-gives it away. Where a mirrored light has an edge, the map must have the same edge, r times as high, and no
-other thing in the scene knows where that is.
+Other than veiling glare it is no haze: a sharp window stands in the dark corner across from the
+window. That gives it away. Where a mirrored light has an edge, the map must have the same edge, r
+times as high, and no other thing in the scene knows where that is.
 """
 
 import numpy as np
@@ -23,12 +23,13 @@ GLASS = 0.2
 def fit_reflection(F: ArrayLike) -> float:
     """Return r, the share of each light that is seen again on the other side of the middle, or 0.
 
-    Where a mirrored light has its steepest edges the map must have the same ones, r times as high: r is their
-    median, and counts only where three in four say half of it or more.
+    Where a mirrored light has its steepest edges the map must have the same ones, r times as high:
+    r is their median, and counts only where three in four say half of it or more.
 
     Parameters
     ----------
-    F : (H, W) or (H, W, 3), radiance map of a whole bracket, not cropped: the lens's axis is its middle
+    F : (H, W) or (H, W, 3), radiance map of a whole bracket, not cropped: the lens's axis is its
+        middle
 
     Raises
     ------
@@ -79,4 +80,6 @@ def remove_reflection(F: ArrayLike, r: float | None = None) -> F32:
     r = fit_reflection(F) if r is None else r
     if not 0 <= r < 1:
         raise ValueError(f"expected a share of 0 to 1, got {r}")
-    return np.maximum(F - np.float32(r) * F[::-1, ::-1], np.float32(1e-3) * F) / np.float32(1 - r**2)
+    return np.maximum(F - np.float32(r) * F[::-1, ::-1], np.float32(1e-3) * F) / np.float32(
+        1 - r**2
+    )

@@ -4,9 +4,9 @@ M   measured brightness   (N, 3), 0 ... 1
 I   radiance              (N, 3), each channel in a unit of its own
 k   channel scales        (3,), k_green = 1
 
-Each channel's response is known up to a factor, and so is the radiance: a picture recovered channel by
-channel has a tint that no photograph had. If the camera, whatever its curve, kept the chromaticity of what it
-saw, then k I must point along M, for all pixels together.
+Each channel's response is known up to a factor, and so is the radiance: a picture recovered channel
+by channel has a tint that no photograph had. If the camera, whatever its curve, kept the
+chromaticity of what it saw, then k I must point along M, for all pixels together.
 """
 
 import numpy as np
@@ -30,7 +30,8 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     I : (..., 3) float
         Radiance as recovered, positive.
     M : (..., 3) float
-        What a photograph shows of it, any unit, positive; leave out pixels that are black or clipped.
+        What a photograph shows of it, any unit, positive; leave out pixels that are black or
+        clipped.
 
     Returns
     -------
@@ -50,9 +51,13 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     """
     I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
     if I.shape != M.shape or I.shape[-1:] != (3,) or I.size == 0:
-        raise ValueError(f"expected radiance and brightness (..., 3), got {describe(I)} and {describe(M)}")
+        raise ValueError(
+            f"expected radiance and brightness (..., 3), got {describe(I)} and {describe(M)}"
+        )
     if not (np.all(np.isfinite(I) & (I > 0)) and np.all(np.isfinite(M) & (M > 0))):
-        raise ValueError(f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}")
+        raise ValueError(
+            f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}"
+        )
     I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741
     first = np.median(np.log(target / I), axis=0)
 
@@ -69,7 +74,8 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     Parameters
     ----------
     E : (H, W) or (H, W, 3), radiance in a unit of its own
-    x, y : the place, in pixels from the left and from the top; a hundredth of the width around it counts
+    x, y : the place, in pixels from the left and from the top; a hundredth of the width around it
+        counts
     reading : its luminance, cd/m^2
 
     Returns
@@ -88,8 +94,12 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     """
     L = luminance(as_radiance(E))
     reach, inside = max(1, L.shape[1] // 200), 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
-    seen = L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
+    seen = (
+        L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
+    )
     if not (seen.any() and 0 < reading < np.inf):
         size = f"{L.shape[1]} x {L.shape[0]}"
-        raise ValueError(f"expected cd/m^2 of a lit place in {size} pixels, got {reading:g} at {x},{y}")
+        raise ValueError(
+            f"expected cd/m^2 of a lit place in {size} pixels, got {reading:g} at {x},{y}"
+        )
     return float(reading / seen.mean())

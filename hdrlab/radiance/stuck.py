@@ -1,7 +1,7 @@
 """Stuck pixels: light that does not grow with the exposure time is no light.
 
-A single pixel whose level hardly differs between the shortest and the longest frame, and that stands out from
-all its eight neighbours, takes their median.
+A single pixel whose level hardly differs between the shortest and the longest frame, and that
+stands out from all its eight neighbours, takes their median.
 """
 
 from itertools import product
@@ -19,8 +19,9 @@ NEIGHBOURS = [(dy, dx) for dy, dx in product((-1, 0, 1), repeat=2) if (dy, dx) !
 def find_stuck(shortest: Array, longest: Array) -> Mask:
     """Return where a single pixel does not follow the exposure: (H, W) bool from two frames (H, W, C).
 
-    Its level differs by less than 1/32 of the range, and it stands out from all its eight neighbours by a
-    quarter of the range: above them in the shortest frame (hot), or below them in the longest (dead).
+    Its level differs by less than 1/32 of the range, and it stands out from all its eight
+    neighbours by a quarter of the range: above them in the shortest frame (hot), or below them in
+    the longest (dead).
 
     Examples
     --------
@@ -34,7 +35,10 @@ def find_stuck(shortest: Array, longest: Array) -> Mask:
         a, b = shortest[top : top + ROWS], longest[top : top + ROWS]
         still = np.maximum(a, b) - np.minimum(a, b) < quarter // 8
         y, x, c = np.unravel_index(np.flatnonzero(still), still.shape)
-        for frame, sign in ((shortest, 1), (longest, -1)):  # dead pixels are hot ones of the negative
+        for frame, sign in (
+            (shortest, 1),
+            (longest, -1),
+        ):  # dead pixels are hot ones of the negative
             found[_exceeding(frame, (y + top, x, c), sign, quarter)] = True
     return found
 
@@ -48,7 +52,9 @@ def _exceeding(frame: Array, at: tuple[Array, ...], sign: int, by: int) -> tuple
     return y, x
 
 
-def _neighbour(y: Array, x: Array, step: tuple[int, int], shape: tuple[int, ...]) -> tuple[Array, Array]:
+def _neighbour(
+    y: Array, x: Array, step: tuple[int, int], shape: tuple[int, ...]
+) -> tuple[Array, Array]:
     """Return the neighbours' coordinates in one direction, reflected at the border."""
     (bottom, right), (dy, dx) = (shape[0] - 1, shape[1] - 1), step
     return bottom - abs(bottom - abs(y + dy)), right - abs(right - abs(x + dx))

@@ -8,12 +8,13 @@ rho    what errs with the light itself, as a share of it: pixels that are unlike
 t      exposure times     (P,) seconds
 E, s   radiance, and its standard deviation, (H, W[, C]) float32
 
-Photons come by chance: of X N electrons the variance is X N. The amplifier adds R^2, and rounding spreads
-evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean in which each
-counts by the inverse of its variance has the least variance of all (Granados et al., CVPR 2010). The variance
-is that of the light which is there and not of the light which was counted: a frame with too few photons, by
-chance, would count too much. So it begins with X, and then is taken from E itself, in two rounds. What errs
-with the light does so in all frames alike, and no mean takes it away: it is added in the end.
+Photons come by chance: of X N electrons the variance is X N. The amplifier adds R^2, and rounding
+spreads evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean
+in which each counts by the inverse of its variance has the least variance of all (Granados et al.,
+CVPR 2010). The variance is that of the light which is there and not of the light which was counted:
+a frame with too few photons, by chance, would count too much. So it begins with X, and then is
+taken from E itself, in two rounds. What errs with the light does so in all frames alike, and no
+mean takes it away: it is added in the end.
 """
 
 from typing import NamedTuple
@@ -52,8 +53,8 @@ def inverse_variance_merge(
 ) -> tuple[F64, F64]:
     """Return E = sum (x / V) / sum (1 / V), x = X / t, V = variance / t^2, and s = 1 / sqrt(sum 1 / V).
 
-    The sums are over the frames that measure a pixel. The variance is first that of the light X, and then, in
-    two rounds, that of the light E t.
+    The sums are over the frames that measure a pixel. The variance is first that of the light X,
+    and then, in two rounds, that of the light E t.
 
     Parameters
     ----------
@@ -73,7 +74,8 @@ def inverse_variance_merge(
     Returns
     -------
     (E, s) : (H, W) and (H, W) float64
-        Radiance, and its standard deviation, which is infinite where no frame measures; E is unknown there.
+        Radiance, and its standard deviation, which is infinite where no frame measures; E is
+        unknown there.
 
     References
     ----------
@@ -96,15 +98,20 @@ def inverse_variance_merge(
 
 
 def merge_with_deviation(
-    images: ArrayLike, times: ArrayLike, g: ArrayLike, N: ArrayLike, R: ArrayLike = 0.0, rho: ArrayLike = 0.0
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    N: ArrayLike,
+    R: ArrayLike = 0.0,
+    rho: ArrayLike = 0.0,
 ) -> Sure:
     """Return the radiance map by inverse variance, and its standard deviation.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Aligned photographs, in any order. Levels that clip measure nothing, each channel by itself, nor does
-        level 0, where its step is wider than the noise.
+        Aligned photographs, in any order. Levels that clip measure nothing, each channel by itself,
+        nor does level 0, where its step is wider than the noise.
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
@@ -119,8 +126,8 @@ def merge_with_deviation(
     Returns
     -------
     Sure
-        E and s (H, W) or (H, W, 3) float32. Where no frame measures, E is what the bounds allow and s is
-        infinite.
+        E and s (H, W) or (H, W, 3) float32. Where no frame measures, E is what the bounds allow and
+        s is infinite.
 
     Raises
     ------
@@ -144,12 +151,16 @@ def merge_with_deviation(
     for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
-            raise ValueError(f"expected {name} of at least {floor:g}, one or one a channel, got {value}")
+            raise ValueError(
+                f"expected {name} of at least {floor:g}, one or one a channel, got {value}"
+            )
     table, steps, R = np.exp(curves), np.gradient(np.exp(curves), axis=0), np.asarray(R, np.float64)
     E, s = np.empty((2, *Z.shape[1:]))
     for y, row in enumerate(Z.swapaxes(0, 1)):  # the processor's cache holds one
         X, D = table[row, c], steps[row, c]
-        measured = (X < np.minimum(table[top], table[-1] - FULL * R / N)) & ((row > 0) | (D < R / N))
+        measured = (X < np.minimum(table[top], table[-1] - FULL * R / N)) & (
+            (row > 0) | (D < R / N)
+        )
         E[y], s[y] = inverse_variance_merge(X, D, measured, t, N, R)
         E[y] = np.where(measured.any(axis=0), E[y], bound(row, np.log(t), curves, top, row >= 0)[0])
     s = np.hypot(s, np.asarray(rho) * E)

@@ -7,9 +7,9 @@ g   ln f^-1              (n,), ln exposure of each level, g[n // 2] = 0
 lE  ln irradiance        (N,), ln of (exposure / second)
 lambda                   `smoothness`, how stiff g is; its rows are multiplied by it, as in the listing
 
-The camera makes Z_ij = f(E_i t_j), hence g(Z_ij) = lE_i + B_j [eq. 2]: every sample is the same curve g, slid
-sideways by an unknown lE_i. Two frames of one sample connect two points of g; a few hundred samples connect
-them all.
+The camera makes Z_ij = f(E_i t_j), hence g(Z_ij) = lE_i + B_j [eq. 2]: every sample is the same
+curve g, slid sideways by an unknown lE_i. Two frames of one sample connect two points of g; a few
+hundred samples connect them all.
 """
 
 from collections.abc import Callable
@@ -36,8 +36,8 @@ def samples_needed(frames: int, n: int = 256) -> int:
 def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
     """Return A and b of the least-squares system A x = b, x = (g, lE) [Debevec97 eq. 3 and appendix].
 
-    N P rows fit the data, w (g(Z_ij) - lE_i) = w B_j; one row says g(n // 2) = 0; n - 2 rows say that
-    lambda w(z) g''(z) = 0.
+    N P rows fit the data, w (g(Z_ij) - lE_i) = w B_j; one row says g(n // 2) = 0; n - 2 rows say
+    that lambda w(z) g''(z) = 0.
     """
     (N, P), n = Z.shape, len(w)
     A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
@@ -77,7 +77,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     smoothness : float
         lambda; 10 to 100 for photographs.
     w : (n,) float
-        Weights. Levels in no equation, those beyond a cut, take the value of the nearest that is in one.
+        Weights. Levels in no equation, those beyond a cut, take the value of the nearest that is in
+        one.
 
     Returns
     -------
@@ -91,7 +92,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
 
     References
     ----------
-    Debevec and Malik, Recovering high dynamic range radiance maps from photographs, SIGGRAPH 1997, eq. 3.
+    Debevec and Malik, Recovering high dynamic range radiance maps from photographs, SIGGRAPH 1997,
+    eq. 3.
 
     Examples
     --------
@@ -110,7 +112,9 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
     if rank < np.count_nonzero(A.any(axis=0)):
-        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
+        raise ValueError(
+            "expected samples seen well in two exposures, which connect the levels; got none"
+        )
     reached = np.flatnonzero(A[:, :n].any(axis=0))
     return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
 
@@ -138,9 +142,10 @@ def recover(
     samples : int
         How many pixels to choose, N.
     w : (256,) float, optional
-        Weights; the geometric mean of hat and Gaussian, which on the worst of 201 measured curves errs less
-        than either (on half of them the hat errs least). It is cut above 0.98 of the top level, where noise
-        hides clipped pixels, and below 0.02, where noise is as large as the level.
+        Weights; the geometric mean of hat and Gaussian, which on the worst of 201 measured curves
+        errs less than either (on half of them the hat errs least). It is cut above 0.98 of the top
+        level, where noise hides clipped pixels, and below 0.02, where noise is as large as the
+        level.
     choose : function
         `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
     valid : (P, H, W) bool, optional
@@ -149,12 +154,14 @@ def recover(
     Returns
     -------
     (256,) or (256, 3) float64
-        g, the ln exposure of each level; g[128] = 0 in every channel, so mid gray is taken for neutral.
+        g, the ln exposure of each level; g[128] = 0 in every channel, so mid gray is taken for
+        neutral.
 
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, and photographs that hold no level seen in two exposures.
+        For fewer than two photographs or two times, and photographs that hold no level seen in two
+        exposures.
 
     References
     ----------

@@ -4,7 +4,8 @@ M  brightness   0 to 1
 X  exposure     f^-1(M), X(0) = 0, X(1) = 1, rising
 g  ln f^-1      (n,) over the pixel levels, g[n // 2] = 0
 
-Five kinds, each on a grid of its parameters, and each as it is and behind an S-curve that a maker of pictures
+Five kinds, each on a grid of its parameters, and each as it is and behind an S-curve that a maker
+of pictures
 may add:
 
 power       X = M^gamma                                     displays, and film as Mann and Picard fit it
@@ -65,8 +66,12 @@ def shoulder(M: F64, strength: float) -> F64:
 def generate_curves(M: F64) -> Iterator[F64]:
     """Yield X of every curve of the five kinds."""
     yield from (power(M, gamma) for gamma in np.arange(0.4, 3.01, 0.1))
-    yield from (toe(M, gamma, start) for gamma in (1.6, 2.0, 2.4, 2.8) for start in (0.02, 0.04, 0.08))
-    yield from (film(M, a, gamma) for a in (0.03, 0.1, 0.3, 1.0) for gamma in (0.7, 0.9, 1.1, 1.3, 1.5))
+    yield from (
+        toe(M, gamma, start) for gamma in (1.6, 2.0, 2.4, 2.8) for start in (0.02, 0.04, 0.08)
+    )
+    yield from (
+        film(M, a, gamma) for a in (0.03, 0.1, 0.3, 1.0) for gamma in (0.7, 0.9, 1.1, 1.3, 1.5)
+    )
     yield from (logarithm(M, k) for k in (0.5, 1, 2, 3, 4, 5, 6))
     yield from (cubic(M, k) for k in (-0.3, -0.15, 0, 0.3, 1, 3, 8))
 
@@ -79,7 +84,9 @@ def level_brightness(n: int) -> F64:
 def tabulate(n: int = 256) -> F64:
     """Return X (C, n) of all curves."""
     M = level_brightness(n)
-    return np.stack([X for strength in (-0.4, 0.0, 0.4) for X in generate_curves(shoulder(M, strength))])
+    return np.stack(
+        [X for strength in (-0.4, 0.0, 0.4) for X in generate_curves(shoulder(M, strength))]
+    )
 
 
 def to_log(X: ArrayLike) -> F64:
@@ -98,9 +105,14 @@ def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -
     ValueError
         For curves that do not rise from 0 to 1.
     """
-    X, M = np.atleast_2d(np.asarray(exposure, np.float64)), np.atleast_2d(np.asarray(brightness, np.float64))
+    X, M = (
+        np.atleast_2d(np.asarray(exposure, np.float64)),
+        np.atleast_2d(np.asarray(brightness, np.float64)),
+    )
     if X.shape != M.shape or not np.all(np.isfinite([X, M])):
-        raise ValueError(f"expected exposure and brightness (C, m), finite, got {describe(X)}, {describe(M)}")
+        raise ValueError(
+            f"expected exposure and brightness (C, m), finite, got {describe(X)}, {describe(M)}"
+        )
     if np.any(np.diff([X, M]) < 0) or not np.all(M[:, 0] < M[:, -1]):
         raise ValueError("expected curves that rise, got one that falls or is flat")
     levels = level_brightness(n)

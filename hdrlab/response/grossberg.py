@@ -8,10 +8,10 @@ f   response                      light -> level
 g   ln f^-1                       (n,), ln exposure of each level
 
 All that two frames indicate about the response is T, for f^-1(m) = R f^-1(T(m)): the ridge of their
-comparagram. And T is found without comparing pixels, since it takes ranks to ranks; so the frames need not be
-aligned, and noise averages out. Two models take these equations: a table g, as Debevec and Malik's, and a
-polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a polynomial of high order fails; from histograms,
-without the levels above the cut, it does not.
+comparagram. And T is found without comparing pixels, since it takes ranks to ranks; so the frames
+need not be aligned, and noise averages out. Two models take these equations: a table g, as Debevec
+and Malik's, and a polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a polynomial of high
+order fails; from histograms, without the levels above the cut, it does not.
 """
 
 from itertools import pairwise
@@ -42,13 +42,16 @@ def comparagram(A: ArrayLike, B: ArrayLike) -> Array:
 def build_equations(h: Array, times: F64, w: F64) -> Equations:
     """Return f^-1(m) = R f^-1(T(m)) of each two neighbours in exposure, from histograms h (P, n).
 
-    An equation weighs as much as the lighter of its two levels, and as many pixels as lie at level m.
+    An equation weighs as much as the lighter of its two levels, and as many pixels as lie at level
+    m.
     """
     rows = []
     for a, b in pairwise(np.argsort(times, kind="stable")):
         T = transfer.brightness_transfer(h[a], h[b])
         m = np.flatnonzero(np.isfinite(T) & (h[a] > 0) & (times[a] < times[b]))
-        weight = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w)) * np.sqrt(h[a][m] / h[a].sum())
+        weight = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w)) * np.sqrt(
+            h[a][m] / h[a].sum()
+        )
         rows.append((m, T[m], np.full(len(m), times[a] / times[b]), weight))
     return Equations(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
@@ -69,16 +72,20 @@ def interpolate_levels(T: F64, n: int = 256) -> F64:
 def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
     """Return g (n,), the least of sum weight^2 (g(T) - g(m) + ln R)^2 + sum (lambda w(z) (g - ln z)''(z))^2.
 
-    g(n // 2) = 0. The curvature is that away from a linear camera, for a logarithm has one of its own. Levels
-    that no row constrains take the value of the nearest one that is.
+    g(n // 2) = 0. The curvature is that away from a linear camera, for a logarithm has one of its
+    own. Levels that no row constrains take the value of the nearest one that is.
     """
     if not np.any(found.weight > 0) or not 0 < smoothness < np.inf:
-        raise ValueError(f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}")
+        raise ValueError(
+            f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}"
+        )
     z = np.arange(len(w))
     data = found.weight[:, None] * (interpolate_levels(found.T, len(w)) - np.eye(len(w))[found.m])
     penalty = weights.second_differences(w, smoothness)
     A = np.vstack([data, penalty, z == len(w) // 2])
-    b = np.concatenate([-found.weight * np.log(found.R), penalty @ np.log(np.maximum(z, 0.25)), [0]])
+    b = np.concatenate(
+        [-found.weight * np.log(found.R), penalty @ np.log(np.maximum(z, 0.25)), [0]]
+    )
     g, constrained = np.linalg.lstsq(A, b)[0], A.any(axis=0)
     g = np.interp(z, z[constrained], g[constrained])
     return g - g[len(w) // 2]
@@ -90,7 +97,9 @@ def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
     f^-1(M) = M + sum_k c_k b_k(M) in the basis of `mitsunaga`: f^-1(0) = 0 and f^-1(1) = 1.
     """
     if not np.any(found.weight > 0) or not 1 <= order <= 20:
-        raise ValueError(f"expected an order to 20 and levels measured well in two exposures, got {order}")
+        raise ValueError(
+            f"expected an order to 20 and levels measured well in two exposures, got {order}"
+        )
     M, MT = found.m / (n - 1), found.T / (n - 1)
     D = found.weight[:, None] * (terms(M, order) - found.R[:, None] * terms(MT, order))
     return np.asarray(np.linalg.lstsq(D[:, 1:], -D[:, 0])[0])
@@ -101,8 +110,8 @@ def recover(
 ) -> F64:
     """Return the response g as a table, recovered from the frames' histograms, each channel by itself.
 
-    The weights are the Gaussian without the levels above 0.98 of the top one, where noise hides clipped
-    pixels, and those below 0.02; for others call `build_equations` and `solve_table`.
+    The weights are the Gaussian without the levels above 0.98 of the top one, where noise hides
+    clipped pixels, and those below 0.02; for others call `build_equations` and `solve_table`.
 
     Parameters
     ----------
@@ -123,12 +132,14 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, and arrays that are no bracket.
+        For photographs whose histograms do not overlap between two exposures, and arrays that are
+        no bracket.
 
     References
     ----------
-    Grossberg and Nayar, Determining the camera response from images: what is knowable?, PAMI 25(11), 2003.
-    Cerman and Hlavac, Exposure time estimation for high dynamic range imaging with hand held camera, 2006.
+    Grossberg and Nayar, Determining the camera response from images: what is knowable?, PAMI
+    25(11), 2003. Cerman and Hlavac, Exposure time estimation for high dynamic range imaging with
+    hand held camera, 2006.
 
     Examples
     --------
@@ -151,7 +162,8 @@ def recover_polynomial(
 ) -> F64:
     """Return the response g as the logarithm of a polynomial of an order 1 to 20; see `recover`.
 
-    The weights are the hat, for a polynomial needs the ends, without the levels above 0.98 of the top one.
+    The weights are the hat, for a polynomial needs the ends, without the levels above 0.98 of the
+    top one.
 
     Raises
     ------

@@ -11,8 +11,8 @@ Each pixel has an exposure that we do not know, and sum over:
 
     P(Z_i) = sum_k p_k prod_q P(Z_iq | m_qk),     P(z | m) = mass of Normal(m, sigma) in the cell of level z.
 
-The end cells are open, so clamping and rounding are part of the model, and dark and clipped pixels say what
-they know instead of being cut.
+The end cells are open, so clamping and rounding are part of the model, and dark and clipped pixels
+say what they know instead of being cut.
 """
 
 from typing import NamedTuple
@@ -24,8 +24,11 @@ from scipy.special import ndtr
 from hdrlab.core.arrays import F64, ArrayLike, Indices
 from hdrlab.response import mitsunaga, polynomial
 
-EDGES = np.concatenate([[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]])  # of the levels' cells, in M
-STRAY = 1e-12  # probability of a level that the noise does not explain: a pixel that moved pulls at nothing
+EDGES = np.concatenate(
+    [[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]]
+)  # of the levels' cells, in M
+# probability of a level that the noise does not explain: a pixel that moved pulls at nothing
+STRAY = 1e-12
 
 
 class Nodes(NamedTuple):
@@ -38,8 +41,8 @@ class Nodes(NamedTuple):
 class Support(NamedTuple):
     """The nodes worth a thought. Pixel i has k[start[i] : start[i + 1]].
 
-    What has to be known of them is P(z | m_qk) at `cells`, each (q, k, z) once; pair j of a pixel and a node
-    has at[q, j] of these in frame q.
+    What has to be known of them is P(z | m_qk) at `cells`, each (q, k, z) once; pair j of a pixel
+    and a node has at[q, j] of these in frame q.
     """
 
     start: Indices
@@ -51,10 +54,13 @@ class Support(NamedTuple):
 def nodes(c: F64, tau: F64, count: int) -> Nodes:
     """Return `count` nodes evenly over the brightness of the longest frame; where it clips, of the next, ...
 
-    So p and the response hardly disturb each other: a frame's own levels say much of p, and nothing of f^-1.
+    So p and the response hardly disturb each other: a frame's own levels say much of p, and nothing
+    of f^-1.
     """
     x = (np.arange(count) + 0.5) / count
-    clipped_next = np.append(np.exp(tau[:-1] - tau[1:]), 0)  # exposure from which only this frame is left
+    clipped_next = np.append(
+        np.exp(tau[:-1] - tau[1:]), 0
+    )  # exposure from which only this frame is left
     own = [x[mitsunaga.value(x, c) > least] for least in clipped_next]
     return Nodes(np.concatenate(own), np.repeat(np.arange(len(own)), [len(one) for one in own]))
 
@@ -72,7 +78,9 @@ def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
     dc = (rho[..., None] * mitsunaga.terms(at.x, order) - mitsunaga.terms(m, order))[..., 1:]
     own = np.arange(P)[:, None] == np.arange(P - 1)
     dtau = X[..., None] * (own[:, None, :].astype(float) - own[at.at])
-    return m, np.where(X < 1, 1 / polynomial.slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
+    return m, np.where(X < 1, 1 / polynomial.slope(m, c), 0)[..., None] * np.concatenate(
+        [dc, dtau], axis=-1
+    )
 
 
 def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[F64, F64, F64]:
@@ -98,18 +106,26 @@ def table(m: F64, sigma: float) -> F64:
 
 def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Support:
     """Return for each pixel the nodes with at least that fraction of its best node's likelihood."""
-    tables = P.swapaxes(1, 2).astype(np.float32)  # (P, 256, K): a pixel's likelihood is a product of rows
+    tables = P.swapaxes(1, 2).astype(
+        np.float32
+    )  # (P, 256, K): a pixel's likelihood is a product of rows
     kept = []
     for z in np.split(Z, range(block, len(Z), block)):
-        likelihood = np.prod([table[levels] for table, levels in zip(tables, z.T, strict=True)], axis=0)
+        likelihood = np.prod(
+            [table[levels] for table, levels in zip(tables, z.T, strict=True)], axis=0
+        )
         kept.append(likelihood > least * likelihood.max(axis=1, keepdims=True))
     counts = np.concatenate([one.sum(axis=1) for one in kept])
     k = np.concatenate([one.nonzero()[1] for one in kept])
-    cell = np.ravel_multi_index((np.arange(len(P))[:, None], k, np.repeat(Z, counts, axis=0).T), P.shape)
+    cell = np.ravel_multi_index(
+        (np.arange(len(P))[:, None], k, np.repeat(Z, counts, axis=0).T), P.shape
+    )
     asked = np.zeros(P.size, bool)
     asked[cell] = True
     at = (np.cumsum(asked) - 1)[cell]
-    return Support(np.append(0, np.cumsum(counts)), k, np.unravel_index(np.flatnonzero(asked), P.shape), at)
+    return Support(
+        np.append(0, np.cumsum(counts)), k, np.unravel_index(np.flatnonzero(asked), P.shape), at
+    )
 
 
 def posterior(P: F64, p: F64, near: Support) -> tuple[F64, F64]:
@@ -145,6 +161,8 @@ def density(weights: F64, near: Support, count: int) -> F64:
 def stiffness(A: int, frames: int, trust: float) -> F64:
     """Return the (A, A) matrix of a prior on theta = (c, tau[:-1], ln sigma): each ln R to within `trust`."""
     D = np.zeros((frames - 1, A))
-    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(frames - 1, frames, 1)  # tau_q - tau_q+1
+    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(
+        frames - 1, frames, 1
+    )  # tau_q - tau_q+1
     D[:, -1] = 0  # where ln sigma stands, for tau of the longest frame is 0
     return D.T @ D / trust**2

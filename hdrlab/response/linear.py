@@ -1,7 +1,7 @@
 """The response of a linear camera: none to recover.
 
-A sensor counts in proportion to light, and a RAW file keeps its counts. Then f^-1(z) = z, and g = ln z up to
-the constant that makes the middle level 1.
+A sensor counts in proportion to light, and a RAW file keeps its counts. Then f^-1(z) = z, and g =
+ln z up to the constant that makes the middle level 1.
 
 g   ln f^-1   (n,), n = 256 or 65536: at 16 bits each level has its own, lest dark ones be read between two
 """

@@ -7,10 +7,11 @@ R       exposure ratio            dark over bright, < 1
 T       bright to dark frame      (n,), the level in the dark frame of what has level M in the bright one
 series  M(I), M(R I), M(R^2 I) .. (K,) levels, each R times the exposure of the one before
 
-A pixel has level M(I) in the bright frame and M(R I) in the dark one. Look for another pixel of the bright
-frame that has M(R I); in the dark one it has M(R^2 I), and so on down: a ladder of exposures, R apart,
-whatever the scene. On logarithmic paper, ln(M - alpha) against the logarithm of exposure, a power law is a
-straight line of slope gamma. Few cameras are so simple, and on others the line is a compromise.
+A pixel has level M(I) in the bright frame and M(R I) in the dark one. Look for another pixel of the
+bright frame that has M(R I); in the dark one it has M(R^2 I), and so on down: a ladder of
+exposures, R apart, whatever the scene. On logarithmic paper, ln(M - alpha) against the logarithm of
+exposure, a power law is a straight line of slope gamma. Few cameras are so simple, and on others
+the line is a compromise.
 """
 
 from itertools import pairwise
@@ -20,7 +21,8 @@ import numpy as np
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
 
-# Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is clipped.
+# Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is
+# clipped.
 MIN_LEVEL, MAX_LEVEL = 12.0, 249.0
 # Levels: a smaller step is the rounding of two frames of one exposure.
 MIN_STEP = 0.5
@@ -64,7 +66,9 @@ def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> flo
         xy += float((x - x.mean()) @ y)
         xx += float((x - x.mean()) @ x)
     if xx == 0:
-        raise ValueError("expected levels measured well in two exposures; no series has a second member")
+        raise ValueError(
+            "expected levels measured well in two exposures; no series has a second member"
+        )
     return xy / xx
 
 
@@ -105,12 +109,13 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, and arrays that are no bracket.
+        For photographs whose histograms do not overlap between two exposures, and arrays that are
+        no bracket.
 
     References
     ----------
-    Mann and Picard, On being undigital with digital cameras: extending dynamic range by combining differently
-    exposed pictures, IS&T 48th annual conference, 1995.
+    Mann and Picard, On being undigital with digital cameras: extending dynamic range by combining
+    differently exposed pictures, IS&T 48th annual conference, 1995.
 
     Examples
     --------
@@ -123,7 +128,9 @@ def recover(
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
     if not 0 <= alpha <= 64 or starts < 1:
-        raise ValueError(f"expected alpha from 0 to 64 and at least one start, got {alpha} and {starts}")
+        raise ValueError(
+            f"expected alpha from 0 to 64 and at least one start, got {alpha} and {starts}"
+        )
     curves = []
     for h in histograms(to_256(stack), valid):
         ladders = build_ladders(h, times, starts=starts, low=MIN_LEVEL + alpha)

@@ -8,11 +8,11 @@ theta  unknowns       (A,) = (c, tau[:-1], ln sigma), tau the ln exposures over 
 p      density        (K,), how often a pixel has which exposure: see `likelihood`
 s      scores         (N, A), derivatives of ln P(Z_i) by theta
 
-The scheme of `mitsunaga` takes each M for exact on both sides of eq. 5. But f^-1(M) errs by the noise of M
-times its slope, and pixels chosen by their own value are chosen by their own noise; both tilt the valley of
-the u-ambiguity, and no stop can mend that. Here the exposure of a pixel is integrated over, the noise is
-part of the model, and nothing is cut or averaged. Steps of EM for p and of Fisher scoring for theta
-alternate, from where `self_calibration` stopped.
+The scheme of `mitsunaga` takes each M for exact on both sides of eq. 5. But f^-1(M) errs by the
+noise of M times its slope, and pixels chosen by their own value are chosen by their own noise; both
+tilt the valley of the u-ambiguity, and no stop can mend that. Here the exposure of a pixel is
+integrated over, the noise is part of the model, and nothing is cut or averaged. Steps of EM for p
+and of Fisher scoring for theta alternate, from where `self_calibration` stopped.
 """
 
 from collections.abc import Iterator
@@ -76,14 +76,17 @@ def evaluate(theta: F64, p: F64, task: Task) -> Point:
     P, dm, ds = likelihood.masses(m[q, k], sigma, z)
     ln, weights = likelihood.posterior(P, p, task.near)
     penalty = ((theta - task.prior) @ task.stiffness @ (theta - task.prior)) / 2
-    return Point(theta, float(ln.sum() - penalty), weights, likelihood.scores(weights, task.near, J, dm, ds))
+    return Point(
+        theta, float(ln.sum() - penalty), weights, likelihood.scores(weights, task.near, J, dm, ds)
+    )
 
 
 def ascend(here: Point, task: Task) -> tuple[Point, float]:
     """Return the Point after a step of Fisher scoring, and the gain in log-likelihood that it promised.
 
-    The step is F^-1 s, with s the sum of the scores and F = sum s_i s_i^T, the information in the pixels,
-    both with the prior's share. It is halved until f^-1 rises everywhere and the likelihood does.
+    The step is F^-1 s, with s the sum of the scores and F = sum s_i s_i^T, the information in the
+    pixels, both with the prior's share. It is halved until f^-1 rises everywhere and the likelihood
+    does.
     """
     s = here.scores.sum(axis=0) - task.stiffness @ (here.theta - task.prior)
     F = here.scores.T @ here.scores + task.stiffness
@@ -124,15 +127,19 @@ def fit_steps(
 ) -> Iterator[State]:
     """Yield the State after each step from c and R on, until a step promises less than `tolerance`.
 
-    Twice: first with a wide support, for theta is far; then with nodes and support where it has come to.
-    Each ln R is drawn to the `stated` one (R itself by default) as to a measurement with error `trust`.
+    Twice: first with a wide support, for theta is far; then with nodes and support where it has
+    come to. Each ln R is drawn to the `stated` one (R itself by default) as to a measurement with
+    error `trust`.
     """
     Z, c, R = np.asarray(Z), np.asarray(c, dtype=np.float64), np.asarray(R, dtype=np.float64)
     stated = R if stated is None else np.asarray(stated, dtype=np.float64)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
-        raise ValueError(f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}")
+        raise ValueError(
+            f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}"
+        )
     theta, prior = (
-        np.r_[polynomial.limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)] for r in (R, stated)
+        np.r_[polynomial.limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)]
+        for r in (R, stated)
     )
     stiff = likelihood.stiffness(len(theta), Z.shape[1], trust)
     for blur in (3.0, 2.0):
@@ -165,9 +172,9 @@ def calibrate(
 ) -> list[State]:
     """Return the last State of each channel of a bracket, starting where `self_calibration` stops.
 
-    For cameras that are polynomials of this order. For others, the misfit may cost more than the noise that
-    it takes care of, and `mitsunaga` comes nearer. Parameters as of `recover`, and those of `fit_steps`;
-    `mitsunaga.curve(state.c)` is the response g. It takes seconds a channel.
+    For cameras that are polynomials of this order. For others, the misfit may cost more than the
+    noise that it takes care of, and `mitsunaga` comes nearer. Parameters as of `recover`, and those
+    of `fit_steps`; `mitsunaga.curve(state.c)` is the response g. It takes seconds a channel.
 
     >>> ramp = np.linspace(1, 100, 2500).reshape(50, 50)  # a linear camera
     >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
@@ -202,10 +209,11 @@ def recover(
         Of the polynomial; by default the one that `self_calibration` chooses.
     trust : float
         How far the ratios may be from those of the times, as a standard deviation of ln R. Where no
-        polynomial is the camera, its misfit tilts the valley as noise did: then the times know better.
+        polynomial is the camera, its misfit tilts the valley as noise did: then the times know
+        better.
     pixels : int
-        How many to take, on an even grid. A second or two a channel; more of them take longer, and change
-        little where the camera is no polynomial.
+        How many to take, on an even grid. A second or two a channel; more of them take longer, and
+        change little where the camera is no polynomial.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
 
@@ -217,11 +225,13 @@ def recover(
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, and photographs that share no levels worth using.
+        For fewer than two photographs or two times, and photographs that share no levels worth
+        using.
 
     References
     ----------
-    The model is that of Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999; the estimator is ours.
+    The model is that of Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999; the estimator
+    is ours.
 
     Examples
     --------
@@ -232,6 +242,15 @@ def recover(
     True
     """
     states = calibrate(
-        images, times, order=order, trust=trust, pixels=pixels, valid=valid, tolerance=0.5, max_iterations=10
+        images,
+        times,
+        order=order,
+        trust=trust,
+        pixels=pixels,
+        valid=valid,
+        tolerance=0.5,
+        max_iterations=10,
     )
-    return np.stack([curve(state.c) for state in states], axis=-1).reshape(256, *np.shape(images)[3:])
+    return np.stack([curve(state.c) for state in states], axis=-1).reshape(
+        256, *np.shape(images)[3:]
+    )

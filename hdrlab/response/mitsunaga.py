@@ -7,16 +7,17 @@ c       coefficients   (C, N - 1), one row a channel
 R       ratios         (P - 1,), exposure of frame q over that of frame q + 1: one shutter for all channels
 H       (N, N)         eq. 7 multiplied out: the sum of squares is (1, c) H (1, c)^T
 
-A sample in two neighbouring frames says f^-1(M_q) = R f^-1(M_q+1) [eq. 5]. With R known that is linear in c;
-with c known, R is a quotient; so each is made from the other, from rough ratios on. But (f^-u, R^u) answers
-eq. 5 as well as (f^-1, R) does: along u the error is a valley, nearly level, which noise tilts one way or the
-other. The first iterations lead into the valley, all later ones along it: mostly towards the truth, now and
-then far away. So `eps` is more than a stop, it keeps the answer near the ratios given.
+A sample in two neighbouring frames says f^-1(M_q) = R f^-1(M_q+1) [eq. 5]. With R known that is
+linear in c; with c known, R is a quotient; so each is made from the other, from rough ratios on.
+But (f^-u, R^u) answers eq. 5 as well as (f^-1, R) does: along u the error is a valley, nearly
+level, which noise tilts one way or the other. The first iterations lead into the valley, all later
+ones along it: mostly towards the truth, now and then far away. So `eps` is more than a stop, it
+keeps the answer near the ratios given.
 
-f^-1(M) = M + sum_n c_n b_n(M): every polynomial through both ends can be written so, and no other can, so
-eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3 are so alike that
-at N = 10 their normal equations lose all digits. And a ratio is a quotient of sums, not a mean of quotients
-[eq. 10, which lacks its 1/P], to which dark pixels add mostly noise.
+f^-1(M) = M + sum_n c_n b_n(M): every polynomial through both ends can be written so, and no other
+can, so eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3
+are so alike that at N = 10 their normal equations lose all digits. And a ratio is a quotient of
+sums, not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels add mostly noise.
 """
 
 from collections.abc import Iterator, Sequence
@@ -97,10 +98,16 @@ def ratios(channels: Sequence[tuple[F64, F64, Indices]], c: F64, R: F64) -> F64:
     return np.divide(total[0], total[1], out=R.copy(), where=(total[0] > 0) & (total[0] < total[1]))
 
 
-def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[Fit]:
+def fit_steps(
+    M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30
+) -> Iterator[Fit]:
     """Yield c and R after each iteration, until f^-1 changes by less than eps [eq. 11]."""
     channels = [neighbours(own, order) for own in M]
-    levels, R, before = terms(np.linspace(0, 1, 256), order)[:, 1:], np.asarray(R), np.full(256, np.inf)
+    levels, R, before = (
+        terms(np.linspace(0, 1, 256), order)[:, 1:],
+        np.asarray(R),
+        np.full(256, np.inf),
+    )
     for _ in range(max_iterations):
         c = np.stack([coefficients(gram(*one, R)) for one in channels])
         R = ratios(channels, c, R)
@@ -114,9 +121,9 @@ def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: 
 def curve(c: ArrayLike, n: int = 256, *, least: float = 1e-4) -> F64:
     """Return g = ln f^-1 (n,), g[n // 2] = 0, where f^-1 climbs by `least` / (n - 1) or more a level.
 
-    A polynomial may dip where no pixel held it; a g that falls has no inverse. The clamp acts on the
-    increments, so the curve keeps its shape wherever it rises. Level 0 holds what is darker than half a
-    level; it gets the middle of that.
+    A polynomial may dip where no pixel held it; a g that falls has no inverse. The clamp acts on
+    the increments, so the curve keeps its shape wherever it rises. Level 0 holds what is darker
+    than half a level; it gets the middle of that.
     """
     increments = np.maximum(np.diff(value(np.linspace(0, 1, n), c)), least / (n - 1))
     f_inv = np.cumsum(np.append(increments[0] / 4, [0.75 * increments[0], *increments[1:]]))
@@ -131,11 +138,13 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Photographs, aligned.
     times : (P,) float
-        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in part.
+        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in
+        part.
     order : int
         Of the polynomial.
     eps : float
-        Stop when f^-1, 0 to 1, changes by less. A smaller one lets the ratios drift further from the times.
+        Stop when f^-1, 0 to 1, changes by less. A smaller one lets the ratios drift further from
+        the times.
 
     Returns
     -------
@@ -160,14 +169,26 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     True
     """
     images, t = np.asarray(images), np.asarray(times, np.float64)
-    if images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,)) or not images.size:
+    if (
+        images.dtype.kind != "u"
+        or images.ndim < 3
+        or images.shape[3:] not in ((), (3,))
+        or not images.size
+    ):
         raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
         raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
     images, t = images[np.argsort(t)], np.sort(t)
-    every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))  # an even grid of some thousand pixels
-    M = images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T / np.iinfo(images.dtype).max
+    every = max(
+        1, int(np.sqrt(images.size / len(t) / 12_000))
+    )  # an even grid of some thousand pixels
+    M = (
+        images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
+        / np.iinfo(images.dtype).max
+    )
     if not all(in_range(own).any() for own in M):
-        raise ValueError("expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames")
+        raise ValueError(
+            "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames"
+        )
     *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
     return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])

@@ -8,13 +8,13 @@ E       irradiance         (N,), exposure per unit of t; NaN for a sample withou
 E_m                        all (i, j) with Z_ij = m
 lambda                     `smoothness`, which the paper does not have
 
-Were f^-1 known, the most likely E would be a mean; were E known, f^-1 would be one. So each is made from the
-other, from a linear camera's on.
+Were f^-1 known, the most likely E would be a mean; were E known, f^-1 would be one. So each is made
+from the other, from a linear camera's on.
 
-What the photographs leave open, the initial guess decides: where all times are powers of one ratio r, f^-1
-times any function of ln E with the period ln r explains them as well. So the paper's scheme stays up to 4 %
-off where frames are 2 stops apart, 0.5 % at 1 stop; and noise makes it drift, slowly, long after it has
-settled.
+What the photographs leave open, the initial guess decides: where all times are powers of one ratio
+r, f^-1 times any function of ln E with the period ln r explains them as well. So the paper's scheme
+stays up to 4 % off where frames are 2 stops apart, 0.5 % at 1 stop; and noise makes it drift,
+slowly, long after it has settled.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,7 +44,9 @@ def update(Z: Indices, t: F64, E: F64, n: int = 256) -> F64:
     known = ~np.isnan(E)
     X = E[known, None] * t
     with np.errstate(invalid="ignore"):
-        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(Z[known].ravel(), minlength=n)
+        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(
+            Z[known].ravel(), minlength=n
+        )
 
 
 def linear(n: int = 256) -> F64:
@@ -55,8 +57,8 @@ def linear(n: int = 256) -> F64:
 def fill(means: F64, w: F64) -> F64:
     """Return the means, with levels that no sample constrains on straight lines between their neighbours.
 
-    Such are levels without a mean, 0, which is all that is dark, and those beyond the cut, where noise
-    carries what is clipped. Those at the end are like the last one that has a mean.
+    Such are levels without a mean, 0, which is all that is dark, and those beyond the cut, where
+    noise carries what is clipped. Those at the end are like the last one that has a mean.
     """
     level = np.arange(len(w))
     known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
@@ -133,8 +135,9 @@ def recover(
     samples : int
         How many pixels to choose.
     w : (256,) float, optional
-        Weights; the Gaussian, cut below 0.02 and above 0.98 of the top level: a clipped pixel that noise
-        brought back among the others weighs little, but times the square of its time, and bends the curve.
+        Weights; the Gaussian, cut below 0.02 and above 0.98 of the top level: a clipped pixel that
+        noise brought back among the others weighs little, but times the square of its time, and
+        bends the curve.
     choose : function
         `sampling.by_rank` (default), `by_grid`, `every_pixel`, or your own with the same signature.
     valid : (P, H, W) bool, optional
@@ -145,17 +148,19 @@ def recover(
     Returns
     -------
     (256,) or (256, 3) float64
-        g, the ln exposure of each level, never falling; g[128] = 0. Levels above the cut take its value.
+        g, the ln exposure of each level, never falling; g[128] = 0. Levels above the cut take its
+        value.
 
     Raises
     ------
     ValueError
-        For photographs that hold no level seen in two exposures, and for arrays that are no bracket.
+        For photographs that hold no level seen in two exposures, and for arrays that are no
+        bracket.
 
     References
     ----------
-    Robertson, Borman and Stevenson, Estimation-theoretic approach to dynamic range enhancement using multiple
-    exposures, Journal of Electronic Imaging 12(2), 2003.
+    Robertson, Borman and Stevenson, Estimation-theoretic approach to dynamic range enhancement
+    using multiple exposures, Journal of Electronic Imaging 12(2), 2003.
 
     Examples
     --------

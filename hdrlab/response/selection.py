@@ -7,11 +7,12 @@ psi      rejection ratio   share of flat patches that the test loses, 0.05
 r        radius        pixels from the middle of the picture
 
 A patch that shows one even surface has only noise in it. The average of t frames has the variance
-sigma_t^2 / t: it is with this, and not with sigma_t^2, that the spread over a patch of the average must be
-compared. Against the noise of one frame, as eq. 12 is printed, the test would be t times too lax.
+sigma_t^2 / t: it is with this, and not with sigma_t^2, that the spread over a patch of the average
+must be compared. Against the noise of one frame, as eq. 12 is printed, the test would be t times
+too lax.
 
-Frames of different apertures differ, away from the middle, by their vignetting too. Inside some circle they
-do not.
+Frames of different apertures differ, away from the middle, by their vignetting too. Inside some
+circle they do not.
 """
 
 from typing import NamedTuple
@@ -57,7 +58,9 @@ def threshold(s: int = 25, *, psi: float = 0.05, estimated: float = np.inf) -> f
     """
     if s < 2 or not 0 < psi < 1 or estimated <= 0:
         raise ValueError(f"expected s of at least 2 and psi in (0, 1), got {s} and {psi}")
-    return float(chi2.isf(psi, s - 1) if np.isinf(estimated) else (s - 1) * f.isf(psi, s - 1, estimated))
+    return float(
+        chi2.isf(psi, s - 1) if np.isinf(estimated) else (s - 1) * f.isf(psi, s - 1, estimated)
+    )
 
 
 def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01) -> Mask:
@@ -77,13 +80,14 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     Returns
     -------
     (H, W) bool
-        True where s sigma_s^2 / (sigma_t^2 / t) <= the threshold; False within size // 2 of the border.
+        True where s sigma_s^2 / (sigma_t^2 / t) <= the threshold; False within size // 2 of the
+        border.
 
     Raises
     ------
     ValueError
-        For frames that are not (t, H, W), a size below 2, a psi not between 0 and 1, or a sigma that is
-        not above 0.
+        For frames that are not (t, H, W), a size below 2, a psi not between 0 and 1, or a sigma
+        that is not above 0.
 
     Examples
     --------
@@ -92,7 +96,9 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     True
     """
     if size < 2 or not sigma > 0:
-        raise ValueError(f"expected a patch of 2 x 2 pixels or more, noise above 0, got {size} and {sigma}")
+        raise ValueError(
+            f"expected a patch of 2 x 2 pixels or more, noise above 0, got {size} and {sigma}"
+        )
     mean, variance, t = temporal_average(A, sigma=sigma)
     s = size**2
     estimated = s * (t - 1) if t > 1 else np.inf
@@ -112,8 +118,9 @@ def radius(shape: tuple[int, int]) -> F64:
 def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 40) -> float:
     """Return the radius, in pixels, of the circle in which two aligned frames have no vignetting [sec. 6.2].
 
-    What level of B goes with a level of A is learned in the inmost quarter; ring after ring must then agree
-    with it within `tolerance` levels in the median. The circle ends where two rings in a row do not.
+    What level of B goes with a level of A is learned in the inmost quarter; ring after ring must
+    then agree with it within `tolerance` levels in the median. The circle ends where two rings in a
+    row do not.
     """
     a, b = to_256(as_stack([A, B])).astype(np.float64)
     r = radius(a.shape[:2])

@@ -6,8 +6,9 @@ H       (K, n)   principal components, orthonormal rows
 sd      (K,)     how far the curves spread along each
 c       (K,)     coefficients: curve = mean + c H  [Grossberg03b eq. 6]
 
-Responses are alike. A handful of numbers distinguishes them, and a few samples of a curve, or a poor bracket,
-are enough with the prior c ~ Normal(0, sd): the answer is the maximum a posteriori (MAP) estimate.
+Responses are alike. A handful of numbers distinguishes them, and a few samples of a curve, or a
+poor bracket, are enough with the prior c ~ Normal(0, sd): the answer is the maximum a posteriori
+(MAP) estimate.
 """
 
 from collections.abc import Callable
@@ -47,7 +48,9 @@ def fit_space(curves: ArrayLike, count: int) -> Space:
     """
     curves = np.asarray(curves, np.float64)
     if curves.ndim != 2 or not np.all(np.isfinite(curves)) or not 1 <= count < len(curves):
-        raise ValueError(f"expected more than {count} >= 1 finite curves (C, n), got {describe(curves)}")
+        raise ValueError(
+            f"expected more than {count} >= 1 finite curves (C, n), got {describe(curves)}"
+        )
     mean = curves.mean(axis=0)
     _, S, V = np.linalg.svd(curves - mean, full_matrices=False)
     return Space(mean, V[:count], S[:count] / np.sqrt(len(curves)))
@@ -64,7 +67,9 @@ def project(curve: ArrayLike, space: Space) -> F64:
     """Return c = H (curve - mean), the nearest point of the space; curves (..., n) give (..., K)."""
     curve = np.asarray(curve, np.float64)
     if curve.shape[-1:] != space.mean.shape:
-        raise ValueError(f"expected a curve at the space's {len(space.mean)} places, got {describe(curve)}")
+        raise ValueError(
+            f"expected a curve at the space's {len(space.mean)} places, got {describe(curve)}"
+        )
     return (curve - space.mean) @ space.H.T
 
 
@@ -107,12 +112,18 @@ def fit_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: fl
     True
     """
     places, values = np.asarray(places, np.float64), np.asarray(values, np.float64)
-    if places.ndim != 1 or places.shape != values.shape or not np.all((places >= 0) & (places <= 1)):
+    if (
+        places.ndim != 1
+        or places.shape != values.shape
+        or not np.all((places >= 0) & (places <= 1))
+    ):
         raise ValueError(
             f"expected places (m,) in 0 to 1 and values, got {describe(places)} and {describe(values)}"
         )
     if not np.all(np.isfinite(values)) or not noise > 0:
-        raise ValueError(f"expected finite values and a positive noise, got {describe(values)} and {noise}")
+        raise ValueError(
+            f"expected finite values and a positive noise, got {describe(values)} and {noise}"
+        )
     grid = np.linspace(0, 1, len(space.mean))
     A = np.column_stack([np.interp(places, grid, row) for row in space.H])
     b = values - np.interp(places, grid, space.mean)
@@ -127,13 +138,18 @@ def default_space(count: int = 12, n: int = 256) -> Space:
 def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]:
     """Return A and b of sum_ij w^2 (g(Z_ij) - lE_i - B_j)^2 = |A c - b|^2, g = mean + c H [Debevec97 eq. 3].
 
-    The best lE_i of each sample is a weighted mean; what its rows miss of that has the K unknowns alone.
+    The best lE_i of each sample is a weighted mean; what its rows miss of that has the K unknowns
+    alone.
     """
     W = w[Z] ** 2
     W = W / np.maximum(W.sum(axis=1, keepdims=True), 1e-300)
-    columns = [x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])]
+    columns = [
+        x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])
+    ]
     if not np.any(W * columns[0] ** 2 > 1e-12):
-        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
+        raise ValueError(
+            "expected samples seen well in two exposures, which connect the levels; got none"
+        )
     B, mean, *H = (w[Z] * column for column in columns)
     return np.stack(H, axis=-1).reshape(-1, len(H)), (B - mean).ravel()
 
@@ -160,11 +176,11 @@ def recover(
     times : (P,) float
         Exposure times in seconds, at least two different ones.
     basis : Space, optional
-        Of g over 256 levels, `fit_space(families.invert_curves(exposure, brightness), count)` of curves that
-        were measured; those of `families` by default.
+        Of g over 256 levels, `fit_space(families.invert_curves(exposure, brightness), count)` of
+        curves that were measured; those of `families` by default.
     noise : float
-        Standard deviation of ln exposure at the level of greatest weight. More noise gives the prior more
-        weight.
+        Standard deviation of ln exposure at the level of greatest weight. More noise gives the
+        prior more weight.
     samples : int
         How many pixels to choose.
     w : (256,) float, optional
@@ -182,13 +198,13 @@ def recover(
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, a basis that is not of 256 levels, or photographs that
-        hold no level measured well in two exposures.
+        For fewer than two photographs or two times, a basis that is not of 256 levels, or
+        photographs that hold no level measured well in two exposures.
 
     References
     ----------
-    Grossberg and Nayar, What is the space of camera response functions?, CVPR 2003; Debevec and Malik, 1997,
-    eq. 3.
+    Grossberg and Nayar, What is the space of camera response functions?, CVPR 2003; Debevec and
+    Malik, 1997, eq. 3.
 
     Examples
     --------
@@ -202,7 +218,9 @@ def recover(
     times = as_times(times, len(stack), distinct=2)
     space = default_space() if basis is None else basis
     if space.mean.shape != (256,) or not noise > 0:
-        raise ValueError(f"expected a basis of 256 levels and a noise > 0, got {len(space.mean)} and {noise}")
+        raise ValueError(
+            f"expected a basis of 256 levels and a noise > 0, got {len(space.mean)} and {noise}"
+        )
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
     channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)

@@ -7,7 +7,8 @@ scenes.photographs()                                  six real photographs, a br
 scenes.probe()                                        a studio from all directions, which lights what is in it
 scenes.decades(E)                                     the range of a scene or of a map
 
-How they were made: `scenes.models`, and `python -m scenes.render`; room and subjects: `scenes.computed`.
+How they were made: `scenes.models`, and `python -m scenes.render`; room and subjects:
+`scenes.computed`.
 """
 
 from hdrlab.core.extremes import decades

@@ -5,8 +5,8 @@ depth  (H, W) float32, metres from the camera along its axis
 mover  radiance (H, W, 3) of a visitor, cd/m^2, already multiplied by the mask
 mask   (H, W) float32, the share of a pixel that the visitor hides, 0 to 1
 
-They were rendered by `scenes.render` out of `scenes.models`, the room by `scenes.computed`, and are read from
-OpenEXR files.
+They were rendered by `scenes.render` out of `scenes.models`, the room by `scenes.computed`, and are
+read from OpenEXR files.
 """
 
 from pathlib import Path
@@ -107,8 +107,9 @@ def room(shape: Shape | None = None) -> F32:
 def layers(name: str, shape: Shape | None = None) -> Layers:
     """Return a place with its depth and its visitor.
 
-    A smaller shape is averaged over areas, in linear light, as a coarser sensor behind the same lens would
-    see it. Where its sides have another ratio, two edges are cut off: pixels stay square.
+    A smaller shape is averaged over areas, in linear light, as a coarser sensor behind the same
+    lens would see it. Where its sides have another ratio, two edges are cut off: pixels stay
+    square.
 
     Parameters
     ----------
@@ -134,7 +135,9 @@ def layers(name: str, shape: Shape | None = None) -> Layers:
     read = read_layers(FOLDER / f"{name}.exr")
     visitor = read["mover"]
     found = Layers(read["radiance"], read["depth"], visitor[..., :3], visitor[..., 3])
-    return Layers(*(resample(layer, found.depth.shape if shape is None else shape) for layer in found))
+    return Layers(
+        *(resample(layer, found.depth.shape if shape is None else shape) for layer in found)
+    )
 
 
 def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
@@ -143,7 +146,8 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     Parameters
     ----------
     place : Layers
-    offset : (dy, dx) whole pixels, how far down and right of his place in the layer the visitor stands; what
+    offset : (dy, dx) whole pixels, how far down and right of his place in the layer the visitor
+        stands; what
         leaves the frame is not seen
 
     Returns
@@ -175,7 +179,9 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
 
 def resample(layer: F32, shape: Shape) -> F32:
     """Return the means of a layer over the areas of a coarser grid of square pixels, the largest it holds."""
-    if len(shape) != 2 or any(not 1 <= n <= full for n, full in zip(shape, layer.shape, strict=False)):
+    if len(shape) != 2 or any(
+        not 1 <= n <= full for n, full in zip(shape, layer.shape, strict=False)
+    ):
         raise ValueError(f"expected a shape (H, W) from (1, 1) to {layer.shape[:2]}, got {shape}")
     pixel = min(full / n for n, full in zip(shape, layer.shape, strict=False))
     for axis, n in enumerate(shape):

@@ -15,12 +15,14 @@ from hdrlab.scenes.places import FOLDER, Shape, resample
 def photographs(shape: Shape | None = None) -> Bracket:
     """Return a real bracket: six photographs of a small tripod before a window, taken from the hand.
 
-    The times are relative, the shortest is 1: they were estimated from the pixels, for the stated ones are
-    wrong. So is the contrast of a map made with them: as true as the response of a usual camera.
+    The times are relative, the shortest is 1: they were estimated from the pixels, for the stated
+    ones are wrong. So is the contrast of a map made with them: as true as the response of a usual
+    camera.
 
     Parameters
     ----------
-    shape : (H, W), pixels, at most 2000 x 1500, which is the default; a smaller one holds means of levels
+    shape : (H, W), pixels, at most 2000 x 1500, which is the default; a smaller one holds means of
+        levels
         over areas, see `hdrlab.scenes.layers`
 
     Returns
@@ -47,7 +49,8 @@ def photographs(shape: Shape | None = None) -> Bracket:
 def probe() -> F32:
     """Return the radiance of a studio from all directions, (64, 128, 3) float32, relative: up, round, colour.
 
-    Row i looks pi (i + 1/2) / 64 from the zenith, and column j looks 2 pi (j + 1/2) / 128 around it.
+    Row i looks pi (i + 1/2) / 64 from the zenith, and column j looks 2 pi (j + 1/2) / 128 around
+    it.
 
     Examples
     --------

@@ -19,7 +19,8 @@ def describe_file(path: str | Path) -> dict[str, Any]:
 
     Returns
     -------
-    dict of `file`, `format`, `width`, `height`, `channels`, `values`, and what else the format states
+    dict of `file`, `format`, `width`, `height`, `channels`, `values`, and what else the format
+    states
 
     Raises
     ------
@@ -78,7 +79,11 @@ def _exr(path: str | Path) -> dict[str, Any]:
     found = layers.read_layers(path) if names == list(layers.CERTAIN) else None
     return {
         "format": "OpenEXR",
-        **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted({*exr.read_dtypes(path)}))),
+        **_size(
+            *header.display[2:],
+            ", ".join(header.channels),
+            ", ".join(sorted({*exr.read_dtypes(path)})),
+        ),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
         **({"data window": tuple(header.data)} if header.data != header.display else {}),
         **({"layers": ", ".join(names)} if names else {}),

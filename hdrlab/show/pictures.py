@@ -23,7 +23,10 @@ SIDE = 1000  # pixels
 SHARP = 2  # pixels of a plot along a pixel of the page, which many screens show
 COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
 FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
-PAPER, MARGIN = 0.72, 0.93  # of a plot's pixels, and of those at its edges, how many are white at least
+PAPER, MARGIN = (
+    0.72,
+    0.93,
+)  # of a plot's pixels, and of those at its edges, how many are white at least
 DECADE = float(np.log10(2))  # of a stop
 SIGNS = dict(alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ")
 
@@ -34,7 +37,9 @@ class Picture(NamedTuple):
     frames: tuple[bytes, ...]
     alts: tuple[str, ...]
     captions: tuple[str, ...]
-    scales: tuple[figures.Scale, ...] = ()  # of the colours, below the pictures: in stops and in decades
+    scales: tuple[
+        figures.Scale, ...
+    ] = ()  # of the colours, below the pictures: in stops and in decades
     density: int = 1  # pixels of a frame along a pixel of the page
     areas: tuple[list[list[float]], ...] = ()  # of each frame, what `pictured` says
 
@@ -46,7 +51,9 @@ class Picture(NamedTuple):
         areas: Iterable[list[list[float]]] = self.areas or [[] for _ in images]
         told = (self.alts, self.captions, images, map(is_ink, images), areas)
         each = zip(map(web.data_uri, self.frames), *told, strict=True)
-        return _template().render(each=list(each), scales=self.scales, density=self.density, column=COLUMN)
+        return _template().render(
+            each=list(each), scales=self.scales, density=self.density, column=COLUMN
+        )
 
 
 @cache
@@ -107,7 +114,8 @@ def strip(
     Raises
     ------
     ValueError
-        For no or several parameters, no values, an empty alt text, or a `draw` that returns something else.
+        For no or several parameters, no values, an empty alt text, or a `draw` that returns
+        something else.
 
     Examples
     --------
@@ -117,7 +125,9 @@ def strip(
     A gray square, level 0; A gray square, level 128
     """
     if len(values) != 1:
-        raise ValueError(f"expected one parameter with its values, got {len(values)}: {', '.join(values)}")
+        raise ValueError(
+            f"expected one parameter with its values, got {len(values)}: {', '.join(values)}"
+        )
     ((name, each),) = values.items()
     each = list(each)
     if not each:
@@ -133,7 +143,8 @@ def strip(
 def encode(drawn: object, density: int = 1) -> bytes:
     """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo.
 
-    A map, whose pixels are squares of one colour each, is like a photo where that takes half of the bytes.
+    A map, whose pixels are squares of one colour each, is like a photo where that takes half of the
+    bytes.
     """
     image, drawing = render(drawn, density), not isinstance(drawn, np.ndarray)
     small = web.encode_webp(image, quality=80 - 30 * drawing)
@@ -159,7 +170,10 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     over, lossless = web.as_rgb(image), _is_drawing(image)
     if first is not None and first.shape == image.shape:
         changed = (over != web.as_rgb(first)).any(axis=-1)
-        over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED
+        over, lossless = (
+            np.dstack([over, np.uint8(255) * changed]),
+            lossless or changed.mean() < FEW_CHANGED,
+        )
     return web.encode_webp(over, lossless=True) if lossless else web.encode_webp(image, quality=75)
 
 
@@ -189,14 +203,19 @@ def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
     pixels = isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and drawn.size > 0
     if isinstance(drawn, np.ndarray) and pixels and (drawn.ndim == 2 or drawn.shape[2:] == (3,)):
         return drawn
-    came = f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
-    raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
+    came = (
+        f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
+    )
+    raise ValueError(
+        f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}"
+    )
 
 
 def pictured(drawn: object) -> list[list[float]]:
     """Return left, top, width and height, as shares of what was rendered, of its Axes that hold pictures.
 
-    Where none does, those of its first Axes; none for a picture. A dark page leaves them their colours.
+    Where none does, those of its first Axes; none for a picture. A dark page leaves them their
+    colours.
     """
     axes = getattr(getattr(drawn, "figure", None), "axes", [])
     boxes = [ax.get_position() for ax in [ax for ax in axes if ax.images] or axes[:1]]
@@ -238,11 +257,15 @@ def in_words(name: str, value: object) -> str:
 def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:
     dpi = figure.dpi
     figure.set_dpi(density * dpi)
-    known = type(figure.canvas) is FigureCanvasAgg  # which knows the widths of words from the picture before
+    known = (
+        type(figure.canvas) is FigureCanvasAgg
+    )  # which knows the widths of words from the picture before
     canvas = figure.canvas if known else FigureCanvasAgg(figure)
     reuse.paint(canvas)
     figure.set_dpi(dpi)
-    if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
+    if (
+        "matplotlib.pyplot" in sys.modules
+    ):  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.array(canvas.buffer_rgba())[..., :3]
 

@@ -6,10 +6,11 @@ h    histogram                (bins,), shares of the window's pixels, sum 1
 P    cumulative distribution  at the edges of the bins, (bins + 1,), 0 to 1
 Ld   display luminance        decode(P(ln L)), in [0, 1]: P is the code of the display, every code for as many
 
-A window's histogram knows nothing of the rest of the scene, so detail shows in a window that no picture of
-the whole has room for. The histogram is clipped, as in adaptive equalisation (Zuiderveld, Graphics Gems IV,
-1994): no bin counts more than `limit` times an even share, and what is cut off fills the others. So a limit
-of 1 is the plain logarithm; without one the equalisation is full, and shows the noise of flat walls.
+A window's histogram knows nothing of the rest of the scene, so detail shows in a window that no
+picture of the whole has room for. The histogram is clipped, as in adaptive equalisation
+(Zuiderveld, Graphics Gems IV, 1994): no bin counts more than `limit` times an even share, and what
+is cut off fills the others. So a limit of 1 is the plain logarithm; without one the equalisation is
+full, and shows the noise of flat walls.
 """
 
 import numpy as np
@@ -39,7 +40,8 @@ def bin_position(L: F32, low: float, high: float, bins: int) -> F32:
 def histogram(t: F32, bins: int = 1024) -> F64:
     """Return h, the shares of the pixels at positions t; what lies beyond counts in the bin at that end.
 
-    A pixel counts in the two bins whose centres it lies between, so that none jumps from one to the next.
+    A pixel counts in the two bins whose centres it lies between, so that none jumps from one to the
+    next.
     """
     t = np.clip(t - np.float32(0.5), 0, bins - 1).ravel()
     left = t.astype(np.intp)
@@ -63,7 +65,9 @@ def cumulative(h: F64) -> F64:
 def check_knobs(bins: int, limit: float) -> None:
     """Raise a ValueError where there is no bin, or a limit below an even share."""
     if not (bins >= 1 and limit >= 1):
-        raise ValueError(f"expected at least 1 bin and a limit of at least 1, got {bins=} and {limit=}")
+        raise ValueError(
+            f"expected at least 1 bin and a limit of at least 1, got {bins=} and {limit=}"
+        )
 
 
 def equalise(L: F32, *, bins: int = 1024, limit: float = 4.0) -> F32:
@@ -74,10 +78,13 @@ def equalise(L: F32, *, bins: int = 1024, limit: float = 4.0) -> F32:
     return np.interp(t, np.arange(bins + 1), colour.decode_srgb(P)).astype(np.float32)
 
 
-def place_window(shape: tuple[int, ...], centre: tuple[float, float], side: int) -> tuple[slice, slice]:
+def place_window(
+    shape: tuple[int, ...], centre: tuple[float, float], side: int
+) -> tuple[slice, slice]:
     """Return rows and columns of a square window around `centre` (y, x), moved to lie in the picture."""
     corners = (
-        int(np.clip(round(c - side / 2), 0, max(0, n - side))) for c, n in zip(centre, shape, strict=True)
+        int(np.clip(round(c - side / 2), 0, max(0, n - side)))
+        for c, n in zip(centre, shape, strict=True)
     )
     rows, columns = (slice(c, min(c + side, n)) for c, n in zip(corners, shape, strict=True))
     return rows, columns

@@ -6,12 +6,14 @@ k     headroom           a pixel that is k times as bright as its neighbourhood 
 base  edge-aware mean    (H, W), the mean of neighbours alike: what s should have been taken from
 Ld    display luminance  s L, (H, W), 1 = white
 
-The eye does not mind a scale that varies slowly. Where L jumps, the blur begins to change before L does: the
-dark side of an edge is held back by the bright one, and the other way round. That is the halo.
+The eye does not mind a scale that varies slowly. Where L jumps, the blur begins to change before L
+does: the dark side of an edge is held back by the bright one, and the other way round. That is the
+halo.
 
-k = 8 and a blur of 15 pixels are those of [Battiato08]. So narrow a blur, some 1.6 % of a picture as in the
-published ones, follows the light so closely that a dim hall comes out as bright as its windows. 8 % is a
-choice of ours: a place keeps its brightness beside others, and the halos are wide, as no width removes them.
+k = 8 and a blur of 15 pixels are those of [Battiato08]. So narrow a blur, some 1.6 % of a picture
+as in the published ones, follows the light so closely that a dim hall comes out as bright as its
+windows. 8 % is a choice of ours: a place keeps its brightness beside others, and the halos are
+wide, as no width removes them.
 """
 
 from collections.abc import Iterator
@@ -82,27 +84,37 @@ def tonemap_steps(
 ) -> Iterator[State]:
     """Yield the State with the clamped scale, and after each smoothing pass.
 
-    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
+    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur
+    reaches.
     """
-    s = clamp(scale(np.minimum(L, np.float32(extremes.robust_maximum(L))), headroom=headroom, sigma=sigma), L)
+    s = clamp(
+        scale(
+            np.minimum(L, np.float32(extremes.robust_maximum(L))), headroom=headroom, sigma=sigma
+        ),
+        L,
+    )
     yield State(s, L)
     for _ in range(passes):
         s = smooth(s, L)
         yield State(s, L)
 
 
-def halo(L: F32, s: F32, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4) -> F32:
+def halo(
+    L: F32, s: F32, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4
+) -> F32:
     """Return log2(s k base), in stops: how much brighter a pixel is than if its own kind alone had scaled it.
 
-    Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the blur, of
-    neighbours that differ by about `contrast` decades.
+    Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the
+    blur, of neighbours that differ by about `contrast` decades.
     """
     lL = np.log10(np.maximum(L, 1e-6 * max(extremes.positive_median(L), TINY)))
     base = bilateral(lL, sigma_s=choose_sigma(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
 
 
-def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16) -> F32:
+def tonemap(
+    L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
+) -> F32:
     """Return display luminance by a scale that follows the brightness of the neighbourhood.
 
     Parameters
@@ -123,8 +135,8 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
 
     References
     ----------
-    Chiu, Herf, Shirley, Swamy, Wang, Zimmerman, Spatially nonuniform scaling functions for high contrast
-    images, Graphics Interface 1993.
+    Chiu, Herf, Shirley, Swamy, Wang, Zimmerman, Spatially nonuniform scaling functions for high
+    contrast images, Graphics Interface 1993.
 
     Examples
     --------
@@ -136,5 +148,7 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
         raise ValueError(
             f"expected headroom and sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
-    state = steps.last(tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes))
+    state = steps.last(
+        tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes)
+    )
     return np.clip(state.Ld, 0, 1)

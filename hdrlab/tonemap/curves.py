@@ -7,11 +7,11 @@ F      tone curve          [Lw_min, Lw_max] -> [0, 1]
 Ld     display luminance   F(L), (H, W), 1 = white
 N      levels of a display
 
-A curve (tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
-looks at the neighbourhood too, so that one luminance may become several (`spread` shows which it is). Ld is
-light: the display's own encoding comes after it (`core.colour.encode_srgb`). The levels Q of a display are
-codes, and so F is taken for a code; taken for light, a gamma is contrast that the picture loses, and a
-logarithm is pale.
+A curve (tone reproduction curve) treats equal luminances equally wherever they stand; an operator
+(TRO) looks at the neighbourhood too, so that one luminance may become several (`spread` shows which
+it is). Ld is light: the display's own encoding comes after it (`core.colour.encode_srgb`). The
+levels Q of a display are codes, and so F is taken for a code; taken for light, a gamma is contrast
+that the picture loses, and a logarithm is pale.
 """
 
 from collections.abc import Callable
@@ -65,8 +65,8 @@ def quantise(Ld: ArrayLike, *, levels: int = 256) -> Array:
 def spread(L: F32, Ld: F32, *, bins: int = 64) -> tuple[F32, F32, F32]:
     """Return (luminance, least Ld, greatest Ld) of `bins` classes of equally many pixels, dark to bright.
 
-    Of a curve the greatest of one class is the least of the next: together they draw the curve. Of an
-    operator they draw a band, as wide as the neighbourhood makes a difference.
+    Of a curve the greatest of one class is the least of the next: together they draw the curve. Of
+    an operator they draw a band, as wide as the neighbourhood makes a difference.
     """
     order = np.argsort(L, axis=None, kind="stable")
     classes = np.array_split(order, min(bins, order.size))
@@ -90,8 +90,10 @@ def tonemap(
     L : (H, W) luminance, finite and not negative, any linear unit
     curve : which one
     gamma : exponent 1 / gamma, for that curve
-    cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel always is
-    encoded : F is the display's code, and Ld the light that it shows, so F as it is becomes the levels of the
+    cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel
+        always is
+    encoded : F is the display's code, and Ld the light that it shows, so F as it is becomes the
+        levels of the
         picture; False takes F itself as light, which the display's encoding then makes pale
 
     Returns
@@ -101,12 +103,13 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero; an unknown curve; gamma or cut out of
-        range.
+        For luminance that is not (H, W), finite and positive or zero; an unknown curve; gamma or
+        cut out of range.
 
     References
     ----------
-    Battiato, Castorina, Messina, Exposure correction for imaging devices: an overview, 2008, eq. 1.21.
+    Battiato, Castorina, Messina, Exposure correction for imaging devices: an overview, 2008, eq.
+    1.21.
 
     Examples
     --------
@@ -117,8 +120,17 @@ def tonemap(
     if curve not in CURVES:
         raise ValueError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
-        raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
-    low, high = extremes.robust_minimum(L, cut=cut) or 1.0, extremes.robust_maximum(L, cut=cut) or 1.0
-    own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low}}
+        raise ValueError(
+            f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}"
+        )
+    low, high = (
+        extremes.robust_minimum(L, cut=cut) or 1.0,
+        extremes.robust_maximum(L, cut=cut) or 1.0,
+    )
+    own: dict[str, dict[str, float]] = {
+        "linear": {},
+        "gamma": {"gamma": gamma},
+        "log": {"low": low},
+    }
     F = CURVES[curve](L, high=high, **own[curve])
     return np.asarray(decode_srgb(F), np.float32) if encoded else F

@@ -10,9 +10,10 @@ c         contrast of the base   decades, log10 of `contrast`
 m         compression            c / (range of the base), at most 1
 Ld        display luminance      10^(m base + detail), (H, W), 1 = white
 
-Light varies over decades and slowly; reflectance varies little and fast. Only the light is compressed. Unlike
-Chiu's blur the base does not cross an edge, so there is no halo. But what differs by less than sigma_r is no
-edge: beside gentle steps, as of the patches of a chart, the picture glows a little.
+Light varies over decades and slowly; reflectance varies little and fast. Only the light is
+compressed. Unlike Chiu's blur the base does not cross an edge, so there is no halo. But what
+differs by less than sigma_r is no edge: beside gentle steps, as of the patches of a chart, the
+picture glows a little.
 """
 
 import math
@@ -52,8 +53,8 @@ def logarithm(L: F32) -> F32:
 def fix_uncertain(mean: F32, k: F32, *, sigma_s: float) -> F32:
     """Return u mean + (1 - u) blur(mean): a base that rests on few pixels k is fixed [Durand02].
 
-    A pixel unlike all around it is its own base: without detail, and compressed like light. The certainty u
-    rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1.
+    A pixel unlike all around it is its own base: without detail, and compressed like light. The
+    certainty u rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1.
     """
     enough = (2 * math.pi * sigma_s**2) ** 0.5
     if enough <= 1 or k.min() >= enough:
@@ -100,7 +101,8 @@ def tonemap(
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    contrast : ratio that the base keeps between its percentiles, c = log10(contrast): 5 in the paper, 50 in
+    contrast : ratio that the base keeps between its percentiles, c = log10(contrast): 5 in the
+        paper, 50 in
         Battiato et al. 2008, which is the default
     sigma_s : how wide the base is smoothed, pixels; None takes 2 % of the longer side
     sigma_r : what difference is an edge, decades
@@ -117,7 +119,8 @@ def tonemap(
 
     References
     ----------
-    Durand and Dorsey, Fast bilateral filtering for the display of high-dynamic-range images, SIGGRAPH 2002.
+    Durand and Dorsey, Fast bilateral filtering for the display of high-dynamic-range images,
+    SIGGRAPH 2002.
 
     Examples
     --------

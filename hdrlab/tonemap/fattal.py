@@ -10,10 +10,10 @@ lLd     the picture with this gradient     (H, W), ln display luminance but for 
 Ld      display luminance                  (H, W) in [0, 1]
 beta    power                              a slope comes out to the power of beta, level by level
 
-Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by itself. A
-larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta) = 0.79 or so: it comes
-out paler than a small copy of it. Stripes one pixel wide are no slope to a central difference: a chart full
-of them is shown badly.
+Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by
+itself. A larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta) =
+0.79 or so: it comes out paler than a small copy of it. Stripes one pixel wide are no slope to a
+central difference: a chart full of them is shown badly.
 """
 
 from collections.abc import Iterator
@@ -25,7 +25,8 @@ from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.filters import poisson, pyramid
 
 LAWS = ("exposure",)
-SATURATION = 0.8  # gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale
+# gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale
+SATURATION = 0.8
 # pixels: the shorter side of the coarsest level is at least this
 SMALLEST = 32
 # a pixel without light is taken to be this much darker than white, or as dark as the darkest
@@ -53,15 +54,20 @@ class Level(NamedTuple):
 
 def find_range(values: F32, black: float = 1e-4, white: float = 1e-4) -> tuple[float, float]:
     """Return the values that these fractions of the pixels lie below and above, at least one pixel each."""
-    values = np.sort(values[:: 1 + values.size // 2**18])  # of a large picture, every second, third, ...
-    low, high = (min(int(np.ceil(cut * values.size)), (values.size - 1) // 2) for cut in (black, white))
+    values = np.sort(
+        values[:: 1 + values.size // 2**18]
+    )  # of a large picture, every second, third, ...
+    low, high = (
+        min(int(np.ceil(cut * values.size)), (values.size - 1) // 2) for cut in (black, white)
+    )
     return float(values[low]), float(values[-1 - high])
 
 
 def log_luminance(L: F32) -> F32:
     """Return lL = ln(L / Lwhite), Lwhite the brightest L but for 0.01 % of the pixels, so its unit cancels.
 
-    Pixels above it are cut, as the display would cut them; so are the darkest, and with them the zeros.
+    Pixels above it are cut, as the display would cut them; so are the darkest, and with them the
+    zeros.
     """
     black, white = find_range(L[L > 0])
     floor = max(min(black / white, DARK), float(np.finfo(np.float32).tiny))
@@ -81,8 +87,9 @@ def slope(lL: F32, k: int = 0) -> F32:
 def attenuation(slope: F32, mean: float, *, alpha: float, beta: float, noise: float) -> F32:
     """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02; Battiato08 eq. 1.41].
 
-    The mean is that of the level's slopes. Where the slope goes to zero the formula goes to infinity, and
-    would lift the noise of an even sky: below `noise` means it stays what it is there.
+    The mean is that of the level's slopes. Where the slope goes to zero the formula goes to
+    infinity, and would lift the noise of an even sky: below `noise` means it stays what it is
+    there.
     """
     return (np.maximum(slope / (mean or 1), noise) / alpha) ** (beta - 1)
 
@@ -106,8 +113,9 @@ def attenuation_steps(
 def attenuate_gradient(lL: F32, Phi: F32) -> F32:
     """Return G = Phi grad lL, by forward differences [Fattal02; Battiato08 eq. 1.38, 1.39].
 
-    A step lies between two pixels, and Phi there is their mean. With that of the first pixel alone, the way
-    up to a thin line would be attenuated and the way down would not: the picture would drift with every line.
+    A step lies between two pixels, and Phi there is their mean. With that of the first pixel alone,
+    the way up to a thin line would be attenuated and the way down would not: the picture would
+    drift with every line.
     """
     G = poisson.gradient(lL)
     G[0, :-1] *= (Phi[:-1] + Phi[1:]) / 2
@@ -123,8 +131,9 @@ def divergence(lL: F32, Phi: F32) -> F32:
 def display(lLd: F32, *, black: float = 0.001, white: float = 0.005) -> F32:
     """Return Ld = (exp lLd - b) / (w - b), cut to [0, 1].
 
-    A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. An even picture, where
-    these are less than a factor of two apart, is not stretched over the whole display.
+    A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. An even
+    picture, where these are less than a factor of two apart, is not stretched over the whole
+    display.
     """
     bright = np.exp(lLd - lLd.max())
     low, high = find_range(bright.ravel(), black, white)
@@ -146,15 +155,18 @@ def tonemap(
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    alpha : the slope that is left as it is, in mean slopes of each level. Another alpha multiplies Phi, hence
+    alpha : the slope that is left as it is, in mean slopes of each level. Another alpha multiplies
+        Phi, hence
         lLd, by one number: it is the same picture with another contrast, as by a gamma
-    beta : the power that slopes are raised to, 0 < beta <= 1; the paper has 0.8 to 0.9, 1 changes nothing
+    beta : the power that slopes are raised to, 0 < beta <= 1; the paper has 0.8 to 0.9, 1 changes
+        nothing
     noise : the slope below which attenuation stays what it is, in mean slopes of each level
     black, white : fractions of the pixels that become black and white
 
     Returns
     -------
-    (H, W) float32 in [0, 1], 1 = white. The paper adds colour to a power of 0.4 to 0.6: see SATURATION.
+    (H, W) float32 in [0, 1], 1 = white. The paper adds colour to a power of 0.4 to 0.6: see
+    SATURATION.
 
     Raises
     ------
@@ -163,8 +175,8 @@ def tonemap(
 
     References
     ----------
-    Fattal, Lischinski, Werman, Gradient domain high dynamic range compression, SIGGRAPH 2002. The noise floor
-    and the cut at both ends are additions of pfstools.
+    Fattal, Lischinski, Werman, Gradient domain high dynamic range compression, SIGGRAPH 2002. The
+    noise floor and the cut at both ends are additions of pfstools.
 
     Examples
     --------
@@ -175,7 +187,9 @@ def tonemap(
     """
     L = as_luminance(L)
     if not (0 < alpha < np.inf and 0 < beta <= 1 and 0 < noise < np.inf):
-        raise ValueError(f"expected alpha > 0, 0 < beta <= 1, noise > 0, got {alpha=}, {beta=}, {noise=}")
+        raise ValueError(
+            f"expected alpha > 0, 0 < beta <= 1, noise > 0, got {alpha=}, {beta=}, {noise=}"
+        )
     if not (0 <= black < 0.5 and 0 <= white < 0.5):
         raise ValueError(f"expected fractions black and white in 0 ... 0.5, got {black=}, {white=}")
     if L.max() == 0:

@@ -8,8 +8,9 @@ sigma  what differs from g by less is detail, and by more an edge, nats
 alpha  power of details, below 1 they grow; beta, what is left of edges beyond sigma, 0 to 1
 O_k    level k of the answer           the coefficients L_k of r, each with g = G_k at its own place
 
-Paris et al. remap the picture anew for every coefficient, Aubry et al. for a few g, and interpolate. There is
-no base: an edge is made smaller at each scale, and the wide shade left beside it runs the way the edge does.
+Paris et al. remap the picture anew for every coefficient, Aubry et al. for a few g, and
+interpolate. There is no base: an edge is made smaller at each scale, and the wide shade left beside
+it runs the way the edge does.
 """
 
 from collections.abc import Iterator
@@ -48,7 +49,9 @@ def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
     return g + np.sign(lL - g) * (detail + edge)
 
 
-def filter_steps(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> Iterator[Sample]:
+def filter_steps(
+    lL: F32, *, sigma: float, alpha: float, beta: float, samples: int
+) -> Iterator[Sample]:
     """Yield a Sample of each g: O_k += h L_k(r), h = max(1 - |G_k - g| / spacing, 0) [Aubry14]; O_d = G_d."""
     G = pyramid.gaussian(lL, pyramid.depth(lL.shape, 2))
     levels = [np.zeros_like(level) for level in G[:-1]] + G[-1:]
@@ -85,7 +88,8 @@ def tonemap(
 
     Raises
     ------
-    ValueError : for luminance that is not (H, W), finite and positive or zero, and knobs out of range
+    ValueError : for luminance that is not (H, W), finite and positive or zero, and knobs out of
+        range
 
     Examples
     --------

@@ -10,12 +10,12 @@ S      structural fidelity                                     1 = every detail 
 N      statistical naturalness                                 1 = brightness and contrast of most photographs
 Q      overall quality                                         1 = best
 
-S asks whether what is visible in the one is visible in the other, and alike, at five scales of half the size
-each. N knows nothing of the scene: it is how usual such a mean and such a contrast are in 3000 photographs.
-Both see luminance alone, so a false colour costs nothing.
+S asks whether what is visible in the one is visible in the other, and alike, at five scales of half
+the size each. N knows nothing of the scene: it is how usual such a mean and such a contrast are in
+3000 photographs. Both see luminance alone, so a false colour costs nothing.
 
-The constants are those of the paper and, where it leaves one open, of its authors' program: the range of x,
-and 1.4 for the square root of 2 in tau.
+The constants are those of the paper and, where it leaves one open, of its authors' program: the
+range of x, and 1.4 for the square root of 2 in tau.
 """
 
 from typing import NamedTuple
@@ -28,7 +28,13 @@ from hdrlab.core.arrays import F64, ArrayLike, as_luminance, describe
 from hdrlab.core.picture import gray
 
 FREQUENCIES = (16.0, 8.0, 4.0, 2.0, 1.0)  # finest scale first
-WEIGHTS = (0.0448, 0.2856, 0.3001, 0.2363, 0.1333)  # of the scales, from experiments on multi-scale SSIM
+WEIGHTS = (
+    0.0448,
+    0.2856,
+    0.3001,
+    0.2363,
+    0.1333,
+)  # of the scales, from experiments on multi-scale SSIM
 SIDE = 11  # pixels of the window, and of the blocks whose contrast is taken
 WINDOW = np.exp(-0.5 * (np.arange(-5, 6) / 1.5) ** 2)
 WINDOW /= WINDOW.sum()
@@ -82,8 +88,8 @@ def deviations(x: F64, y: F64) -> tuple[F64, F64, F64]:
 def local_fidelity(x: F64, y: F64, nu: float) -> F64:
     """Return the map (H - 10, W - 10) of one scale [Yeganeh13].
 
-    S_local = (2 sx' sy' + C1) / (sx'^2 + sy'^2 + C1) * (sigma_xy + C2) / (sigma_x sigma_y + C2): both are
-    seen, or neither is; and they go together.
+    S_local = (2 sx' sy' + C1) / (sx'^2 + sy'^2 + C1) * (sigma_xy + C2) / (sigma_x sigma_y + C2):
+    both are seen, or neither is; and they go together.
     """
     sigma_x, sigma_y, sigma_xy = deviations(x, y)
     sx, sy = visible(sigma_x, nu), visible(sigma_y, nu)
@@ -99,8 +105,8 @@ def halve(image: F64) -> F64:
 def scale_fidelities(x: F64, y: F64) -> list[float]:
     """Return the mean of S_local per scale [Yeganeh13]: five, or as many as the window fits into.
 
-    A picture that is smaller than the window is continued by reflection, and has one scale. A mean below 0,
-    as that of a negative, has no root and counts as 0.
+    A picture that is smaller than the window is continued by reflection, and has one scale. A mean
+    below 0, as that of a negative, has no root and counts as 0.
     """
     if min(x.shape) < SIDE:
         ends = [(0, max(0, SIDE - side)) for side in x.shape]
@@ -127,9 +133,9 @@ def brightness(y: F64) -> float:
 def contrast(y: F64) -> float:
     """Return P_d = d^3.4 (1 - d)^9.1, brought to 1 at its peak d = 3.4 / 12.5 [Yeganeh13].
 
-    d is the mean standard deviation of blocks of 11 x 11 pixels over 64.29. Blocks that the edge cuts are
-    left out, where the authors' program fills them with black; and a deviation is that of the block, where
-    theirs is a sample's, 0.4 % more.
+    d is the mean standard deviation of blocks of 11 x 11 pixels over 64.29. Blocks that the edge
+    cuts are left out, where the authors' program fills them with black; and a deviation is that of
+    the block, where theirs is a sample's, 0.4 % more.
     """
     d = min(block_deviation(y) / 64.29, 1.0)
     peak = 3.4 / 12.5
@@ -190,6 +196,8 @@ def tmqi(L: ArrayLike, picture: ArrayLike) -> Quality:
     """
     x, y = scale_luminance(L), gray(picture)
     if x.shape != y.shape:
-        raise ValueError(f"expected a picture of the scene's {x.shape} pixels, got {describe(picture)}")
+        raise ValueError(
+            f"expected a picture of the scene's {x.shape} pixels, got {describe(picture)}"
+        )
     S, N = structural_fidelity(x, y), naturalness(y)
     return Quality(overall(S, N), S, N)

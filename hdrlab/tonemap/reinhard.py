@@ -36,7 +36,8 @@ class Scale(NamedTuple):
     centre : (H, W), V1(s)
     response : (H, W), V(s)
     even : (H, W) bool, where the response has stayed small at this width and at all smaller ones
-    adaptation : (H, W), V1 at the largest width that was still even; the smallest width where none was
+    adaptation : (H, W), V1 at the largest width that was still even; the smallest width where none
+        was
     """
 
     width: float
@@ -49,7 +50,8 @@ class Scale(NamedTuple):
 def log_average(L: F32, *, delta: float = 1e-6) -> float:
     """Return Lav = exp(mean(log(delta + L))) [Reinhard02, where 1 / N is misprinted outside exp].
 
-    So that the unit of L cancels, delta is measured in medians of the positive L; it stands for black.
+    So that the unit of L cancels, delta is measured in medians of the positive L; it stands for
+    black.
     """
     median = np.median(L[L > 0]) if np.any(L) else 1.0
     return float(np.exp(np.log(L + delta * float(median)).mean(dtype=np.float64)))
@@ -58,7 +60,8 @@ def log_average(L: F32, *, delta: float = 1e-6) -> float:
 def automatic_key(L: F32) -> float:
     """Return a = 0.18 4^((2 log2 Lav - log2 Lmin - log2 Lmax) / (log2 Lmax - log2 Lmin)) [Reinhard02b].
 
-    A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the pixels.
+    A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the
+    pixels.
     """
     low, high = np.log2(np.quantile(L[L > 0], [0.01, 0.99])) if np.any(L) else (0.0, 0.0)
     middle = np.clip(np.log2(log_average(L)), low, high)
@@ -78,8 +81,9 @@ def white_point(Lm: F32) -> float:
 def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
     """Return Ld = Lm (1 + Lm / white^2) / (1 + adaptation), clipped at 1.
 
-    With Lm itself as the adaptation it is the global operator [Reinhard02 eq. 4; Battiato08 eq. 1.33]; with
-    V1 at each pixel's own width it is dodge and burn [Battiato08 eq. 1.35], printed for an infinite white.
+    With Lm itself as the adaptation it is the global operator [Reinhard02 eq. 4; Battiato08 eq.
+    1.33]; with V1 at each pixel's own width it is dodge and burn [Battiato08 eq. 1.35], printed for
+    an infinite white.
     """
     return np.minimum(Lm * (1 + Lm / white**2) / (1 + adaptation), 1)
 
@@ -112,7 +116,9 @@ def select_widths(scales: Iterable[Scale]) -> Flags:
     return np.maximum(count, 1) - np.uint8(1)
 
 
-def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
+def local_adaptation(
+    Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
+) -> F32:
     """Return V1 of each pixel at its own width: the last of scale_steps(blurs(Lm))."""
     return list(scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold))[-1].adaptation
 
@@ -131,7 +137,8 @@ def tonemap(
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    key : a, what the scene's log average is scaled to; "auto" takes it from the histogram (`automatic_key`)
+    key : a, what the scene's log average is scaled to; "auto" takes it from the histogram
+        (`automatic_key`)
     white : the scaled luminance Lm that becomes white; None takes the scene's own (`white_point`)
     local : dodge and burn, each pixel held back by its own neighbourhood
     phi : sharpening at edges, local only
@@ -144,12 +151,14 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs that are not positive.
+        For luminance that is not (H, W), finite and positive or zero, and knobs that are not
+        positive.
 
     References
     ----------
-    Reinhard, Stark, Shirley, Ferwerda, Photographic tone reproduction for digital images, SIGGRAPH 2002.
-    Reinhard, Parameter estimation for photographic tone reproduction, Journal of Graphics Tools 7(1), 2002.
+    Reinhard, Stark, Shirley, Ferwerda, Photographic tone reproduction for digital images, SIGGRAPH
+    2002. Reinhard, Parameter estimation for photographic tone reproduction, Journal of Graphics
+    Tools 7(1), 2002.
 
     Examples
     --------
@@ -159,7 +168,9 @@ def tonemap(
     L = as_light(L)
     a = automatic_key(L) if key == "auto" else key
     if isinstance(a, str) or not (a > 0 and threshold > 0 and (white is None or white > 0)):
-        raise ValueError(f"expected key, white and threshold above 0, got {key=}, {white=}, {threshold=}")
+        raise ValueError(
+            f"expected key, white and threshold above 0, got {key=}, {white=}, {threshold=}"
+        )
     Lm = scale_to_key(L, key=a)
     white = white_point(Lm) if white is None else white
     V1 = local_adaptation(Lm, key=a, phi=phi, threshold=threshold) if local else Lm
@@ -169,6 +180,12 @@ def tonemap(
 def as_light(L: ArrayLike) -> Array:
     """Return L as float64 (H, W), finite and not negative, or raise a ValueError."""
     L = np.ma.filled(L, np.nan)
-    if L.ndim != 2 or L.dtype.kind not in "iuf" or not (L.size and L.min() >= 0 and L.max() < np.inf):
-        raise ValueError(f"expected luminance (H, W), finite and not negative, got {L.dtype} {L.shape}")
+    if (
+        L.ndim != 2
+        or L.dtype.kind not in "iuf"
+        or not (L.size and L.min() >= 0 and L.max() < np.inf)
+    ):
+        raise ValueError(
+            f"expected luminance (H, W), finite and not negative, got {L.dtype} {L.shape}"
+        )
     return L.astype(np.float64)

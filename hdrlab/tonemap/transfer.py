@@ -5,9 +5,9 @@ E      light of the scene               0 to 1, 1 = the brightest that is coded;
 v      signal, E' in BT.2100            0 to 1, the code over the largest code; same shape
 peak   L_W, the display's white         cd/m2
 
-PQ is absolute: a code stands for so many cd/m2, and each step is about as large as an eye just does not see.
-HLG is relative: up to v = 1/2 it is a root, as a gamma, so that an old display shows it; above that it is a
-logarithm, and each display makes of E what its white allows.
+PQ is absolute: a code stands for so many cd/m2, and each step is about as large as an eye just does
+not see. HLG is relative: up to v = 1/2 it is a root, as a gamma, so that an old display shows it;
+above that it is a logarithm, and each display makes of E what its white allows.
 """
 
 from collections.abc import Callable
@@ -75,7 +75,9 @@ def display_light(E: ArrayLike, *, peak: float = 1000.0) -> F64:
     return peak * within(E, 1) ** (1.2 + 0.42 * np.log10(peak / 1000))
 
 
-def codes(encode: Callable[[float], ArrayLike], low: float, high: float, *, bits: int = 10) -> float:
+def codes(
+    encode: Callable[[float], ArrayLike], low: float, high: float, *, bits: int = 10
+) -> float:
     """Return (2^bits - 1) (encode(high) - encode(low)): how many codes the band from low to high gets.
 
     Examples

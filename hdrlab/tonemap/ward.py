@@ -9,10 +9,10 @@ P          cumulative distribution  at the edges of the bins, (bins + 1,), 1 at 
 Ldmin ...  the display's black and white, cd/m^2;   D = ln Ldmax - ln Ldmin, its range
 Ld         display luminance        cd/m^2, Ldmin to Ldmax
 
-Equalising the histogram gives every brightness its share of the display's range, and exaggerates the contrast
-of those that fill the picture. So the histogram is trimmed until nothing is shown with more contrast than it
-has. The paper's models of the eye are not here: the ceiling from contrast sensitivity, veiling glare, loss of
-colour and of acuity in the dark.
+Equalising the histogram gives every brightness its share of the display's range, and exaggerates
+the contrast of those that fill the picture. So the histogram is trimmed until nothing is shown with
+more contrast than it has. The paper's models of the eye are not here: the ceiling from contrast
+sensitivity, veiling glare, loss of colour and of acuity in the dark.
 """
 
 from collections.abc import Iterator
@@ -82,8 +82,9 @@ def trim(h: F64, db: float, D: float) -> Trim:
 def adjust_steps(h: F64, db: float, D: float, *, tolerance: float = 0.025) -> Iterator[Trim]:
     """Yield the histogram as it is, and after every trim.
 
-    A trim lowers T and so the next ceiling. It ends when trimmings are below `tolerance` of T; or when no
-    more than `tolerance` of the first T is left: the display has range enough for all contrast.
+    A trim lowers T and so the next ceiling. It ends when trimmings are below `tolerance` of T; or
+    when no more than `tolerance` of the first T is left: the display has range enough for all
+    contrast.
     """
     state = Trim(h, np.inf, float(h.sum()), np.inf)
     yield state
@@ -95,8 +96,8 @@ def adjust_steps(h: F64, db: float, D: float, *, tolerance: float = 0.025) -> It
 def cumulative(state: Trim) -> F64:
     """Return P(b), the share of T below each edge of the bins [Battiato08 eq. 1.22], 1 at the last edge.
 
-    T is that of the ceiling, so no slope exceeds 1; the last trimmings, which it still counts, lie below the
-    first edge.
+    T is that of the ceiling, so no slope exceeds 1; the last trimmings, which it still counts, lie
+    below the first edge.
     """
     return 1 - np.append(np.cumsum(state.h[::-1])[::-1], 0) / state.T
 
@@ -104,9 +105,9 @@ def cumulative(state: Trim) -> F64:
 def fill_gaps(state: Trim, db: float, D: float) -> F64:
     """Return P where the trims left nothing, yet the scene's range is wider than the display's.
 
-    So it is where few brightnesses fill the picture, as in a chart: at a slope of 1 they use less than the
-    display has. The rest goes to the gaps between, to each bin by its distance from a slope of 1. The paper's
-    linear map would show a gray chart with one lamp as black.
+    So it is where few brightnesses fill the picture, as in a chart: at a slope of 1 they use less
+    than the display has. The rest goes to the gaps between, to each bin by its distance from a
+    slope of 1. The paper's linear map would show a gray chart with one lamp as black.
     """
     slope = state.h / state.ceiling
     room = 1 - slope
@@ -130,11 +131,14 @@ def curve(
 ) -> tuple[F64, F64]:
     """Return (ln L, ln Ld), the operator's curve at the edges of the bins.
 
-    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `fill_gaps`.
+    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else
+    `fill_gaps`.
     """
     if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
         got = f"{black=}, {white=}, {bins=}, {field=}, {tolerance=}"
-        raise ValueError(f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}")
+        raise ValueError(
+            f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}"
+        )
     Lf = foveal_image(L, field=field)
     low, high = extremes.robust_minimum(Lf), extremes.robust_maximum(Lf)
     if not low < high:
@@ -176,7 +180,8 @@ def tonemap(
 
     Returns
     -------
-    (H, W) float32 in [0, 1]: (Ld - Ldmin) / (Ldmax - Ldmin), for the display adds its black by itself
+    (H, W) float32 in [0, 1]: (Ld - Ldmin) / (Ldmax - Ldmin), for the display adds its black by
+    itself
 
     Raises
     ------
@@ -185,8 +190,8 @@ def tonemap(
 
     References
     ----------
-    Ward Larson, Rushmeier, Piatko, A visibility matching tone reproduction operator for high dynamic range
-    scenes, IEEE Transactions on Visualization and Computer Graphics 3(4), 1997.
+    Ward Larson, Rushmeier, Piatko, A visibility matching tone reproduction operator for high
+    dynamic range scenes, IEEE Transactions on Visualization and Computer Graphics 3(4), 1997.
 
     Examples
     --------

@@ -13,7 +13,9 @@ def margin(u: Points, v: Points, width: float, height: float) -> Points:
     return np.minimum(np.minimum(u, width - u), np.minimum(v, height - v))
 
 
-def hang(rho: Points, name: str, u: Points, v: Points, width: float, height: float, w: Points) -> Points:
+def hang(
+    rho: Points, name: str, u: Points, v: Points, width: float, height: float, w: Points
+) -> Points:
     """Return `rho` with a framed picture on it; u, v from the picture's upper left corner, all in metres."""
     inside = margin(u, v, width, height)
     at = np.flatnonzero(inside > -w)

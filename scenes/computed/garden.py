@@ -23,14 +23,19 @@ def sky(d: Points, pixel: float, sun: float) -> Points:
     E = cover(E, 0.9 * within(blurred[0] - 0.247, 0.1), rgb(3000, 2850, 2700))
     away = np.hypot(x - SUN[0], y - SUN[1])
     glow = 0.35 * np.exp(away / -0.04) + 0.07 * np.exp(away / -0.2)
-    return E + sun * (glow * rgb(1, 0.85, 0.6) + within(SUN_RADIUS - away, 2 * pixel) * rgb(1, 0.9, 0.7))
+    return E + sun * (
+        glow * rgb(1, 0.85, 0.6) + within(SUN_RADIUS - away, 2 * pixel) * rgb(1, 0.9, 0.7)
+    )
 
 
 def lawn(d: Points, pixel: float) -> Points:
     """Return the light of the ground that the sight meets below the horizon, with its winding path."""
     x, y, _ = d
     z = EYE_HEIGHT / np.maximum(-y, 1e-3)
-    x, w = x * z, pixel * z**1.5  # seen at a slant, a pixel is longer than wide: a width between the two
+    x, w = (
+        x * z,
+        pixel * z**1.5,
+    )  # seen at a slant, a pixel is longer than wide: a width between the two
     grass = look_up("grass", x / 2.5, z / 2.5, w / 2.5) * rgb(900, 1300, 260)
     gravel = look_up("gravel", x / 2, z / 2, w / 2) * rgb(2300, 2000, 1600)
     winding = 0.1 + 0.25 * np.sin(0.6 * z)
@@ -42,7 +47,9 @@ def outside(d: Points, pixel: float, sun: float) -> Points:
     x, y, _ = d
     hill = 0.055 + 0.012 * np.sin(7 * x + 1) + 0.006 * np.sin(19 * x)
     hedge = 0.022 + 0.006 * np.sin(31 * x + 2) + 0.004 * np.sin(67 * x) + 0.003 * np.sin(131 * x)
-    leaves = look_up("grass", 1.6 * x, 1.6 * y, np.full(len(x), 1.6 * pixel, np.float32)) * rgb(240, 390, 100)
+    leaves = look_up("grass", 1.6 * x, 1.6 * y, np.full(len(x), 1.6 * pixel, np.float32)) * rgb(
+        240, 390, 100
+    )
     E = cover(sky(d, pixel, sun), within(hill - y, 2 * pixel), rgb(330, 420, 430))
     E = cover(E, within(hedge - y, 2 * pixel), leaves)
     return cover(E, within(-0.03 - y, 0.004 + pixel), lawn(d, pixel))

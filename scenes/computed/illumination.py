@@ -33,8 +33,8 @@ def length(v: Points) -> Points:
 def from_window(P: Points, face: int, window: Box) -> Points:
     """Return F of an evenly bright rectangle, the near side of `window`.
 
-    F = sum theta n.(a x b) / |a x b| / 2 pi over its edges, with a and b the sights of an edge's ends and
-    theta the angle between them [Lambert, Photometria, 1760].
+    F = sum theta n.(a x b) / |a x b| / 2 pi over its edges, with a and b the sights of an edge's
+    ends and theta the angle between them [Lambert, Photometria, 1760].
     """
     (x0, y0, z), (x1, y1, _) = window
     corners = [rgb(*corner) - P for corner in ((x0, y0, z), (x0, y1, z), (x1, y1, z), (x1, y0, z))]
@@ -42,7 +42,9 @@ def from_window(P: Points, face: int, window: Box) -> Points:
     i, j, k = face // 2, (face // 2 + 1) % 3, (face // 2 + 2) % 3
     F = np.zeros_like(P[i])
     for a, b in zip(sights, sights[1:] + sights[:1], strict=True):
-        cos = np.clip(np.einsum("in,in->n", a, b), -1 + 1e-6, 1 - 1e-6)  # edge-on, theta / sin theta is 0 / 0
+        cos = np.clip(
+            np.einsum("in,in->n", a, b), -1 + 1e-6, 1 - 1e-6
+        )  # edge-on, theta / sin theta is 0 / 0
         F += np.arccos(cos) / np.sqrt(1 - cos * cos) * (a[j] * b[k] - a[k] * b[j])
     return np.abs(F) / np.float32(2 * np.pi)
 

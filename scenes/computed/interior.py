@@ -6,8 +6,9 @@ d    directions of sight (3, N), d_z = 1
 w    width (N,) that a pixel covers on a surface, metres
 rho  reflectance (3, N), 0 to 1
 
-A room is a box seen from inside: each line of sight leaves it through one face, and goes on where that face
-has a hole. A matt face returns rho F L, summed over window, sun, lamp and the other walls (see `light`).
+A room is a box seen from inside: each line of sight leaves it through one face, and goes on where
+that face has a hole. A matt face returns rho F L, summed over window, sun, lamp and the other walls
+(see `light`).
 """
 
 from collections.abc import Callable
@@ -25,7 +26,9 @@ LEFT, RIGHT, FLOOR, CEILING, FRONT, BACK = range(6)
 
 EYE = rgb(0.1, EYE_HEIGHT, 0)
 ROOM = Box((-2.5, 0, -2), (2.5, 2.9, 4.6))
-WINDOW = Box((-0.95, 0.1, 4.6), (1.45, 2.5, 4.85))  # a hole in the back wall, with the panes at its far side
+WINDOW = Box(
+    (-0.95, 0.1, 4.6), (1.45, 2.5, 4.85)
+)  # a hole in the back wall, with the panes at its far side
 DOOR = Box((-2.15, 0, 4.6), (-1.3, 2.1, 4.6))
 CELLAR = Box((-3.3, 0, 4.6), (-0.9, 2.5, 6.4))  # the unlit room behind the door
 BULB, BULB_RADIUS = rgb(1.95, 2.0, 3.7), 0.11
@@ -40,7 +43,9 @@ PAINT = rgb(0.7, 0.68, 0.62)
 def brick(P: Points, w: Points) -> Points:
     """Return rho of a brick wall."""
     x, y, z = P
-    return look_up("brick", y / 1.2, (x + z) / 1.2, w / 1.2)  # the picture shows its courses upright
+    return look_up(
+        "brick", y / 1.2, (x + z) / 1.2, w / 1.2
+    )  # the picture shows its courses upright
 
 
 def left(P: Points, w: Points) -> Points:
@@ -139,7 +144,9 @@ def hang_lamp(E: Points, d: Points, pixel: float, lamp: float) -> Points:
     across, above, z = BULB - EYE
     x, y = d[0] * z - across, d[1] * z - above
     away = np.hypot(x, y) / BULB_RADIUS
-    globe = 15 + lamp * LAMPLIGHT * (0.6 + 0.4 * np.sqrt(np.maximum(1 - away**2, 0)))  # 15: the glass, unlit
+    globe = 15 + lamp * LAMPLIGHT * (
+        0.6 + 0.4 * np.sqrt(np.maximum(1 - away**2, 0))
+    )  # 15: the glass, unlit
     blur = 2 * pixel * z
     E = cover(E, within(0.012 - np.abs(x), blur) * (y > 0), 2.0)
     return cover(E, within((1 - away) * BULB_RADIUS, blur), globe)
@@ -147,7 +154,9 @@ def hang_lamp(E: Points, d: Points, pixel: float, lamp: float) -> Points:
 
 def leave(P: Points, d: Points, box: Box) -> tuple[Points, NDArray[np.int_]]:
     """Return t, how far along d each P inside a box leaves it, and the face through which it does."""
-    with np.errstate(divide="ignore", invalid="ignore"):  # along an axis, the other faces are infinitely far
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # along an axis, the other faces are infinitely far
         t = np.abs((np.where(d > 0, rgb(*box.high), rgb(*box.low)) - P) / d)
     axis = np.nanargmin(t, axis=0)
     each = np.arange(d.shape[1])
@@ -160,7 +169,9 @@ def trace(d: Points, pixel: float, sun: float, lamp: float) -> Points:
     P, w = EYE + t * d, pixel * t
     window, door = ((face == BACK) & (inside(P, hole) > 0) for hole in (WINDOW, DOOR))
     parts: list[tuple[Mask, Callable[..., Points]]]
-    parts = [((face == k) & ~window & ~door, partial(wall, k, sun=sun, lamp=lamp)) for k in MATERIALS]
+    parts = [
+        ((face == k) & ~window & ~door, partial(wall, k, sun=sun, lamp=lamp)) for k in MATERIALS
+    ]
     parts += [(window, partial(through_window, pixel=pixel, sun=sun)), (door, through_door)]
     E = np.empty_like(d)
     for part, radiance in parts:

@@ -18,7 +18,11 @@ def _plane(shape: tuple[int, int]) -> tuple[Points, Points, float]:
         raise ValueError(f"expected a shape (H, W) of positive numbers, got {shape}")
     height, width = shape
     y, x = np.mgrid[:height, :width].astype(np.float32)
-    return (x.ravel() + 0.5 - width / 2) / height, (height / 2 - 0.5 - y.ravel()) / height, 1 / height
+    return (
+        (x.ravel() + 0.5 - width / 2) / height,
+        (height / 2 - 0.5 - y.ravel()) / height,
+        1 / height,
+    )
 
 
 def _picture(shape: tuple[int, int], E: Points, subject: Points) -> F32:
@@ -44,10 +48,15 @@ def backlight(shape: tuple[int, int] = SHAPE) -> F32:
     """
     x, y, pixel = _plane(shape)
     shade = LIGHT["backlight"]
-    sky = cover(rgb(1500, 2600, 4500), np.exp(np.minimum(-np.abs(y + 0.2), 0) / 0.35), rgb(7000, 6400, 5600))
+    sky = cover(
+        rgb(1500, 2600, 4500), np.exp(np.minimum(-np.abs(y + 0.2), 0) / 0.35), rgb(7000, 6400, 5600)
+    )
     hills = within(-0.18 + 0.04 * np.sin(5 * x + 1) + 0.015 * np.sin(13 * x) - y, 2 * pixel)
     E = cover(sky, hills, rgb(700, 620, 700) * (0.6 + _texels("grass", x, y, pixel)))
-    u, v = 0.44 + 0.45 * x / 1.0, 0.22 - 0.45 * (y - 0.03)  # the face stands in the middle of the picture
+    u, v = (
+        0.44 + 0.45 * x / 1.0,
+        0.22 - 0.45 * (y - 0.03),
+    )  # the face stands in the middle of the picture
     portrait = shade * look_up("astronaut", u, v, np.full(len(x), 0.45 * pixel, np.float32))
     head, neck = _ellipse(x, y - 0.05, 0.27, 0.32), np.minimum(0.12 - np.abs(x), -0.1 - y)
     shoulders = _ellipse(x, y + 0.75, 0.55, 0.47)
@@ -66,7 +75,9 @@ def snow(shape: tuple[int, int] = SHAPE) -> F32:
     drift = 0.05 * np.sin(9 * x + 14 * distance) + 0.04 * np.sin(23 * x - 9 * distance)
     E = light * np.clip(0.86 + drift + 0.25 * ripple, 0.4, 0.95) * rgb(0.98, 1.0, 1.04)
     above = y - 0.32 - 0.05 * np.sin(4 * x + 2) - 0.02 * np.sin(11 * x)
-    E = cover(E, within(above, 2 * pixel), rgb(1500, 2600, 5200) * (1.3 - 0.8 * np.clip(above, 0, 1)))
+    E = cover(
+        E, within(above, 2 * pixel), rgb(1500, 2600, 5200) * (1.3 - 0.8 * np.clip(above, 0, 1))
+    )
     wall = np.minimum(0.06 - np.abs(x - 0.45), 0.04 - np.abs(y - 0.31))
     roof = np.minimum(0.035 - np.abs(y - 0.375), 0.1 - np.abs(x - 0.45) - 1.2 * (y - 0.36))
     E = cover(E, within(wall, pixel), light * 0.06 * rgb(1.4, 0.9, 0.6))
@@ -90,7 +101,9 @@ def locomotive(shape: tuple[int, int] = SHAPE) -> F32:
     black = np.maximum.reduce([boiler, cab, chimney, frame])
     E = cover(E, within(np.maximum(frame, cab), pixel), np.full((3, len(x)), 0.03 * light))
     E = cover(E, within(np.maximum(boiler, chimney), pixel), light * sheen * rgb(0.95, 1, 1.05))
-    wheels = np.max([_ellipse(x - at, y + 0.27, 0.115, 0.115) for at in (-0.42, -0.18, 0.06, 0.3)], axis=0)
+    wheels = np.max(
+        [_ellipse(x - at, y + 0.27, 0.115, 0.115) for at in (-0.42, -0.18, 0.06, 0.3)], axis=0
+    )
     E = cover(E, within(wheels, pixel), np.full((3, len(x)), 0.025 * light))
     E = cover(E, within(0.012 - np.abs(wheels - 0.02), pixel), light * 0.09 * rgb(1, 1, 1))
     rod = np.minimum(0.012 - np.abs(y + 0.25), 0.4 - np.abs(x + 0.06))

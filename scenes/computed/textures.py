@@ -4,7 +4,8 @@ rho   reflectance (C, N), 0 to 1; C = 1 gray or 3 RGB
 u, v  places (N,) on a texture, to the right and down, 1 = its whole side; beyond its sides it is mirrored
 w     width (N,) that a pixel covers there, in the unit of what is measured
 
-The wheel holds astronaut, brick, chelsea, coffee, grass and gravel, free of rights: nothing is downloaded.
+The wheel holds astronaut, brick, chelsea, coffee, grass and gravel, free of rights: nothing is
+downloaded.
 """
 
 from functools import lru_cache
@@ -30,7 +31,9 @@ def straighten(picture: Points) -> Points:
     row, column = np.mgrid[: picture.shape[0], : picture.shape[1]]
     narrowing = 0.79 + 0.21 * row / picture.shape[0]
     middle = 0.47 * picture.shape[1]
-    return map_coordinates(picture[..., 0], [row, middle + (column - middle) * narrowing], order=1)[..., None]
+    return map_coordinates(picture[..., 0], [row, middle + (column - middle) * narrowing], order=1)[
+        ..., None
+    ]
 
 
 @lru_cache(maxsize=16)
@@ -40,7 +43,9 @@ def texture(name: str) -> tuple[Points, ...]:
     if name == "brick":
         picture = straighten(picture)
     rho = 0.02 + 0.9 * decode_srgb(picture)  # no paint is quite black, and none quite white
-    return tuple(level.astype(np.float32) for level in transform.pyramid_gaussian(rho, channel_axis=-1))
+    return tuple(
+        level.astype(np.float32) for level in transform.pyramid_gaussian(rho, channel_axis=-1)
+    )
 
 
 def look_up(name: str, u: Points, v: Points, w: Points) -> Points:
@@ -54,7 +59,9 @@ def look_up(name: str, u: Points, v: Points, w: Points) -> Points:
         if len(at):
             texel = [v[at] * level.shape[0] - 0.5, u[at] * level.shape[1] - 0.5]
             for c in range(len(rho)):
-                rho[c, at] += share[at] * map_coordinates(level[..., c], texel, order=1, mode="reflect")
+                rho[c, at] += share[at] * map_coordinates(
+                    level[..., c], texel, order=1, mode="reflect"
+                )
     return rho
 
 

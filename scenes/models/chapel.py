@@ -34,7 +34,9 @@ def vault(half: float, spring: float, apex: float, count: int = 33) -> NDArray[n
     rise = apex - spring
     radius = (half**2 + rise**2) / (2 * half)
     x = np.linspace(-half, half, count)
-    return np.column_stack([x, spring + np.sqrt(np.maximum(radius**2 - (np.abs(x) + radius - half) ** 2, 0))])
+    return np.column_stack(
+        [x, spring + np.sqrt(np.maximum(radius**2 - (np.abs(x) + radius - half) ** 2, 0))]
+    )
 
 
 def shell() -> Parts:
@@ -43,8 +45,12 @@ def shell() -> Parts:
     ends = (3.0, -LENGTH)
     roof = sheet(np.stack([np.column_stack([arc, np.full(len(arc), z)]) for z in ends]))
     floor = quad((-HALF, 0, 3), (HALF, 0, 3), (HALF, 0, -LENGTH), (-HALF, 0, -LENGTH))
-    left = wall((-3, LENGTH), (0, SPRING + 0.02), [LANCET._replace(middle=-z) for z in BAYS], THICK, SPLAY)
-    right = wall((-LENGTH, 3), (0, SPRING + 0.02), [LANCET._replace(middle=z) for z in BAYS], THICK, SPLAY)
+    left = wall(
+        (-3, LENGTH), (0, SPRING + 0.02), [LANCET._replace(middle=-z) for z in BAYS], THICK, SPLAY
+    )
+    right = wall(
+        (-LENGTH, 3), (0, SPRING + 0.02), [LANCET._replace(middle=z) for z in BAYS], THICK, SPLAY
+    )
     apse = wall((-HALF, HALF), (0, 5.2), APSE, THICK, SPLAY)
     gable = wall((-HALF, HALF), (5.2, APEX + 0.1), [ROSE], THICK, SPLAY)
     back = quad((HALF, 0, 3), (-HALF, 0, 3), (-HALF, APEX, 3), (HALF, APEX, 3))
@@ -63,9 +69,16 @@ def panes() -> Parts:
     """Return the glass of all windows."""
     parts: Parts = []
     for k, z in enumerate(BAYS):
-        parts.append((f"glass left {k}", facing_right(pane(LANCET._replace(middle=-z), -THICK), -HALF)))
-        parts.append((f"glass right {k}", facing_left(pane(LANCET._replace(middle=z), -THICK), HALF)))
-    parts += [(f"glass apse {k}", placed(pane(each, -THICK), (0, 0, -LENGTH))) for k, each in enumerate(APSE)]
+        parts.append(
+            (f"glass left {k}", facing_right(pane(LANCET._replace(middle=-z), -THICK), -HALF))
+        )
+        parts.append(
+            (f"glass right {k}", facing_left(pane(LANCET._replace(middle=z), -THICK), HALF))
+        )
+    parts += [
+        (f"glass apse {k}", placed(pane(each, -THICK), (0, 0, -LENGTH)))
+        for k, each in enumerate(APSE)
+    ]
     return [*parts, ("glass rose", placed(pane(ROSE, -THICK), (0, 0, -LENGTH)))]
 
 
@@ -90,16 +103,23 @@ def ribs() -> Parts:
     for z in [BAYS[0] + BAY / 2, *(z - BAY / 2 for z in BAYS)]:
         for side in (-1, 1):
             for dz, dx in ((0, 0.16), (-0.2, 0.04), (0.2, 0.04)):
-                parts.append(("pale", placed(lathe(shaft), (side * (HALF - dx), 0, z + dz), scale=(1, 1, 1))))
+                parts.append(
+                    ("pale", placed(lathe(shaft), (side * (HALF - dx), 0, z + dz), scale=(1, 1, 1)))
+                )
         for radius, depth, dz in ((0.13, 0.16, 0), (0.08, 0.04, -0.2), (0.08, 0.04, 0.2)):
             arc = vault(HALF - depth, SPRING + 0.2, APEX - depth, 61)
             parts.append(("pale", tube(np.column_stack([arc, np.full(len(arc), z + dz)]), radius)))
     for side in (-1, 1):
         for y, r in ((1.45, 0.07), (4.42, 0.06)):
             parts.append(
-                ("pale", tube([(side * HALF, y, 3), (side * HALF, y, 0), (side * HALF, y, -LENGTH)], r))
+                (
+                    "pale",
+                    tube([(side * HALF, y, 3), (side * HALF, y, 0), (side * HALF, y, -LENGTH)], r),
+                )
             )
-    parts.append(("pale", tube([(0, APEX - 0.03, 3), (0, APEX - 0.03, -5), (0, APEX - 0.03, -LENGTH)], 0.09)))
+    parts.append(
+        ("pale", tube([(0, APEX - 0.03, 3), (0, APEX - 0.03, -5), (0, APEX - 0.03, -LENGTH)], 0.09))
+    )
     for each in (*APSE, ROSE):
         parts.append(("pale", hood(each)))
     return parts
@@ -128,14 +148,18 @@ def materials() -> dict[str, Material]:
     made = {
         "stone": surfaces.matt(stone, metres=2.4),
         "pale": surfaces.matt(surfaces.plaster((0.44, 0.39, 0.31), seed=2, depth=0.12), metres=1.5),
-        "plaster": surfaces.matt(surfaces.plaster((0.42, 0.38, 0.31), seed=1, depth=0.13), metres=4.0),
+        "plaster": surfaces.matt(
+            surfaces.plaster((0.42, 0.38, 0.31), seed=1, depth=0.13), metres=4.0
+        ),
         "tiles": surfaces.glossy(
             surfaces.tiles((0.34, 0.27, 0.19), (0.16, 0.045, 0.028), seed=4), rough=0.22, metres=2.4
         ),
         "oak": surfaces.glossy(oak, rough=0.28, metres=(1.3, 0.5)),
         "leather": surfaces.glossy((0.06, 0.015, 0.012), rough=0.35),
         "book": surfaces.matt((0.05, 0.012, 0.02)),
-        "carpet": surfaces.matt(surfaces.tinted("grass", (0.22, 0.02, 0.025), contrast=0.4), metres=0.4),
+        "carpet": surfaces.matt(
+            surfaces.tinted("grass", (0.22, 0.02, 0.025), contrast=0.4), metres=0.4
+        ),
         "linen": surfaces.matt((0.75, 0.73, 0.68)),
         "wax": surfaces.matt((0.78, 0.7, 0.52)),
         "cup": surfaces.glossy((0.35, 0.02, 0.02), rough=0.15),
@@ -195,4 +219,6 @@ def place() -> Place:
     }
     parts = shell() + panes() + ribs() + pews() + sanctuary() + votives() + corona()
     visitor = put(standing("coat", "trousers"), (0.05, 0.01, -5.6), turn=180)
-    return Place(parts, materials(), lights, Camera((-0.75, 1.62, 1.9), (0.22, 2.55, -10.0), 68), visitor)
+    return Place(
+        parts, materials(), lights, Camera((-0.75, 1.62, 1.9), (0.22, 2.55, -10.0), 68), visitor
+    )

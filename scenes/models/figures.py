@@ -42,12 +42,16 @@ def leg(cloth: str, hip: float, swing: float, bend: float) -> Parts:
         (
             cloth,
             tube(
-                [top, (top + knee) / 2, knee, (knee + ankle) / 2, ankle], [0.095, 0.085, 0.066, 0.06, 0.048]
+                [top, (top + knee) / 2, knee, (knee + ankle) / 2, ankle],
+                [0.095, 0.085, 0.066, 0.06, 0.048],
             ),
         ),
         (
             "hair",
-            tube([ankle + (0, -0.02, -0.03), (ankle + toe) / 2 + (0, -0.01, 0), toe], [0.045, 0.046, 0.034]),
+            tube(
+                [ankle + (0, -0.02, -0.03), (ankle + toe) / 2 + (0, -0.01, 0), toe],
+                [0.045, 0.046, 0.034],
+            ),
         ),
     ]
 
@@ -105,7 +109,9 @@ def umbrella() -> Parts:
         a = 2 * np.pi * k / count
         tips = [
             (rr * np.cos(a), yy - 0.006, rr * np.sin(a))
-            for rr, yy in zip(rim * np.sin(s * 1.25) / np.sin(1.25), 0.98 - 0.26 * s**2, strict=True)
+            for rr, yy in zip(
+                rim * np.sin(s * 1.25) / np.sin(1.25), 0.98 - 0.26 * s**2, strict=True
+            )
         ]
         ribs.append(("steel", tube(tips, 0.004, sides=5)))
     return [
@@ -142,7 +148,11 @@ def cat() -> Parts:
             (
                 "fur",
                 tube(
-                    [(side * 0.035, 0.2, 0.06), (side * 0.036, 0.1, 0.085), (side * 0.036, 0.02, 0.09)],
+                    [
+                        (side * 0.035, 0.2, 0.06),
+                        (side * 0.036, 0.1, 0.085),
+                        (side * 0.036, 0.02, 0.09),
+                    ],
                     [0.035, 0.024, 0.02],
                 ),
             )
@@ -152,6 +162,10 @@ def cat() -> Parts:
         fur.append(("fur", ball((side * 0.08, 0.018, 0.02), (0.025, 0.018, 0.05), sides=10)))
         fur.append(("eye", ball((side * 0.024, 0.368, 0.132), (0.009, 0.01, 0.007), sides=8)))
     bow = np.linspace(0, 2.6, 16)
-    tail = np.column_stack([0.1 + 0.07 * np.sin(bow), 0.022 + 0.0 * bow, -0.17 + 0.13 * (1 - np.cos(bow))])
-    fur.append(("fur", tube(np.concatenate([[(0, 0.04, -0.17)], tail]), np.linspace(0.026, 0.016, 17))))
+    tail = np.column_stack(
+        [0.1 + 0.07 * np.sin(bow), 0.022 + 0.0 * bow, -0.17 + 0.13 * (1 - np.cos(bow))]
+    )
+    fur.append(
+        ("fur", tube(np.concatenate([[(0, 0.04, -0.17)], tail]), np.linspace(0.026, 0.016, 17)))
+    )
     return fur

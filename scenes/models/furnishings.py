@@ -2,7 +2,19 @@
 
 import numpy as np
 
-from scenes.models.shapes import Mesh, Parts, ball, box, extrude, lathe, placed, put, sheet, tube, turned
+from scenes.models.shapes import (
+    Mesh,
+    Parts,
+    ball,
+    box,
+    extrude,
+    lathe,
+    placed,
+    put,
+    sheet,
+    tube,
+    turned,
+)
 
 ALTAR = -15.0  # z of the wall behind the altar, metres
 
@@ -25,7 +37,9 @@ def pew() -> Parts:
     rng = np.random.default_rng(5)
     for x in (-0.7, -0.15, 0.55):
         book = placed(
-            box((-0.06, 0, -0.085), (0.06, 0.035, 0.085)), (x, 0.7, 0.28), turned(float(rng.uniform(-20, 20)))
+            box((-0.06, 0, -0.085), (0.06, 0.035, 0.085)),
+            (x, 0.7, 0.28),
+            turned(float(rng.uniform(-20, 20))),
         )
         parts.append(("book", book))
     return parts
@@ -33,13 +47,22 @@ def pew() -> Parts:
 
 def candle(height: float, radius: float) -> Parts:
     """Return a burning candle that stands at the origin."""
-    wax = lathe([(0, height), (radius * 0.8, height), (radius, height - 0.006), (radius, 0)], sides=14)
+    wax = lathe(
+        [(0, height), (radius * 0.8, height), (radius, height - 0.006), (radius, 0)], sides=14
+    )
     return [("wax", wax), ("flame", placed(flame(), (0, height + 0.012, 0)))]
 
 
 def flame() -> Mesh:
     """Return a flame 6 cm high."""
-    profile = [(0.0, 0.062), (0.003, 0.05), (0.0075, 0.033), (0.011, 0.018), (0.0095, 0.007), (0.0, 0.0)]
+    profile = [
+        (0.0, 0.062),
+        (0.003, 0.05),
+        (0.0075, 0.033),
+        (0.011, 0.018),
+        (0.0095, 0.007),
+        (0.0, 0.0),
+    ]
     return lathe(profile, sides=8)
 
 
@@ -53,7 +76,10 @@ def lamp() -> Parts:
     parts.append(("brass", placed(ball((0, -0.03, 0), 0.03), (0, 0, 0))))
     for a in np.arange(3) * 2 * np.pi / 3:
         parts.append(
-            ("brass", tube([(0.088 * np.cos(a), 0.13, 0.088 * np.sin(a)), (0, 0.6, 0)], 0.004, sides=5))
+            (
+                "brass",
+                tube([(0.088 * np.cos(a), 0.13, 0.088 * np.sin(a)), (0, 0.6, 0)], 0.004, sides=5),
+            )
         )
     parts.append(("brass", tube([(0, 0.6, 0), (0, 4.6, 0)], 0.005, sides=5)))
     return put(parts, (-1.3, 2.95, -11.9))
@@ -72,7 +98,10 @@ def votives() -> Parts:
             parts.append(("cup", cup))
             height = float(rng.uniform(0.03, 0.11))
             parts += put(
-                candle(height, 0.017) if rng.random() < 0.72 else [("wax", candle(height, 0.017)[0][1])], at
+                candle(height, 0.017)
+                if rng.random() < 0.72
+                else [("wax", candle(height, 0.017)[0][1])],
+                at,
             )
     for x in (-0.48, 0.48):
         for z, y in ((0.04, 0.78), (-0.55, 1.17)):
@@ -88,7 +117,12 @@ def corona() -> Parts:
         parts.append(
             (
                 "iron",
-                tube(np.column_stack([0.8 * np.cos(angle), np.full_like(angle, y), 0.8 * np.sin(angle)]), r),
+                tube(
+                    np.column_stack(
+                        [0.8 * np.cos(angle), np.full_like(angle, y), 0.8 * np.sin(angle)]
+                    ),
+                    r,
+                ),
             )
         )
     for k, a in enumerate(np.arange(12) * np.pi / 6):
@@ -127,12 +161,24 @@ def sanctuary() -> Parts:
             for y, s in ((0.86, 1.6), (1.2, 0.9), (1.506, 0.1))
         ]
     )
-    parts += [("linen", sheet(hem)), ("linen", box((-1.0, 1.5, -14.0), (1.0, 1.51, -13.1), bevel=0.003))]
+    parts += [
+        ("linen", sheet(hem)),
+        ("linen", box((-1.0, 1.5, -14.0), (1.0, 1.51, -13.1), bevel=0.003)),
+    ]
     parts += [
         (
             "gilt",
             extrude(
-                [(-1.0, 0), (1.0, 0), (1.0, 0.42), (0.5, 0.5), (0, 0.62), (-0.5, 0.5), (-1.0, 0.42)], 0.08
+                [
+                    (-1.0, 0),
+                    (1.0, 0),
+                    (1.0, 0.42),
+                    (0.5, 0.5),
+                    (0, 0.62),
+                    (-0.5, 0.5),
+                    (-1.0, 0.42),
+                ],
+                0.08,
             ),
         )
     ]
@@ -156,6 +202,9 @@ def sanctuary() -> Parts:
                 ("brass", placed(lathe(stick, sides=16), at)),
                 *put(candle(high, 0.018), np.add(at, (0, 0.42, 0))),
             ]
-    cross = [box((-0.02, 0, -0.02), (0.02, 0.62, 0.02)), box((-0.17, 0.36, -0.02), (0.17, 0.4, 0.02))]
+    cross = [
+        box((-0.02, 0, -0.02), (0.02, 0.62, 0.02)),
+        box((-0.17, 0.36, -0.02), (0.17, 0.4, 0.02)),
+    ]
     parts += put([("brass", each) for each in cross], (0, 1.51, -13.8))
     return parts + lamp()

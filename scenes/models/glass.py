@@ -17,7 +17,9 @@ PEARL, VIOLET, SKIN = (0.8, 0.82, 0.75), (0.2, 0.03, 0.34), (0.85, 0.55, 0.36)
 def cells(at: Float, points: Float) -> tuple[NDArray[np.int_], Float]:
     """Return for each place which point is nearest, and how far it is from being nearer to another."""
     distance, index = cKDTree(points).query(at.reshape(-1, 2), k=2)
-    return index[:, 0].reshape(at.shape[:2]), (distance[:, 1] - distance[:, 0]).reshape(at.shape[:2])
+    return index[:, 0].reshape(at.shape[:2]), (distance[:, 1] - distance[:, 0]).reshape(
+        at.shape[:2]
+    )
 
 
 def coloured(
@@ -38,7 +40,9 @@ def lancet(seed: int, *, aspect: float = 2.9, width: int = 256) -> Float:
     field = rng.uniform((0, 0), (aspect, 1), (int(70 * aspect), 2))
     index, lead = cells(at, field)
     cold = bool(seed % 2)
-    T = coloured(index, [COBALT, COBALT, AZURE, VIOLET] if cold else [RUBY, RUBY, VIOLET, COBALT], rng=rng)
+    T = coloured(
+        index, [COBALT, COBALT, AZURE, VIOLET] if cold else [RUBY, RUBY, VIOLET, COBALT], rng=rng
+    )
     for k, middle in enumerate(np.arange(0.72, aspect - 0.3, 0.74)):
         T, lead = medallion(T, lead, at, (middle, 0.5), 0.33, rng=rng, warm=cold == (k % 2 == 0))
     edge = np.minimum(np.minimum(x, 1 - x), aspect - y)
@@ -75,8 +79,13 @@ def medallion(
     r, angle = np.hypot(d[..., 0], d[..., 1]) / radius, np.arctan2(d[..., 1], d[..., 0])
     petals = 8 if warm else 6
     turn = (angle / (2 * np.pi) * petals + 0.5) % petals
-    piece = turn.astype(int) + petals * (r > 0.36) + petals * (r > 0.72 + 0.1 * np.cos(petals * angle))
-    palettes = ([[PEARL, GOLD], [RUBY, AMBER], [GOLD, EMERALD]], [[GOLD, SKIN], [AZURE, PEARL], [RUBY, GOLD]])
+    piece = (
+        turn.astype(int) + petals * (r > 0.36) + petals * (r > 0.72 + 0.1 * np.cos(petals * angle))
+    )
+    palettes = (
+        [[PEARL, GOLD], [RUBY, AMBER], [GOLD, EMERALD]],
+        [[GOLD, SKIN], [AZURE, PEARL], [RUBY, GOLD]],
+    )
     inside = np.zeros((*r.shape, 3))
     for ring, palette in enumerate(palettes[0] if warm else palettes[1]):
         colours = coloured(piece, palette, rng=rng)
@@ -110,7 +119,11 @@ def rose(seed: int, *, size: int = 512, petals: int = 12) -> Float:
         stone |= np.abs(r - ring) < 0.022
     roundel = np.hypot((turn % 1 - 0.5) * 2 * np.pi / petals * 0.885, r - 0.885)
     T = np.where((roundel < 0.085)[..., None], coloured(index, [GOLD, PEARL, EMERALD], rng=rng), T)
-    stone |= (np.abs(roundel - 0.095) < 0.014) | ((r > 0.78) & (roundel > 0.095) & (r < 0.8)) | (r > 0.985)
+    stone |= (
+        (np.abs(roundel - 0.095) < 0.014)
+        | ((r > 0.78) & (roundel > 0.095) & (r < 0.8))
+        | (r > 0.985)
+    )
     return leaded(np.where(stone[..., None], 0.0, T), lead * 0.8, size, rng)
 
 

@@ -34,7 +34,11 @@ def house(width: float, height: float, openings: list[Opening], coat: str) -> Pa
             parts.append(
                 (
                     "trim",
-                    box((a - 0.1, each.sill - 0.09, -0.05), (b + 0.1, each.sill - 0.01, 0.09), bevel=0.015),
+                    box(
+                        (a - 0.1, each.sill - 0.09, -0.05),
+                        (b + 0.1, each.sill - 0.01, 0.09),
+                        bevel=0.015,
+                    ),
                 )
             )
             for y in (each.sill + 0.02, each.sill + 0.62 * (each.spring - each.sill)):
@@ -43,12 +47,23 @@ def house(width: float, height: float, openings: list[Opening], coat: str) -> Pa
                 parts.append(("sash", box((x - 0.022, each.sill, -0.2), (x + 0.022, upper, -0.15))))
         edge = outline(each.widened(0.05))[1:-1]
         if each.rise:
-            parts.append(("trim", tube(np.column_stack([edge, np.full(len(edge), 0.015)]), 0.045, sides=8)))
+            parts.append(
+                ("trim", tube(np.column_stack([edge, np.full(len(edge), 0.015)]), 0.045, sides=8))
+            )
         else:
             parts.append(
-                ("trim", box((a - 0.12, upper + 0.02, -0.02), (b + 0.12, upper + 0.16, 0.07), bevel=0.015))
+                (
+                    "trim",
+                    box(
+                        (a - 0.12, upper + 0.02, -0.02), (b + 0.12, upper + 0.16, 0.07), bevel=0.015
+                    ),
+                )
             )
-    for y, deep, tall in ((height - 0.2, 0.22, 0.2), (height - 0.34, 0.12, 0.14), (3.15, 0.08, 0.14)):
+    for y, deep, tall in (
+        (height - 0.2, 0.22, 0.2),
+        (height - 0.34, 0.12, 0.14),
+        (3.15, 0.08, 0.14),
+    ):
         parts.append(("trim", box((0, y, 0), (width, y + tall, deep), bevel=0.03)))
     parts.append(("trim", box((0, 0, 0), (width, 0.45, 0.05), bevel=0.012)))
     return parts
@@ -65,10 +80,17 @@ def storeys(width: float, floors: int, *, seed: int) -> tuple[list[Opening], lis
         door = k == seed % count
         found.append(
             Opening(
-                u, 1.0 if door else 1.05, 0.0 if door else 0.95, 2.25, 0.35 if arched or door else 0.0, False
+                u,
+                1.0 if door else 1.05,
+                0.0 if door else 0.95,
+                2.25,
+                0.35 if arched or door else 0.0,
+                False,
             )
         )
-        behind.append("door" if door else f"lit {rng.integers(0, 4)}" if rng.random() < 0.5 else "dark")
+        behind.append(
+            "door" if door else f"lit {rng.integers(0, 4)}" if rng.random() < 0.5 else "dark"
+        )
         for floor in range(1, floors):
             sill = 0.85 + 2.95 * floor
             found.append(Opening(u, 0.95, sill, sill + 1.45, 0.22 if arched else 0.0, False))
@@ -82,7 +104,8 @@ def front(side: int, start: float, width: float, floors: int, coat: str, *, seed
     height = 0.6 + 2.95 * floors + 0.3 * (seed % 3)
     order = sorted(range(len(openings)), key=lambda k: openings[k].middle)
     columns = [
-        [openings[k] for k in order if openings[k].middle == u] for u in sorted({o.middle for o in openings})
+        [openings[k] for k in order if openings[k].middle == u]
+        for u in sorted({o.middle for o in openings})
     ]
     parts: Parts = []
     # A wall has its openings side by side; storeys are walls one upon another.
@@ -91,7 +114,9 @@ def front(side: int, start: float, width: float, floors: int, coat: str, *, seed
             (0 if floor == 0 else 0.5 + 2.95 * floor),
             (height if floor == floors - 1 else 0.5 + 2.95 * (floor + 1)),
         )
-        parts.append((coat, wall((0, width), (low, high), [column[floor] for column in columns], 0.22, 0.02)))
+        parts.append(
+            (coat, wall((0, width), (low, high), [column[floor] for column in columns], 0.22, 0.02))
+        )
     parts += house(width, height, openings, coat)[1:]
     for each, what in zip(openings, behind, strict=True):
         parts.append((what, pane(each, -0.22)))
@@ -129,7 +154,8 @@ def door(opening: Opening) -> Parts:
 def alley() -> Parts:
     """Return the alley between two houses on the left: its walls, barrels, a crate, a door in the dark.
 
-    Behind its arch it is wider than the arch, so that the camera looks past the light that falls through.
+    Behind its arch it is wider than the arch, so that the camera looks past the light that falls
+    through.
     """
     a, b = ALLEY
     back, far = a - 3.2, LEFT - 9
@@ -169,15 +195,22 @@ def church() -> Parts:
     parts.append(
         (
             "roof",
-            hull([(sx * 2.05, 13.5, -2 + sz * 2.05) for sx in (-1, 1) for sz in (-1, 1)] + [(0, 19.5, -2)]),
+            hull(
+                [(sx * 2.05, 13.5, -2 + sz * 2.05) for sx in (-1, 1) for sz in (-1, 1)]
+                + [(0, 19.5, -2)]
+            ),
         )
     )
-    parts.append(("roof", sheet([[(-8, 7.5, 0.2), (8, 7.5, 0.2)], [(-8, 10.5, -4), (8, 10.5, -4)]])))
+    parts.append(
+        ("roof", sheet([[(-8, 7.5, 0.2), (8, 7.5, 0.2)], [(-8, 10.5, -4), (8, 10.5, -4)]]))
+    )
     t = np.linspace(0, 2 * np.pi, 33)[:-1]
     parts.append(("clock", extrude(np.column_stack([0.95 * np.cos(t), 0.95 * np.sin(t)]), 0.06)))
     parts[-1:] = put(parts[-1:], (0, 11.7, 0))
     ring = np.linspace(0, 2 * np.pi, 41)
-    parts.append(("iron", tube(np.column_stack([np.cos(ring), 11.7 + np.sin(ring), 0.03 + 0 * ring]), 0.05)))
+    parts.append(
+        ("iron", tube(np.column_stack([np.cos(ring), 11.7 + np.sin(ring), 0.03 + 0 * ring]), 0.05))
+    )
     for k in range(12):
         a = k * np.pi / 6
         parts.append(
@@ -195,6 +228,9 @@ def church() -> Parts:
         )
     for a, r in ((0.6, 0.5), (4.4, 0.72)):
         parts.append(
-            ("iron", tube([(0, 11.7, 0.07), (r * np.sin(a), 11.7 + r * np.cos(a), 0.07)], 0.03, sides=5))
+            (
+                "iron",
+                tube([(0, 11.7, 0.07), (r * np.sin(a), 11.7 + r * np.cos(a), 0.07)], 0.03, sides=5),
+            )
         )
     return put(parts, (0, 0, END))

@@ -65,7 +65,10 @@ def toolboard() -> Parts:
     parts.append(("beech", box((1.98, 2.05, z), (2.78, 2.07, z + 0.08))))
     for k, x in enumerate((2.1, 2.32, 2.52, 2.72)):
         parts += put(
-            tools.hammer() if k != 2 else tools.square(), (x, 1.72, z + 0.04), turn=4 * k - 6, axis="z"
+            tools.hammer() if k != 2 else tools.square(),
+            (x, 1.72, z + 0.04),
+            turn=4 * k - 6,
+            axis="z",
         )
     parts.append(("beech", box((1.15, 1.18, z), (2.8, 1.2, z + 0.16))))
     for k, x in enumerate(np.linspace(1.25, 2.7, 8)):
@@ -78,7 +81,9 @@ def toolboard() -> Parts:
     parts.append(("oak", box((1.25, 0, BACK), (2.75, 0.82, BACK + 0.5), bevel=0.012)))
     for k in range(6):
         x, y = 1.32 + 0.48 * (k % 3), 0.1 + 0.36 * (k // 3)
-        parts.append(("beech", box((x, y, BACK + 0.5), (x + 0.4, y + 0.3, BACK + 0.515), bevel=0.006)))
+        parts.append(
+            ("beech", box((x, y, BACK + 0.5), (x + 0.4, y + 0.3, BACK + 0.515), bevel=0.006))
+        )
         parts.append(("brass", ball((x + 0.2, y + 0.17, BACK + 0.53), 0.018, sides=10)))
     return parts
 
@@ -104,11 +109,14 @@ def shelves() -> Parts:
             elif kind == 1:
                 wide = 2 * radius
                 parts += put(
-                    tools.jar(rng.uniform(0.12, 0.24), radius * 0.9, paint), (x + 0.18, y, z + radius)
+                    tools.jar(rng.uniform(0.12, 0.24), radius * 0.9, paint),
+                    (x + 0.18, y, z + radius),
                 )
             else:
                 wide = 2.1 * radius
-                parts += put(tools.tin(rng.uniform(0.1, 0.2), radius, paint), (x + 0.18, y, z + radius))
+                parts += put(
+                    tools.tin(rng.uniform(0.1, 0.2), radius, paint), (x + 0.18, y, z + radius)
+                )
             z += wide + rng.uniform(0.015, 0.08)
     for z in (-3.5, -2.4, -1.28):
         parts.append(("pine", box((x, 0, z - 0.02), (x + 0.32, 2.15, z + 0.02))))

@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 from scenes.models.shapes import Mesh, merge, placed, sheet
 
 Float = NDArray[np.float64]
-TUCK = 1e-4  # metres by which one piece of a wall overlaps the next, so that no line of sight slips through
+# metres by which one piece of a wall overlaps the next, so that no line of sight slips through
+TUCK = 1e-4
 
 
 class Opening(NamedTuple):
     """A hole in a wall, metres: its middle u, its width, sill and springing v, and the rise of its arch.
 
-    An arch is pointed, or else half an ellipse; a round window has it below its springing as well as above.
+    An arch is pointed, or else half an ellipse; a round window has it below its springing as well
+    as above.
     """
 
     middle: float
@@ -33,7 +35,9 @@ class Opening(NamedTuple):
         """Return the opening larger by so much on each side."""
         rise = self.rise + by if self.rise else 0.0
         spring = self.spring if self.rise else self.spring + by
-        return self._replace(width=self.width + 2 * by, sill=self.sill - by, spring=spring, rise=rise)
+        return self._replace(
+            width=self.width + 2 * by, sill=self.sill - by, spring=spring, rise=rise
+        )
 
 
 def top(opening: Opening, u: Float) -> Float:
@@ -41,7 +45,8 @@ def top(opening: Opening, u: Float) -> Float:
     s = np.clip(np.abs(u - opening.middle) / (opening.width / 2), 0, 1)
     if not opening.pointed:
         return opening.spring + opening.rise * np.sqrt(1 - s**2)
-    # An arc about a centre on the springing line, beyond the middle: it meets its mirror image in a point.
+    # An arc about a centre on the springing line, beyond the middle: it meets its mirror image in a
+    # point.
     half, rise = opening.width / 2, max(opening.rise, 1e-9)
     radius = (half**2 + rise**2) / (2 * half)
     x = s * half + radius - half
@@ -102,17 +107,27 @@ def flat(u: Float, low: Float | float, high: Float | float) -> Mesh:
 def reveal(front: Opening, back: Opening, thick: float) -> Mesh:
     """Return the sides of an opening, from its edge in front to its edge behind."""
     a, b = outline(front), outline(back)
-    ring = np.stack([np.column_stack([b, np.full(len(b), -thick)]), np.column_stack([a, np.zeros(len(a))])])
+    ring = np.stack(
+        [np.column_stack([b, np.full(len(b), -thick)]), np.column_stack([a, np.zeros(len(a))])]
+    )
     sides = sheet(ring, sharp=True)
-    return sides if front.round else merge([sides, sheet(np.stack([ring[1, [0, -1]], ring[0, [0, -1]]]))])
+    return (
+        sides
+        if front.round
+        else merge([sides, sheet(np.stack([ring[1, [0, -1]], ring[0, [0, -1]]]))])
+    )
 
 
 def pane(opening: Opening, z: float = 0.0) -> Mesh:
     """Return what fills an opening; uv goes from 0 to 1 over the rectangle around it."""
     u = across(opening)
-    edge = np.stack([np.column_stack([u, bottom(opening, u)]), np.column_stack([u, top(opening, u)])])
+    edge = np.stack(
+        [np.column_stack([u, bottom(opening, u)]), np.column_stack([u, top(opening, u)])]
+    )
     low, high = edge.reshape(-1, 2).min(axis=0), edge.reshape(-1, 2).max(axis=0)
-    return sheet(np.concatenate([edge, np.full((2, len(u), 1), z)], axis=2), (edge - low) / (high - low))
+    return sheet(
+        np.concatenate([edge, np.full((2, len(u), 1), z)], axis=2), (edge - low) / (high - low)
+    )
 
 
 def facing_right(mesh: Mesh, x: float) -> Mesh:

@@ -80,7 +80,11 @@ def bicycle() -> Parts:
             parts.append(
                 (
                     "steel",
-                    tube([(x, 0.34, 0), (x + 0.32 * np.cos(a), 0.34 + 0.32 * np.sin(a), 0)], 0.0025, sides=4),
+                    tube(
+                        [(x, 0.34, 0), (x + 0.32 * np.cos(a), 0.34 + 0.32 * np.sin(a), 0)],
+                        0.0025,
+                        sides=4,
+                    ),
                 )
             )
     joints = {
@@ -120,14 +124,17 @@ def furniture() -> Parts:
         for _ in range(170):
             d = rng.standard_normal(3)
             at = np.array((x, 0.8, z)) + 0.36 * d / np.linalg.norm(d) * rng.uniform(0.6, 1)
-            leaf = sheet(0.05 * np.array([[(-1, -0.6, 0), (1, -0.6, 0)], [(-1, 0.6, 0.2), (1, 0.6, 0.2)]]))
+            leaf = sheet(
+                0.05 * np.array([[(-1, -0.6, 0), (1, -0.6, 0)], [(-1, 0.6, 0.2), (1, 0.6, 0.2)]])
+            )
             parts.append(
                 (
                     "leaves",
                     placed(
                         leaf,
                         at,
-                        turned(float(rng.uniform(0, 360))) @ turned(float(rng.uniform(-80, 80)), "x"),
+                        turned(float(rng.uniform(0, 360)))
+                        @ turned(float(rng.uniform(-80, 80)), "x"),
                     ),
                 )
             )
@@ -136,7 +143,16 @@ def furniture() -> Parts:
             (
                 "iron",
                 placed(
-                    lathe([(0, 0.85), (0.05, 0.83), (0.06, 0.75), (0.045, 0.7), (0.06, 0.05), (0.09, 0.0)]),
+                    lathe(
+                        [
+                            (0, 0.85),
+                            (0.05, 0.83),
+                            (0.06, 0.75),
+                            (0.045, 0.7),
+                            (0.06, 0.05),
+                            (0.09, 0.0),
+                        ]
+                    ),
                     (2.55, 0, z),
                 ),
             )

@@ -1,8 +1,8 @@
 """What a place consists of, for `scenes.render` to make a picture of.
 
-A material is a Mitsuba BSDF as a dictionary, in which an array (h, w, 3) stands for a texture of reflectance.
-Light adds up, so a place is rendered once per Light, and the results are summed. Each Light then needs only
-what matters to it.
+A material is a Mitsuba BSDF as a dictionary, in which an array (h, w, 3) stands for a texture of
+reflectance. Light adds up, so a place is rendered once per Light, and the results are summed. Each
+Light then needs only what matters to it.
 """
 
 from collections.abc import Mapping
@@ -23,7 +23,8 @@ class Light(NamedTuple):
 
     Attributes
     ----------
-    glow : radiance, cd/m^2, of what shines, by material: (r, g, b), or a texture over uv from 0 to 1, each
+    glow : radiance, cd/m^2, of what shines, by material: (r, g, b), or a texture over uv from 0 to
+        1, each
         place of which belongs to one place of each part of that material
     beams : further emitters, as Mitsuba's dictionaries
     absent : materials that are not there, as they would be in the way

@@ -36,7 +36,9 @@ def merge(meshes: Iterable[Mesh]) -> Mesh:
     vertices, normals, uv, faces = zip(*meshes, strict=True)
     starts = np.cumsum([0, *(len(each) for each in vertices[:-1])])
     moved = [each + start for each, start in zip(faces, starts, strict=True)]
-    return Mesh(np.concatenate(vertices), np.concatenate(normals), np.concatenate(uv), np.concatenate(moved))
+    return Mesh(
+        np.concatenate(vertices), np.concatenate(normals), np.concatenate(uv), np.concatenate(moved)
+    )
 
 
 def by_material(parts: Parts) -> dict[str, Mesh]:
@@ -55,7 +57,9 @@ def turned(degrees: float, axis: str = "y") -> Float:
     return R
 
 
-def placed(mesh: Mesh, at: ArrayLike = (0, 0, 0), turn: Float | None = None, scale: ArrayLike = 1.0) -> Mesh:
+def placed(
+    mesh: Mesh, at: ArrayLike = (0, 0, 0), turn: Float | None = None, scale: ArrayLike = 1.0
+) -> Mesh:
     """Return a mesh scaled, then turned, then moved."""
     R = np.eye(3) if turn is None else turn
     size = np.broadcast_to(np.asarray(scale, np.float64), 3)
@@ -64,7 +68,12 @@ def placed(mesh: Mesh, at: ArrayLike = (0, 0, 0), turn: Float | None = None, sca
 
 
 def put(
-    parts: Parts, at: ArrayLike = (0, 0, 0), *, turn: float = 0, axis: str = "y", scale: ArrayLike = 1.0
+    parts: Parts,
+    at: ArrayLike = (0, 0, 0),
+    *,
+    turn: float = 0,
+    axis: str = "y",
+    scale: ArrayLike = 1.0,
 ) -> Parts:
     """Return a model scaled, turned by degrees about an axis, and moved."""
     return [(name, placed(mesh, at, turned(turn, axis), scale)) for name, mesh in parts]
@@ -93,7 +102,9 @@ def sheet(P: Places, uv: ArrayLike | None = None, *, sharp: bool = False) -> Mes
     uv = np.asarray(uv, np.float64)
     if sharp:
         corners = [
-            (slice(a, a + P.shape[0] - 1), slice(b, b + P.shape[1] - 1)) for a in (0, 1) for b in (0, 1)
+            (slice(a, a + P.shape[0] - 1), slice(b, b + P.shape[1] - 1))
+            for a in (0, 1)
+            for b in (0, 1)
         ]
         square = np.stack([P[c] for c in corners], axis=2).reshape(-1, 2, 2, 3)
         places = np.stack([uv[c] for c in corners], axis=2).reshape(-1, 2, 2, 2)
@@ -122,17 +133,23 @@ def hull(points: ArrayLike) -> Mesh:
     solid = ConvexHull(P)
     n = solid.equations[:, :3]
     corners = P[solid.simplices]
-    inward = np.einsum("fk,fk->f", np.cross(*(corners[:, k] - corners[:, 0] for k in (1, 2))), n) < 0
+    inward = (
+        np.einsum("fk,fk->f", np.cross(*(corners[:, k] - corners[:, 0] for k in (1, 2))), n) < 0
+    )
     corners[inward] = corners[inward][:, ::-1]
     normals = np.repeat(n, 3, axis=0)
     vertices = corners.reshape(-1, 3)
-    return Mesh(vertices, normals, unfold(vertices, normals), np.arange(len(vertices)).reshape(-1, 3))
+    return Mesh(
+        vertices, normals, unfold(vertices, normals), np.arange(len(vertices)).reshape(-1, 3)
+    )
 
 
 def unfold(P: Float, n: Float) -> Float:
     """Return uv of points in metres: their places along the two axes that lie most in their surface."""
     axis = np.abs(n).argmax(axis=1)
-    return np.stack([np.where(axis == 0, P[:, 2], P[:, 0]), np.where(axis == 1, P[:, 2], P[:, 1])], axis=1)
+    return np.stack(
+        [np.where(axis == 0, P[:, 2], P[:, 0]), np.where(axis == 1, P[:, 2], P[:, 1])], axis=1
+    )
 
 
 def box(low: ArrayLike, high: ArrayLike, *, bevel: float = 0.008) -> Mesh:
@@ -151,7 +168,8 @@ def lathe(profile: Sequence[tuple[float, float]], *, sides: int = 24, sharp: boo
     r, y = np.array(profile, np.float64).T
     angle = np.linspace(0, -2 * np.pi, sides + 1)
     P = np.stack(
-        np.broadcast_arrays(r[:, None] * np.cos(angle), y[:, None], r[:, None] * np.sin(angle)), axis=2
+        np.broadcast_arrays(r[:, None] * np.cos(angle), y[:, None], r[:, None] * np.sin(angle)),
+        axis=2,
     )
     return sheet(P[::-1], sharp=sharp)
 
@@ -187,7 +205,12 @@ def extrude(outline: ArrayLike, depth: float, *, bevel: float = 0.008) -> Mesh:
     flat = np.asarray(outline, np.float64)
     middle = flat.mean(axis=0)
     inner = middle + (flat - middle) * (1 - bevel / np.abs(flat - middle).max())
-    layers = [(inner, depth / 2), (flat, depth / 2 - bevel), (flat, bevel - depth / 2), (inner, -depth / 2)]
+    layers = [
+        (inner, depth / 2),
+        (flat, depth / 2 - bevel),
+        (flat, bevel - depth / 2),
+        (inner, -depth / 2),
+    ]
     return hull(np.concatenate([np.column_stack([xy, np.full(len(xy), z)]) for xy, z in layers]))
 
 

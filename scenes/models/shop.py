@@ -41,7 +41,10 @@ def shop(start: float) -> Parts:
             (0, 0),
         ]
         parts.append(
-            (("clay", "cream", "brass")[k % 3], placed(lathe(shape), (x, 0.6, -0.35 + 0.15 * (k % 2))))
+            (
+                ("clay", "cream", "brass")[k % 3],
+                placed(lathe(shape), (x, 0.6, -0.35 + 0.15 * (k % 2))),
+            )
         )
     for x in (u0, u0 + 1.0, u0 + 2.0, u0 + 3.0):
         parts.append(("shop front", box((x - 0.03, 0.6, -0.1), (x + 0.03, 2.5, -0.04))))

@@ -16,16 +16,27 @@ def ground() -> Parts:
     """Return the road, a little higher in its middle, the kerbs and the pavements."""
     x = np.linspace(-KERB, KERB, 9)
     crown = 0.05 * (1 - (x / KERB) ** 2) - 0.1
-    road = sheet(np.stack([np.column_stack([x, crown, np.full(9, z)]) for z in np.linspace(8, END - 6, 30)]))
-    earth = quad((-9, -0.16, 8), (9, -0.16, 8), (9, -0.16, END - 9), (-9, -0.16, END - 9))  # under the gaps
+    road = sheet(
+        np.stack([np.column_stack([x, crown, np.full(9, z)]) for z in np.linspace(8, END - 6, 30)])
+    )
+    earth = quad(
+        (-9, -0.16, 8), (9, -0.16, 8), (9, -0.16, END - 9), (-9, -0.16, END - 9)
+    )  # under the gaps
     parts: Parts = [("road", road), ("brick", earth)]
     for side in (-1, 1):
         for z in np.arange(6, END, -1.2):
             parts.append(
-                ("kerb", box((side * KERB, -0.14, z - 1.19), (side * (KERB + 0.16), 0.02, z), bevel=0.018))
+                (
+                    "kerb",
+                    box(
+                        (side * KERB, -0.14, z - 1.19), (side * (KERB + 0.16), 0.02, z), bevel=0.018
+                    ),
+                )
             )
         a, b = sorted((side * (KERB + 0.16), side * (abs(LEFT) + 0.3)))
-        parts.append(("pavement", quad((a, 0.01, 8), (b, 0.01, 8), (b, 0.01, END - 2), (a, 0.01, END - 2))))
+        parts.append(
+            ("pavement", quad((a, 0.01, 8), (b, 0.01, 8), (b, 0.01, END - 2), (a, 0.01, END - 2)))
+        )
     return parts
 
 
@@ -55,7 +66,10 @@ def materials() -> dict[str, Material]:
     """Return what everything is made of."""
     s = surfaces
     coats = [(0.46, 0.36, 0.22), (0.36, 0.2, 0.14), (0.3, 0.33, 0.32), (0.5, 0.43, 0.36)]
-    made = {f"coat {k}": s.matt(s.plaster(c, seed=k, depth=0.13), metres=3.2) for k, c in enumerate(coats)}
+    made = {
+        f"coat {k}": s.matt(s.plaster(c, seed=k, depth=0.13), metres=3.2)
+        for k, c in enumerate(coats)
+    }
     made |= {
         name: s.matt((0, 0, 0))
         for name in (
@@ -71,7 +85,9 @@ def materials() -> dict[str, Material]:
         )
     }
     return made | {
-        "road": s.glossy(s.tinted("gravel", (0.085, 0.08, 0.075), contrast=0.7), rough=0.13, metres=1.1),
+        "road": s.glossy(
+            s.tinted("gravel", (0.085, 0.08, 0.075), contrast=0.7), rough=0.13, metres=1.1
+        ),
         "pavement": s.glossy(
             s.tiles((0.16, 0.15, 0.14), (0.13, 0.125, 0.12), seed=7, count=6), rough=0.2, metres=3.0
         ),
@@ -105,7 +121,9 @@ def materials() -> dict[str, Material]:
     }
 
 
-def stripes(first: tuple[float, float, float], second: tuple[float, float, float], size: int = 64) -> Float:
+def stripes(
+    first: tuple[float, float, float], second: tuple[float, float, float], size: int = 64
+) -> Float:
     """Return rho of a striped cloth."""
     first_here = np.arange(size) < size / 2
     return np.broadcast_to(np.where(first_here[:, None], first, second), (size, size, 3)).copy()
@@ -128,14 +146,19 @@ def overcast() -> Parts:
 def place() -> Place:
     """Return the street."""
     warm = [(34.0, 20.0, 8.5), (52.0, 36.0, 18.0), (26.0, 13.0, 4.5), (30.0, 30.0, 26.0)]
-    glow: dict[str, Colour | Float] = {f"lit {k}": interior(30 + k, colour) for k, colour in enumerate(warm)}
+    glow: dict[str, Colour | Float] = {
+        f"lit {k}": interior(30 + k, colour) for k, colour in enumerate(warm)
+    }
     glow |= {
         "shop glass": goods(),
         "clock": (70.0, 62.0, 40.0),
         "lit church": (5.0, 2.6, 1.2),
         "door lit": (60.0, 40.0, 18.0),
     }
-    night: Material = {"type": "constant", "radiance": {"type": "rgb", "value": [0.022, 0.021, 0.022]}}
+    night: Material = {
+        "type": "constant",
+        "radiance": {"type": "rgb", "value": [0.022, 0.021, 0.022]},
+    }
     lights = {
         "lamps": Light({"bulb": (52_000.0, 33_000.0, 14_500.0)}, share=1.5),
         "windows": Light(glow, share=0.7),
@@ -143,4 +166,6 @@ def place() -> Place:
     }
     parts = ground() + houses() + alley() + furniture() + church() + overcast()
     visitor = put(walking("coat", "trousers"), (-0.75, -0.06, -4.3), turn=32)
-    return Place(parts, materials(), lights, Camera((0.55, 1.65, 3.2), (-0.35, 2.35, -14.0), 62), visitor)
+    return Place(
+        parts, materials(), lights, Camera((0.55, 1.65, 3.2), (-0.35, 2.35, -14.0), 62), visitor
+    )

@@ -1,6 +1,7 @@
 """Sunlight through a pane: as if a projector stood where the sun does, with the pane for its slide.
 
-The sun's disc is half a degree wide, so that every edge in the slide blurs with the distance it falls.
+The sun's disc is half a degree wide, so that every edge in the slide blurs with the distance it
+falls.
 """
 
 import numpy as np
@@ -40,7 +41,8 @@ def through(
     )
     middle = corner + (along + up) / 2
     eye = middle + FAR * sun
-    # The axes of the projector's picture: it looks along -sun; x to its left, as Mitsuba's cameras have it.
+    # The axes of the projector's picture: it looks along -sun; x to its left, as Mitsuba's cameras
+    # have it.
     left = unit(np.cross([0.0, 1.0, 0.0], -sun))
     top = np.cross(-sun, left)
     half = 0.55 * np.linalg.norm([np.linalg.norm(along), np.linalg.norm(up)])
@@ -56,11 +58,16 @@ def through(
     slide = np.stack(
         [inside * map_coordinates(T[..., c], at, order=1, mode="nearest") for c in range(3)], axis=2
     )
-    slide = np.stack([gaussian_filter(slide[..., c], BLUR * texels / (2 * half)) for c in range(3)], axis=2)
+    slide = np.stack(
+        [gaussian_filter(slide[..., c], BLUR * texels / (2 * half)) for c in range(3)], axis=2
+    )
     angle = 2 * np.degrees(np.arctan(half / FAR))
     return {
         "type": "projector",
-        "irradiance": slide * np.asarray(light, float) * FAR**2 / np.pi,  # Mitsuba multiplies it by pi
+        "irradiance": slide
+        * np.asarray(light, float)
+        * FAR**2
+        / np.pi,  # Mitsuba multiplies it by pi
         "fov": float(angle),
         "look_at": {"origin": eye.tolist(), "target": middle.tolist(), "up": [0, 1, 0]},
     }

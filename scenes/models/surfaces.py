@@ -22,7 +22,9 @@ def noise(shape: tuple[int, int], scales: tuple[tuple[float, float], ...], *, se
     return np.mean([layer / layer.std() for layer in layers], axis=0)
 
 
-def wood(dark: Colour, light: Colour, *, seed: int = 0, planks: int = 0, size: int = 512) -> Texture:
+def wood(
+    dark: Colour, light: Colour, *, seed: int = 0, planks: int = 0, size: int = 512
+) -> Texture:
     """Return rho of sawn wood whose grain runs along u; `planks` boards side by side, or one piece."""
     rings = noise((size, size), ((3, 90), (9, 160)), seed=seed)
     fibre = noise((size, size), ((0.7, 14),), seed=seed + 1)
@@ -31,7 +33,10 @@ def wood(dark: Colour, light: Colour, *, seed: int = 0, planks: int = 0, size: i
         rng = np.random.default_rng(seed + 2)
         row = np.arange(size) * planks // size
         share = np.stack(
-            [np.roll(line, k) for line, k in zip(share, rng.integers(0, size, planks)[row], strict=True)]
+            [
+                np.roll(line, k)
+                for line, k in zip(share, rng.integers(0, size, planks)[row], strict=True)
+            ]
         )
         share = share + rng.normal(0, 0.14, planks)[row][:, None]
         gap = np.arange(size) * planks % size < 0.045 * size
@@ -63,7 +68,9 @@ def plaster(colour: Colour, *, seed: int = 0, depth: float = 0.1, size: int = 51
     return np.clip(np.array(colour) * (1 + depth * clouds[..., None]), 0.01, 0.92)
 
 
-def tiles(first: Colour, second: Colour, *, seed: int = 0, count: int = 8, size: int = 1024) -> Texture:
+def tiles(
+    first: Colour, second: Colour, *, seed: int = 0, count: int = 8, size: int = 1024
+) -> Texture:
     """Return rho of a floor of `count` by `count` worn tiles in two colours, with mortar between them."""
     rng = np.random.default_rng(seed)
     k = np.arange(size) * count // size
@@ -73,7 +80,9 @@ def tiles(first: Colour, second: Colour, *, seed: int = 0, count: int = 8, size:
         np.where(checks[..., None] == 0, first, second)
         * (1 + 0.13 * rng.standard_normal((count, count)))[k][:, k][..., None]
     )
-    rho = rho * (1 + 0.12 * noise((size, size), ((30, 30), (6, 6), (1, 1)), seed=seed + 1))[..., None]
+    rho = (
+        rho * (1 + 0.12 * noise((size, size), ((30, 30), (6, 6), (1, 1)), seed=seed + 1))[..., None]
+    )
     edge = np.minimum(at, 1 - at)
     joint = np.minimum(edge[:, None], edge) < 0.025
     rho[joint] = 0.05

@@ -16,7 +16,14 @@ def handsaw() -> Parts:
     )
     grip = [
         tube(
-            [(-0.02, 0.07, 0), (-0.09, 0.05, 0), (-0.11, 0.0, 0), (-0.08, -0.05, 0), (-0.01, -0.06, 0)], 0.018
+            [
+                (-0.02, 0.07, 0),
+                (-0.09, 0.05, 0),
+                (-0.11, 0.0, 0),
+                (-0.08, -0.05, 0),
+                (-0.01, -0.06, 0),
+            ],
+            0.018,
         ),
         box((-0.03, -0.07, -0.012), (0.05, 0.08, 0.012)),
     ]
@@ -39,7 +46,10 @@ def hammer() -> Parts:
     return [
         ("iron", head),
         ("iron", claw),
-        ("handle", tube([(-0.01, 0.01, 0), (-0.01, -0.15, 0), (-0.01, -0.3, 0)], [0.012, 0.011, 0.016])),
+        (
+            "handle",
+            tube([(-0.01, 0.01, 0), (-0.01, -0.15, 0), (-0.01, -0.3, 0)], [0.012, 0.011, 0.016]),
+        ),
     ]
 
 
@@ -54,7 +64,12 @@ def chisel(length: float) -> Parts:
     )
     return [
         ("steel", blade),
-        ("handle", lathe([(0, 0.13), (0.014, 0.125), (0.017, 0.08), (0.012, 0.02), (0.009, 0.0)], sides=12)),
+        (
+            "handle",
+            lathe(
+                [(0, 0.13), (0.014, 0.125), (0.017, 0.08), (0.012, 0.02), (0.009, 0.0)], sides=12
+            ),
+        ),
     ]
 
 
@@ -68,13 +83,22 @@ def square() -> Parts:
 
 def smoother() -> Parts:
     """Return a hand plane 24 cm long, along x."""
-    body = extrude([(-0.12, 0), (0.12, 0), (0.12, 0.035), (0.05, 0.055), (-0.09, 0.05), (-0.12, 0.03)], 0.062)
+    body = extrude(
+        [(-0.12, 0), (0.12, 0), (0.12, 0.035), (0.05, 0.055), (-0.09, 0.05), (-0.12, 0.03)], 0.062
+    )
     knob = lathe([(0, 0.055), (0.018, 0.05), (0.02, 0.035), (0.01, 0.012), (0.016, 0.0)], sides=14)
     iron = placed(
-        box((-0.002, 0, -0.024), (0.002, 0.13, 0.024), bevel=0.0005), (0.0, 0.03, 0), turned(32, "z")
+        box((-0.002, 0, -0.024), (0.002, 0.13, 0.024), bevel=0.0005),
+        (0.0, 0.03, 0),
+        turned(32, "z"),
     )
     tote = tube([(-0.085, 0.04, 0), (-0.09, 0.085, 0), (-0.105, 0.125, 0)], [0.018, 0.014, 0.016])
-    return [("iron", body), ("handle", placed(knob, (0.085, 0.045, 0))), ("steel", iron), ("handle", tote)]
+    return [
+        ("iron", body),
+        ("handle", placed(knob, (0.085, 0.045, 0))),
+        ("steel", iron),
+        ("handle", tote),
+    ]
 
 
 def vise() -> Parts:
@@ -98,7 +122,10 @@ def mallet() -> Parts:
     """Return a wooden mallet, lying with its handle along x."""
     return [
         ("beech", box((-0.05, 0, -0.09), (0.05, 0.1, 0.09), bevel=0.012)),
-        ("handle", tube([(0.04, 0.05, 0), (0.2, 0.045, 0), (0.33, 0.04, 0)], [0.015, 0.013, 0.017])),
+        (
+            "handle",
+            tube([(0.04, 0.05, 0), (0.2, 0.045, 0), (0.33, 0.04, 0)], [0.015, 0.013, 0.017]),
+        ),
     ]
 
 
@@ -112,7 +139,9 @@ def jar(height: float, radius: float, filling: str) -> Parts:
         (radius * 0.9, 0.0),
         (0, 0),
     ]
-    lid = placed(lathe([(0, 0.022), (radius * 0.84, 0.022), (radius * 0.86, 0.0)], sides=20), (0, height, 0))
+    lid = placed(
+        lathe([(0, 0.022), (radius * 0.84, 0.022), (radius * 0.86, 0.0)], sides=20), (0, height, 0)
+    )
     return [(filling, lathe(body, sides=20)), ("tin", lid)]
 
 
@@ -124,7 +153,9 @@ def tin(height: float, radius: float, paint: str) -> Parts:
         (radius * 1.02, height - 0.004),
         (radius, height - 0.008),
     ]
-    label = placed(lathe([(radius * 1.004, height * 0.8), (radius * 1.004, height * 0.2)]), (0, 0, 0))
+    label = placed(
+        lathe([(radius * 1.004, height * 0.8), (radius * 1.004, height * 0.2)]), (0, 0, 0)
+    )
     can = lathe([(0, height - 0.006), *rim, (radius, 0.006), (radius * 0.98, 0), (0, 0)])
     return [("tin", can), (paint, label)]
 
@@ -134,7 +165,10 @@ def stool() -> Parts:
     parts: Parts = [
         (
             "beech",
-            lathe([(0, 0.5), (0.16, 0.5), (0.175, 0.49), (0.175, 0.47), (0.16, 0.46), (0, 0.46)], sides=40),
+            lathe(
+                [(0, 0.5), (0.16, 0.5), (0.175, 0.49), (0.175, 0.47), (0.16, 0.46), (0, 0.46)],
+                sides=40,
+            ),
         )
     ]
     for k in range(4):
@@ -143,16 +177,26 @@ def stool() -> Parts:
         parts.append(
             (
                 "beech",
-                tube([foot, foot * 0.8 + (0, 0.24, 0), foot * 0.6 + (0, 0.47, 0)], [0.017, 0.021, 0.018]),
+                tube(
+                    [foot, foot * 0.8 + (0, 0.24, 0), foot * 0.6 + (0, 0.47, 0)],
+                    [0.017, 0.021, 0.018],
+                ),
             )
         )
     for k in range(2):
-        d = 0.145 * np.array([np.cos(np.pi / 4 + k * np.pi / 2), 0, np.sin(np.pi / 4 + k * np.pi / 2)])
+        d = 0.145 * np.array(
+            [np.cos(np.pi / 4 + k * np.pi / 2), 0, np.sin(np.pi / 4 + k * np.pi / 2)]
+        )
         parts.append(
             (
                 "beech",
                 tube(
-                    [d + (0, 0.2 + 0.05 * k, 0), (0, 0.2 + 0.05 * k, 0), -d + (0, 0.2 + 0.05 * k, 0)], 0.011
+                    [
+                        d + (0, 0.2 + 0.05 * k, 0),
+                        (0, 0.2 + 0.05 * k, 0),
+                        -d + (0, 0.2 + 0.05 * k, 0),
+                    ],
+                    0.011,
                 ),
             )
         )
@@ -175,7 +219,9 @@ def sawhorse() -> Parts:
     for x in (-0.4, 0.4):
         for side in (-1, 1):
             leg = placed(
-                box((-0.035, -0.66, -0.018), (0.035, 0, 0.018)), (x, 0.64, 0), turned(-side * 17, "x")
+                box((-0.035, -0.66, -0.018), (0.035, 0, 0.018)),
+                (x, 0.64, 0),
+                turned(-side * 17, "x"),
             )
             parts.append(("pine", leg))
         parts.append(("pine", box((x - 0.012, 0.24, -0.15), (x + 0.012, 0.31, 0.15))))

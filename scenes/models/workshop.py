@@ -40,18 +40,31 @@ def shell() -> Parts:
     back = wall((LEFT, RIGHT), (0, CEILING), [WINDOW], THICK, 0.05)
     parts: Parts = [
         ("wall", placed(back, (0, 0, BACK))),
-        ("wall", quad((RIGHT, 0, BACK), (RIGHT, 0, 3), (RIGHT, CEILING, 3), (RIGHT, CEILING, BACK))),
+        (
+            "wall",
+            quad((RIGHT, 0, BACK), (RIGHT, 0, 3), (RIGHT, CEILING, 3), (RIGHT, CEILING, BACK)),
+        ),
         ("wall", quad((LEFT, 0, 3), (LEFT, 0, BACK), (LEFT, CEILING, BACK), (LEFT, CEILING, 3))),
         ("wall", quad((RIGHT, 0, 3), (LEFT, 0, 3), (LEFT, CEILING, 3), (RIGHT, CEILING, 3))),
         ("boards", quad((LEFT, 0, 3), (RIGHT, 0, 3), (RIGHT, 0, BACK), (LEFT, 0, BACK))),
         (
             "ceiling",
-            quad((LEFT, CEILING, BACK), (RIGHT, CEILING, BACK), (RIGHT, CEILING, 3), (LEFT, CEILING, 3)),
+            quad(
+                (LEFT, CEILING, BACK),
+                (RIGHT, CEILING, BACK),
+                (RIGHT, CEILING, 3),
+                (LEFT, CEILING, 3),
+            ),
         ),
     ]
     for z in (-3.4, -2.1, -0.8, 0.5):
         parts.append(
-            ("beam", box((LEFT, CEILING - 0.2, z - 0.09), (RIGHT, CEILING + 0.02, z + 0.09), bevel=0.015))
+            (
+                "beam",
+                box(
+                    (LEFT, CEILING - 0.2, z - 0.09), (RIGHT, CEILING + 0.02, z + 0.09), bevel=0.015
+                ),
+            )
         )
     parts.append(("beam", box((LEFT, 0, BACK), (RIGHT, 0.12, BACK + 0.02))))
     return parts + frame()
@@ -67,14 +80,19 @@ def frame() -> Parts:
     for y, thick in ((1.05, 0.03), (1.5, 0.013), (1.95, 0.013), (2.36, 0.02)):
         parts.append(("sash", box((left, y - thick, z - 0.022), (right, y + thick, z + 0.022))))
     parts.append(
-        ("beech", box((left - 0.12, 0.98, BACK - 0.2), (right + 0.12, 1.02, BACK + 0.09), bevel=0.012))
+        (
+            "beech",
+            box((left - 0.12, 0.98, BACK - 0.2), (right + 0.12, 1.02, BACK + 0.09), bevel=0.012),
+        )
     )
     pot = [("clay", tools.tin(0.13, 0.07, "clay")[0][1])]
     rng = np.random.default_rng(2)
     for k in range(46):
         a, r = rng.uniform(0, 2 * np.pi), rng.uniform(0.02, 0.16)
         tip = np.array([r * np.cos(a), 0.14 + rng.uniform(0.04, 0.26), 0.6 * r * np.sin(a)])
-        leaf = np.array([[(-0.02, 0, 0), (0.02, 0, 0)], [(-0.015, 0.06, 0.02), (0.015, 0.06, 0.02)]])
+        leaf = np.array(
+            [[(-0.02, 0, 0), (0.02, 0, 0)], [(-0.015, 0.06, 0.02), (0.015, 0.06, 0.02)]]
+        )
         pot.append(("plant", placed(sheet(leaf), tip, turned(float(np.degrees(a))))))
         if k % 3 == 0:
             pot.append(("plant", tube([(0, 0.1, 0), tip / 2 + (0, 0.06, 0), tip], 0.003, sides=5)))
@@ -98,11 +116,15 @@ def materials() -> dict[str, Material]:
     beech = s.wood((0.25, 0.13, 0.06), (0.46, 0.28, 0.15), seed=5)
     return {
         "wall": s.matt(s.bricks((0.30, 0.24, 0.19), contrast=0.8), metres=1.6),
-        "boards": s.matt(s.wood((0.09, 0.05, 0.025), (0.3, 0.18, 0.1), seed=9, planks=8), metres=(2.6, 1.5)),
+        "boards": s.matt(
+            s.wood((0.09, 0.05, 0.025), (0.3, 0.18, 0.1), seed=9, planks=8), metres=(2.6, 1.5)
+        ),
         "ceiling": s.matt(
             s.wood((0.1, 0.06, 0.03), (0.2, 0.13, 0.075), seed=14, planks=10), metres=(3.0, 2.0)
         ),
-        "beam": s.matt(s.wood((0.05, 0.03, 0.016), (0.14, 0.085, 0.045), seed=7), metres=(2.0, 0.6)),
+        "beam": s.matt(
+            s.wood((0.05, 0.03, 0.016), (0.14, 0.085, 0.045), seed=7), metres=(2.0, 0.6)
+        ),
         "pine": s.matt(pine, metres=(1.4, 0.4)),
         "oak": s.glossy(oak, rough=0.3, metres=(1.2, 0.4)),
         "beech": s.glossy(beech, rough=0.36, metres=(1.4, 0.4)),
@@ -154,11 +176,20 @@ def place() -> Place:
     }
     air: Material = {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}}
     left, upper = WINDOW.middle - WINDOW.width / 2, WINDOW.spring + WINDOW.rise
-    corner, sides = (left, WINDOW.sill, BACK - THICK), ((WINDOW.width, 0, 0), (0, upper - WINDOW.sill, 0))
+    corner, sides = (
+        (left, WINDOW.sill, BACK - THICK),
+        ((WINDOW.width, 0, 0), (0, upper - WINDOW.sill, 0)),
+    )
     beam = through(np.ones((4, 4, 3)), corner, *sides, SUN, SUNLIGHT)
     lights = {
         "yard": Light(
-            {"sky": sky()}, (sun, air), absent=("pane",), black=inside, bounces=3, share=0.3, detailed=True
+            {"sky": sky()},
+            (sun, air),
+            absent=("pane",),
+            black=inside,
+            bounces=3,
+            share=0.3,
+            detailed=True,
         ),
         "sun": Light({}, (beam,), absent=("pane", *YARD), share=2.0),
         "window": Light({"pane": panes()}, absent=YARD, hidden=True, share=0.7),

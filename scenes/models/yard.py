@@ -36,7 +36,10 @@ def yard() -> Parts:
                 sharp=True,
             ),
         ),
-        ("whitewash", sheet([[(1.7, 1.9, -8.0), (5.5, 1.9, -8.0)], [(3.6, 3.2, -8.0), (3.6, 3.2, -8.0)]])),
+        (
+            "whitewash",
+            sheet([[(1.7, 1.9, -8.0), (5.5, 1.9, -8.0)], [(3.6, 3.2, -8.0), (3.6, 3.2, -8.0)]]),
+        ),
         ("sash", box((1.66, 0.5, -9.4), (1.72, 1.3, -8.8))),
         ("bark", box((1.65, -0.25, -10.7), (1.71, 1.5, -9.9))),
         ("sky", quad((-90, -4, -75), (90, -4, -75), (90, 36, -75), (-90, 36, -75), unit_uv=True)),
@@ -76,14 +79,18 @@ def yard() -> Parts:
     return parts + washing()
 
 
-def foliage(middle: tuple[float, float, float], radius: float, count: int, rng: np.random.Generator) -> Parts:
+def foliage(
+    middle: tuple[float, float, float], radius: float, count: int, rng: np.random.Generator
+) -> Parts:
     """Return leaves and blossoms all about a point."""
     parts: Parts = []
     for k in range(count):
         d = rng.standard_normal(3)
         at = np.array(middle) + radius * d / np.linalg.norm(d) * rng.uniform(0.55, 1.0)
         size = 0.085 if k % 3 else 0.06
-        leaf = sheet(size * np.array([[(-1, -0.6, 0), (1, -0.6, 0)], [(-1, 0.6, 0.2), (1, 0.6, 0.2)]]))
+        leaf = sheet(
+            size * np.array([[(-1, -0.6, 0), (1, -0.6, 0)], [(-1, 0.6, 0.2), (1, 0.6, 0.2)]])
+        )
         R = turned(float(rng.uniform(0, 360))) @ turned(float(rng.uniform(-80, 80)), "x")
         parts.append(("leaves" if k % 3 else "blossom", placed(leaf, at, R)))
     return parts

@@ -44,7 +44,9 @@ POINTS[1] = warp.apply(SMALL_TURN, POINTS[0])
 POINTS[1, :6] += RNG.normal(0, 9, (6, 2))
 RGB = RNG.integers(0, 256, (3, 20, 24, 3), np.uint8)
 VALID = RNG.random((3, 20, 24)) > 0.05
-TURNS = np.stack([np.eye(3), warp.turn((20, 24), 2, (0.5, 0.7)), warp.turn((20, 24), -1, (-1, 1.5))])
+TURNS = np.stack(
+    [np.eye(3), warp.turn((20, 24), 2, (0.5, 0.7)), warp.turn((20, 24), -1, (-1, 1.5))]
+)
 WHOLE = [[0, 0], [2, -1], [-1, 3]]
 NAN = np.nan
 

@@ -38,7 +38,9 @@ def off(found, truth, shape=SHAPE):
 
 @pytest.mark.parametrize("response", ["film", "srgb", "linear"])
 def test_two_exposures_come_to_one_scale(room, response):
-    taken = camera.shoot(room, camera.times_around(room, 2, stops=2), camera.Camera(response=response))
+    taken = camera.shoot(
+        room, camera.times_around(room, 2, stops=2), camera.Camera(response=response)
+    )
     dark, bright = (image[..., 1] for image in taken.images)
     (X, *_) = light.pair(bright, dark, *(np.exp(true_g(response)) * k for k in (1.0, 4.0)))
     kept = np.isfinite(X).all(axis=0)
@@ -92,7 +94,9 @@ def test_the_error_is_the_mean_square_of_the_normalised_difference():
     a, b = np.random.default_rng(0).uniform(1, 3, (2, 40, 50)).astype(np.float32)
     p = light.lattice((40, 50), 10**6)
     expected = np.mean(((a - b) / ((a + b) / 2)) ** 2)
-    assert light.error(light.differences(np.stack([a, b]), np.eye(3), p)) == pytest.approx(expected, rel=1e-4)
+    assert light.error(light.differences(np.stack([a, b]), np.eye(3), p)) == pytest.approx(
+        expected, rel=1e-4
+    )
 
 
 # the search, step by step

@@ -121,7 +121,9 @@ def test_known_offsets_are_found_two_stops_apart(channels, dtype, times):
     assert (offsets[1] - offsets[0]).tolist() == [13, -22]
 
 
-@pytest.mark.parametrize("offset", [(63, 63), (-63, 63), (63, -63), (-63, -63), (63, 0), (0, -63), (31, 32)])
+@pytest.mark.parametrize(
+    "offset", [(63, 63), (-63, 63), (63, -63), (-63, -63), (63, 0), (0, -63), (31, 32)]
+)
 def test_the_range_is_two_to_the_bits_minus_one(offset):
     offsets = mtb.align(bracket([offset, (0, 0)], [1, 4]))
     assert (offsets[0] - offsets[1]).tolist() == list(offset)
@@ -131,7 +133,9 @@ def test_the_range_is_two_to_the_bits_minus_one(offset):
 def test_fewer_bits_reach_less_far(bits, offset):
     images = bracket([offset, (0, 0)], [1, 4])
     assert mtb.align(images, bits=bits).tolist() == [list(offset), [0, 0]]
-    assert all(max(map(abs, state.offset)) < 2**bits for state in mtb.align_steps(images, bits=bits))
+    assert all(
+        max(map(abs, state.offset)) < 2**bits for state in mtb.align_steps(images, bits=bits)
+    )
 
 
 @pytest.mark.parametrize("noise", [0.01, 0.03])

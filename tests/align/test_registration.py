@@ -29,7 +29,9 @@ def room():
 
 def shoot(E, moves):
     """Return photographs two stops apart of a moved camera, and the moves in their own pixels."""
-    taken = camera.shoot(E, camera.times_around(E, len(moves), stops=2), CAMERA, offsets=moves, rng=2)
+    taken = camera.shoot(
+        E, camera.times_around(E, len(moves), stops=2), CAMERA, offsets=moves, rng=2
+    )
     return taken, hand_motion.frame_homographies(moves, E.shape)
 
 
@@ -38,7 +40,9 @@ def shoot(E, moves):
 
 def test_a_homography_goes_through_four_corners():
     H = hand_motion.shake(2, SHAPE, degrees=9, zoom=0.1, tilt=0.1, rng=5)[0]
-    assert np.allclose(warp.through(warp.corners(SHAPE), warp.apply(H, warp.corners(SHAPE))), H / H[2, 2])
+    assert np.allclose(
+        warp.through(warp.corners(SHAPE), warp.apply(H, warp.corners(SHAPE))), H / H[2, 2]
+    )
 
 
 def test_a_homography_of_a_level_is_that_of_the_next_in_its_pixels():
@@ -55,7 +59,9 @@ def test_points_that_do_not_agree_make_no_homography():
 
 def test_a_step_ahead_with_a_tilted_camera_is_found():
     E = scenes.room((220, 320))
-    taken, truth = shoot(E, hand_motion.shake(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7))
+    taken, truth = shoot(
+        E, hand_motion.shake(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
+    )
     found = homography.align(taken.images, taken.times, true_g())
     truth = np.linalg.inv(truth[-1]) @ truth
     assert warp.corner_distance(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
@@ -95,7 +101,9 @@ def test_photographs_of_nothing_in_common_stay_where_they_are(seed):
 
 
 @pytest.mark.parametrize("moves", [[[0, 0], [0, 0], [0, 0]], [[5, -7], [0, 0], [-3, 6]]])
-def test_auto_costs_what_mtb_does_where_shifts_lay_the_photographs_on_each_other(room, moves, monkeypatch):
+def test_auto_costs_what_mtb_does_where_shifts_lay_the_photographs_on_each_other(
+    room, moves, monkeypatch
+):
     taken, _ = shoot(room, moves)
     monkeypatch.setattr(alignment, "improve", None)  # nothing is searched by light
     found = alignment.register(taken.images, "auto").homographies
@@ -132,14 +140,18 @@ def test_an_even_wall_keeps_its_level_whatever_the_response(dtype, g):
     for level in (0, 7, 100, 249, 255):
         wall = np.full((2, 20, 30, 3), level, dtype) * dtype(257 if dtype == np.uint16 else 1)
         moved, _ = resample.photographs(wall, [[0.4, -0.3], [0, 0]], g)
-        assert np.abs(moved.astype(int) - wall[0, 0, 0, 0]).max() <= (1 if dtype == np.uint16 else 0)
+        assert np.abs(moved.astype(int) - wall[0, 0, 0, 0]).max() <= (
+            1 if dtype == np.uint16 else 0
+        )
 
 
 def test_pixels_between_pixels_are_means_of_light(room):
     times = camera.times_around(room, 2, stops=0.001, middle=0.03)
     moves = [warp.turn(SHAPE, 1.5, (2.4, 3.3)), np.eye(3)]
     taken = camera.shoot(room, times, offsets=moves)
-    moved, _ = resample.photographs(taken.images, hand_motion.frame_homographies(moves, SHAPE), true_g())
+    moved, _ = resample.photographs(
+        taken.images, hand_motion.frame_homographies(moves, SHAPE), true_g()
+    )
     well = (moved > 20).all(axis=(0, 3)) & (moved < 240).all(axis=(0, 3))
     assert np.median(np.abs(moved[0].astype(int) - moved[1])[well]) <= 2
 
@@ -147,7 +159,10 @@ def test_pixels_between_pixels_are_means_of_light(room):
 @pytest.mark.parametrize("colours", [(), (3,)])
 def test_bands_of_rows_show_in_no_resampled_photograph(monkeypatch, colours):
     image = np.random.default_rng(0).integers(0, 256, (2, 45, 60, *colours), dtype=np.uint8)
-    moves = [warp.turn((45, 60), 20, (3.3, -2.6)) + [[0, 0, 0], [0, 0, 0], [1e-4, 2e-4, 0]], np.eye(3)]
+    moves = [
+        warp.turn((45, 60), 20, (3.3, -2.6)) + [[0, 0, 0], [0, 0, 0], [1e-4, 2e-4, 0]],
+        np.eye(3),
+    ]
     whole, _ = resample.photographs(image, moves, true_g())
     monkeypatch.setattr(resample, "BAND", 7)
     banded, _ = resample.photographs(image, moves, true_g())
@@ -197,7 +212,10 @@ def map_error(found, room, taken):
 
 def test_a_bracket_that_turned_becomes_a_sharper_map(room, turned):
     taken = turned[0]
-    errors = {way: map_error(pipeline.assemble(taken, align=way), room, taken) for way in ("none", "cerman")}
+    errors = {
+        way: map_error(pipeline.assemble(taken, align=way), room, taken)
+        for way in ("none", "cerman")
+    }
     assert errors["cerman"] < errors["none"] / 2
 
 
@@ -215,25 +233,36 @@ def test_a_function_of_the_readers_own_may_answer_with_moves(turned):
     taken, truth = turned
     moves = np.linalg.inv(truth[1]) @ truth
     found = next(pipeline.assemble_steps(taken, align=lambda images: moves))
-    assert np.allclose(found.homographies, moves) and found.bracket.images.shape[1] < taken.images.shape[1]
+    assert (
+        np.allclose(found.homographies, moves)
+        and found.bracket.images.shape[1] < taken.images.shape[1]
+    )
 
 
 def test_masks_follow_the_warp(turned):
     taken, _ = turned
     valid = np.ones(taken.images.shape[:3], bool)
     valid[0, :, :40] = False
-    found = next(pipeline.assemble_steps(bracket(taken.images, taken.times, valid=valid), align="cerman"))
+    found = next(
+        pipeline.assemble_steps(bracket(taken.images, taken.times, valid=valid), align="cerman")
+    )
     assert found.bracket.valid.shape == found.bracket.images.shape[:3]
     assert not found.bracket.valid[0].all() and found.bracket.valid[1:].all()
 
 
 def test_photographs_of_two_scenes_are_a_doubt(room):
     rng = np.random.default_rng(4)
-    other = (10 ** rng.uniform(-1, 3, (50, 73, 1))).repeat(3, 0).repeat(3, 1)[:150, :219] * np.ones(3)
+    other = (10 ** rng.uniform(-1, 3, (50, 73, 1))).repeat(3, 0).repeat(3, 1)[:150, :219] * np.ones(
+        3
+    )
     times = camera.times_around(room, 2)
-    images = [camera.shoot(E, [t]).images[0] for E, t in zip((room[:, :219], other), times, strict=True)]
+    images = [
+        camera.shoot(E, [t]).images[0] for E, t in zip((room[:, :219], other), times, strict=True)
+    ]
     found = next(
-        pipeline.assemble_steps(bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman")
+        pipeline.assemble_steps(
+            bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman"
+        )
     )
     assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in found.doubts)
     assert found.homographies.shape == (2, 3, 3) and LOST == 0.3
@@ -249,7 +278,10 @@ def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(phot
     found = alignment.register(small, "cerman", times=taken.times, g=g).pairs
     across = np.abs([one.offset[1] for one in found])
     assert np.all(np.abs(across - np.array([1, 7.5, 2]) / 4) < 0.35)
-    assert all(abs(one.offset[0]) < 0.4 and abs(one.degrees) < 0.1 and one.confidence > 0.6 for one in found)
+    assert all(
+        abs(one.offset[0]) < 0.4 and abs(one.degrees) < 0.1 and one.confidence > 0.6
+        for one in found
+    )
 
 
 def test_a_walk_around_the_crusader_fits_better_by_homographies_than_by_shifts_and_turns(shared):
@@ -259,4 +291,6 @@ def test_a_walk_around_the_crusader_fits_better_by_homographies_than_by_shifts_a
     better = [one.after < other.after for one, other in zip(tilted, turned, strict=True)]
     assert sum(better) >= 4 and all(one.after <= one.before for one in tilted)
     assert np.mean([one.after for one in tilted]) < 0.5 * np.mean([one.before for one in tilted])
-    assert not all(one.reliable for one in tilted)  # depth, and a pair that shares little: this is told
+    assert not all(
+        one.reliable for one in tilted
+    )  # depth, and a pair that shares little: this is told

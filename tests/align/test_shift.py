@@ -12,7 +12,9 @@ def views(offsets, shape=(40, 50)):
     """Return photographs of one scene, so placed that `offsets` lay them on each other."""
     scene = np.random.default_rng(3).integers(0, 256, (100, 110, *shape[2:]), dtype=np.uint8)
     rows, columns = shape[:2]
-    return np.stack([scene[30 + dy : 30 + dy + rows, 30 + dx : 30 + dx + columns] for dy, dx in offsets])
+    return np.stack(
+        [scene[30 + dy : 30 + dy + rows, 30 + dx : 30 + dx + columns] for dy, dx in offsets]
+    )
 
 
 @given(arrays(np.int64, st.tuples(st.integers(1, 5), st.just(2)), elements=st.integers(-18, 18)))

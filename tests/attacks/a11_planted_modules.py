@@ -8,7 +8,14 @@ planted = []
 for folder in (PLACE, "/course", "/packages", "/python/lib", "/lib", "/dev"):
     if planted:
         break  # what was planted in a folder of the tests is proof enough
-    for name in ("conftest.py", "sitecustomize.py", "numpy.py", "zz.pth", "worker.py", "usercustomize.py"):
+    for name in (
+        "conftest.py",
+        "sitecustomize.py",
+        "numpy.py",
+        "zz.pth",
+        "worker.py",
+        "usercustomize.py",
+    ):
         try:
             with open(os.path.join(folder, name), "x") as file:
                 file.write(CODE)

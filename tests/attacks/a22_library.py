@@ -8,7 +8,15 @@ PLACE = LIBRARY = SITE = ""
 
 def double(x):
     sys.path[:0] = [PLACE, LIBRARY, SITE, ".", "/packages"]
-    for name in ("hdrlab.course.checks.compare", "hdrlab", "cv2", "skimage", "pytest", "pip", "solution"):
+    for name in (
+        "hdrlab.course.checks.compare",
+        "hdrlab",
+        "cv2",
+        "skimage",
+        "pytest",
+        "pip",
+        "solution",
+    ):
         try:
             importlib.import_module(name)
         except ImportError:

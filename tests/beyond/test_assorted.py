@@ -49,7 +49,9 @@ def test_four_exposures_two_stops_apart_promise_six_stops():
 
 
 def test_the_range_grows_at_the_bright_end_by_the_decades_promised():
-    assert ends(FOUR)[1] - ends(np.ones(SHAPE))[1] == pytest.approx(assorted.added_decades(FOUR), abs=0.05)
+    assert ends(FOUR)[1] - ends(np.ones(SHAPE))[1] == pytest.approx(
+        assorted.added_decades(FOUR), abs=0.05
+    )
 
 
 def test_beside_single_pixels_the_range_grows_as_promised_in_all():
@@ -81,7 +83,9 @@ def test_exposures_and_colours_show_each_colour_through_each_filter_equally_ofte
 
 
 def test_exposures_times_colours_bring_an_even_colour_back():
-    c, e = (mosaic.tile(pattern, SHAPE) for pattern in assorted.colours_and_exposures((1.0, 1 / 16)))
+    c, e = (
+        mosaic.tile(pattern, SHAPE) for pattern in assorted.colours_and_exposures((1.0, 1 / 16))
+    )
     E = np.ones((*SHAPE, 3)) * [3.0, 0.2, 9.0]
     back = assorted.reconstruct(assorted.shoot(E, e, c, bits=16), e, c)
     assert np.allclose(back, E, rtol=5e-3)
@@ -127,7 +131,8 @@ def test_a_wave_that_the_filters_sample_often_enough_comes_back(level):
 def test_where_the_light_is_strong_a_fine_wave_becomes_a_coarse_one():
     """Only every second column knows: 112 waves in 256 pixels look like 16; not so on an even sensor."""
     plain, strong = (
-        waves(112 / 256, *pair) for pair in ((0.3, np.ones((2, 2))), (40.0, assorted.FOUR_EXPOSURES))
+        waves(112 / 256, *pair)
+        for pair in ((0.3, np.ones((2, 2))), (40.0, assorted.FOUR_EXPOSURES))
     )
     assert plain[16] < 0.01 and plain[112] > 0.5 and strong[16] > 0.9 and strong[112] < 0.1
 

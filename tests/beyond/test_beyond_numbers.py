@@ -94,7 +94,10 @@ def measured(**named):
 
 searched.__module__ = places.__module__ = "hdrlab.beyond.patchmatch"
 both.__module__, measured.__module__ = "hdrlab.beyond.bidirectional", "hdrlab.beyond.steady"
-LOOSE = {f"beyond.{name}": 2e-5 for name in ("patches.synthesise", "patches.synthesise_steps", "flow.tvl1")}
+LOOSE = {
+    f"beyond.{name}": 2e-5
+    for name in ("patches.synthesise", "patches.synthesise_steps", "flow.tvl1")
+}
 CASES = recorded.named(
     *(of(assorted.colours_and_exposures, *a) for a in ((), ([0.5, 0.1],))),
     *(of(assorted.added_decades, e) for e in ([1, 0.01], assorted.FOUR_EXPOSURES)),

@@ -32,14 +32,18 @@ def test_the_code_has_52_chops_half_of_them_open():
 
 def test_a_box_loses_frequencies_and_the_code_none():
     assert flutter.transfer(BOX).min() < 1e-3 and flutter.transfer(CODE).min() > 0.025
-    whole_waves = np.abs(np.fft.fft(BOX))[1:]  # 1, 2, ... waves in 52 chops: a box lets none of them through
+    whole_waves = np.abs(np.fft.fft(BOX))[
+        1:
+    ]  # 1, 2, ... waves in 52 chops: a box lets none of them through
     assert whole_waves.max() < 1e-12
 
 
 def test_the_transfer_of_one_chop_is_flat_and_that_of_a_box_is_the_dirichlet_kernel():
     assert np.allclose(flutter.transfer(ONE), 1 / 52)
     w = np.linspace(0, np.pi, 4096)[1:]
-    assert np.allclose(flutter.transfer(BOX)[1:], np.abs(np.sin(26 * w) / np.sin(w / 2)) / 52, atol=1e-12)
+    assert np.allclose(
+        flutter.transfer(BOX)[1:], np.abs(np.sin(26 * w) / np.sin(w / 2)) / 52, atol=1e-12
+    )
 
 
 def test_smearing_is_the_matrix_and_the_matrix_a_convolution():
@@ -86,7 +90,10 @@ def test_one_coded_picture_is_worth_nearly_nine_short_ones():
     shorts = np.stack([photographed(ONE, seed=k) for k in range(12)])
     means = [rms(flutter.sharpen(shorts[:n].mean(axis=0), ONE), thing()) for n in range(1, 13)]
     assert means[6] > coded > means[10]  # worse than 11 short ones, better than 7
-    assert abs(1 + int(np.argmin(np.abs(np.array(means) - coded))) - flutter.equivalent_pictures(CODE)) < 1.5
+    assert (
+        abs(1 + int(np.argmin(np.abs(np.array(means) - coded))) - flutter.equivalent_pictures(CODE))
+        < 1.5
+    )
 
 
 def test_a_bracket_of_two_coded_pictures_is_as_clean_as_one_of_many_short_ones():

@@ -40,7 +40,11 @@ def walk():
     times = camera.times_around(place.radiance, 3, stops=3)
     figure = movers.Figure(place.mover, place.mask)
     return movers.shoot(
-        place.radiance, figure, movers.path(3, (0, 8)), times, camera.Camera(full_well=20000, read_noise=5)
+        place.radiance,
+        figure,
+        movers.path(3, (0, 8)),
+        times,
+        camera.Camera(full_well=20000, read_noise=5),
     )
 
 
@@ -56,7 +60,9 @@ def test_the_distance_is_that_of_all_pixels_and_the_price_is_added():
     Q, P = patchmatch.make_sources(S, 3, price), patchmatch.cut_patches(noise((8, 9, 3), 2), 3)
     at = np.zeros((6, 7, 3), int)
     at[..., 0], at[..., 1], at[..., 2] = 1, 3, 2
-    expected = ((P[4, 5] - patchmatch.cut_patches(S[1], 3)[3, 2]) ** 2).sum() + price[1, 3:6, 2:5].sum()
+    expected = ((P[4, 5] - patchmatch.cut_patches(S[1], 3)[3, 2]) ** 2).sum() + price[
+        1, 3:6, 2:5
+    ].sum()
     assert patchmatch.distance(P, Q, at)[4, 5] == pytest.approx(expected, rel=1e-5)
 
 
@@ -82,7 +88,9 @@ def test_a_field_of_a_finer_scale_leads_as_far_in_the_same_direction():
     at = patchmatch.identity_field(6, 8, 1) + np.array([0, 1, -2])
     fine = patchmatch.upscale_field(at, (12, 16))
     assert np.all(fine[..., 0] == 1)
-    assert np.array_equal(fine[..., 1:], patchmatch.identity_field(12, 16)[..., 1:] + np.array([2, -4]))
+    assert np.array_equal(
+        fine[..., 1:], patchmatch.identity_field(12, 16)[..., 1:] + np.array([2, -4])
+    )
 
 
 def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
@@ -109,7 +117,9 @@ def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_c
     assert lacking.coherence.d.max() == 0 and lacking.completeness[0].d.max() > 1
     alien = bidirectional.search(S[0], T[None], free, (at, (at,)), knobs, rng)
     assert alien.coherence.d.max() > 1 and alien.completeness[0].d.max() == 0
-    assert bidirectional.similarity(w, lacking) > 0 and bidirectional.similarity(0 * w, lacking) == 0
+    assert (
+        bidirectional.similarity(w, lacking) > 0 and bidirectional.similarity(0 * w, lacking) == 0
+    )
 
 
 @settings(max_examples=25, deadline=None)
@@ -128,7 +138,9 @@ def test_values_of_photographs_agree_with_merging_one_alone(walk):
     for k in range(3):
         E = merge_with_quality(Z[k : k + 1], t[k : k + 1], G, repair=False).E
         inside = (Z[k] > 10) & (Z[k] < 240)
-        assert np.allclose(ldr_values.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3)
+        assert np.allclose(
+            ldr_values.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3
+        )
 
 
 def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
@@ -188,7 +200,9 @@ def test_the_steps_go_from_coarse_to_fine_and_become_more_alike(walk):
     assert sides == sorted(sides) and sides[0] < 30 and steps[-1].H.shape == (48, 72, 3)
     first = [state for state in steps if state.scale == 0]
     assert np.isnan(first[0].mbds).all() and first[-1].mbds.sum() < first[1].mbds.sum()
-    assert np.array_equal(steps[-1].H, patches.synthesise(walk.bracket.images, walk.bracket.times, G))
+    assert np.array_equal(
+        steps[-1].H, patches.synthesise(walk.bracket.images, walk.bracket.times, G)
+    )
 
 
 def test_the_order_of_the_photographs_makes_no_difference(walk):
@@ -229,7 +243,11 @@ def test_few_photographs_gray_or_black_or_full_give_finite_radiance(count, chann
     ],
 )
 def test_what_means_nothing_is_refused(change):
-    given = {"images": np.zeros((3, 20, 24, 3), np.uint8), "times": [1.0, 2.0, 4.0], "g": G} | change
+    given = {
+        "images": np.zeros((3, 20, 24, 3), np.uint8),
+        "times": [1.0, 2.0, 4.0],
+        "g": G,
+    } | change
     with pytest.raises(ValueError, match="expected"):
         patches.synthesise(**given)
 

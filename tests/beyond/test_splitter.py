@@ -16,9 +16,9 @@ WELL = {"full_well": 20000, "read_noise": 5}
 
 def test_the_splitters_lose_nothing_but_what_goes_back_to_the_lens():
     e = splitter.shares((0.08, 0.06))
-    assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08) and np.log2(e[0] / e[1]) == pytest.approx(
-        3.6, abs=0.05
-    )
+    assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08) and np.log2(
+        e[0] / e[1]
+    ) == pytest.approx(3.6, abs=0.05)
     assert np.log2(e[1] / e[2]) == pytest.approx(4.1, abs=0.05)
 
 
@@ -28,8 +28,12 @@ def test_each_pixel_obeys_the_rule_of_its_neighbourhood():
     full[4:11, 4:11] = True
     E, case = splitter.join_sensors(B, D, full)
     assert case[0, 0] == 1 and E[0, 0] == 0.5
-    assert case[3, 7] == 2 and E[3, 7] == pytest.approx(0.6 * 0.5 + 0.4 * 0.7)  # two rows of five are full
-    assert case[4, 7] == 3 and E[4, 7] == pytest.approx(0.4 * 0.5 + 0.6 * 0.7)  # B is predicted, 0.5
+    assert case[3, 7] == 2 and E[3, 7] == pytest.approx(
+        0.6 * 0.5 + 0.4 * 0.7
+    )  # two rows of five are full
+    assert case[4, 7] == 3 and E[4, 7] == pytest.approx(
+        0.4 * 0.5 + 0.6 * 0.7
+    )  # B is predicted, 0.5
     assert case[7, 7] == 4 and E[7, 7] == 0.7
 
 
@@ -69,7 +73,10 @@ def test_a_well_exposed_pixel_is_the_brightest_sensors_alone():
 def test_a_moving_scene_leaves_no_ghost_where_a_bracket_does():
     """Three sensors at one moment, and three photographs one after another with the same shares of light."""
     street = layers("street", (64, 96))
-    room, figure = luminance(street.radiance) / 8, movers.Figure(luminance(street.mover) / 8, street.mask)
+    room, figure = (
+        luminance(street.radiance) / 8,
+        movers.Figure(luminance(street.mover) / 8, street.mask),
+    )
     linear = camera.Camera(response="linear", bits=16, **WELL)
     taken = movers.shoot(room, figure, [[0, -5], [0, 5], [0, 15]], E_SHARES[::-1], linear)
     truth = taken.moments[1]
@@ -78,7 +85,8 @@ def test_a_moving_scene_leaves_no_ghost_where_a_bracket_does():
     bracket = merge(taken.bracket.images, taken.bracket.times, g) * 32768 / 65535
     there = taken.region & (truth > 0.01)
     ours, theirs = (
-        np.sqrt(np.mean(np.log2(np.maximum(one, 1e-3) / truth)[there] ** 2)) for one in (back, bracket)
+        np.sqrt(np.mean(np.log2(np.maximum(one, 1e-3) / truth)[there] ** 2))
+        for one in (back, bracket)
     )
     assert ours < 0.1 and theirs > 5 * ours
 
@@ -92,13 +100,20 @@ def test_a_mosaic_is_merged_before_its_colours_are_interpolated():
 def test_the_steps_bring_in_the_sensors_from_the_darkest_on():
     Z = splitter.shoot(np.geomspace(0.01, 100, 400).reshape(20, 20), E_SHARES)
     steps = list(splitter.merge_steps(Z, E_SHARES))
-    assert [state.sensor for state in steps] == [2, 1, 0] and set(np.unique(steps[-1].case)) == {1, 2, 3, 4}
+    assert [state.sensor for state in steps] == [2, 1, 0] and set(np.unique(steps[-1].case)) == {
+        1,
+        2,
+        3,
+        4,
+    }
     assert np.array_equal(steps[-1].E.astype(np.float32), splitter.merge(Z, E_SHARES))
 
 
 def test_where_all_are_full_the_light_is_at_least_that():
     E = np.full((8, 8), 1e4)
-    assert np.allclose(splitter.merge(splitter.shoot(E, E_SHARES), E_SHARES), 1 / E_SHARES[-1], rtol=1e-3)
+    assert np.allclose(
+        splitter.merge(splitter.shoot(E, E_SHARES), E_SHARES), 1 / E_SHARES[-1], rtol=1e-3
+    )
 
 
 @pytest.mark.parametrize(

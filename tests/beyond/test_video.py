@@ -31,9 +31,13 @@ def film():
     t = middle * np.where(np.arange(count) % 2, 1 / 4, 4)
     rng, frames, truth = np.random.default_rng(0), [], []
     for j in range(count):
-        seen, _ = movers.compose_moment(place.radiance, movers.Figure(place.mover, place.mask), at[j])
+        seen, _ = movers.compose_moment(
+            place.radiance, movers.Figure(place.mover, place.mask), at[j]
+        )
         truth.append(camera.views(seen, pan)[j])
-        shot = camera.shoot(truth[-1], t[j : j + 1], camera.Camera(full_well=20000, read_noise=5), rng=rng)
+        shot = camera.shoot(
+            truth[-1], t[j : j + 1], camera.Camera(full_well=20000, read_noise=5), rng=rng
+        )
         frames.append(shot.images[0])
     return np.stack(frames), t, np.stack(truth)
 
@@ -66,10 +70,13 @@ def test_half_of_a_flow_meets_in_the_middle():
     a, b = smooth(), np.roll(smooth(), 4, axis=1)
     middle = np.roll(a, 2, axis=1)
     there, back = (
-        flow.warp(one, half) for one, half in zip((a, b), flow.halve_flow(flow.tvl1(a, b)), strict=True)
+        flow.warp(one, half)
+        for one, half in zip((a, b), flow.halve_flow(flow.tvl1(a, b)), strict=True)
     )
     inside = np.s_[8:-8, 10:-10]
-    assert np.abs(there - middle)[inside].max() < 0.02 and np.abs(back - middle)[inside].max() < 0.02
+    assert (
+        np.abs(there - middle)[inside].max() < 0.02 and np.abs(back - middle)[inside].max() < 0.02
+    )
 
 
 def test_a_pixel_is_warped_as_a_line_between_pixels():
@@ -94,7 +101,9 @@ def test_windows_hold_the_neighbours_of_each_item():
                 assert list(around) == list(range(max(0, i - span), min(count, i + span + 1)))
 
 
-def test_each_frame_is_nearer_to_its_moment_than_a_plain_merge_and_than_the_frame_alone(film, states):
+def test_each_frame_is_nearer_to_its_moment_than_a_plain_merge_and_than_the_frame_alone(
+    film, states
+):
     frames, t, truth = film
     for i, state in enumerate(states):
         near = slice(max(i - 1, 0), i + 2)
@@ -163,7 +172,9 @@ def test_black_and_full_frames_give_finite_radiance():
         lambda: video.merge([np.zeros((20, 20), np.uint8)], [], G),
         lambda: video.merge([np.zeros((20, 20), np.uint8)] * 2, [1, -1], G),
         lambda: video.merge([np.zeros((20, 20))], [1], G),
-        lambda: video.merge([np.zeros((20, 20), np.uint8), np.zeros((20, 21), np.uint8)], [1, 2], G),
+        lambda: video.merge(
+            [np.zeros((20, 20), np.uint8), np.zeros((20, 21), np.uint8)], [1, 2], G
+        ),
         lambda: steady.flicker([np.zeros((2, 2))] * 2),
         lambda: list(steady.tonemap_steps([np.ones((2, 2))], reinhard.tonemap, key=0)),
         lambda: list(steady.tonemap_steps([np.ones((2, 2))], reinhard.tonemap, span=-1)),
@@ -213,7 +224,9 @@ def test_a_light_that_comes_and_goes_changes_the_room_less():
     frames = [room, lamp, room, lamp, room, room, lamp, room]
     dark = np.s_[16:]
     each, together = (
-        steady.flicker(state.Ld[dark] for state in steady.tonemap_steps(frames, reinhard.tonemap, span=span))
+        steady.flicker(
+            state.Ld[dark] for state in steady.tonemap_steps(frames, reinhard.tonemap, span=span)
+        )
         for span in (0, 1)
     )
     assert together < 0.7 * each

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from laboratory import PATIENCE, Absent, Lab, chromium, jupyterlab
 
-# What is right stays in the page: sent, it takes longer than to be found. Nothing is asked of code that
-# looks like some above it: its words are most of a page, and each has one of a few colours.
+# What is right stays in the page: sent, it takes longer than to be found. Nothing is asked of code
+# that looks like some above it: its words are most of a page, and each has one of a few colours.
 RUN = """async (part) => {
     const seen = new Set();
     for (const code of document.querySelectorAll("pre")) {
@@ -46,7 +46,8 @@ def page(browser: Any) -> Iterator[Any]:
     page.problems, page.requests = [], []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     page.on(
-        "console", lambda m: page.problems.append(f"{m.text} {m.location}") if m.type == "error" else None
+        "console",
+        lambda m: page.problems.append(f"{m.text} {m.location}") if m.type == "error" else None,
     )
     page.on("request", lambda request: page.requests.append(request.url))
     yield page

@@ -50,10 +50,12 @@ DIGEST = """(el) => {
     return hash;
 }"""
 
-LOOK = 100  # ms between two looks at what a kernel does: at each frame they would keep a processor from it
+# ms between two looks at what a kernel does: at each frame they would keep a processor from it
+LOOK = 100
 PATIENCE = 300_000  # ms until a moved control shows: a limit for errors; speed is for benchmarks
 
-# What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
+# What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger
+# buffer.
 PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
 <div id="at"></div><script type="module">
 const unpack = (value) => {{
@@ -191,7 +193,11 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
 
     own = set(widget.trait_names(sync=True)) - set(anywidget.AnyWidget.class_trait_names())
     state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
-    texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
+    texts = {
+        "state": json.dumps(state),
+        "script": json.dumps(str(widget._esm)),
+        "css": str(widget._css),
+    }
     page.set_content(PAGE.format(**texts))
     shown = """() => {
         const canvas = document.querySelector("canvas");  // a question may have none

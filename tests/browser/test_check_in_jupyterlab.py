@@ -43,9 +43,12 @@ def write(page, name, text):
             page.keyboard.press("Enter")
         page.keyboard.insert_text(line)
     page.keyboard.press("Shift+Enter")
-    below = name.replace("task-", "check-")  # on a busy machine it takes a moment until this one is selected
+    below = name.replace(
+        "task-", "check-"
+    )  # on a busy machine it takes a moment until this one is selected
     page.wait_for_function(
-        "(name) => window.jupyterapp.shell.currentWidget.content.activeCell.model.id === name", arg=below
+        "(name) => window.jupyterapp.shell.currentWidget.content.activeCell.model.id === name",
+        arg=below,
     )
     page.keyboard.press("Shift+Enter")
 
@@ -67,7 +70,9 @@ def test_a_check_goes_from_red_to_green_as_a_cell_is_edited(lab, page, axe, hand
         lab.open(page, handout)
         page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
         blank = answered(page, "hat", "no answer")
-        assert "hat is yours to write" in blank.inner_text() and "0 of 10 points" in blank.inner_text()
+        assert (
+            "hat is yours to write" in blank.inner_text() and "0 of 10 points" in blank.inner_text()
+        )
         lab.until_done(page)
 
         write(page, "task-hat", WRONG)
@@ -90,6 +95,8 @@ def test_a_check_goes_from_red_to_green_as_a_cell_is_edited(lab, page, axe, hand
         green = answered(page, "hat", "10 of 10 points")
         assert "✗" not in green.inner_text() and green.inner_text().count("✓ holds") >= 3
         assert "hw2 so far: 10 of 100 points" in green.inner_text()
-        assert [url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))] == []
+        assert [
+            url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))
+        ] == []
     finally:
         lab.close()

@@ -57,7 +57,9 @@ def point(page, across, down):
 def fingers(page, kind, *places):
     """Put fingers on the picture, move them, or lift them."""
     box = page.locator("canvas").bounding_box()
-    points = [{"x": box["x"] + x * box["width"], "y": box["y"] + y * box["height"]} for x, y in places]
+    points = [
+        {"x": box["x"] + x * box["width"], "y": box["y"] + y * box["height"]} for x, y in places
+    ]
     page.touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
 
 
@@ -77,14 +79,18 @@ def open_(page):
 @pytest.fixture
 def wiper(open_):
     return open_(
-        widgets.wipe(SHADES, 255 - SHADES, alt="Shades", labels=["positive", "negative"], values=LIGHT)
+        widgets.wipe(
+            SHADES, 255 - SHADES, alt="Shades", labels=["positive", "negative"], values=LIGHT
+        )
     )
 
 
 @pytest.fixture
 def blinker(open_):
     return open_(
-        widgets.blink(SHADES, 255 - SHADES, alt="Shades", labels=["positive", "negative"], period=0.2)
+        widgets.blink(
+            SHADES, 255 - SHADES, alt="Shades", labels=["positive", "negative"], period=0.2
+        )
     )
 
 
@@ -144,7 +150,9 @@ def test_a_single_pixel_is_a_square_of_one_shade_at_high_zoom(open_):
     noise = np.random.default_rng(0).integers(0, 256, (480, 480), np.uint8)
     page = open_(widgets.blink(noise, 255 - noise, alt="Noise"))
     page.get_by_role("slider", name="zoom").press("End")
-    shown = pixels(page)[32:-32, 32:-32, 0]  # half a pixel at each edge, for the middle stays in the middle
+    shown = pixels(page)[
+        32:-32, 32:-32, 0
+    ]  # half a pixel at each edge, for the middle stays in the middle
     assert np.array_equal(shown, noise[233:247, 233:247].repeat(64, axis=0).repeat(64, axis=1))
 
 
@@ -194,14 +202,20 @@ def test_two_fingers_zoom_about_their_middle_and_a_zoomed_picture_is_dragged(bli
 def test_pictures_change_by_their_names_by_space_and_by_themselves(blinker):
     assert np.array_equal(pixels(blinker)[..., 0], SHADES) and alt(blinker) == "Shades, positive"
     blinker.get_by_role("radio", name="negative").check()
-    assert np.array_equal(pixels(blinker)[..., 0], 255 - SHADES) and alt(blinker) == "Shades, negative"
+    assert (
+        np.array_equal(pixels(blinker)[..., 0], 255 - SHADES) and alt(blinker) == "Shades, negative"
+    )
     blinker.get_by_role("application").press("Space")
-    assert alt(blinker) == "Shades, positive" and blinker.get_by_role("radio", name="positive").is_checked()
+    assert (
+        alt(blinker) == "Shades, positive"
+        and blinker.get_by_role("radio", name="positive").is_checked()
+    )
     button = blinker.get_by_role("button", name="Blink")
     button.press("Enter")
     for name in ("negative", "positive", "negative"):
         blinker.wait_for_function(
-            "(name) => document.querySelector('canvas').getAttribute('aria-label').endsWith(name)", arg=name
+            "(name) => document.querySelector('canvas').getAttribute('aria-label').endsWith(name)",
+            arg=name,
         )
     blinker.get_by_role("button", name="Stop").click()
     stopped = blinker.evaluate("window.model.get('index')")
@@ -224,7 +238,9 @@ def test_pictures_change_by_their_names_by_space_and_by_themselves(blinker):
 def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnification, limit):
     """Within one code: a float32 may round to the next."""
     map_ = colour.luminance(E) if gray else E
-    widget = widgets.brush(map_, alt="The room", size=size, magnification=magnification, limit=limit)
+    widget = widgets.brush(
+        map_, alt="The room", size=size, magnification=magnification, limit=limit
+    )
     page = open_(widget)
     page.evaluate("(centre) => window.model.set('centre', centre)", list(centre))
     shown = pixels(page)
@@ -234,10 +250,13 @@ def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnifi
     Ld = brush.lens(L, centre, size=size, magnification=magnification, limit=limit)
     window = brush.place_window(L.shape, centre, -(-size // magnification))
     large = [
-        each[window].repeat(magnification, 0).repeat(magnification, 1)[:size, :size] for each in (seen, L)
+        each[window].repeat(magnification, 0).repeat(magnification, 1)[:size, :size]
+        for each in (seen, L)
     ]
     expected = colour.to_8bit(colour.recolour(*large, Ld))
-    off = shown[brush.place_window(L.shape, centre, size)].astype(int) - expected.reshape(*Ld.shape, -1)
+    off = shown[brush.place_window(L.shape, centre, size)].astype(int) - expected.reshape(
+        *Ld.shape, -1
+    )
     assert np.abs(off[3:-3, 3:-3]).max() <= 1  # its frame lies on the edge
 
 
@@ -291,7 +310,9 @@ def test_its_sliders_change_the_brush(brushed):
 
 ALL = {
     "play": lambda: widgets.play([SHADES, 255 - SHADES], lambda one: one, alt="Shades"),
-    "tune": lambda: widgets.tune(lambda k=0: SHADES // (k + 1), lambda one: one, alt="Shades", k=(0, 3)),
+    "tune": lambda: widgets.tune(
+        lambda k=0: SHADES // (k + 1), lambda one: one, alt="Shades", k=(0, 3)
+    ),
     "wipe": lambda: widgets.wipe(
         SHADES, 255 - SHADES, alt="Shades", labels=["one", "the other"], values=LIGHT
     ),

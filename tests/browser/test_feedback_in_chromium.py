@@ -34,7 +34,9 @@ def report(tmp_path_factory):
     file = Path(folder / "hw2.py")
     file.write_text(HOSTILE)
     hw2 = plan.read().homeworks["hw2"]
-    few = hw2._replace(tasks=tuple(one for one in hw2.tasks if one.id in ("hat", "irradiance", "update")))
+    few = hw2._replace(
+        tasks=tuple(one for one in hw2.tasks if one.id in ("hat", "irradiance", "update"))
+    )
     found = grading.grade(file, few, Conditions(tier="practice", student=PAYLOAD, secret="salt"))
     assert "owned" in found.checks[0].message
     (folder / "feedback.html").write_text(feedback.page(found), encoding="utf8")
@@ -48,7 +50,10 @@ def test_nothing_that_a_student_wrote_runs_or_is_fetched(report, page):
     page.wait_for_timeout(300)
     assert page.evaluate("window.owned") is None
     assert [one for one in page.requests if not one.startswith("data:")] == [report]
-    assert page.evaluate("document.querySelectorAll('script, iframe, svg, a, object, embed').length") == 0
+    assert (
+        page.evaluate("document.querySelectorAll('script, iframe, svg, a, object, embed').length")
+        == 0
+    )
     assert page.evaluate("document.querySelectorAll('meta[http-equiv=refresh]').length") == 0
     assert "window.owned" in page.inner_text("main")  # it is there to read
     assert page.problems == [] and page.url == report

@@ -27,7 +27,9 @@ def served(browser, tmp_path_factory):
     from benchmarks import gallery as bench
 
     closes = datetime.now(UTC) + timedelta(days=1)
-    caption = "Seven photographs from a tripod, two stops apart; averylongwordwithoutaplacetobreakit" * 2
+    caption = (
+        "Seven photographs from a tripod, two stops apart; averylongwordwithoutaplacetobreakit" * 2
+    )
     room = small.make(tmp_path_factory.mktemp("class"), TEAMS, closes=closes, caption=caption[:200])
     server, address = bench.start(room.folder)
     yield room, address
@@ -121,7 +123,9 @@ def test_every_page_fits_the_screen_and_names_its_parts(served, page, axe, width
         page.goto(served[1] + path)
         assert page.evaluate("document.documentElement.scrollWidth") <= width, path
         assert axe(page, "html") == [], path
-        sizes = page.evaluate("[...document.querySelectorAll('.panes img')].map((one) => one.naturalWidth)")
+        sizes = page.evaluate(
+            "[...document.querySelectorAll('.panes img')].map((one) => one.naturalWidth)"
+        )
         assert all(sizes)
     assert page.problems == []
     assert all(url.startswith(served[1]) for url in page.requests)
@@ -168,7 +172,9 @@ def test_a_vote_given_before_the_script_has_come_is_saved_too(served, page):
 
 
 def test_without_scripts_a_ballot_is_saved_by_its_button(served, browser):
-    context = browser.new_context(java_script_enabled=False, viewport={"width": 1280, "height": 900})
+    context = browser.new_context(
+        java_script_enabled=False, viewport={"width": 1280, "height": 900}
+    )
     page = context.new_page()
     enter(page, served, "ann7")
     page.locator("input[name=mark]").first.check(force=True)
@@ -182,7 +188,9 @@ def test_two_pictures_are_moved_as_one(served, page):
     enter(page, served, "ann8")
     ids = [page.locator("input[name=mark]").nth(k).get_attribute("value") for k in range(2)]
     page.goto(f"{served[1]}/compare?with={ids[0]}&with={ids[1]}")
-    page.set_viewport_size({"width": 300, "height": 500})  # small pictures are larger than these panes
+    page.set_viewport_size(
+        {"width": 300, "height": 500}
+    )  # small pictures are larger than these panes
     for _ in range(9):
         page.keyboard.press("+")
     page.locator(".pane").first.focus()
@@ -190,7 +198,9 @@ def test_two_pictures_are_moved_as_one(served, page):
     before = page.evaluate(part)
     page.keyboard.press("ArrowRight")
     page.wait_for_function(f"(before) => {part}[1] > before + 0.01", arg=before[1])
-    page.wait_for_function(f"() => {{ const [one, other] = {part}; return Math.abs(one - other) < 0.02; }}")
+    page.wait_for_function(
+        f"() => {{ const [one, other] = {part}; return Math.abs(one - other) < 0.02; }}"
+    )
     assert 0 < before[0] < page.evaluate(part)[0]
 
 
@@ -201,7 +211,12 @@ def test_the_results_are_told_after_the_end(served, page, axe, tmp_path):
     server, address = bench.start(room.folder)
     try:
         with store.writing(room.folder) as db:
-            for who, team in (("ann1", "team3"), ("ann2", "team3"), ("ann4", "team5"), ("ann5", "team6")):
+            for who, team in (
+                ("ann1", "team3"),
+                ("ann2", "team3"),
+                ("ann4", "team5"),
+                ("ann5", "team6"),
+            ):
                 ballots.cast(db, who, [room.artifacts[team]], now=datetime.now(UTC).timestamp())
             store.close(db, datetime.now(UTC))
         page.goto(f"{address}/enter/{room.links['ann7']}")

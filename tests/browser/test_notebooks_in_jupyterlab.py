@@ -1,7 +1,7 @@
 """Notebooks, opened and run as a reader does it: in JupyterLab, in a browser.
 
-Three hold every kind of widget. The others have a tier of their own, since they take long: their cells are
-run in the tier of notebooks, and their widgets are moved on the pages of the site.
+Three hold every kind of widget. The others have a tier of their own, since they take long: their
+cells are run in the tier of notebooks, and their widgets are moved on the pages of the site.
 """
 
 import re
@@ -43,7 +43,9 @@ def move_sliders(page, widget, settle=lambda: None):
         slider.focus()
         back = start == slider.get_attribute("max")
         changed_by(
-            page, widget, lambda back=back: [press(page, "Left" if back else "Right") for _ in range(3)]
+            page,
+            widget,
+            lambda back=back: [press(page, "Left" if back else "Right") for _ in range(3)],
         )
         settle()
         assert slider.get_attribute("aria-valuetext") != said
@@ -77,8 +79,12 @@ def move_tune(page, widget):
 
 def until_answered(page, widget):
     """Wait until the picture is of the last position."""
-    names = [label.inner_text() for label in widget.locator(".hdrlab-slider span:first-child").all()]
-    texts = [slider.get_attribute("aria-valuetext") for slider in widget.get_by_role("slider").all()]
+    names = [
+        label.inner_text() for label in widget.locator(".hdrlab-slider span:first-child").all()
+    ]
+    texts = [
+        slider.get_attribute("aria-valuetext") for slider in widget.get_by_role("slider").all()
+    ]
     wanted = ", ".join(f"{name} = {text}" for name, text in zip(names, texts, strict=True))
     page.wait_for_function(
         """([el, wanted]) => el.querySelector("canvas").getAttribute("aria-label").endsWith(wanted)
@@ -127,14 +133,22 @@ def move_predict(page, widget):
     assert widget.get_by_role("status").last.inner_text().startswith("The truth: ")
 
 
-MOVES = {"play": move_play, "tune": move_tune, "wipe": move_wipe, "blink": move_blink, "brush": move_brush}
+MOVES = {
+    "play": move_play,
+    "tune": move_tune,
+    "wipe": move_wipe,
+    "blink": move_blink,
+    "brush": move_brush,
+}
 MOVES |= {"predict": move_predict}
 
 
 class Notebooks:
     """What is tested of each notebook. The classes below are what xdist hands to its workers, each whole."""
 
-    def test_a_notebook_runs_and_each_of_its_controls_changes_the_picture(self, lab, page, notebook):
+    def test_a_notebook_runs_and_each_of_its_controls_changes_the_picture(
+        self, lab, page, notebook
+    ):
         try:
             lab.open(page, notebook)
             lab.run_all(page)
@@ -151,8 +165,12 @@ class Notebooks:
                 until_painted(page, widget)
                 MOVES[widget.get_attribute("data-kind")](page, widget)
 
-            assert [text for text in page.problems if not any(noise in text for noise in NOISE)] == []
-            assert [url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))] == []
+            assert [
+                text for text in page.problems if not any(noise in text for noise in NOISE)
+            ] == []
+            assert [
+                url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))
+            ] == []
         finally:
             lab.close()
 

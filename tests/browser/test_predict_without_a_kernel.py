@@ -18,7 +18,9 @@ ASKED = {
     ),
     "number": lambda: predict.number("How many stops?", 12, (0, 20), unit="stops"),
     "curve": lambda: predict.curve("Draw it.", [0, 1], [0, 1], names=("level", "light")),
-    "place": lambda: predict.place("Where is it brightest?", LEVELS > 185, LEVELS, alt="A ramp to white"),
+    "place": lambda: predict.place(
+        "Where is it brightest?", LEVELS > 185, LEVELS, alt="A ramp to white"
+    ),
 }
 
 
@@ -100,7 +102,11 @@ def luminances(page, places):
 
 def test_the_field_of_a_curve_is_dark_where_jupyterlab_is_and_both_curves_stand_out(ask):
     page = ask("curve", given=[1.0] * 17, done=True)
-    places = [(0.3, 0.05), (0.5, 0.2 / 1.4), (0.7, 1 - 0.9 / 1.4)]  # the field, yours at 1, the truth
+    places = [
+        (0.3, 0.05),
+        (0.5, 0.2 / 1.4),
+        (0.7, 1 - 0.9 / 1.4),
+    ]  # the field, yours at 1, the truth
     assert luminances(page, places)[0] == 1
     page.evaluate("document.body.dataset.jpThemeLight = 'false'")
     field, *lines = luminances(page, places)
@@ -155,7 +161,9 @@ def test_the_page_counts_what_was_near(ask):
 
 @pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize("kind", ASKED)
-def test_a_question_fits_the_screen_and_axe_finds_nothing_wrong_before_and_after(ask, axe, kind, width):
+def test_a_question_fits_the_screen_and_axe_finds_nothing_wrong_before_and_after(
+    ask, axe, kind, width
+):
     page = ask(kind)
     page.set_viewport_size({"width": width, "height": 900})
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -33,7 +33,9 @@ def test_the_report_fits_the_screen_and_asks_for_nothing(report, page, width):
 
 def test_every_picture_of_the_report_is_decoded(report, page):
     page.goto(report.as_uri())
-    sizes = page.evaluate("[...document.images].map((image) => image.complete && image.naturalWidth)")
+    sizes = page.evaluate(
+        "[...document.images].map((image) => image.complete && image.naturalWidth)"
+    )
     assert len(sizes) == 5 and all(sizes)
 
 
@@ -48,7 +50,9 @@ def test_no_text_of_the_report_is_smaller_than_a_telephone_can_show(report, page
     assert smallest >= 13
 
 
-def test_the_report_is_dark_where_its_reader_likes_it_dark_and_axe_finds_nothing_wrong(report, page, axe):
+def test_the_report_is_dark_where_its_reader_likes_it_dark_and_axe_finds_nothing_wrong(
+    report, page, axe
+):
     page.emulate_media(color_scheme="dark")
     page.goto(report.as_uri())
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 24, 30)"

@@ -36,10 +36,14 @@ def widget_of(page):
     return widget
 
 
-def test_a_saved_notebook_that_is_opened_again_answers_at_every_position_before_it_is_run(reader, page):
+def test_a_saved_notebook_that_is_opened_again_answers_at_every_position_before_it_is_run(
+    reader, page
+):
     file = reader.folder / "saved.ipynb"
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
-    nbformat.write(nbformat.v4.new_notebook(metadata=kernel, cells=[nbformat.v4.new_code_cell(CELL)]), file)
+    nbformat.write(
+        nbformat.v4.new_notebook(metadata=kernel, cells=[nbformat.v4.new_code_cell(CELL)]), file
+    )
     reader.open(page, file.name)
     reader.run_all(page)
     widget_of(page)
@@ -66,6 +70,10 @@ def test_a_saved_notebook_that_is_opened_again_answers_at_every_position_before_
             timeout=PATIENCE,
         )
     assert widget.get_by_role("status").inner_text() == "Computed beforehand."
-    size = widget.evaluate("el => [el.querySelector('canvas').width, el.querySelector('canvas').height]")
+    size = widget.evaluate(
+        "el => [el.querySelector('canvas').width, el.querySelector('canvas').height]"
+    )
     assert size == [60, 60]
-    assert page.get_by_text("Would you like to").count() == 0  # be told the news, as JupyterLab asks
+    assert (
+        page.get_by_text("Would you like to").count() == 0
+    )  # be told the news, as JupyterLab asks

@@ -1,6 +1,7 @@
 """The course's site as a reader sees it: opened from its folder, with no kernel and no server.
 
-It shows the notebooks as they were run for the tests of notebooks, where these are kept (see `kept`).
+It shows the notebooks as they were run for the tests of notebooks, where these are kept (see
+`kept`).
 """
 
 import functools
@@ -46,7 +47,9 @@ def site(browser, kept, tmp_path_factory):
     """The site of all notebooks, made once for all workers: one makes it, and who comes meanwhile waits."""
     fcntl = pytest.importorskip("fcntl", reason="a lock between the workers is one of POSIX")
     base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "site-of-all-notebooks"
+    folder = (
+        base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    ) / "site-of-all-notebooks"
     folder.mkdir(exist_ok=True)
     with open(folder / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -65,13 +68,17 @@ def opened(site, page):
 
     yield open_
     assert page.problems == []
-    assert [url for url in page.requests if not url.startswith((site.as_uri(), "data:", "blob:"))] == []
+    assert [
+        url for url in page.requests if not url.startswith((site.as_uri(), "data:", "blob:"))
+    ] == []
 
 
 def open_widget(page, place):
     """Scroll to a widget's place, wait until it is there instead of its picture, and return it."""
     place.scroll_into_view_if_needed()
-    page.wait_for_function("el => el.dataset.state === 'open'", arg=place.element_handle(), timeout=PATIENCE)
+    page.wait_for_function(
+        "el => el.dataset.state === 'open'", arg=place.element_handle(), timeout=PATIENCE
+    )
     return place.locator(".hdrlab")
 
 
@@ -105,8 +112,13 @@ def changed_by(page, widget, move):
 
 def assert_it_fits(page, axe):
     """Look at a page on a wide and on a narrow screen, and leave it wide."""
-    # axe finds the same wherever it is wide, and in code, half of all elements, the same where it is narrow
-    for width, asked in ((400, "html"), (1440, None), (1280, {"include": ["html"], "exclude": ["pre"]})):
+    # axe finds the same wherever it is wide, and in code, half of all elements, the same where it
+    # is narrow
+    for width, asked in (
+        (400, "html"),
+        (1440, None),
+        (1280, {"include": ["html"], "exclude": ["pre"]}),
+    ):
         page.set_viewport_size({"width": width, "height": 900})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         found = [each for each in axe(page, asked) if not each.startswith(MINOR)] if asked else []
@@ -114,7 +126,9 @@ def assert_it_fits(page, axe):
 
 
 @pytest.mark.parametrize("name", NOTEBOOKS)
-def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(opened, axe, name):
+def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(
+    opened, axe, name
+):
     page = opened(f"notebooks/{name}")
     places = page.locator(".live").all()
     assert places, "the page shows no widget"
@@ -143,7 +157,9 @@ def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(open
 @pytest.mark.parametrize(
     "name", ["index", "notebooks/04_response_gsolve", "verdicts", "reference/tonemap.chiu"]
 )
-def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wrong(opened, axe, name):
+def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wrong(
+    opened, axe, name
+):
     page = opened(name)
     page.emulate_media(color_scheme="dark")
     for place in page.locator(".live").all():
@@ -167,7 +183,9 @@ def test_the_brush_follows_the_pointer_and_the_keys(opened, site):
     changed_by(page, widget, lambda: widget.get_by_role("application").press("ArrowLeft"))
     box = widget.locator("canvas").bounding_box()
     changed_by(
-        page, widget, lambda: page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+        page,
+        widget,
+        lambda: page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"]),
     )
 
 
@@ -214,7 +232,10 @@ def test_a_page_has_its_contents_at_the_right_and_leads_on(opened):
 def test_a_cell_is_copied_and_an_example_without_its_prompts(opened):
     page = opened("notebooks/00_welcome")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    for name, copied in (("notebooks/00_welcome", "import tempfile"), ("reference/tonemap.chiu", "tonemap(")):
+    for name, copied in (
+        ("notebooks/00_welcome", "import tempfile"),
+        ("reference/tonemap.chiu", "tonemap("),
+    ):
         page = opened(name)
         page.get_by_role("button", name="Copy").first.click()
         page.get_by_role("button", name="Copied").wait_for(timeout=PATIENCE)
@@ -222,11 +243,15 @@ def test_a_cell_is_copied_and_an_example_without_its_prompts(opened):
         assert copied in text and ">>>" not in text
 
 
-def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_and_the_next(opened):
+def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_and_the_next(
+    opened,
+):
     page = opened("notebooks/04_response_gsolve")
     folds = page.locator("main details.hide")
     assert folds.count() > 5 and page.locator("main details.hide[open]").count() == 0
-    assert page.get_by_text("debevec.system(Z[:20], B, 30").is_visible()  # what is the lesson stands open
+    assert page.get_by_text(
+        "debevec.system(Z[:20], B, 30"
+    ).is_visible()  # what is the lesson stands open
     first = folds.first.locator("summary")
     assert first.inner_text() == "Show the code" and first.get_attribute("aria-label") is None
     first.press("Enter")

@@ -52,7 +52,10 @@ def player(page):
 
 @pytest.fixture
 def tuner(page):
-    open_widget(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
+    open_widget(
+        page,
+        widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)),
+    )
     yield page
     assert page.problems == []
 
@@ -67,12 +70,16 @@ def screenshot(page, selector):
 
 
 @pytest.mark.parametrize("live", [True, False])
-def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_its_colours(page, live):
+def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_its_colours(
+    page, live
+):
     widget = widgets.play(range(2), mapped, alt="A map")
     open_widget(page, widget)
     if not live:  # a strip, beside a widget, which brings the style
         strip = pictures.strip(mapped, lambda figure: figure, alt="A map", k=[0])
-        page.evaluate("html => document.body.insertAdjacentHTML('beforeend', html)", strip._repr_html_())
+        page.evaluate(
+            "html => document.body.insertAdjacentHTML('beforeend', html)", strip._repr_html_()
+        )
     look = "canvas" if live else "figure img"
     by_day = screenshot(page, look)
     page.evaluate("document.body.dataset.jpThemeLight = 'false'")
@@ -80,7 +87,8 @@ def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_it
     height, width = by_day.shape[:2]
     (left, top, wide, high), scale = widget.areas
     inside = np.s_[
-        int((top + 0.02) * height) : int((top + high - 0.02) * height), int(0.1 * width) : int(0.9 * width)
+        int((top + 0.02) * height) : int((top + high - 0.02) * height),
+        int(0.1 * width) : int(0.9 * width),
     ]
     below = np.s_[int((scale[1] + scale[3] + 0.02) * height) : int(0.98 * height)]
     assert np.array_equal(by_day[inside], by_night[inside])
@@ -102,7 +110,9 @@ def test_jupyterlabs_dark_theme_turns_a_plot_to_chalk_and_leaves_a_photograph(pa
     page.evaluate("document.body.dataset.jpThemeLight = 'false'")
     page.get_by_role("slider").press("ArrowRight")
     canvas = page.locator("canvas")
-    page.wait_for_function("document.querySelector('canvas').ariaLabel.endsWith('step 2')", timeout=PATIENCE)
+    page.wait_for_function(
+        "document.querySelector('canvas').ariaLabel.endsWith('step 2')", timeout=PATIENCE
+    )
     look = "canvas => getComputedStyle(canvas).filter"
     assert (canvas.evaluate(look) != "none") == ink
     page.evaluate("document.body.dataset.jpThemeLight = 'true'")
@@ -169,7 +179,9 @@ def test_python_moves_the_step_too(player):
     assert player.get_by_role("slider").input_value() == "3"
 
 
-def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named_where_not_all_are_stored(tuner):
+def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named_where_not_all_are_stored(
+    tuner,
+):
     slider = tuner.get_by_role("slider", name="level")
     slider.focus()
     tuner.keyboard.press("End")
@@ -179,19 +191,27 @@ def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named_where_no
         tuner.keyboard.press("ArrowLeft")
     assert slider.get_attribute("aria-valuetext") == "191"
     status = tuner.get_by_role("status").inner_text()
-    assert status == "Computed beforehand, at 3 of 201 positions of level; the nearest: level = 200."
+    assert (
+        status == "Computed beforehand, at 3 of 201 positions of level; the nearest: level = 200."
+    )
     assert tuner.evaluate("window.reached") == []
 
 
 def test_without_a_kernel_every_position_of_two_sliders_is_answered(page):
     def shade(level=100, more=0):
         picture = square(level)
-        picture[:, 15:] += more  # the rest is as in the first picture, and so it is not stored again
+        picture[:, 15:] += (
+            more  # the rest is as in the first picture, and so it is not stored again
+        )
         return picture
 
     ranges = {"level": (0, 200, 50), "more": (0, 50, 10)}
     open_widget(page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", **ranges))
-    for name, key, expected in (("more", "End", 150), ("level", "Home", 50), ("more", "ArrowLeft", 40)):
+    for name, key, expected in (
+        ("more", "End", 150),
+        ("level", "Home", 50),
+        ("more", "ArrowLeft", 40),
+    ):
         page.get_by_role("slider", name=name).press(key)
         until_level(page, expected)
         assert page.get_by_role("status").inner_text() == "Computed beforehand."
@@ -203,7 +223,10 @@ def test_without_a_kernel_every_position_of_two_sliders_is_answered(page):
 def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
     tuner.evaluate("window.hdrlab = { running: '../installing.html' }")
     tuner.get_by_role("slider").press("End")
-    assert tuner.get_by_role("link", name="Run it yourself").get_attribute("href") == "../installing.html"
+    assert (
+        tuner.get_by_role("link", name="Run it yourself").get_attribute("href")
+        == "../installing.html"
+    )
 
 
 def answer(page, level, at):
@@ -248,11 +271,15 @@ def test_an_answer_replaces_the_stored_picture(tuner):
     before = tuner.evaluate("window.model.saved")
     tuner.keyboard.press("ArrowLeft")
     assert tuner.evaluate("window.model.saved") == before + 1
-    assert tuner.get_by_role("status").inner_text() == ""  # a kernel that has answered is waited for
+    assert (
+        tuner.get_by_role("status").inner_text() == ""
+    )  # a kernel that has answered is waited for
 
 
 def test_an_answer_of_runs_is_painted_to_the_bit(tuner):
-    picture = np.random.default_rng(1).integers(0, 256, (40, 70, 3), dtype=np.uint8).repeat(9, axis=1)
+    picture = (
+        np.random.default_rng(1).integers(0, 256, (40, 70, 3), dtype=np.uint8).repeat(9, axis=1)
+    )
     tuner.evaluate(
         """(runs) => {
             const model = window.model, larger = new Uint8Array(runs.length + 11);
@@ -277,7 +304,9 @@ def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):
 
     open_widget(
         page,
-        widgets.tune(shade, lambda drawn: drawn, alt="Gray", point=("down", "right"), down=each, right=each),
+        widgets.tune(
+            shade, lambda drawn: drawn, alt="Gray", point=("down", "right"), down=each, right=each
+        ),
     )
     box = page.locator("canvas").bounding_box()
     page.mouse.click(box["x"] + 0.68 * box["width"], box["y"] + 0.12 * box["height"])
@@ -302,5 +331,7 @@ def test_controls_are_large_enough_and_fit_a_narrow_page(player):
 
 
 def test_axe_names_a_picture_without_words(page, axe):
-    page.set_content('<!DOCTYPE html><html lang="en"><title>A page</title><main><img src="data:,"></main>')
+    page.set_content(
+        '<!DOCTYPE html><html lang="en"><title>A page</title><main><img src="data:,"></main>'
+    )
     assert [each.partition(":")[0] for each in axe(page, "main")] == ["image-alt"]

@@ -12,7 +12,9 @@ from hdrlab.calibration.blends import Blend
 RNG = np.random.default_rng(29)
 INF, NAN = np.inf, np.nan
 I = np.linspace(0.05, 1, 12)  # noqa: E741  (the paper's letter)
-BLENDS = [Blend(I, np.clip(s * I + r, 0, 1) ** (1 / 2.2)) for s, r in ((0.9, 0.0), (0.4, 0.0), (0.3, 0.5))]
+BLENDS = [
+    Blend(I, np.clip(s * I + r, 0, 1) ** (1 / 2.2)) for s, r in ((0.9, 0.0), (0.4, 0.0), (0.3, 0.5))
+]
 SCALED = [Blend(I, (s * I) ** (1 / 2.2)) for s in (0.95, 0.4)]
 RESCALED = blends.rescale(BLENDS)
 M9 = np.linspace(0.1, 0.9, 30)
@@ -31,7 +33,9 @@ CHART = RNG.integers(20, 230, (50, 70), np.uint8)
 FRAME = [[3, 4], [65, 3], [66, 45], [2, 46]]
 EDGE = np.zeros((20, 90))
 for k in range(20):
-    EDGE[k] = np.interp(np.arange(90), [20 + k / 3, 40 + k / 3, 55, 75 - k / 5], [0.001, 0.97, 0.97, 0.001])
+    EDGE[k] = np.interp(
+        np.arange(90), [20 + k / 3, 40 + k / 3, 55, 75 - k / 5], [0.001, 0.97, 0.97, 0.001]
+    )
 BLURRED = np.rint(255 * EDGE ** (1 / 2.2)).astype(np.uint8)
 BENT = np.rint(255 * np.where(np.arange(90) < 50, EDGE ** (1 / 2.2), EDGE)).astype(np.uint8)
 RAMPS = motion_blur.find_ramps(BLURRED)
@@ -46,7 +50,10 @@ def constants():
 
 constants.__module__ = "hdrlab.calibration.chart"
 LOOSE = {f"calibration.{name}": 2e-4 for name in ("wilburn.join_steps", "wilburn.join")}
-LOOSE |= {f"calibration.{name}": 2e-5 for name in ("joining.join_steps", "joining.join", "motion_blur.join")}
+LOOSE |= {
+    f"calibration.{name}": 2e-5
+    for name in ("joining.join_steps", "joining.join", "motion_blur.join")
+}
 CASES = recorded.named(
     *(of(blends.make_blend, i, m, **k) for i, m, k in ((I, BLENDS[0].M, {}), (I, BLENDS[2].M, {"low": 0.7,
         "high": 0.8}), ([1, 2, 3, 4], [15 / 255, 240 / 255, 14.9 / 255, 240.1 / 255], {}))),

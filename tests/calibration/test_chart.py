@@ -66,7 +66,9 @@ def test_a_chart_in_perspective_is_read_to_a_tenth_of_a_level():
 def test_channels_and_16_bits_are_read_like_gray():
     picture, corners = drawn(np.arange(24).reshape(4, 6) * 10)
     gray = chart.read_chart(picture.astype(np.uint8), corners)
-    colour = chart.read_chart(np.repeat((picture * 257).astype(np.uint16)[..., None], 3, axis=-1), corners)
+    colour = chart.read_chart(
+        np.repeat((picture * 257).astype(np.uint16)[..., None], 3, axis=-1), corners
+    )
     assert colour.shape == (4, 6, 3) and np.allclose(colour, gray[..., None])
 
 
@@ -102,7 +104,9 @@ def test_one_photograph_of_the_grays_gives_the_response(name):
 def test_many_exposures_give_the_response_without_any_reflectance(name):
     values = chart.LUMINANCE / 100
     picture, corners = drawn(values)
-    taken = camera.shoot(picture, TIMES, camera.Camera(response=name, full_well=50_000, read_noise=5), rng=3)
+    taken = camera.shoot(
+        picture, TIMES, camera.Camera(response=name, full_well=50_000, read_noise=5), rng=3
+    )
     M = chart.read_bracket(taken.images, corners)
     found = chart.recover_bracket(M, taken.times)
     inverse = responses.as_response(name).inverse

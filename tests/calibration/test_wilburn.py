@@ -1,6 +1,7 @@
 """Calibration from mixtures of two lights: schedules, ramps, joining, and the experiments of the paper.
 
-The benchmarks run the published experiments in full; here are fewer cameras and trials, and the same limits.
+The benchmarks run the published experiments in full; here are fewer cameras and trials, and the
+same limits.
 """
 
 import numpy as np
@@ -43,9 +44,13 @@ def two_blends(f, dim=0.2, start=0.0):
 
 
 def test_every_patch_switches_once_and_stays_on_for_its_share():
-    shown = display.draw_schedule(Schedule((200,), low=7, patch=1, border=0), shape=(3, 5)).reshape(15, 15)
+    shown = display.draw_schedule(Schedule((200,), low=7, patch=1, border=0), shape=(3, 5)).reshape(
+        15, 15
+    )
     assert np.array_equal((shown == 200).mean(axis=0), np.arange(1, 16) / 15)
-    assert np.all(np.sum(np.diff(shown.astype(int), axis=0) != 0, axis=0) <= 1) and set(np.unique(shown)) == {
+    assert np.all(np.sum(np.diff(shown.astype(int), axis=0) != 0, axis=0) <= 1) and set(
+        np.unique(shown)
+    ) == {
         7,
         200,
     }
@@ -65,7 +70,9 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
     image, corners = np.round(shown.mean(axis=0)).astype(np.uint8), display.find_corners(shown[0])
     read = display.read_blends(image, corners, schedule, low=0, high=1)
     for one, high in zip(read[0], (250, 100), strict=True):
-        assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
+        assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(
+            one.I, ALPHA
+        )
 
 
 @pytest.mark.parametrize(
@@ -119,7 +126,9 @@ def test_the_simplex_ends_where_the_quadratic_has_its_least_value():
     fixed, D = np.array([0.0, 1, 0, 0]), np.vstack([np.zeros(2), -np.ones(2), np.eye(2)])
     free = np.linalg.solve(D.T @ Q @ D, -D.T @ Q @ fixed)
     state = list(wilburn.join_steps(blends, degree=3))[-1]
-    assert np.allclose(state.a[2:], free, atol=1e-3) and state.E <= 1.001 * wilburn.error(fixed + D @ free, Q)
+    assert np.allclose(state.a[2:], free, atol=1e-3) and state.E <= 1.001 * wilburn.error(
+        fixed + D @ free, Q
+    )
 
 
 def test_both_ways_of_joining_agree_where_the_response_is_a_polynomial():
@@ -133,7 +142,9 @@ def test_the_error_is_the_papers_sum():
     by_hand = 0.0
     for one in blends:
         s, r = np.polyfit(one.I, wilburn.evaluate(one.M, a), 1)
-        by_hand += sum((s * x + r - wilburn.evaluate(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True))
+        by_hand += sum(
+            (s * x + r - wilburn.evaluate(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True)
+        )
     assert wilburn.error(a, wilburn.quadratic_form(blends, 3)) == pytest.approx(by_hand)
 
 
@@ -141,7 +152,8 @@ def test_the_error_is_the_papers_sum():
 def test_a_joined_curve_never_falls(solver):
     rng = np.random.default_rng(0)
     blends = [
-        Blend(one.I, one.M + 0.01 * rng.standard_normal(15)) for one in two_blends(as_response("film").f)
+        Blend(one.I, one.M + 0.01 * rng.standard_normal(15))
+        for one in two_blends(as_response("film").f)
     ]
     assert np.all(np.diff(SOLVERS[solver](blends).X) >= -1e-9)
 
@@ -174,9 +186,12 @@ def test_ramps_are_found_where_they_are(papers):
 def test_a_ramp_does_not_end_by_its_own_noise(papers):
     """Another draw of a line's noise leaves its ramps where they are, so noise has not chosen their ends.
 
-    A line by itself ends where it seems bright enough: just inside of that, what noise has darkened is left.
+    A line by itself ends where it seems bright enough: just inside of that, what noise has darkened
+    is left.
     """
-    first, second = (papers.blurred(as_response("film").f, np.random.default_rng(seed)) for seed in (0, 1))
+    first, second = (
+        papers.blurred(as_response("film").f, np.random.default_rng(seed)) for seed in (0, 1)
+    )
     other = first.copy()
     other[150] = second[150]
     assert motion_blur.find_ramps(first)[300:302] == motion_blur.find_ramps(other)[300:302]
@@ -186,7 +201,9 @@ def test_a_ramp_does_not_end_by_its_own_noise(papers):
         return np.mean([away[one.row, one.start] for one in found if not one.rises])
 
     alone = [
-        one._replace(row=k) for k, line in enumerate(first) for one in motion_blur.find_ramps(line[None])
+        one._replace(row=k)
+        for k, line in enumerate(first)
+        for one in motion_blur.find_ramps(line[None])
     ]
     tolerance = 3 * 255 * papers.SIGMA / np.sqrt(300)
     assert abs(first_sample(motion_blur.find_ramps(first))) < tolerance < -first_sample(alone)
@@ -225,14 +242,22 @@ def test_linear_motion_passes_and_one_that_gathers_15_percent_does_not(papers, n
 @pytest.mark.parametrize("name", sorted(RESPONSES))
 def test_his_polynomial_holds_the_published_errors(papers, name):
     got = papers.table1(name, sets=1, lines=60)
-    assert got["display, polynomial"].rmse.mean() <= 0.012 and got["blur, polynomial"].rmse.mean() <= 0.012
-    assert got["display, spline"].disparity.mean() < 0.017 and got["blur, spline"].disparity.mean() < 0.029
+    assert (
+        got["display, polynomial"].rmse.mean() <= 0.012
+        and got["blur, polynomial"].rmse.mean() <= 0.012
+    )
+    assert (
+        got["display, spline"].disparity.mean() < 0.017
+        and got["blur, spline"].disparity.mean() < 0.029
+    )
 
 
 def test_the_compared_method_holds_the_published_disparity(papers):
     """Ten sets, of which the worst two are left out, as in the paper."""
     cameras = [as_response("srgb").f] * 10
-    near, far = (papers.without_outliers(papers.self_calibrated(cameras, off=off)) for off in papers.OFF)
+    near, far = (
+        papers.without_outliers(papers.self_calibrated(cameras, off=off)) for off in papers.OFF
+    )
     assert len(near.rmse) == 8 and near.rmse.mean() < 0.006
     assert near.disparity.mean() < far.disparity.mean() < 0.017
 

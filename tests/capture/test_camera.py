@@ -34,7 +34,9 @@ def test_every_response_runs_from_0_to_1_and_rises(name):
 def test_every_inverse_undoes_its_response(name):
     f, inverse = responses.RESPONSES[name]
     X = np.linspace(0, 1, 1001)
-    assert np.allclose(inverse(f(X)), X, atol=2e-7)  # the published constants of sRGB meet to 1e-7 only
+    assert np.allclose(
+        inverse(f(X)), X, atol=2e-7
+    )  # the published constants of sRGB meet to 1e-7 only
 
 
 def test_the_cubic_response_is_the_root_of_its_polynomial():
@@ -76,12 +78,16 @@ def test_what_is_no_response_is_refused(bad):
 
 
 def test_exposure_is_radiance_times_time_times_sensitivity():
-    assert np.array_equal(sensor.exposure(np.float32([1, 2]), 0.5, sensitivity=4), np.float32([2, 4]))
+    assert np.array_equal(
+        sensor.exposure(np.float32([1, 2]), 0.5, sensitivity=4), np.float32([2, 4])
+    )
 
 
 def test_the_variance_of_the_photons_is_their_mean():
     for X in (0.001, 0.1, 0.5):
-        N = sensor.photons(np.full(200_000, X, np.float32), full_well=10_000, rng=np.random.default_rng(1))
+        N = sensor.photons(
+            np.full(200_000, X, np.float32), full_well=10_000, rng=np.random.default_rng(1)
+        )
         assert np.isclose(N.mean(), 10_000 * X, rtol=0.01)
         assert np.isclose(N.var(), 10_000 * X, rtol=0.02)
 
@@ -93,7 +99,9 @@ def test_a_full_well_spills():
 
 def test_read_noise_has_its_deviation_in_the_dark_and_in_the_light():
     for N in (0, 5000):
-        noisy = sensor.readout(np.full(100_000, N, np.float32), read_noise=7, rng=np.random.default_rng(2))
+        noisy = sensor.readout(
+            np.full(100_000, N, np.float32), read_noise=7, rng=np.random.default_rng(2)
+        )
         assert np.isclose(noisy.mean(), N, atol=0.1) and np.isclose(noisy.std(), 7, rtol=0.02)
 
 
@@ -134,7 +142,9 @@ def test_more_light_and_more_time_make_the_same_photograph(k, seed):
         shoot(E, factor * np.array([0.25, 1]), Camera(**knobs), rng=5),
     )
     faster = shoot(E, [0.25, 1], Camera(sensitivity=factor, **knobs), rng=5)
-    assert np.array_equal(brighter.images, longer.images) and np.array_equal(longer.images, faster.images)
+    assert np.array_equal(brighter.images, longer.images) and np.array_equal(
+        longer.images, faster.images
+    )
 
 
 def test_a_longer_exposure_is_nowhere_darker():
@@ -197,11 +207,15 @@ def test_gray_noise_has_its_deviation_in_levels():
 
 def test_the_noisy_experiment_of_cerman_and_hlavac_can_be_set_up():
     E = ramp(1 / 1024, 1, (200, 300))
-    taken = shoot(E, 4.0 ** np.arange(6), Camera(response="cubic", gray_noise=1.0, sensitivity=1.0), rng=0)
+    taken = shoot(
+        E, 4.0 ** np.arange(6), Camera(response="cubic", gray_noise=1.0, sensitivity=1.0), rng=0
+    )
     clean = shoot(E, 4.0 ** np.arange(6), Camera(response="cubic"))
     middle = (clean.images > 5) & (clean.images < 250)
     error = taken.images[middle].astype(float) - clean.images[middle]
-    assert np.isclose(error.mean(), 0, atol=0.02) and np.isclose(error.std(), np.sqrt(1 + 1 / 6), rtol=0.03)
+    assert np.isclose(error.mean(), 0, atol=0.02) and np.isclose(
+        error.std(), np.sqrt(1 + 1 / 6), rtol=0.03
+    )
 
 
 def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
@@ -219,7 +233,9 @@ def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
 def test_a_frame_moved_by_its_offset_lies_on_the_reference():
     E = np.random.default_rng(0).random((40, 50)).astype(np.float32)
     offsets = np.array([[3, -2], [0, 0], [-4, 5]])
-    images = shoot(E, [0.5, 0.500001, 0.500002], offsets=offsets).images  # as good as one time, in this order
+    images = shoot(
+        E, [0.5, 0.500001, 0.500002], offsets=offsets
+    ).images  # as good as one time, in this order
     assert images.shape == (3, 40 - 7, 50 - 7)
     for image, (dy, dx) in zip(images, offsets, strict=True):
         moved = np.roll(image, (dy, dx), axis=(0, 1))
@@ -241,7 +257,9 @@ def test_a_tripod_sees_the_whole_scene():
 def test_the_hand_shakes_within_its_radius_around_the_middle_frame():
     offsets = camera.shake(500, radius=3, rng=1)
     assert offsets.shape == (500, 2) and np.array_equal(np.unique(offsets), np.arange(-3, 4))
-    assert np.array_equal(camera.shake(5)[2], [0, 0]) and np.array_equal(camera.shake(5), camera.shake(5))
+    assert np.array_equal(camera.shake(5)[2], [0, 0]) and np.array_equal(
+        camera.shake(5), camera.shake(5)
+    )
 
 
 # Exposure times

@@ -35,7 +35,9 @@ LIGHT = np.array([0.0, 1e-5, 0.01, 0.5, 0.994, 0.9999, 1, 3])
 BALL = movers.ball((9, 12), (4.2, 5), 3)
 RED = movers.ball((9, 12), (4, 5), 2.5, (3, 1, 0.5))
 STEP = np.arange(7)[:, None, None, None]
-PAIRS = np.rint(64 + 45 * STEP + RNG.normal(0, 1, (7, 2, 11, 10)) * np.sqrt(4 + 9 * STEP)).astype(int)
+PAIRS = np.rint(64 + 45 * STEP + RNG.normal(0, 1, (7, 2, 11, 10)) * np.sqrt(4 + 9 * STEP)).astype(
+    int
+)
 FULL = np.minimum(PAIRS, 290)
 TURNS = np.stack([np.eye(3), warp.turn((9, 12), 2, (0.5, 0.7))])
 W = metering.average((20, 30))
@@ -48,7 +50,9 @@ def shot(model=None, times=(0.1, 1.0), E=E, **named):
 
 def moved(E=L, figure=BALL, at=((0, 0), (1, -2)), times=(1, 0.25), model=None, **named):
     """Return photographs of something that moves."""
-    return movers.shoot(E, figure, at, times, *([] if model is None else [camera.Camera(**model)]), **named)
+    return movers.shoot(
+        E, figure, at, times, *([] if model is None else [camera.Camera(**model)]), **named
+    )
 
 
 def dial(name):
@@ -72,7 +76,12 @@ dial.__module__ = film.__module__ = "hdrlab.capture.responses"
 constant.__module__ = "hdrlab.capture.sensor"
 CAMERAS = (
     *({"response": name} for name in ("linear", "gamma", "srgb", "film", "cubic", None)),
-    *({"bits": 16}, {"sensitivity": 0.3}, {"full_well": 500.0}, {"full_well": 500.0, "read_noise": 9.0}),
+    *(
+        {"bits": 16},
+        {"sensitivity": 0.3},
+        {"full_well": 500.0},
+        {"full_well": 500.0, "read_noise": 9.0},
+    ),
     *(
         {"gray_noise": 3.0},
         {"hot": 0.2},

@@ -54,7 +54,9 @@ def test_neighbours_on_a_dial_differ_by_one_or_a_third_of_a_stop(per_stop):
 
 def test_every_name_of_the_dial_leads_to_its_own_true_time():
     dial = exposure.shutter_series(3)
-    assert [exposure.true_time(exposure.seconds(name)) for name in dial.names] == pytest.approx(dial.values)
+    assert [exposure.true_time(exposure.seconds(name)) for name in dial.names] == pytest.approx(
+        dial.values
+    )
 
 
 def test_a_filter_of_density_0_3_takes_a_stop_and_1000_times_takes_ten():
@@ -76,7 +78,11 @@ def test_a_time_that_means_nothing_is_refused_by_name(text):
 
 @pytest.mark.parametrize("bad", [0, -1, np.inf, np.nan])
 def test_settings_that_are_not_positive_are_refused(bad):
-    for call in (lambda: exposure.ev(bad, 1), lambda: exposure.ev(1, bad), lambda: exposure.true_time(bad)):
+    for call in (
+        lambda: exposure.ev(bad, 1),
+        lambda: exposure.ev(1, bad),
+        lambda: exposure.true_time(bad),
+    ):
         with pytest.raises(ValueError, match="expected a positive"):
             call()
     with pytest.raises(ValueError, match="1 or 3"):
@@ -88,14 +94,18 @@ def test_the_irradiance_is_all_that_a_small_aperture_sends_to_a_spot_of_the_sens
     h, d, n = 50.0, 50 / 16, 401  # mm
     x = (np.arange(n) + 0.5) / n * d - d / 2
     inside = np.hypot(x[:, None], x) < d / 2
-    square = h**2 + x[:, None] ** 2 + (x - h * np.tan(angle)) ** 2  # from a spot off the axis to the aperture
+    square = (
+        h**2 + x[:, None] ** 2 + (x - h * np.tan(angle)) ** 2
+    )  # from a spot off the axis to the aperture
     cosine = h / np.sqrt(square)  # the aperture is seen aslant, and the light falls aslant
     arrived = 1000 * np.sum((cosine**2 / square)[inside]) * (d / n) ** 2
     assert exposure.irradiance(1000, 16, angle=angle) == pytest.approx(arrived, rel=3e-3)
 
 
 def test_irradiance_goes_down_by_a_stop_where_the_aperture_does():
-    assert exposure.irradiance(5.0, 8 * np.sqrt(2)) == pytest.approx(exposure.irradiance(5.0, 8) / 2)
+    assert exposure.irradiance(5.0, 8 * np.sqrt(2)) == pytest.approx(
+        exposure.irradiance(5.0, 8) / 2
+    )
     with pytest.raises(ValueError, match="f-number"):
         exposure.irradiance(1.0, 0)
 

@@ -55,7 +55,9 @@ def best_corner(waves, still):
 def test_shifts_written_as_homographies_cut_the_same_views_as_offsets(E):
     offsets = [[3, -4], [0, 0], [-6, 9]]
     for one, other in zip(
-        hand_motion.views(E, offsets), hand_motion.views(E, warp.as_homographies(offsets)), strict=True
+        hand_motion.views(E, offsets),
+        hand_motion.views(E, warp.as_homographies(offsets)),
+        strict=True,
     ):
         assert np.allclose(one, other, atol=1e-6)
     assert camera.views is hand_motion.views
@@ -64,7 +66,9 @@ def test_shifts_written_as_homographies_cut_the_same_views_as_offsets(E):
 def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_back():
     room = scenes.room((120, 170))
     moves = [warp.turn(room.shape, 2.5, (3, 5)), np.eye(3)]
-    taken = camera.shoot(room, [1e-3, 1.001e-3], camera.Camera(response="linear", bits=16), offsets=moves)
+    taken = camera.shoot(
+        room, [1e-3, 1.001e-3], camera.Camera(response="linear", bits=16), offsets=moves
+    )
     own = hand_motion.frame_homographies(moves, room.shape)
     rows, columns = warp.common_rectangle(own, taken.images.shape[1:3])
     still = taken.images[1][rows, columns].astype(float)
@@ -91,9 +95,9 @@ def test_a_tilt_enlarges_one_side_and_leaves_the_middle():
     assert np.allclose(warp.apply(tilted, [middle]), middle)
     quad = warp.apply(tilted, warp.corners(SHAPE))
     right, left = quad[2, 1] - quad[1, 1], quad[3, 1] - quad[0, 1]
-    assert right / (SHAPE[0] - 1) == pytest.approx(1 / 0.9) and left / (SHAPE[0] - 1) == pytest.approx(
-        1 / 1.1
-    )
+    assert right / (SHAPE[0] - 1) == pytest.approx(1 / 0.9) and left / (
+        SHAPE[0] - 1
+    ) == pytest.approx(1 / 1.1)
 
 
 # warps
@@ -133,7 +137,9 @@ def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
     def beyond(grow):
         box = np.array([[x, y] for x in columns_of(grow[:2]) for y in rows_of(grow[2:])])
         back = warp.apply(np.linalg.inv(moves), box)
-        return max(float(-back.min()), float((back - (SHAPE[1] - 1, SHAPE[0] - 1)).max(axis=(0, 1)).max()))
+        return max(
+            float(-back.min()), float((back - (SHAPE[1] - 1, SHAPE[0] - 1)).max(axis=(0, 1)).max())
+        )
 
     def columns_of(grow):
         return columns.start - grow[0], columns.stop - 1 + grow[1]
@@ -147,7 +153,9 @@ def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
 
 
 def test_how_far_moves_are_apart_is_told_at_the_worst_corner():
-    assert warp.corner_distance(warp.as_homographies([[3, 4]]), np.eye(3), SHAPE) == pytest.approx([5])
+    assert warp.corner_distance(warp.as_homographies([[3, 4]]), np.eye(3), SHAPE) == pytest.approx(
+        [5]
+    )
     half = np.hypot(119, 169) / 2
     assert warp.corner_distance(warp.turn(SHAPE, 1), np.eye(3), SHAPE) == pytest.approx(
         half * np.pi / 180, rel=1e-3
@@ -172,7 +180,9 @@ def test_moves_that_mean_nothing_are_refused(moves, said):
         warp.common_rectangle(moves, SHAPE)
 
 
-@pytest.mark.parametrize("knobs", [dict(count=0), dict(radius=-1), dict(degrees=np.nan), dict(tilt=0.5)])
+@pytest.mark.parametrize(
+    "knobs", [dict(count=0), dict(radius=-1), dict(degrees=np.nan), dict(tilt=0.5)]
+)
 def test_a_hand_that_means_nothing_is_refused(knobs):
     with pytest.raises(ValueError, match="expected at least one frame, motion"):
         hand_motion.shake(**{"count": 3, "shape": SHAPE} | knobs)

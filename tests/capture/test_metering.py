@@ -44,13 +44,17 @@ def test_centre_gives_its_share_of_the_weight_to_the_central_quarter(inside):
     assert np.sort(w.ravel())[::-1][: w.size // 4].sum() >= inside - 0.005
     assert w[metering.spot(SHAPE, share=0.25) > 0].sum() == pytest.approx(inside, abs=1e-3)
     row = w[40, 60:]
-    assert np.all(np.diff(row) < 0) and row[-1] > 0  # feathered: it falls all the way, and never to nothing
+    assert (
+        np.all(np.diff(row) < 0) and row[-1] > 0
+    )  # feathered: it falls all the way, and never to nothing
 
 
 def test_the_spot_goes_where_it_is_put():
     B = np.zeros(SHAPE)
     B[60:, 90:] = 0.5
-    assert metering.reading(B, metering.spot(SHAPE, at=(0.9, 0.9), share=0.01)) == pytest.approx(0.5)
+    assert metering.reading(B, metering.spot(SHAPE, at=(0.9, 0.9), share=0.01)) == pytest.approx(
+        0.5
+    )
     assert metering.reading(B, metering.spot(SHAPE)) == 0
 
 
@@ -89,7 +93,9 @@ def test_without_full_pixels_the_correction_is_the_formula():
 def test_automatic_exposure_is_within_a_sixth_of_a_stop_after_at_most_four_shots(name, mode, start):
     """Where it ends, the reading of a photograph without noise is 0.18, to a sixth of a stop."""
     photograph = partial(autoexposure.measure_brightness, full_well=20_000, read_noise=5, rng=3)
-    states = list(autoexposure.expose_steps(SCENES[name].E, mode, start=start, photograph=photograph))
+    states = list(
+        autoexposure.expose_steps(SCENES[name].E, mode, start=start, photograph=photograph)
+    )
     assert len(states) <= 4
     B = autoexposure.measure_brightness(SCENES[name].E, states[-1].EV_opt)
     read = metering.reading(B, metering.weights(B, mode))
@@ -122,7 +128,9 @@ def test_twice_the_light_gives_one_ev_more():
 
 def test_a_black_and_a_burnt_out_first_shot_are_both_survived():
     for start in (-10, 40):
-        states = list(autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, max_shots=20))
+        states = list(
+            autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, max_shots=20)
+        )
         assert abs(np.log2(states[-1].B_pre / metering.MIDDLE_GRAY)) < 1 / 6
 
 
@@ -146,7 +154,9 @@ def test_a_subject_is_a_part_of_its_picture_and_its_reflectance_is_as_told(name)
     scene = SCENES[name]
     assert np.all(np.isfinite(scene.E)) and scene.E.min() > 0
     assert 0.02 < scene.mask.mean() < 0.9
-    assert {"backlight": 0.45, "snow": 0.86, "locomotive": 0.05}[name] == pytest.approx(scene.rho, rel=0.15)
+    assert {"backlight": 0.45, "snow": 0.86, "locomotive": 0.05}[name] == pytest.approx(
+        scene.rho, rel=0.15
+    )
 
 
 def test_the_centre_meter_fades_as_a_bell_does_and_ends_nowhere():

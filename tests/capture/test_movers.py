@@ -38,10 +38,14 @@ def test_a_figure_that_walks_out_of_the_frame_is_gone_and_does_not_come_back():
 
 
 def test_each_photograph_is_that_of_its_moment_and_the_truth_is_sorted_with_it():
-    taken = movers.shoot(WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], camera.Camera(response="linear"))
+    taken = movers.shoot(
+        WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], camera.Camera(response="linear")
+    )
     assert taken.bracket.times.tolist() == TIMES and taken.bracket.linear
     for image, seen, t in zip(taken.bracket.images, taken.moments, TIMES, strict=True):
-        assert np.array_equal(image, camera.shoot(seen, t, camera.Camera(response="linear")).images[0])
+        assert np.array_equal(
+            image, camera.shoot(seen, t, camera.Camera(response="linear")).images[0]
+        )
     left = [np.flatnonzero(one.any(axis=0))[0] for one in taken.hidden]
     assert np.diff(left).tolist() == [-12, -12]  # the longest exposure was given first
 
@@ -54,9 +58,13 @@ def test_outside_the_region_every_moment_is_the_still_scene():
 
 
 def test_photographs_of_one_time_keep_their_own_truth():
-    taken = movers.shoot(WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, camera.Camera(response="linear"))
+    taken = movers.shoot(
+        WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, camera.Camera(response="linear")
+    )
     for image, seen in zip(taken.bracket.images, taken.moments, strict=True):
-        assert np.array_equal(image, camera.shoot(seen, 1.0, camera.Camera(response="linear")).images[0])
+        assert np.array_equal(
+            image, camera.shoot(seen, 1.0, camera.Camera(response="linear")).images[0]
+        )
 
 
 def test_a_hand_that_shakes_moves_scene_and_figure_alike():
@@ -98,7 +106,9 @@ def test_what_is_no_bracket_with_a_figure_is_refused(wrong, said):
         movers.shoot(**given)
 
 
-@pytest.mark.parametrize("wrong", [{"radius": 0}, {"radiance": [1, 2]}, {"radiance": -1}, {"centre": 3}])
+@pytest.mark.parametrize(
+    "wrong", [{"radius": 0}, {"radiance": [1, 2]}, {"radiance": -1}, {"centre": 3}]
+)
 def test_what_is_no_ball_is_refused(wrong):
     with pytest.raises(ValueError, match="expected"):
         movers.ball(**({"shape": (20, 20), "centre": (9, 9), "radius": 4} | wrong))

@@ -17,10 +17,14 @@ from hdrlab.radiance.uncertainty import inverse_variance_merge
     overlap=st.floats(0, 3),
     per_stop=st.sampled_from([1, 3]),
 )
-def test_every_luminance_of_the_scene_is_held_and_neighbours_overlap(low, scene, usable, overlap, per_stop):
+def test_every_luminance_of_the_scene_is_held_and_neighbours_overlap(
+    low, scene, usable, overlap, per_stop
+):
     high = low * 2**scene
     plan = planning.plan(low, high, usable=usable, overlap=overlap, per_stop=per_stop)
-    assert plan.holds[:, 0].min() <= low * (1 + 1e-6) and plan.holds[:, 1].max() >= high * (1 - 1e-6)
+    assert plan.holds[:, 0].min() <= low * (1 + 1e-6) and plan.holds[:, 1].max() >= high * (
+        1 - 1e-6
+    )
     shared = np.log2(plan.holds[1:, 1] / plan.holds[:-1, 0])
     assert np.all(shared >= overlap - 1e-6)
 
@@ -80,7 +84,11 @@ def test_by_noise_each_luminance_has_the_ratio_that_was_asked_for(maker, low, hi
     assert every.min() >= snr**2 * (1 - 1e-6)
     worst = planning.worst_snr(low, high, times, speeds, maker)
     assert snr * (1 - 1e-6) <= worst <= np.sqrt(every.min()) * (1 + 1e-6)
-    assert len(names) == len(times) and np.all(np.diff(times) >= 0) and set(speeds) <= set(maker.speeds)
+    assert (
+        len(names) == len(times)
+        and np.all(np.diff(times) >= 0)
+        and set(speeds) <= set(maker.speeds)
+    )
 
 
 @pytest.mark.parametrize("maker", MAKERS[1:])
@@ -115,7 +123,10 @@ def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
 @pytest.mark.parametrize(
     ("maker", "snr"),
     [
-        *((planning.Model(**bad), 20) for bad in ({"full_well": 0}, {"pause": -1}, {"read_noise": np.nan})),
+        *(
+            (planning.Model(**bad), 20)
+            for bad in ({"full_well": 0}, {"pause": -1}, {"read_noise": np.nan})
+        ),
         *((planning.Model(), snr) for snr in (0, np.nan, 1e9)),
     ],
 )

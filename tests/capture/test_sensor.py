@@ -42,7 +42,10 @@ def test_a_smaller_gain_digs_deeper_into_the_dark_until_it_fills_the_converter_f
     high, base, low = (ranges.sensor_range(Sensor(gain=K)).stops for K in (40, 5, 1))
     assert high < base and low < base
     assert (
-        sensor.full_electrons(Sensor(gain=1)) == 4095 - 64 < 20_000 == sensor.full_electrons(Sensor(gain=5))
+        sensor.full_electrons(Sensor(gain=1))
+        == 4095 - 64
+        < 20_000
+        == sensor.full_electrons(Sensor(gain=5))
     )
 
 
@@ -68,7 +71,10 @@ def test_each_bit_halves_the_rounding_error():
 def test_a_ramp_has_256_levels_with_8_bits_and_4096_with_12():
     for bits in (8, 12):
         one = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
-        assert len(np.unique(sensor.digitise(np.linspace(0, 1e9, 50_000, dtype=np.float32), one))) == 2**bits
+        assert (
+            len(np.unique(sensor.digitise(np.linspace(0, 1e9, 50_000, dtype=np.float32), one)))
+            == 2**bits
+        )
 
 
 def test_without_a_black_level_the_dark_is_too_bright():
@@ -101,7 +107,9 @@ def test_a_longer_exposure_holds_the_same_range_further_down():
         kept = L[~(held := ranges.expose_levels(L, time, Sensor())).full & ~held.noise]
         ends.append((kept[0], kept[-1]))
     (low_1, high_1), (low_2, high_2) = ends
-    assert high_1 / high_2 == pytest.approx(16, rel=0.01) and low_1 / low_2 == pytest.approx(16, rel=0.01)
+    assert high_1 / high_2 == pytest.approx(16, rel=0.01) and low_1 / low_2 == pytest.approx(
+        16, rel=0.01
+    )
 
 
 def test_high_exposure_loses_the_highlights_and_low_exposure_the_shadows():
@@ -189,7 +197,9 @@ def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
 def test_dust_and_vignetting_do_not_disturb_the_calibration():
     dusty = sensor.falloff((200, 200), 0.3) * np.random.default_rng(8).normal(1, 0.03, (200, 200))
     found = photon_transfer.calibrate(flats(Sensor(), uneven=dusty))
-    assert found.gain == pytest.approx(5, rel=0.03) and found.read_noise == pytest.approx(5, rel=0.03)
+    assert found.gain == pytest.approx(5, rel=0.03) and found.read_noise == pytest.approx(
+        5, rel=0.03
+    )
     single = flats(Sensor(), uneven=dusty)[8, 0].astype(float).var()
     assert single > 5 * found.V[8]  # one photograph's own variance is mostly dust
 

@@ -43,7 +43,9 @@ def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path
     assert response_rmse(read_curve(out), true).max() < 1.5
 
 
-def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(photographs, tmp_path, capsys):
+def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(
+    photographs, tmp_path, capsys
+):
     folder, times, true = photographs
     outs = [tmp_path / "g.csv", tmp_path / "g.m"]
     code, said, _ = hdrlab(
@@ -129,7 +131,10 @@ def test_the_levels_of_a_linear_camera_double_with_its_exposure():
 
 def test_a_curve_that_is_level_at_its_end_doubles_no_more():
     g = np.minimum(LINEAR, LINEAR[200]) + np.log(128 / 80)
-    assert np.isclose(calibration.doublings(g - np.log(2))[0], 160) and max(calibration.doublings(g)) == 1
+    assert (
+        np.isclose(calibration.doublings(g - np.log(2))[0], 160)
+        and max(calibration.doublings(g)) == 1
+    )
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])

@@ -50,7 +50,9 @@ def test_check_writes_a_page_with_pictures(typed, tmp_path):
 
 
 def test_grade_writes_every_form_into_one_folder(typed, tmp_path):
-    code, out, err = typed("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
+    code, out, err = typed(
+        "grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results"
+    )
     found = {file.name for file in (tmp_path / "results").iterdir()}
     assert code == 0 and found == {
         "result.json",
@@ -127,7 +129,13 @@ def test_the_course_is_built_and_exported(typed, tmp_path):
     code, out, _ = typed(
         "course", "build", "--plan", "plan.toml", "--sources", str(sources), "--out", "handouts"
     )
-    assert code == 0 and "hw2.ipynb" in out and "def hat" in (tmp_path / "handouts" / "hw2.ipynb").read_text()
-    code, out, _ = typed("course", "export", "--plan", "plan.toml", "--nbgrader", "nb", "--gradescope", "gs")
+    assert (
+        code == 0
+        and "hw2.ipynb" in out
+        and "def hat" in (tmp_path / "handouts" / "hw2.ipynb").read_text()
+    )
+    code, out, _ = typed(
+        "course", "export", "--plan", "plan.toml", "--nbgrader", "nb", "--gradescope", "gs"
+    )
     assert code == 0 and (tmp_path / "nb" / "nbgrader_config.py").exists()
     assert (tmp_path / "gs" / "hw2_autograder.zip").exists()

@@ -85,7 +85,14 @@ def test_assembling_loads_nothing_of_scipy_that_it_does_not_use_and_no_plots(pho
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "numpy" in done.stdout.split()
-    unused = {"scipy.ndimage", "scipy.fft", "scipy.linalg", "scipy.optimize", "matplotlib", "skimage"}
+    unused = {
+        "scipy.ndimage",
+        "scipy.fft",
+        "scipy.linalg",
+        "scipy.optimize",
+        "matplotlib",
+        "skimage",
+    }
     assert not unused & {*done.stdout.split()}
 
 
@@ -143,30 +150,48 @@ def test_a_map_that_cannot_be_written_beside_its_picture_is_an_error(photographs
 def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_path):
     folder, times = photographs
     files = sorted(folder.iterdir(), reverse=True)
-    assert hdrlab("assemble", folder, "-o", tmp_path / "a.pfm", "--times", times, "--align", "none") == 0
-    assert hdrlab("assemble", *files, "-o", tmp_path / "b.pfm", "--times", times, "--align", "none") == 0
+    assert (
+        hdrlab("assemble", folder, "-o", tmp_path / "a.pfm", "--times", times, "--align", "none")
+        == 0
+    )
+    assert (
+        hdrlab("assemble", *files, "-o", tmp_path / "b.pfm", "--times", times, "--align", "none")
+        == 0
+    )
     assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
 
 
 def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_path, capsys):
-    code, said, complaint = hdrlab("assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys)
+    code, said, complaint = hdrlab(
+        "assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys
+    )
     assert code == 2 and said == ""
     assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1
-    assert "--times estimate" in complaint and "--stops 2" in complaint and "frame0.png" in complaint
+    assert (
+        "--times estimate" in complaint and "--stops 2" in complaint and "frame0.png" in complaint
+    )
     assert not (tmp_path / "x.hdr").exists()
 
 
-def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(photographs, tmp_path, capsys):
+def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
-    text = times.read_text().replace("frame1.png,0.04", "frame1.png,0.02")  # of one, the others left it out
+    text = times.read_text().replace(
+        "frame1.png,0.04", "frame1.png,0.02"
+    )  # of one, the others left it out
     times.write_text(text.replace("frame2.png,0.16", "frame2.png,0.3"))
     page, common = tmp_path / "page", ["assemble", folder, "--times", times, "--keep-times", "-o"]
     for out in (tmp_path / "x.hdr", tmp_path / "x.exr", tmp_path / "x.pfm"):
         code, _, said = hdrlab(*common, out, "--report", page, capsys=capsys)
         warnings = [line for line in said.splitlines() if line.startswith("warning: ")]
         assert code == 0 and 1 <= len(warnings) <= 3
-        assert any("contradict their exposure times" in one and "frame2.png" in one for one in warnings)
-        assert "contradict their exposure times" in (page / "report.html").read_text(encoding="utf8")
+        assert any(
+            "contradict their exposure times" in one and "frame2.png" in one for one in warnings
+        )
+        assert "contradict their exposure times" in (page / "report.html").read_text(
+            encoding="utf8"
+        )
         about = hdrlab("info", out, capsys=capsys)[1]
         assert ("doubt: " in about) == (out.suffix != ".pfm")
         assert radiance.read_radiance(out).any()
@@ -174,26 +199,34 @@ def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(p
     assert cv2.imread(str(tmp_path / "x.hdr"), cv2.IMREAD_UNCHANGED).any()
 
 
-def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(photographs, tmp_path, capsys):
+def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
     out, both, page = tmp_path / "x.pfm", tmp_path / "sure.exr", tmp_path / "page"
     code, said, _ = hdrlab(
         *("assemble", folder, "--times", times, "-o", out, "--uncertainty", both, "--report", page),
         capsys=capsys,
     )
-    words = next(line for line in said.splitlines() if line.startswith(str(both))).partition(": ")[2]
+    words = next(line for line in said.splitlines() if line.startswith(str(both))).partition(": ")[
+        2
+    ]
     assert code == 0 and re.fullmatch(
         r"half of the pixels are sure to ± 0\.0\d+ stops, 95 % to ± 0\.\d+", words
     )
     E, s = read_layers(both).values()
     assert np.array_equal(E, radiance.read_radiance(both)) and E.shape == s.shape
-    assert np.allclose(E, radiance.read_radiance(out)) and 0 < np.median((s / E)[np.isfinite(s)]) < 0.1
+    assert (
+        np.allclose(E, radiance.read_radiance(out)) and 0 < np.median((s / E)[np.isfinite(s)]) < 0.1
+    )
     about = hdrlab("info", both, capsys=capsys)[1]
     assert "layers" in about and "radiance, standard deviation" in about and words in about
     assert words in (page / "report.html").read_text(encoding="utf8").replace("\u00a0", " ")
 
 
-def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(photographs, tmp_path, capsys):
+def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
     code, _, said = hdrlab(
         *(
@@ -208,10 +241,14 @@ def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(phot
         ),
         capsys=capsys,
     )
-    assert code == 2 and said.count("\n") == 1 and ".exr" in said and not (tmp_path / "x.pfm").exists()
+    assert (
+        code == 2 and said.count("\n") == 1 and ".exr" in said and not (tmp_path / "x.pfm").exists()
+    )
 
 
-def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(photographs, tmp_path, capsys):
+def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
     code, _, said = hdrlab(
         "assemble", folder, "-o", tmp_path / "x.hdr", "--times", times, "--strict", capsys=capsys
@@ -239,20 +276,28 @@ def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
 
 @pytest.mark.parametrize("form", ["{:g}", "{:g} s"])
 @pytest.mark.parametrize("power", [1, -1])
-def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(photographs, tmp_path, form, power):
+def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(
+    photographs, tmp_path, form, power
+):
     folder, times = photographs
     exposures = [line.split(",") for line in times.read_text().splitlines()[1:]]
     rows = [f"{name} {form.format(float(t) ** power)}" for name, t in exposures]
     (tmp_path / "list.txt").write_text("\n".join(rows))
     wrong = power < 0 and " s" in form
     out = tmp_path / "x.pfm"
-    assert hdrlab("assemble", folder, "-o", out, "--times", tmp_path / "list.txt") == (2 if wrong else 0)
+    assert hdrlab("assemble", folder, "-o", out, "--times", tmp_path / "list.txt") == (
+        2 if wrong else 0
+    )
     if not wrong:
         assert hdrlab("assemble", folder, "-o", tmp_path / "y.pfm", "--times", times) == 0
-        assert np.allclose(radiance.read_radiance(out), radiance.read_radiance(tmp_path / "y.pfm"), rtol=1e-3)
+        assert np.allclose(
+            radiance.read_radiance(out), radiance.read_radiance(tmp_path / "y.pfm"), rtol=1e-3
+        )
 
 
-def test_times_in_the_wrong_order_are_refused_with_a_way_on_that_works(photographs, tmp_path, capsys):
+def test_times_in_the_wrong_order_are_refused_with_a_way_on_that_works(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
     text = times.read_text().replace("0.01", "x").replace("0.64", "0.01").replace("x", "0.64")
     times.write_text(text)
@@ -297,7 +342,9 @@ def test_the_knobs_of_an_operator_are_set_by_name(map_file, tmp_path):
 @pytest.mark.parametrize(
     ("setting", "expected"), [("kee=1", "key"), ("key", "knob=value"), ("key=bright", "key")]
 )
-def test_a_knob_that_the_operator_does_not_have_is_refused(setting, expected, map_file, tmp_path, capsys):
+def test_a_knob_that_the_operator_does_not_have_is_refused(
+    setting, expected, map_file, tmp_path, capsys
+):
     code, _, complaint = hdrlab(
         "tonemap", map_file, "-o", tmp_path / "x.png", "--set", setting, capsys=capsys
     )
@@ -307,7 +354,9 @@ def test_a_knob_that_the_operator_does_not_have_is_refused(setting, expected, ma
 @pytest.mark.parametrize("suffix", [".pfm", ".exr"])
 def test_convert_keeps_every_bit_of_a_float_map(suffix, map_file, tmp_path):
     assert hdrlab("convert", map_file, tmp_path / f"b{suffix}") == 0
-    assert np.array_equal(radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file))
+    assert np.array_equal(
+        radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file)
+    )
 
 
 def write_pfm(file, pixels):
@@ -332,19 +381,28 @@ def test_values_that_are_no_radiance_are_repaired_with_a_note(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
-def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(value, tmp_path, capsys):
+def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(
+    value, tmp_path, capsys
+):
     file, out = tmp_path / "x.pfm", tmp_path / "out.pfm"
     pixels = np.ones((4, 5, 3))
     pixels[:2] = value
     write_pfm(file, pixels)
     code, _, complaint = hdrlab("convert", file, out, capsys=capsys)
-    assert code == 2 and str(file) in complaint and "of 20 pixels" in complaint and "--clean" in complaint
+    assert (
+        code == 2
+        and str(file) in complaint
+        and "of 20 pixels" in complaint
+        and "--clean" in complaint
+    )
     assert not out.exists() and hdrlab("convert", file, out, "--clean") == 0
     assert np.isfinite(radiance.read_radiance(out)).all()
 
 
 def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
-    E = np.float32([0.1, 0.3, 4.0]) * np.geomspace(0.1, 30, 20 * 30).reshape(20, 30, 1).astype(np.float32)
+    E = np.float32([0.1, 0.3, 4.0]) * np.geomspace(0.1, 30, 20 * 30).reshape(20, 30, 1).astype(
+        np.float32
+    )
     radiance.write_radiance(tmp_path / "blue.exr", E)
     pictures = {}
     for way in ("ratio", "hue"):
@@ -362,7 +420,9 @@ def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
 
 
 def test_info_names_format_and_size(map_file, photographs, capsys):
-    code, said, _ = hdrlab("info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys)
+    code, said, _ = hdrlab(
+        "info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys
+    )
     assert code == 0 and "OpenEXR" in said and "PNG" in said
     assert said.split()[said.split().index("width") + 1] == "64"
 
@@ -389,7 +449,9 @@ def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path
         def __set_name__(self, owner, name):
             raise KeyboardInterrupt
 
-    monkeypatch.setattr("hdrlab.io.album.select", lambda *_, **__: type("Axes", (), {"a": Stopped()}))
+    monkeypatch.setattr(
+        "hdrlab.io.album.select", lambda *_, **__: type("Axes", (), {"a": Stopped()})
+    )
     code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
@@ -418,11 +480,17 @@ runpy.run_module("hdrlab", run_name="__main__")
     ("raised", "code", "complaint"),
     [
         ("raise KeyboardInterrupt", 130, "hdrlab: interrupted"),
-        ("raise ImportError('initialization failed') from KeyboardInterrupt()", 130, "hdrlab: interrupted"),
+        (
+            "raise ImportError('initialization failed') from KeyboardInterrupt()",
+            130,
+            "hdrlab: interrupted",
+        ),
         ("raise ImportError('a mistake of ours')", 1, "ImportError: a mistake of ours"),
     ],
 )
-def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_not(raised, code, complaint):
+def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_not(
+    raised, code, complaint
+):
     ended = subprocess.run(
         [sys.executable, "-c", WHILE_LOADING.format(raised=raised), "info"],
         capture_output=True,
@@ -484,7 +552,10 @@ def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, ca
     folder, times = photographs
     arguments = ["assemble", folder, "--times", times, "--align", "none", "-o", tmp_path / "a.exr"]
     code, _, said = hdrlab(*arguments, "--calibrate", "20,30=50", capsys=capsys)
-    L, truth = luminance(radiance.read_radiance(tmp_path / "a.exr")), luminance(scenes.room((96, 144)))
+    L, truth = (
+        luminance(radiance.read_radiance(tmp_path / "a.exr")),
+        luminance(scenes.room((96, 144))),
+    )
     assert code == 0 and "50 cd/m^2 were read at 20,30" in said
     assert np.isclose(L[29:32, 19:22].mean(), 50, rtol=1e-3)
     assert np.isclose(np.median(L / truth), 50 / truth[29:32, 19:22].mean(), rtol=0.15)
@@ -496,6 +567,15 @@ def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, ca
 )
 def test_a_reading_that_cannot_be_writes_nothing(photographs, tmp_path, capsys, reading, expected):
     folder, times = photographs
-    arguments = ["assemble", folder, "--times", times, "-o", tmp_path / "a.exr", "--calibrate", reading]
+    arguments = [
+        "assemble",
+        folder,
+        "--times",
+        times,
+        "-o",
+        tmp_path / "a.exr",
+        "--calibrate",
+        reading,
+    ]
     code, _, said = hdrlab(*arguments, capsys=capsys)
     assert code == 2 and expected in said and not (tmp_path / "a.exr").exists()

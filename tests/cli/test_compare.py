@@ -61,7 +61,9 @@ def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
         (["-o", "missing/sheet.png"], "missing"),
     ],
 )
-def test_what_cannot_be_compared_ends_in_one_line(options, said, map_file, tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_compared_ends_in_one_line(
+    options, said, map_file, tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     code, out, complaint = hdrlab("compare", map_file, "-o", "sheet.png", *options, capsys=capsys)
     assert code == 2 and out == "" and complaint.count("\n") == 1 and said in complaint

@@ -26,7 +26,10 @@ def test_the_demo_writes_three_maps_a_picture_and_a_report(results):
 
 
 def test_the_three_maps_hold_the_same_radiance(results):
-    E = {suffix: read_radiance(results[0] / f"radiance{suffix}") for suffix in (".hdr", ".exr", ".pfm")}
+    E = {
+        suffix: read_radiance(results[0] / f"radiance{suffix}")
+        for suffix in (".hdr", ".exr", ".pfm")
+    }
     assert np.array_equal(E[".exr"], E[".pfm"])
     brightest = E[".pfm"].max(
         axis=-1, keepdims=True

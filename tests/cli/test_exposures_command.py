@@ -23,7 +23,13 @@ def run(command, *arguments):
 def test_plan_says_how_many_photographs_and_which_times():
     said = run(exposures.plan, 0.01, 30000)
     assert "21.5 stops" in said and "5 photographs, 4 stops apart, f/8, ISO 100" in said
-    assert [line.split()[0] for line in said.splitlines()[2:]] == ["1/500", "1/30", "1/2", "8", "128"]
+    assert [line.split()[0] for line in said.splitlines()[2:]] == [
+        "1/500",
+        "1/30",
+        "1/2",
+        "8",
+        "128",
+    ]
 
 
 def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
@@ -35,7 +41,8 @@ def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "arguments", [(), ("1",), ("2", "1"), ("1", "2", "--map", "a.pfm"), ("1", "2", "--overlap", "7")]
+    "arguments",
+    [(), ("1",), ("2", "1"), ("1", "2", "--map", "a.pfm"), ("1", "2", "--overlap", "7")],
 )
 def test_plan_refuses_what_is_no_range(arguments):
     with pytest.raises(ValueError, match="expected"):
@@ -47,15 +54,19 @@ def test_plan_by_noise_stands_beside_the_series_by_stops_and_takes_less_time(tmp
     scene = ("--low", 0.5, "--high", 500, "--snr", 8)
     said = run(exposures.plan, *scene, "--camera", tmp_path / "model.toml")
     stops, noise = (
-        re.search(rf"by {way}: .* in ([\d.]+) s .* ([\d.]+) at worst", said) for way in ("stops", "noise")
+        re.search(rf"by {way}: .* in ([\d.]+) s .* ([\d.]+) at worst", said)
+        for way in ("stops", "noise")
     )
     assert float(noise[1]) < float(stops[1]) and float(noise[2]) >= 8
     assert "at ISO 800" in said and "2 photographs, 4 stops apart" in said
-    assert "at ISO 800" not in run(exposures.plan, *scene) and "noise" not in run(exposures.plan, 0.5, 500)
+    assert "at ISO 800" not in run(exposures.plan, *scene) and "noise" not in run(
+        exposures.plan, 0.5, 500
+    )
 
 
 @pytest.mark.parametrize(
-    "said", ["speeds = []", "speeds = 100", "read_noise = 'low'", "noise = 3", "gain = ", "gain = 0"]
+    "said",
+    ["speeds = []", "speeds = 100", "read_noise = 'low'", "noise = 3", "gain = ", "gain = 0"],
 )
 def test_plan_refuses_a_camera_that_it_cannot_read(tmp_path, said):
     (tmp_path / "model.toml").write_text(said)
@@ -81,7 +92,8 @@ def test_meter_reads_the_spot_where_it_is_put(tmp_path):
     E[:, 30:] = 0.72
     photos.write_picture(tmp_path / "two.png", to_8bit(E))
     left, right = (
-        run(exposures.meter, tmp_path / "two.png", "--mode", "spot", "--at", f"0.5,{x}") for x in (0.2, 0.8)
+        run(exposures.meter, tmp_path / "two.png", "--mode", "spot", "--at", f"0.5,{x}")
+        for x in (0.2, 0.8)
     )
     assert "1.0 stops too dark" in left and "2.0 stops too bright" in right
 
@@ -106,13 +118,16 @@ def test_correct_says_what_it_decided_and_why(tmp_path):
     said = run(exposures.correct, tmp_path / "dark.png", "-o", tmp_path / "light.png")
     assert "what matters: skin" in said and "stops: mean level 12" in said
     assert (
-        photos.read_photo(tmp_path / "light.png").mean() > 2 * photos.read_photo(tmp_path / "dark.png").mean()
+        photos.read_photo(tmp_path / "light.png").mean()
+        > 2 * photos.read_photo(tmp_path / "dark.png").mean()
     )
 
 
 def test_correct_leaves_a_well_exposed_photograph_as_it_is(tmp_path):
     photos.write_picture(tmp_path / "good.png", data.astronaut())
-    assert "left as it is" in run(exposures.correct, tmp_path / "good.png", "-o", tmp_path / "same.png")
+    assert "left as it is" in run(
+        exposures.correct, tmp_path / "good.png", "-o", tmp_path / "same.png"
+    )
     assert np.array_equal(photos.read_photo(tmp_path / "same.png"), data.astronaut())
 
 

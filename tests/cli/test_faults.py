@@ -68,7 +68,9 @@ def made(tmp_path_factory):
     shot = camera.shoot(room, camera.times_around(room, 3, stops=2), camera.Camera(), rng=1)
     for name, image in zip("abc", shot.images, strict=True):
         write_picture(here / f"photos/{name}.png", image)
-    E = np.geomspace(1e-2, 1e3, 120 * 180).reshape(120, 180, 1) * np.random.default_rng(1).uniform(0.5, 1, 3)
+    E = np.geomspace(1e-2, 1e3, 120 * 180).reshape(120, 180, 1) * np.random.default_rng(1).uniform(
+        0.5, 1, 3
+    )
     radiance.write_radiance(here / "map.hdr", E)
     (here / "hw2.py").write_text(HAT)
     cells = [{"cell_type": "markdown", "id": "a", "metadata": {}, "source": ["# A small page\n"]}]
@@ -111,7 +113,9 @@ def end(process):
         out, err = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
-    return Ended(process.returncode, (out or b"").decode(errors="replace"), err.decode(errors="replace"))
+    return Ended(
+        process.returncode, (out or b"").decode(errors="replace"), err.decode(errors="replace")
+    )
 
 
 def files(folder):
@@ -150,7 +154,10 @@ def stand_nowhere(folder):
 def absolute(command, here):
     """Return the words of a command with whole paths."""
     words = COMMANDS[command].split()
-    return [str(here / word) if (here / word).exists() or word.startswith("out/") else word for word in words]
+    return [
+        str(here / word) if (here / word).exists() or word.startswith("out/") else word
+        for word in words
+    ]
 
 
 @pytest.mark.parametrize("lacks", [*POOR, "a clock", "a working folder"])
@@ -192,7 +199,10 @@ def test_a_disk_that_refuses_is_told_in_a_line(command, refusal, here, made):
 
 
 def test_a_full_disk_leaves_no_module_compiled_by_half(here):
-    assert end(start("--version", here, fill_disk, PYTHONPYCACHEPREFIX=str(here / "compiled"))).code == 0
+    assert (
+        end(start("--version", here, fill_disk, PYTHONPYCACHEPREFIX=str(here / "compiled"))).code
+        == 0
+    )
     assert not list(here.rglob("*.pyc"))
 
 
@@ -202,7 +212,9 @@ def test_a_command_can_be_stopped_at_any_moment(command, sent, made, here):
     for moment in (0.2, 0.5, 0.8, 1.1, 1.4, 1.8, 2.3):
         if command in MAIN:
             (here / MAIN[command]).write_bytes(OLD)
-        process = start(command, here, lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        process = start(
+            command, here, lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
+        )
         try:
             process.wait(moment)
         except subprocess.TimeoutExpired:
@@ -211,7 +223,9 @@ def test_a_command_can_be_stopped_at_any_moment(command, sent, made, here):
         if "Could not import runpy" in ended.err:  # Python itself had not begun yet
             continue
         # before Python can hear it, or after its last line, the signal alone ends it
-        assert ended.code in (0, 130, -signal.SIGINT, -sent) and "Traceback" not in ended.err, ended.err
+        assert ended.code in (0, 130, -signal.SIGINT, -sent) and "Traceback" not in ended.err, (
+            ended.err
+        )
         if command in MAIN:
             found = (here / MAIN[command]).read_bytes()
             assert found == OLD or found[:4] in (b"#?RA", b"\x89PNG")

@@ -26,7 +26,9 @@ LONG = {
 def large(tmp_path_factory):
     """A radiance map of 12 megapixels, gray, over six decades."""
     file = tmp_path_factory.mktemp("large") / "large.pfm"
-    pfm.write(file, np.geomspace(1, 1e6, SIDES[1], dtype=np.float32) * np.ones((SIDES[0], 1), np.float32))
+    pfm.write(
+        file, np.geomspace(1, 1e6, SIDES[1], dtype=np.float32) * np.ones((SIDES[0], 1), np.float32)
+    )
     return file
 
 
@@ -52,7 +54,9 @@ def shown(terminal, until):
 
 
 @pytest.mark.parametrize("command", LONG)
-def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(command, large, tmp_path):
+def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(
+    command, large, tmp_path
+):
     out = tmp_path / "out.png"
     out.write_bytes(b"precious")
     process, terminal = started(command, large, "-o", out, *LONG[command])
@@ -66,4 +70,6 @@ def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(com
         process.wait()
         os.close(terminal)
     assert ended.strip().endswith("hdrlab: interrupted") and "Traceback" not in ended
-    assert [file.name for file in tmp_path.iterdir()] == ["out.png"] and out.read_bytes() == b"precious"
+    assert [file.name for file in tmp_path.iterdir()] == [
+        "out.png"
+    ] and out.read_bytes() == b"precious"

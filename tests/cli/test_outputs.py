@@ -57,14 +57,29 @@ def test_no_command_writes_over_what_it_reads(name, here, capsys):
     with pytest.raises(SystemExit) as stop:
         cli.run([*words, *COMMANDS[name].format(here=here).split()])
     said = capsys.readouterr().err
-    assert stop.value.code == 2 and said.count("\n") == 1 and ("another name" in said or "a new name" in said)
+    assert (
+        stop.value.code == 2
+        and said.count("\n") == 1
+        and ("another name" in said or "a new name" in said)
+    )
     assert contents(here) == before
 
 
 def test_a_command_may_be_run_again_beside_its_photographs(here, capsys):
     for _ in range(2):
         with pytest.raises(SystemExit) as stop:
-            cli.run(["assemble", "photos", "--stops", "2", "-o", "photos/room.hdr", "--picture", "room.png"])
+            cli.run(
+                [
+                    "assemble",
+                    "photos",
+                    "--stops",
+                    "2",
+                    "-o",
+                    "photos/room.hdr",
+                    "--picture",
+                    "room.png",
+                ]
+            )
         assert not stop.value.code
 
 

@@ -30,9 +30,18 @@ def test_a_list_of_photographs_becomes_one_array(shape):
         (np.zeros((2, 4, 5)), "uint8 or uint16, got .* float64, values 0 to 0"),
         (np.zeros((2, 4, 5), np.int16), "uint8 or uint16, got .* int16"),
         (np.zeros((2, 4, 5), bool), "uint8 or uint16, got .* bool"),
-        ([np.zeros((4, 5), np.uint8), np.zeros((4, 6), np.uint8)], r"one size .* \(4, 5\) .* \(4, 6\)"),
-        ([np.zeros((4, 5), np.uint8), np.zeros((4, 5, 3), np.uint8)], r"one size .* \(4, 5\) .*\(4, 5, 3\)"),
-        ([np.zeros((4, 5), np.uint8), np.zeros((4, 5), np.uint16)], "one size and type, .* uint16, .* uint8"),
+        (
+            [np.zeros((4, 5), np.uint8), np.zeros((4, 6), np.uint8)],
+            r"one size .* \(4, 5\) .* \(4, 6\)",
+        ),
+        (
+            [np.zeros((4, 5), np.uint8), np.zeros((4, 5, 3), np.uint8)],
+            r"one size .* \(4, 5\) .*\(4, 5, 3\)",
+        ),
+        (
+            [np.zeros((4, 5), np.uint8), np.zeros((4, 5), np.uint16)],
+            "one size and type, .* uint16, .* uint8",
+        ),
     ],
 )
 def test_what_is_no_stack_of_photographs_is_refused(images, said):
@@ -104,14 +113,19 @@ def test_luminance_of_another_shape_is_refused(shape):
         arrays.as_luminance(np.ones(shape))
 
 
-@pytest.mark.parametrize("values", [np.full((4, 5), "x"), np.ones((4, 5), complex), np.ones((4, 5), bool)])
+@pytest.mark.parametrize(
+    "values", [np.full((4, 5), "x"), np.ones((4, 5), complex), np.ones((4, 5), bool)]
+)
 def test_radiance_that_is_no_number_is_refused(values):
     with pytest.raises(ValueError, match="expected radiance as numbers"):
         arrays.as_radiance(values)
 
 
 def test_levels_are_those_of_the_type():
-    assert arrays.levels(np.zeros(1, np.uint8)) == 256 and arrays.levels(np.zeros(1, np.uint16)) == 65536
+    assert (
+        arrays.levels(np.zeros(1, np.uint8)) == 256
+        and arrays.levels(np.zeros(1, np.uint16)) == 65536
+    )
 
 
 @given(st.integers(0, 255))
@@ -140,5 +154,7 @@ def test_a_description_holds_shape_type_and_range():
 def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
     assert arrays.as_times([1, 1], 2).tolist() == [1, 1]
     assert arrays.as_times([1, 1, 2], 3, distinct=2).tolist() == [1, 1, 2]
-    with pytest.raises(ValueError, match=r"at least 2 different exposure times, got \[1.0, 1.0\] s"):
+    with pytest.raises(
+        ValueError, match=r"at least 2 different exposure times, got \[1.0, 1.0\] s"
+    ):
         arrays.as_times([1, 1], 2, distinct=2)

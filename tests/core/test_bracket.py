@@ -24,7 +24,9 @@ def test_any_order_of_frames_is_the_same_bracket(order):
 @pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_frames_of_one_time_have_an_order_of_their_own(order):
     images, times = IMAGES[list(order)], np.array([1.0, 1, 1])
-    assert np.array_equal(images[short_to_long(images, times)], IMAGES[short_to_long(IMAGES, times)])
+    assert np.array_equal(
+        images[short_to_long(images, times)], IMAGES[short_to_long(IMAGES, times)]
+    )
 
 
 def test_frames_are_named_by_their_place_unless_they_have_names():

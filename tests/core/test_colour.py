@@ -40,7 +40,9 @@ def test_recolour_keeps_the_ratios_of_channels_where_none_is_clipped():
 @pytest.mark.parametrize("saturation", [0.4, 0.7, 1.5])
 def test_recolour_is_its_formula_for_any_saturation(saturation):
     formula = (E.astype(float) / L[..., None]) ** saturation * Ld[..., None]
-    assert np.allclose(colour.recolour(E, L, Ld, saturation=saturation), np.clip(formula, 0, 1), atol=1e-5)
+    assert np.allclose(
+        colour.recolour(E, L, Ld, saturation=saturation), np.clip(formula, 0, 1), atol=1e-5
+    )
 
 
 def test_a_channel_beyond_the_display_is_clipped_and_the_others_are_not_touched():
@@ -73,7 +75,9 @@ def test_the_way_of_hue_keeps_the_hue_that_clipping_turns():
 
 
 @pytest.mark.parametrize("room", [0.3, 0.49, 0.51, 0.75, 0.99])
-def test_by_way_of_hue_a_colour_is_paler_the_more_of_the_room_up_to_1_it_takes_and_whole_below_half(room):
+def test_by_way_of_hue_a_colour_is_paler_the_more_of_the_room_up_to_1_it_takes_and_whole_below_half(
+    room,
+):
     E = np.array([[[1.2, 1.0, 0.9]]])
     L = colour.luminance(E)
     Ld = room / (room + 1.2 / L - 1)
@@ -102,7 +106,9 @@ def test_no_light_and_any_light_stay_in_the_display(recolour, level, saturation)
     E = np.array([[[0, 0, 0], [1, 1, 1], [1, 0, 0], [0, 0, 1]]]) * level
     C = recolour(E, colour.luminance(E), np.array([[0.3, 0.3, 0.3, 1.0]]), saturation=saturation)
     assert np.all((C >= 0) & (C <= 1))
-    assert np.allclose(C[0, :2], 0.3, atol=1e-5), "without light, or in gray light, the picture is gray at Ld"
+    assert np.allclose(C[0, :2], 0.3, atol=1e-5), (
+        "without light, or in gray light, the picture is gray at Ld"
+    )
 
 
 @pytest.mark.parametrize("verb", [colour.recolour, colour.render])
@@ -117,7 +123,9 @@ def test_what_does_not_fit_together_is_refused(verb):
 
 def test_srgb_is_the_standard_in_its_named_values_and_back():
     assert np.allclose(
-        colour.encode_srgb([0, 0.0031308, 0.18, 0.5, 1]), [0, 0.04045, 0.46135, 0.735357, 1], atol=1e-5
+        colour.encode_srgb([0, 0.0031308, 0.18, 0.5, 1]),
+        [0, 0.04045, 0.46135, 0.735357, 1],
+        atol=1e-5,
     )
     x = np.linspace(0, 1, 10001)
     assert np.allclose(colour.decode_srgb(colour.encode_srgb(x)), x, atol=2e-8)
@@ -134,7 +142,11 @@ def test_srgb_agrees_with_another_library():
 
 def test_to_8bit_is_the_formula_to_a_thirtieth_of_a_code():
     x = np.concatenate(
-        [np.linspace(0, 0.02, 200_000), np.linspace(0, 1, 200_000), colour.decode_srgb(np.arange(256) / 255)]
+        [
+            np.linspace(0, 0.02, 200_000),
+            np.linspace(0, 1, 200_000),
+            colour.decode_srgb(np.arange(256) / 255),
+        ]
     )
     exact = 255 * colour.encode_srgb(x)
     codes = colour.to_8bit(x[None].astype(np.float32))[0].astype(float)
@@ -166,7 +178,9 @@ def test_render_takes_either_way_of_colour_by_its_name():
         for saturation in (1.0, 0.6):
             picture = colour.render(E, L, Ld, saturation=saturation, way=way)
             exact = colour.to_8bit(verb(E, L, Ld, saturation=saturation))
-            assert np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
+            assert (
+                np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
+            )
         assert np.array_equal(colour.render(L, L, Ld, way=way), colour.to_8bit(Ld))
     with pytest.raises(ValueError, match="ratio, hue, got 'lab'"):
         colour.render(E, L, Ld, way="lab")
@@ -195,7 +209,9 @@ def test_no_hue_shifts_by_way_of_hue_and_none_by_ratio_where_nothing_is_clipped(
 def test_render_shows_a_gray_ramp_as_opencv_would_encode_it():
     ramp = np.linspace(0, 1, 512, dtype=np.float32)[None]
     theirs = (
-        cv2.cvtColor(cv2.cvtColor(np.dstack([ramp] * 3), cv2.COLOR_LRGB2Luv), cv2.COLOR_Luv2RGB)[0, :, 0]
+        cv2.cvtColor(cv2.cvtColor(np.dstack([ramp] * 3), cv2.COLOR_LRGB2Luv), cv2.COLOR_Luv2RGB)[
+            0, :, 0
+        ]
         * 255
     )
     assert np.abs(colour.to_8bit(ramp)[0] - theirs).max() < 1.0

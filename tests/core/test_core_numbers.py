@@ -29,20 +29,28 @@ Z8 = RNG.integers(0, 256, (3, 7, 8), np.uint8)
 Z8C = RNG.integers(0, 256, (2, 6, 9, 3), np.uint8)
 Z16 = RNG.integers(0, 65536, (2, 5, 6), np.uint16)
 VALID = RNG.random((3, 7, 8)) > 0.1
-MASKED = np.ma.masked_array(np.ones((2, 2, 2), np.uint8), mask=np.eye(2, dtype=bool)[None].repeat(2, 0))
+MASKED = np.ma.masked_array(
+    np.ones((2, 2, 2), np.uint8), mask=np.eye(2, dtype=bool)[None].repeat(2, 0)
+)
 RAMP = np.log(np.arange(1, 257.0))
 RAMPS = np.stack([RAMP, RAMP * 0.9, RAMP + 1], axis=-1)
 CURVE = np.log(np.linspace(0.01, 1, 256) ** 2.2)
 ONES, ZEROS = np.ones((2, 3), np.float32), np.zeros((2, 3), np.float32)
 LIT = np.array(
-    [[[8.0, 4, 2], [0.1, 0.2, 0.9], [3, 0, 0], [0, 0, 0]], [[0, 1, 0], [1, 1, 1], [5, 5, 0.1], [40, 1, 1]]]
+    [
+        [[8.0, 4, 2], [0.1, 0.2, 0.9], [3, 0, 0], [0, 0, 0]],
+        [[0, 1, 0], [1, 1, 1], [5, 5, 0.1], [40, 1, 1]],
+    ]
 )
 LD = np.array([[0.3, 0.5, 0.9, 0.25], [0.7, 1.0, 0.95, 0.999]])
 DARK = np.float32([[0.99e-30, 1e-30, 1.01e-30, 2e-30]])
 DIM = DARK[..., None] * np.float32([0.5, 1, 2])
 HDR = np.linspace(0, 6, 3000).reshape(50, 60) ** 2
 WRONG = np.array(
-    [[[0.2, 0.4, -0.1], [NAN, 1, 1], [0.2, 0.4, INF]], [[-0.1, -0.2, -INF], [-1, -2, -3], [0, -1e-3, 0]]]
+    [
+        [[0.2, 0.4, -0.1], [NAN, 1, 1], [0.2, 0.4, INF]],
+        [[-0.1, -0.2, -INF], [-1, -2, -3], [0, -1e-3, 0]],
+    ]
 )
 NOISY = RNG.normal(0.3, 1, (7, 8, 3)).astype(np.float32)
 GAPS = np.where(RNG.random((7, 8)) > 0.4, NAN, RNG.random((7, 8)))

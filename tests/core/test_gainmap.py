@@ -36,7 +36,10 @@ def test_without_weight_the_picture_stays_and_black_stays_black_with_any():
     assert np.allclose(gainmap.apply_gain(SDR, g, -2, 3, W=0), SDR)
     low, high = -2.0, 3.0
     nothing = gainmap.gain_map(np.zeros(3), np.zeros(3), low, high)
-    assert all(np.allclose(gainmap.apply_gain(np.zeros(3), nothing, low, high, W=W), 0) for W in (0, 0.3, 1))
+    assert all(
+        np.allclose(gainmap.apply_gain(np.zeros(3), nothing, low, high, W=W), 0)
+        for W in (0, 0.3, 1)
+    )
 
 
 @given(st.floats(0.1, 100), st.floats(1.1, 100))

@@ -39,7 +39,9 @@ def test_a_negative_channel_leaves_no_channel_below_0_and_keeps_the_luminance_it
     if E.min() >= 0 or true > 0.51 * shown:
         assert repaired == pytest.approx(true, rel=1e-4)
     else:
-        assert repaired <= 0.5 * shown * (1 + 1e-5) + 1e-30, "never as bright as cutting the channel off"
+        assert repaired <= 0.5 * shown * (1 + 1e-5) + 1e-30, (
+            "never as bright as cutting the channel off"
+        )
 
 
 @given(st.tuples(values, values, values))
@@ -59,7 +61,9 @@ def test_a_colour_of_other_primaries_stops_where_its_least_channel_is_0():
     L = luminance_of(E)
     found = gamut.desaturate(E)
     t = L / (L + 0.02)
-    assert np.allclose(found, L + t * (E - L), atol=1e-6) and found.min() == pytest.approx(0, abs=1e-7)
+    assert np.allclose(found, L + t * (E - L), atol=1e-6) and found.min() == pytest.approx(
+        0, abs=1e-7
+    )
 
 
 def luminance_of(E):
@@ -80,7 +84,9 @@ def test_noise_around_black_does_not_teem_with_colours():
     below = noise.min(axis=-1) < 0
     found = gamut.sanitize(noise)
     assert found.negative + found.black == np.count_nonzero(below) > 3000
-    kept, cut = (np.median(saturation(E)[below & (noise.max(axis=-1) > 0)]) for E in (found.E, noise.clip(0)))
+    kept, cut = (
+        np.median(saturation(E)[below & (noise.max(axis=-1) > 0)]) for E in (found.E, noise.clip(0))
+    )
     assert cut == 1 and kept < 0.6
 
 
@@ -110,7 +116,9 @@ def test_where_nothing_is_known_it_is_black_and_infinity_is_the_largest_value():
     assert found.E[1, 1] == pytest.approx(5) and found.E[6, 6] == 0 and found.unknown == 48
     bright = gamut.sanitize(np.float32([[1, np.inf, 9, np.inf]]))
     assert bright.E.tolist() == [[1, 9, 9, 9]] and bright.infinite == 2
-    assert not gamut.sanitize(np.full((3, 4, 3), np.inf)).E.any(), "nothing finite to be taken for it"
+    assert not gamut.sanitize(np.full((3, 4, 3), np.inf)).E.any(), (
+        "nothing finite to be taken for it"
+    )
 
 
 @pytest.mark.filterwarnings("error")
@@ -121,7 +129,9 @@ def test_anything_becomes_radiance(numbers):
         assert np.all(np.isfinite(E)) and np.all(E >= 0) and E.shape == shape
 
 
-@pytest.mark.parametrize("E", [np.zeros(3), np.zeros((2, 3, 4)), np.zeros((0, 2)), np.full((2, 2), "x")])
+@pytest.mark.parametrize(
+    "E", [np.zeros(3), np.zeros((2, 3, 4)), np.zeros((0, 2)), np.full((2, 2), "x")]
+)
 def test_what_is_no_picture_is_refused(E):
     with pytest.raises(ValueError, match="expected radiance"):
         gamut.sanitize(E)
@@ -129,7 +139,11 @@ def test_what_is_no_picture_is_refused(E):
 
 def test_the_luminance_of_srgb_and_the_matrix_to_xyz_are_the_standards():
     assert np.allclose(gamut.xyz_matrix(gamut.SRGB)[1], LUMINANCE, atol=1e-4)
-    standard = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]  # IEC 61966-2-1
+    standard = [
+        [0.4124, 0.3576, 0.1805],
+        [0.2126, 0.7152, 0.0722],
+        [0.0193, 0.1192, 0.9505],
+    ]  # IEC 61966-2-1
     assert np.allclose(gamut.xyz_matrix(gamut.SRGB), standard, atol=2e-4)
 
 
@@ -146,7 +160,9 @@ def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
 @pytest.mark.parametrize("primaries", [REC2020, ACES])
 def test_white_stays_white_and_the_way_back_undoes_the_way_there(primaries):
     there, back = gamut.conversion_matrix(primaries), gamut.conversion_matrix(gamut.SRGB, primaries)
-    assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(there @ back, np.eye(3), atol=1e-9)
+    assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(
+        there @ back, np.eye(3), atol=1e-9
+    )
 
 
 def write_exr(path, E, primaries=None):
@@ -189,7 +205,8 @@ def test_a_chart_in_aces_primaries_has_the_colours_that_are_printed_on_it(shared
     (y, x), path = place, shared("openexr") / "Carrots.exr"
     true = decode_srgb(np.array(printed) / 255)
     now, before = (
-        E[y - 4 : y + 5, x - 4 : x + 5].mean(axis=(0, 1)) for E in (read_sanitized(path).E, read_exr(path))
+        E[y - 4 : y + 5, x - 4 : x + 5].mean(axis=(0, 1))
+        for E in (read_sanitized(path).E, read_exr(path))
     )
     off, taken_as_srgb = (np.abs(E / E.sum() - true / true.sum()).max() for E in (now, before))
     assert off < 0.08 < taken_as_srgb
@@ -201,7 +218,9 @@ def test_the_dark_of_a_real_photograph_is_no_longer_magenta(shared):
     below = raw.min(axis=-1) < 0
     assert found.negative + found.black == np.count_nonzero(below) == 9354 and found.unknown == 0
     lit = below & (raw.max(axis=-1) > 0)
-    assert np.median(saturation(found.E)[lit]) < 0.6 and np.median(saturation(raw.clip(0))[lit]) == 1
+    assert (
+        np.median(saturation(found.E)[lit]) < 0.6 and np.median(saturation(raw.clip(0))[lit]) == 1
+    )
     assert np.array_equal(found.E[~below], raw[~below])
     trusted = lit & (raw @ LUMINANCE > 0.51 * (raw.clip(0) @ LUMINANCE))
     assert np.allclose(luminance(found.E)[trusted], (raw @ LUMINANCE)[trusted], rtol=1e-3)
@@ -209,7 +228,9 @@ def test_the_dark_of_a_real_photograph_is_no_longer_magenta(shared):
 
 def test_between_two_whites_bradford_adapts_as_published():
     d50 = (*gamut.SRGB[:6], 0.34567, 0.35850)
-    matrix = gamut.xyz_matrix(gamut.SRGB) @ gamut.conversion_matrix(d50)  # XYZ of D65 from RGB of D50
+    matrix = gamut.xyz_matrix(gamut.SRGB) @ gamut.conversion_matrix(
+        d50
+    )  # XYZ of D65 from RGB of D50
     to_d65 = matrix @ np.linalg.inv(gamut.xyz_matrix(d50))
     published = [[0.9556, -0.0230, 0.0632], [-0.0283, 1.0099, 0.0210], [0.0123, -0.0205, 1.3299]]
     assert np.allclose(to_d65, published, atol=5e-4)

@@ -24,7 +24,9 @@ def test_one_channel_is_enough_to_be_clipped_and_all_are_needed_to_be_black():
 
 
 def test_gray_weighs_the_channels_as_luminance_does():
-    assert gray(np.uint8([[[0, 100, 0], [255, 255, 255]]])) == pytest.approx(np.array([[71.52, 255]]))
+    assert gray(np.uint8([[[0, 100, 0], [255, 255, 255]]])) == pytest.approx(
+        np.array([[71.52, 255]])
+    )
 
 
 @pytest.mark.parametrize("shape", [(4,), (4, 5, 2), (0, 5), (1, 4, 5, 3)])

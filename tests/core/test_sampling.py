@@ -14,7 +14,11 @@ def frames(shape=(30, 40), dtype=np.uint8):
     """Return three frames of one scene, each a rising function of the same light."""
     light = np.random.default_rng(1).random(shape)
     top = np.iinfo(dtype).max
-    return np.stack([np.clip(light * gain, 0, 1) * top for gain in (0.3, 1, 1.5)]).round().astype(dtype)
+    return (
+        np.stack([np.clip(light * gain, 0, 1) * top for gain in (0.3, 1, 1.5)])
+        .round()
+        .astype(dtype)
+    )
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])

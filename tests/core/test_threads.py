@@ -59,12 +59,15 @@ def test_a_large_picture_is_the_same_in_bands(monkeypatch):
     assert np.array_equal(Ld, L / (1 + L))
     for way in colour.WAYS:
         halves = [
-            colour.render(*(one[part] for one in (E, L, Ld)), way=way) for part in (np.s_[:400], np.s_[400:])
+            colour.render(*(one[part] for one in (E, L, Ld)), way=way)
+            for part in (np.s_[:400], np.s_[400:])
         ]
         assert np.array_equal(colour.render(E, L, Ld, way=way), np.concatenate(halves))
 
 
-def test_what_is_done_beside_begins_at_once_where_there_are_processors_and_else_when_it_is_asked_for(count):
+def test_what_is_done_beside_begins_at_once_where_there_are_processors_and_else_when_it_is_asked_for(
+    count,
+):
     begun = threading.Event()
     answer = threads.beside(lambda: begun.set() or 7)
     assert begun.wait(60 * (count > 1)) == (count > 1)

@@ -24,12 +24,16 @@ def test_16_bits_weigh_like_8_at_the_levels_they_share(table):
 
 def test_the_hat_is_the_papers_triangle():
     w = weights.hat()
-    assert np.allclose(w[:128] * 127, np.arange(128)) and np.allclose(w[128:] * 127, np.arange(127, -1, -1))
+    assert np.allclose(w[:128] * 127, np.arange(128)) and np.allclose(
+        w[128:] * 127, np.arange(127, -1, -1)
+    )
 
 
 def test_the_gaussian_falls_to_one_over_e_halfway():
     n = 65537  # has a level in the middle and halfway
-    assert np.isclose(weights.gaussian(n)[n // 4], (np.exp(-1) - np.exp(-4)) / (1 - np.exp(-4)), atol=1e-6)
+    assert np.isclose(
+        weights.gaussian(n)[n // 4], (np.exp(-1) - np.exp(-4)) / (1 - np.exp(-4)), atol=1e-6
+    )
 
 
 def test_a_cut_zeroes_what_lies_beyond_and_nothing_else():
@@ -48,7 +52,9 @@ def test_a_cut_leaves_its_table_alone():
     assert np.array_equal(w, weights.hat())
 
 
-@pytest.mark.parametrize(("above", "below"), [(0.2, 0.5), (1.1, 0), (0.9, -0.1), (0.5, 0.5), (np.nan, 0)])
+@pytest.mark.parametrize(
+    ("above", "below"), [(0.2, 0.5), (1.1, 0), (0.9, -0.1), (0.5, 0.5), (np.nan, 0)]
+)
 def test_a_cut_that_leaves_nothing_is_refused(above, below):
     with pytest.raises(ValueError, match="0 <= below < above <= 1, got"):
         weights.cut(weights.hat(), above=above, below=below)
@@ -79,6 +85,8 @@ def test_the_weights_of_a_straight_response_grow_with_the_level():
     straight = np.log(np.maximum(np.arange(256), 0.5) / 128)
     w = weights.snr(straight)
     np.testing.assert_allclose(w[5:250], np.arange(5, 250) / 128, rtol=0.01)
-    step = np.maximum.accumulate(np.log(np.where(np.arange(256) < 128, np.maximum(np.arange(256), 1), 128)))
+    step = np.maximum.accumulate(
+        np.log(np.where(np.arange(256) < 128, np.maximum(np.arange(256), 1), 128))
+    )
     least = weights.snr(step, span=1, least=0.5)  # a flat piece counts as half as steep as the mean
     assert least[200] / least[100] == pytest.approx(128 / 100 * (255 / 127) / 0.5, rel=0.01)

@@ -39,7 +39,9 @@ def checks(task, variant=""):
     for name, check in module(task, variant).items():
         if name.startswith("test_"):
             (mark,) = getattr(check, "pytestmark", [pytest.mark.points(1).mark])
-            found.append((name, check, mark.args[0], plugin.hints(check), mark.kwargs.get("needs") or None))
+            found.append(
+                (name, check, mark.args[0], plugin.hints(check), mark.kwargs.get("needs") or None)
+            )
     return found
 
 
@@ -51,7 +53,9 @@ def answered(task, subject, seed=0, variant=""):
         given = {"subject": subject, "rng": np.random.default_rng(seed)}
         try:
             check(**{one: given[one] for one in wanted})
-        except Exception as error:  # whatever a student's code raises costs that promise, and no other
+        except (
+            Exception
+        ) as error:  # whatever a student's code raises costs that promise, and no other
             said[name] = error
         else:
             said[name] = None
@@ -65,12 +69,16 @@ def score(task, subject, seed=0, variant=""):
     """
     said = answered(task, subject, seed, variant)
     asked = PLAN.task(task)._replace(variant=variant)
-    found = misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
+    found = (
+        misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
+    )
     worth = [Fraction(str(points)) for _, _, points, *_ in checks(task, variant)]
     each = [
         Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")
         for (name, *_), points in zip(checks(task, variant), worth, strict=True)
     ]
     needs = {name: needs or "" for name, *_, needs in checks(task, variant)}
-    traced = causes.traced(each, needs, named=found is not None, once=found is not None and found.once)
+    traced = causes.traced(
+        each, needs, named=found is not None, once=found is not None and found.once
+    )
     return float(sum(one.points for one in traced) / sum(worth)), said

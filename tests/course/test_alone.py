@@ -63,7 +63,13 @@ def failed(**knobs):
 
 
 def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ended, monkeypatch):
-    assert (alone.TICK, alone.KILLED, alone.LAST, Failed.own, Failed.killed) == (0.2, 9, 300, False, False)
+    assert (alone.TICK, alone.KILLED, alone.LAST, Failed.own, Failed.killed) == (
+        0.2,
+        9,
+        300,
+        False,
+        False,
+    )
     monkeypatch.setenv("OF_THE_GRADER", "1")
     told = ended(0, b"++answer")
     assert alone.run(len, "piece", patience=1.0) == b"+answer"
@@ -139,16 +145,26 @@ def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
     ("piece", "why"),
     [
         ("{}['a\\n b']", ("KeyError: 'a\\n b'", False, False)),
-        ("int('a\\nb')", ("ValueError: invalid literal for int() with base 10: 'a\\nb'", False, False)),
+        (
+            "int('a\\nb')",
+            ("ValueError: invalid literal for int() with base 10: 'a\\nb'", False, False),
+        ),
         ("exec('raise MemoryError')", ("MemoryError:", True, False)),
-        (f"__import__('os').kill(__import__('os').getpid(), {signal.SIGTERM:d})", (None, False, True)),
+        (
+            f"__import__('os').kill(__import__('os').getpid(), {signal.SIGTERM:d})",
+            (None, False, True),
+        ),
     ],
 )
 def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
     with pytest.raises(Failed) as raised:
         alone.run(eval, piece, patience=60)
     said = str(raised.value)
-    assert (said if why[0] else None, raised.value.own, raised.value.killed) == why and "\n" not in said
+    assert (
+        said if why[0] else None,
+        raised.value.own,
+        raised.value.killed,
+    ) == why and "\n" not in said
 
 
 def test_who_was_started_by_one_that_has_died_does_nothing(monkeypatch):
@@ -189,7 +205,9 @@ def threads(monkeypatch):
     return Threads.made
 
 
-@pytest.mark.parametrize(("jobs", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)])
+@pytest.mark.parametrize(
+    ("jobs", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)]
+)
 def test_as_many_run_at_a_time_as_are_asked_for_or_have_a_processor(
     jobs, processors, count, threads, monkeypatch
 ):

@@ -1,7 +1,7 @@
 """In a tier for credit an attack gains nothing, touches nobody else's answers, and leaves nothing behind.
 
-The attacks are those of tests/attacks; that they work where nothing stops them is for test_attacks_naive to
-show.
+The attacks are those of tests/attacks; that they work where nothing stops them is for
+test_attacks_naive to show.
 """
 
 import re

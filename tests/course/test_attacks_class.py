@@ -1,7 +1,8 @@
 """A class that holds attackers is graded to the end: each gets nothing, the others what they earned.
 
-Here the attacks of tests/attacks that aim at the grader, its results and who reads them are handed in as
-files, and go the whole way: read, checked under pytest, written down, and turned into reports.
+Here the attacks of tests/attacks that aim at the grader, its results and who reads them are handed
+in as files, and go the whole way: read, checked under pytest, written down, and turned into
+reports.
 """
 
 import json
@@ -13,8 +14,11 @@ from hdrlab.course import grading, plan
 from hdrlab.course.reports import feedback, results
 from hdrlab.course.sandbox import tiers
 
-HONEST = "import numpy as np\n\ndef hat(n):\n    z = np.arange(n)\n    return np.minimum(z, n - 1 - z)\n"
-AIMED = (  # at the grader's process, its files, its output, its patience, its channel, and its readers
+HONEST = (
+    "import numpy as np\n\ndef hat(n):\n    z = np.arange(n)\n    return np.minimum(z, n - 1 - z)\n"
+)
+# at the grader's process, its files, its output, its patience, its channel, and its readers
+AIMED = (
     *("a03_patched_tools", "a04_patched_grader", "a07_results", "a09_exit", "a10_forged_lines"),
     *("a12_endless_import", "a16_floods", "a20_scripts", "a26_truncated"),
 )
@@ -45,7 +49,9 @@ def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
     assert {told[name].score for name in AIMED} == {0.0}
     for result in told.values():
         read = results.from_json(results.to_json(result))
-        assert read.score == result.score and json.loads(results.to_json(result))["tier"] == "strict"
+        assert (
+            read.score == result.score and json.loads(results.to_json(result))["tier"] == "strict"
+        )
         page = feedback.page(result, private=True)
         assert "<script>alert" not in page and "<svg onload" not in page and "\x1b" not in page
     assert "alert(1)" in feedback.page(told["a20_scripts"], private=True)  # it is told, as text

@@ -1,7 +1,8 @@
 """The attacks of tests/attacks work: a grader as they are often written gives them points, or suffers.
 
-It runs what was handed in within its own process. An attack that succeeds is given points, or leaves a file
-or a process, or never ends. Those in NOT_NAIVE harm something else, or would harm these tests.
+It runs what was handed in within its own process. An attack that succeeds is given points, or
+leaves a file or a process, or never ends. Those in NOT_NAIVE harm something else, or would harm
+these tests.
 """
 
 import json

@@ -15,7 +15,12 @@ from hdrlab.course.reports import gradebook, results, sheets
 
 
 def test_the_bounds_are_those_that_the_pages_for_instructors_name():
-    assert (handins.LARGEST, handins.MOST, run.MOST, marks.LARGE) == (256 << 20, 1000, 64 << 20, 128 << 20)
+    assert (handins.LARGEST, handins.MOST, run.MOST, marks.LARGE) == (
+        256 << 20,
+        1000,
+        64 << 20,
+        128 << 20,
+    )
     assert (late.GRACE, late.DAY, list(marks.DAYS), overview.BINS) == (
         10,
         timedelta(days=1),
@@ -28,7 +33,8 @@ def test_the_bounds_are_those_that_the_pages_for_instructors_name():
 
 
 HANDINS = {
-    team: Handin(team, (), None, NOON + timedelta(hours=hours), team) for team, hours in (("t", 0), ("b3", 1))
+    team: Handin(team, (), None, NOON + timedelta(hours=hours), team)
+    for team, hours in (("t", 0), ("b3", 1))
 }
 
 
@@ -75,7 +81,9 @@ def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(don
     (folder / "result.json").write_bytes(b"other")
     (folder / "feedback.html").write_bytes(b"other")
     run.write_feedback(tmp_path, done)
-    assert (folder / "result.json").read_bytes() == shown and (folder / "feedback.html").stat().st_size > 5
+    assert (folder / "result.json").read_bytes() == shown and (
+        folder / "feedback.html"
+    ).stat().st_size > 5
     (folder / "feedback.html").write_bytes(b"kept")
     run.write_feedback(tmp_path, done)
     assert (folder / "feedback.html").read_bytes() == b"kept"
@@ -87,7 +95,9 @@ def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(don
 def test_feedback_that_cannot_be_written_says_why_in_two_hundred_characters(done, tmp_path):
     done.result.write_bytes(b"damaged")
     found = run.write_feedback(tmp_path, done)
-    assert found.why.startswith("its feedback could not be written: ") and found.result == done.result
+    assert (
+        found.why.startswith("its feedback could not be written: ") and found.result == done.result
+    )
     missing = done._replace(result=None)
     assert run.write_feedback(tmp_path, missing) is missing
     assert list(run.read(tmp_path, [done.piece])) == []
@@ -113,13 +123,30 @@ def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
         "a note",
     )
     assert second[5:] == first[5:]
-    assert third == ("b3", "Cy", "b3", "hw2", "", 0, 0, 0.0, 10.0, 0.0, 0.0, 0, "not handed in; refused")
+    assert third == (
+        "b3",
+        "Cy",
+        "b3",
+        "hw2",
+        "",
+        0,
+        0,
+        0.0,
+        10.0,
+        0.0,
+        0.0,
+        0,
+        "not handed in; refused",
+    )
     ungraded = marks.marks(course, came, {})[0]
     assert (ungraded.work, ungraded.penalty, ungraded.note) == (0, 0, "not graded; a note")
     _, rows = moodle.gradebook([first], CLASS, HOMEWORK)
     assert rows == [["b1", "b1", "a@x", 6.0]]
     header, table = marks.what_if(course, {"t": 8.0})
-    assert header[:6] == ["student", "name", "team", "homework", "work", "late 0"] and len(header) == 20
+    assert (
+        header[:6] == ["student", "name", "team", "homework", "work", "late 0"]
+        and len(header) == 20
+    )
     assert table[0][4:9] == [8.0, 8.0, 8.0, 6.0, 4.0] and table[2][4:8] == [10.0, 10.0, 8.0, 6.0]
 
 
@@ -138,7 +165,9 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
     ]
     found = overview.tally(each)
     assert found.points == {"a": 1, "b": 0, "c": 1} and found.refused == {"b": "no file"}
-    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.met == {("hat", "S"): 1}
+    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.met == {
+        ("hat", "S"): 1
+    }
     assert overview.histogram([0, 0.99, 1, 9.99, 10, 12], 10) == [
         *((0, 2), (10, 1), *((k, 0) for k in range(20, 90, 10)), (90, 3)),
     ]
@@ -147,7 +176,10 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
 def test_a_table_is_read_up_to_its_bound(tmp_path):
     (tmp_path / "a.csv").write_bytes(b" A ,b\n1\n\n 2 ,3\n")
     size = (tmp_path / "a.csv").stat().st_size
-    assert sheets.read_csv(tmp_path / "a.csv", most=size) == [{"a": "1", "b": ""}, {"a": "2", "b": "3"}]
+    assert sheets.read_csv(tmp_path / "a.csv", most=size) == [
+        {"a": "1", "b": ""},
+        {"a": "2", "b": "3"},
+    ]
     with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
         sheets.read_csv(tmp_path / "a.csv", most=size - 1)
     assert sheets.read_csv.__kwdefaults__ == {"most": 5_000_000}
@@ -156,13 +188,20 @@ def test_a_table_is_read_up_to_its_bound(tmp_path):
 def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):
     monkeypatch.setattr(handins, "LARGEST", 1 << 20)
     monkeypatch.setattr(handins, "MOST", 2)
-    for name, size in (("b1/a.py", 1 << 20), ("b1/b.py", 0), ("b3/a.py", (1 << 20) + 1), ("b3/.x", 0)):
+    for name, size in (
+        ("b1/a.py", 1 << 20),
+        ("b1/b.py", 0),
+        ("b3/a.py", (1 << 20) + 1),
+        ("b3/.x", 0),
+    ):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
         with (tmp_path / name).open("r+b") as file:
             file.truncate(size)
     found = handins.find(tmp_path, CLASS)
-    assert set(found.handins) == {"t"} and found.refused == {"b3": "b3/a.py: expected at most 1 MB, got 1"}
+    assert set(found.handins) == {"t"} and found.refused == {
+        "b3": "b3/a.py: expected at most 1 MB, got 1"
+    }
     (tmp_path / "b1" / "c.py").touch()
     found = handins.find(tmp_path, CLASS)
     assert found.handins == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"

@@ -54,14 +54,18 @@ def test_half_of_an_odd_number_of_points_is_half_a_point():
 
 
 def test_what_needs_a_failed_promise_follows_from_it_or_holds_without_points():
-    found = causes.traced(checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"})
+    found = causes.traced(
+        checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"}
+    )
     assert [one.follows for one in found] == ["", "Promise a", "", "Promise a"]
     assert earned(found) == [0, 0, 0, 0] and "where this holds, too: Promise a" in found[2].message
 
 
 def test_calls_that_end_in_the_same_words_are_told_once():
     said = [{"kind": "raised", "message": one} for one in ("IndexError", "IndexError", "KeyError")]
-    each = [one._replace(**words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)]
+    each = [
+        one._replace(**words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
+    ]
     assert [one.follows for one in causes.traced(each, {})] == ["", "Promise a", ""]
 
 
@@ -71,9 +75,13 @@ def test_failures_without_a_common_cause_are_told_each():
 
 def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
     found = causes.traced(checks("fails", "fails", message="It is 3"), {}, named=True, once=True)
-    result = Result("", "hw2", "", "practice", tuple(found), {"hat": "A wrong hat."}, (), "", "", "", {})
+    result = Result(
+        "", "hw2", "", "practice", tuple(found), {"hat": "A wrong hat."}, (), "", "", "", {}
+    )
     page, text = feedback.fragment(result), feedback.text(result)
-    assert page.index("Promise a") < page.index("Follows from this: 1 more") < page.index("Promise b")
+    assert (
+        page.index("Promise a") < page.index("Follows from this: 1 more") < page.index("Promise b")
+    )
     assert page.count("It is 3") == 2 and page.count("<details") == page.count("</details>")
     assert "✗ Promise b (follows from: Promise a)" in text and text.count("It is 3") == 1
 
@@ -107,7 +115,9 @@ def test_the_halves_that_are_left_over_go_to_the_largest_remainders(points, weig
         ("hhh", {"named": True, "once": True}, (4, 4, 4), ("", "", "")),
     ],
 )
-def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(outcomes, knobs, earnings, follows):
+def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(
+    outcomes, knobs, earnings, follows
+):
     words = {"h": "holds", "f": "fails"}
     found = causes.traced(checks(*(words[one] for one in outcomes)), {}, **knobs)
     assert tuple(earned(found)) == earnings
@@ -135,7 +145,9 @@ def test_of_a_hidden_check_nothing_follows_and_it_follows_from_nothing():
         (("late", "x"), ("raised", "x"), False),
     ],
 )
-def test_two_calls_have_one_cause_where_both_were_late_or_ended_in_the_same_words(first, second, follows):
+def test_two_calls_have_one_cause_where_both_were_late_or_ended_in_the_same_words(
+    first, second, follows
+):
     each = [
         one._replace(kind=kind, message=said)
         for one, (kind, said) in zip(checks("fails", "fails"), (first, second), strict=True)

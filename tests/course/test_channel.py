@@ -28,7 +28,9 @@ PLAIN = st.recursive(
     max_leaves=8,
 )
 ARRAYS = st.sampled_from(channel.DTYPES).flatmap(
-    lambda dtype: arrays.arrays(dtype, arrays.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4))
+    lambda dtype: arrays.arrays(
+        dtype, arrays.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)
+    )
 )
 
 
@@ -64,7 +66,13 @@ def test_arrays_keep_dtype_shape_and_bits(array):
 
 def test_the_order_and_the_overlap_of_an_array_in_memory_do_not_matter():
     x = np.arange(24.0).reshape(4, 6)
-    for array in (x[::-1, ::-2], x.T, np.asfortranarray(x), np.broadcast_to(x[0], (3, 6)), x.astype(">f8")):
+    for array in (
+        x[::-1, ::-2],
+        x.T,
+        np.asfortranarray(x),
+        np.broadcast_to(x[0], (3, 6)),
+        x.astype(">f8"),
+    ):
         np.testing.assert_array_equal(passed(array), array)
         assert passed(array).flags.writeable and passed(array).flags.c_contiguous
 
@@ -167,7 +175,9 @@ LIES = {
     "bytes that do not fill it": frame(ONE, [label(nbytes=8)], bytes(8)),
     "bytes below nought": frame(ONE, [label(nbytes=-16)], bytes(16)),
     "an exabyte": frame(ONE, [label(shape=(1 << 57,), nbytes=1 << 60)]),
-    "too much in all": frame(ONE, [label(str(j), shape=(1 << 22,), nbytes=1 << 25) for j in range(3)]),
+    "too much in all": frame(
+        ONE, [label(str(j), shape=(1 << 22,), nbytes=1 << 25) for j in range(3)]
+    ),
     "another name": frame({"array": "x"}, [label("x")], bytes(16)),
     "a name of digits without end": frame({"array": "1" * 5000}, [label()], bytes(16)),
 }
@@ -176,7 +186,9 @@ LIES = {
 @pytest.mark.parametrize("lie", LIES)
 def test_a_frame_that_lies_is_refused(pair, lie):
     ours, theirs = pair
-    sender = threading.Thread(target=lambda: (ours.sendall(LIES[lie]), ours.shutdown(socket.SHUT_WR)))
+    sender = threading.Thread(
+        target=lambda: (ours.sendall(LIES[lie]), ours.shutdown(socket.SHUT_WR))
+    )
     sender.start()
     with pytest.raises(channel.Damaged):
         channel.receive(theirs, time.monotonic() + 10)

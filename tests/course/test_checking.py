@@ -44,13 +44,18 @@ def test_the_job_is_read_and_its_worker_registered(tmp_path):
         pluginmanager=SimpleNamespace(register=lambda *words: said.append(words)),
     )
     plugin.pytest_configure(config)
-    assert said == [("markers", plugin.MARKER), ('{"by": "json:dumps", "more": 1}', "hdrlab-checking")]
+    assert said == [
+        ("markers", plugin.MARKER),
+        ('{"by": "json:dumps", "more": 1}', "hdrlab-checking"),
+    ]
     plugin.pytest_addoption(SimpleNamespace(addoption=lambda name, **_: options.append(name)))
     assert options == ["--job"]
 
 
 @pytest.mark.parametrize("alive", [True, False])
-def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(alive, checking, monkeypatch):
+def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
+    alive, checking, monkeypatch
+):
     begun = []
 
     class Made:
@@ -126,7 +131,12 @@ def test_every_check_is_written_down_before_the_first_is_run(checking):
         "hidden": False,
     }
     assert (second["points"], second["needs"], second["hints"]) == ("3", "", [])
-    assert (third["points"], third["needs"], third["hidden"], third["task"]) == ("1", "", True, "gsolve")
+    assert (third["points"], third["needs"], third["hidden"], third["task"]) == (
+        "1",
+        "",
+        True,
+        "gsolve",
+    )
 
 
 def test_hints_are_the_paragraphs_of_a_docstring():

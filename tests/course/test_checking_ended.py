@@ -64,7 +64,12 @@ def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printe
         (Different("n" * 1501), "fails", "", "n" * 1500),
         (AssertionError(), "fails", "", "The promise does not hold"),
         (AssertionError("a\n +  where b"), "fails", "", "a"),
-        (ValueError("of <f at 0x7f>"), "fails", "", "The answer could not be compared: ValueError: of <f>"),
+        (
+            ValueError("of <f at 0x7f>"),
+            "fails",
+            "",
+            "The answer could not be compared: ValueError: of <f>",
+        ),
         (
             ValueError("n" * 1600),
             "fails",
@@ -76,14 +81,21 @@ def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printe
 def test_what_does_not_hold_is_written_with_its_words(raised, outcome, kind, message, checking):
     checking._ended(item(), raised)
     (line,) = checking.lines()
-    assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (outcome, kind, message, None)
+    assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (
+        outcome,
+        kind,
+        message,
+        None,
+    )
     assert checking.failed == {"hat"} and checking.late == ({"hat"} if kind == "late" else set())
 
 
 def test_of_a_difference_what_came_is_described_where_it_has_axes():
     told = plugin._message(Different("w: no", came=np.ones(3)))
     assert told.startswith("w: no\nYours: shape (3,)")
-    assert plugin._message(Different("n" * 1600, came=np.ones(3))).startswith("n" * 1500 + "\nYours")
+    assert plugin._message(Different("n" * 1600, came=np.ones(3))).startswith(
+        "n" * 1500 + "\nYours"
+    )
     assert plugin._message(Different("w: no", came=np.array(1.0))) == "w: no"
 
 

@@ -64,7 +64,9 @@ def test_an_attack_is_aimed_at_the_results_of_the_run(everybody):
 
 
 def one_of(team, kind, which="", score=1.0, problems=(), named=None):
-    check = Check("hat", "test_it", "it", Fraction(score), Fraction(1), "holds" if score else "fails")
+    check = Check(
+        "hat", "test_it", "it", Fraction(score), Fraction(1), "holds" if score else "fails"
+    )
     result = Result(team, "hw2", "T", "strict", (check,), named or {}, problems, "", "", "", {})
     return Handed(team, (team,), f"{team}.py", b"", 0.0, kind, which), result
 
@@ -85,11 +87,16 @@ def test_what_goes_wrong_in_a_class_is_counted():
     ]
     measures = (judged.gained, judged.not_whole, judged.not_named, judged.not_refused)
     for members, expected in ((good, (0, 0, 0, 0)), (bad, (0.25, 1, 100, 1))):
-        each, graded = [one for one, _ in members], {result.student: result for _, result in members}
+        each, graded = (
+            [one for one, _ in members],
+            {result.student: result for _, result in members},
+        )
         assert tuple(measure(graded, each) for measure in measures) == expected
         assert judged.lost(graded, each) == 0
     assert (
-        judged.lost({}, each) == 4 and judged.not_whole({}, each) == 1 and judged.not_refused({}, each) == 1
+        judged.lost({}, each) == 4
+        and judged.not_whole({}, each) == 1
+        and judged.not_refused({}, each) == 1
     )
 
 
@@ -98,12 +105,18 @@ def test_one_byte_or_one_cell_that_differs_is_found(tmp_path):
     for out in ("one", "same", "other"):
         (tmp_path / out / "results").mkdir(parents=True)
         (tmp_path / out / "feedback" / "a").mkdir(parents=True)
-        (tmp_path / out / "results" / "a.0123.json").write_bytes(results.to_json(one_of("a", "right")[1]))
+        (tmp_path / out / "results" / "a.0123.json").write_bytes(
+            results.to_json(one_of("a", "right")[1])
+        )
         (tmp_path / out / "feedback" / "a" / "feedback.html").write_text("<p>well done")
-        sheets.write_csv(tmp_path / out / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 2)])
+        sheets.write_csv(
+            tmp_path / out / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 2)]
+        )
     assert judged.differing(tmp_path / "one", tmp_path / "same", each) == 0
     (tmp_path / "other" / "feedback" / "a" / "feedback.html").write_text("<p>well gone")
-    sheets.write_csv(tmp_path / "other" / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 3)])
+    sheets.write_csv(
+        tmp_path / "other" / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 3)]
+    )
     (tmp_path / "other" / "results" / "b.0123.json").write_text("{}")
     assert judged.differing(tmp_path / "one", tmp_path / "other", each) == 3
     assert set(judged.read(tmp_path / "one")) == {"a"} and judged.size(tmp_path / "one")[0] == 3
@@ -142,9 +155,14 @@ def test_the_subject_is_called_class_though_that_is_a_word_of_python():
 
 def test_a_mixed_class_has_every_hostile_kind_that_the_tests_have_and_sixty_honest_ones(tmp_path):
     each = mixed.honest(60, tmp_path)
-    assert len(each) == 60 == len({one.team for one in each}) and not any(one.hostile for one in each)
+    assert len(each) == 60 == len({one.team for one in each}) and not any(
+        one.hostile for one in each
+    )
     others = mixed.hostile(tmp_path, each[0])
-    which = {kind: {one.which for one in others if one.kind == kind} for kind in {one.kind for one in others}}
+    which = {
+        kind: {one.which for one in others if one.kind == kind}
+        for kind in {one.kind for one in others}
+    }
     taken = which.pop("taken")
     kinds = {"code": "CODE", "text": "TEXTS", "file": "FILES", "name": "NAMES", "odd": "ODD"}
     expected = {kind: set(getattr(hostile, name)) for kind, name in kinds.items()}
@@ -159,14 +177,19 @@ def test_rows_write_into_folders_of_their_own(tmp_path, monkeypatch):
     def graded(place, out, *words, **_):
         written.append(out)
         out.mkdir(parents=True)
-        (out / "gradebook.csv").write_text("student,note\n" + "\n".join(f"x{k:03d},n" for k in range(300)))
+        (out / "gradebook.csv").write_text(
+            "student,note\n" + "\n".join(f"x{k:03d},n" for k in range(300))
+        )
         return used
 
     monkeypatch.setattr(class_, "grade", graded)
     monkeypatch.setattr(class_, "along", lambda work, each, _: [used] * len(each))
     class_.whole(tmp_path, 12)
     found = class_.among_hostile(tmp_path, 3)
-    assert len(set(written)) == len(written) == 4 and found["hostile ones of whom nothing is said"] == 0
+    assert (
+        len(set(written)) == len(written) == 4
+        and found["hostile ones of whom nothing is said"] == 0
+    )
     assert class_.most_costly(tmp_path)["CPU seconds of the worst"] == 1
 
 
@@ -193,4 +216,6 @@ def test_what_is_to_cost_much_is_python_for_all_tasks_and_has_names_of_its_own()
     assert len({(one.kind, one.which) for one in each}) == len(each) > 30
     for one in each:
         if one.kind == "code":
-            assert {node.name for node in ast.parse(one.data()).body if hasattr(node, "name")} == HW2
+            assert {
+                node.name for node in ast.parse(one.data()).body if hasattr(node, "name")
+            } == HW2

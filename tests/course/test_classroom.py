@@ -75,7 +75,9 @@ def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
 def test_canvas_gets_a_line_of_points_and_no_formula():
     rows = marks.marks(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
     lines = list(csv.reader(sheets.csv_text(*marks.canvas(rows, HOMEWORK)).splitlines()))
-    assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][5].startswith("hw2")
+    assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][
+        5
+    ].startswith("hw2")
     assert lines[1][0] == "Points Possible" and float(lines[1][5]) == 100
     assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
 
@@ -87,7 +89,10 @@ def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
     table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
     assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
     assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
-    assert [table["b3"][f"late {days}"] for days in (0, 3)] == [100, 97]  # nothing came: were it all right
+    assert [table["b3"][f"late {days}"] for days in (0, 3)] == [
+        100,
+        97,
+    ]  # nothing came: were it all right
     came = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
     scores = {row.student: row.score for row in came}
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
@@ -95,11 +100,17 @@ def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
 
 def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
     script = "<script>alert(1)</script>"
-    each = [result("t", (1, 0), {"hat": script}), result("b3", (1, 1), {"hat": script}), result("x", (0, 0))]
+    each = [
+        result("t", (1, 0), {"hat": script}),
+        result("b3", (1, 1), {"hat": script}),
+        result("x", (0, 0)),
+    ]
     text = overview.page(HOMEWORK, overview.tally(each), [f"{script} came late"])
     assert "script" not in {tag for tag, _ in tags(text)} and text.count("&lt;script&gt;") == 2
     assert "<b>2</b> in <b>hat</b>" in text and "2 of 3" in text and "1 of 3" in text
-    assert text.count('<td class="right">1</td>') == 1 and text.count('<td class="right">2</td>') == 1  # fail
+    assert (
+        text.count('<td class="right">1</td>') == 1 and text.count('<td class="right">2</td>') == 1
+    )  # fail
 
 
 def tags(text):
@@ -152,7 +163,10 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
         for kind in ("killed", "died")
     )
     elsewhere = killed._replace(checks=(*killed.checks, *died.checks))
-    grader, piece = classroom.Grader(HOMEWORK, Conditions(tier="practice")), Piece("b1", Path("b1.py"), "key")
+    grader, piece = (
+        classroom.Grader(HOMEWORK, Conditions(tier="practice")),
+        Piece("b1", Path("b1.py"), "key"),
+    )
     for last in (died, killed):
         answers = iter([killed, killed, last])
         monkeypatch.setattr(grading, "grade", lambda *_, answers=answers: next(answers))
@@ -165,7 +179,9 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
 
 
 @pytest.mark.parametrize("secret", ["", "x"])
-def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secret(secret, monkeypatch):
+def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secret(
+    secret, monkeypatch
+):
     hidden, homes = (("test_hat.py", b"checks"), ("data/hat.csv", b"1,2")), []
 
     def grade(path, homework, conditions):
@@ -209,7 +225,18 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-WORDS = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", "out"]
+WORDS = [
+    "grade",
+    "in",
+    "--homework",
+    "hw2",
+    "--tier",
+    "practice",
+    "--plan",
+    "plan.toml",
+    "-o",
+    "out",
+]
 WORDS += ["--roster", "roster.csv", "--received", "times.csv"]
 
 
@@ -231,14 +258,23 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert "2 of 2 graded, 2 of them now" in grade()
     whole = {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()}
     rows = {row["student"]: row for row in sheets.read_csv(folder / "out" / "gradebook.csv")}
-    assert float(rows["b1"]["work"]) > 0 and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
-    assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == ("3", "7", 0)
+    assert (
+        float(rows["b1"]["work"]) > 0
+        and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
+    )
+    assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == (
+        "3",
+        "7",
+        0,
+    )
     assert rows["b4"]["note"] == "not handed in"
     page = (folder / "out" / "class.html").read_text()
     links = [dict(attrs)["href"] for tag, attrs in tags(page) if tag == "a"]
     assert links == ["feedback/t/feedback.html"] * 2 + ["feedback/b3/feedback.html"]
     assert all((folder / "out" / link).is_file() for link in links)
-    assert "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
+    assert (
+        "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
+    )
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
     names = {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"}
     assert names <= {path.name for path in whole}
@@ -249,7 +285,9 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     (feedback / "b3" / "junit.xml").write_text("of another submission")
     (folder / "out" / "class.html").unlink()
     assert "2 of 2 graded, 0 of them now" in grade()
-    assert {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()} == whole
+    assert {
+        path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()
+    } == whole
 
 
 def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, grade):
@@ -260,12 +298,22 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
     before = result.stat().st_mtime_ns, result.read_bytes()
     assert "2 of 2 graded, 1 of them now" in grade("--regrade", "--only", "t")
     assert result.stat().st_mtime_ns > before[0] and result.read_bytes() == before[1]
-    told = grade("--regrade", "--cluster", "tcp://127.0.0.1:1", code=2)  # nothing is forgotten for nothing
-    assert "expected a Dask cluster at tcp://127.0.0.1:1" in told and result.read_bytes() == before[1]
+    told = grade(
+        "--regrade", "--cluster", "tcp://127.0.0.1:1", code=2
+    )  # nothing is forgotten for nothing
+    assert (
+        "expected a Dask cluster at tcp://127.0.0.1:1" in told and result.read_bytes() == before[1]
+    )
     rows = {row["student"]: row for row in sheets.read_csv(folder / "out" / "gradebook.csv")}
     assert not rows["b1"]["note"] and "The archive is refused" in rows["b3"]["note"]
-    handed = marks.read([folder / "out" / "gradebook.csv"])  # what is refused has come, and took its days
-    assert [(one.students, one.late) for one in handed] == [(("b1",), 0), (("b2",), 0), (("b3",), 3)]
+    handed = marks.read(
+        [folder / "out" / "gradebook.csv"]
+    )  # what is refused has come, and took its days
+    assert [(one.students, one.late) for one in handed] == [
+        (("b1",), 0),
+        (("b2",), 0),
+        (("b3",), 3),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -285,4 +333,7 @@ def test_hidden_checks_travel_without_what_python_has_compiled_of_them(tmp_path)
     (tmp_path / "more" / "__pycache__").mkdir(parents=True)
     for name in ("test_a.py", "more/data.csv", "more/__pycache__/test_a.cpython-311.pyc"):
         (tmp_path / name).write_text(name)
-    assert classroom.hidden(tmp_path) == [("more/data.csv", b"more/data.csv"), ("test_a.py", b"test_a.py")]
+    assert classroom.hidden(tmp_path) == [
+        ("more/data.csv", b"more/data.csv"),
+        ("test_a.py", b"test_a.py"),
+    ]

@@ -43,7 +43,9 @@ def run(statements):
         (("import os as x", "x.sep = 1", F), ["import os as x", F]),
     ],
 )
-def test_of_other_cells_the_statements_that_are_needed_are_taken_and_imports_stand_first(cells, expected):
+def test_of_other_cells_the_statements_that_are_needed_are_taken_and_imports_stand_first(
+    cells, expected
+):
     assert source(*cells) == expected
 
 
@@ -62,9 +64,15 @@ WRAP = "def wrap(g):\n    return g"
             ("async def x():\n    return 1", "async def x():\n    return 2", F),
             ["async def x():\n    return 2", F],
         ),
-        (("@int\ndef x():\n    return 1", "x = 2", F), ["@int\ndef x():\n    return 1", "x = 2", F]),
+        (
+            ("@int\ndef x():\n    return 1", "x = 2", F),
+            ["@int\ndef x():\n    return 1", "x = 2", F],
+        ),
         (("x = 0", "def x(): 1", "x.a = 1", F), ["def x(): 1", "x.a = 1", F]),
-        (("x.a = 0", "def x(): 1", "x.a = 1", "x.b = 2", F), ["def x(): 1", "x.a = 1", "x.b = 2", F]),
+        (
+            ("x.a = 0", "def x(): 1", "x.a = 1", "x.b = 2", F),
+            ["def x(): 1", "x.a = 1", "x.b = 2", F],
+        ),
         (("def x(): 0", "x.a = 0", "def x(): 1", "x.a = 1", F), ["def x(): 1", "x.a = 1", F]),
         (("x = 1", "x = x + 1", "x *= 3", F), ["x = 1", "x = x + 1", "x *= 3", F]),
         (
@@ -156,7 +164,10 @@ def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer
     ("cell", "said"),
     [
         (Cell("x = = 1", "", False, "cell 3"), "cell 3 is no Python, line 1: "),
-        (Cell("x = 1\ny = = 1", "f", False, "cell 4"), "cell 4, which holds f, is no Python, line 2: "),
+        (
+            Cell("x = 1\ny = = 1", "f", False, "cell 4"),
+            "cell 4, which holds f, is no Python, line 2: ",
+        ),
         (Cell("x = = 1", "g", False, "cell 5"), "cell 5 is no Python, line 1: "),
         (Cell("x = '\0'", "", False, "cell 6"), "cell 6 is no Python"),
     ],

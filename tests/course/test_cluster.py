@@ -40,7 +40,9 @@ def clustered(workers, threads, at_once=0):
     with (
         tempfile.TemporaryDirectory() as scratch,  # what a worker that is killed leaves
         mock.patch.dict(os.environ, {"TMPDIR": scratch}),
-        LocalCluster(n_workers=at_once, processes=True, local_directory=scratch, **knobs) as running,
+        LocalCluster(
+            n_workers=at_once, processes=True, local_directory=scratch, **knobs
+        ) as running,
     ):
         keeper = threading.Thread(target=_keep, args=(running, workers, at_once, ended))
         keeper.start()
@@ -113,13 +115,17 @@ def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path
     assert results == whole(tmp_path) and all(one.result for one in done)
 
 
-def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_done(address, tmp_path):
+def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_done(
+    address, tmp_path
+):
     done, results = graded(address, tmp_path, errands.deadly)
     owners = [owner for owner, *_ in errands.begun(tmp_path / "class")]
     (lost,) = [one for one in done if one.result is None]
     assert lost.piece.owner == "s3" and "3 times" in lost.why and "was lost" in lost.why
     assert owners.count("s3") == 3 and len(owners) == 7
-    assert results == {name: data for name, data in whole(tmp_path).items() if not name.startswith("s3.")}
+    assert results == {
+        name: data for name, data in whole(tmp_path).items() if not name.startswith("s3.")
+    }
 
 
 def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_used(tmp_path):
@@ -141,7 +147,9 @@ def test_no_worker_has_more_pieces_than_threads(tmp_path):
             while len(errands.begun(tmp_path / "class")) < 2:
                 assert not executor.endings()
         until = time.monotonic() + 300
-        while any(map(alive, errands.begun(tmp_path / "class"))):  # they were cancelled with the run
+        while any(
+            map(alive, errands.begun(tmp_path / "class"))
+        ):  # they were cancelled with the run
             assert time.monotonic() < until
             time.sleep(0.1)
 
@@ -181,7 +189,10 @@ def test_where_there_is_no_cluster_it_says_so(nowhere, tmp_path, monkeypatch):
 
 
 def test_a_cluster_that_is_lost_is_told_of(tmp_path):
-    with clustered(0, 1) as running, pytest.raises(ValueError, match="is lost; what is graded stays"):
+    with (
+        clustered(0, 1) as running,
+        pytest.raises(ValueError, match="is lost; what is graded stays"),
+    ):
         threading.Timer(2, running.close).start()
         graded(running.scheduler_address, tmp_path, errands.endless)
 
@@ -206,7 +217,9 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
             client.run(rename, hdrlab.__version__)
     piece = errands.pieces(tmp_path / "class", 1)[0]
     task = cluster.Task(errands.grade, cluster.version, piece, b"", 1.0, "0.0.7 (of another)")
-    with pytest.raises(ValueError, match=r"expected 0\.0\.7 \(of another\)"):  # of a worker that joins later
+    with pytest.raises(
+        ValueError, match=r"expected 0\.0\.7 \(of another\)"
+    ):  # of a worker that joins later
         cluster.do(task)
 
 

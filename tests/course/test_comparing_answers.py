@@ -28,7 +28,11 @@ def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_i
     compare.require([0], "something is there")
     with pytest.raises(Different, match="^it does not hold$") as raised:
         compare.require(0, "it does not hold", came=np.ones(2))
-    assert (raised.value.kind, raised.value.expected, raised.value.came.tolist()) == ("values", None, [1, 1])
+    assert (raised.value.kind, raised.value.expected, raised.value.came.tolist()) == (
+        "values",
+        None,
+        [1, 1],
+    )
 
 
 @pytest.mark.parametrize(
@@ -52,7 +56,9 @@ def test_what_is_no_array_of_real_numbers_is_refused_by_what_it_is(came, said, n
     assert refused(numbers, came, what="w") == said.replace("the answer", "w", 1)
 
 
-@pytest.mark.parametrize("came", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)])
+@pytest.mark.parametrize(
+    "came", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)]
+)
 def test_numbers_of_any_real_kind_are_taken_as_they_are(came, notes):
     assert np.array_equal(numbers(came), came) and not notes
 
@@ -119,8 +125,16 @@ def test_of_several_parts_as_many_as_are_expected_are_taken():
 
 def test_states_are_what_a_generator_yielded_and_at_least_one():
     assert states((1, 2)) == [1, 2] and states([0]) == [0]
-    for came, named in (([], "list of 0"), ("abc", "str of 3"), (np.ones(3), "one array"), (7, "one array")):
-        assert refused(states, came) == f"the steps: expected a generator that yields states, got {named}"
+    for came, named in (
+        ([], "list of 0"),
+        ("abc", "str of 3"),
+        (np.ones(3), "one array"),
+        (7, "one array"),
+    ):
+        assert (
+            refused(states, came)
+            == f"the steps: expected a generator that yields states, got {named}"
+        )
 
 
 @pytest.mark.parametrize(
@@ -142,12 +156,22 @@ def test_states_are_what_a_generator_yielded_and_at_least_one():
             1,
             "expected 3 at (2,), got 9; the difference may be 1; 2 of 3 values are off",
         ),
-        ([[1, 2], [3, 5]], [[1, 2], [3, 4]], 0, "expected 4 at (1, 1), got 5; 1 of 4 values are off"),
+        (
+            [[1, 2], [3, 5]],
+            [[1, 2], [3, 4]],
+            0,
+            "expected 4 at (1, 1), got 5; 1 of 4 values are off",
+        ),
         ([np.nan, 1], [1, 1], 9, "expected finite numbers, got 1 NaN or infinite ones"),
         ([-np.inf, np.nan], [1, 1], 9, "expected finite numbers, got 2 NaN or infinite ones"),
         ([np.nan, 1], [np.nan, 1], 0, ""),
         ([2, 1], [np.nan, 1], 9, "expected NaN where nothing is known, got numbers at 1 places"),
-        ([2, np.inf], [np.nan, np.nan], 9, "expected NaN where nothing is known, got numbers at 2 places"),
+        (
+            [2, np.inf],
+            [np.nan, np.nan],
+            9,
+            "expected NaN where nothing is known, got numbers at 2 places",
+        ),
         (np.zeros((0, 2)), np.zeros((0, 2)), 0, ""),
         (
             np.uint8([1]),
@@ -175,7 +199,11 @@ def test_a_value_may_be_off_by_the_tolerance_and_no_more_and_the_worst_is_named(
         ([False, True], [1, 7], "expected 2 at (1,), got 7; 1 of 2 values are off"),
         (False, [np.nan, 7], ""),
         (True, [3, 2], "expected 1 at (0,), got 3; 1 of 2 values are off"),
-        (np.array([True, False]), [np.inf, 2], "expected finite numbers, got 1 NaN or infinite ones"),
+        (
+            np.array([True, False]),
+            [np.inf, 2],
+            "expected finite numbers, got 1 NaN or infinite ones",
+        ),
     ],
 )
 def test_values_outside_the_mask_may_be_anything(where, came, said):
@@ -221,13 +249,23 @@ def test_of_an_answer_whose_shape_alone_is_known_finite_numbers_are_asked():
 def test_answers_of_trusted_code_become_what_the_channel_brings():
     assert plain(None) is None and plain("ab") == "ab" and plain(b"ab") == b"ab"
     found = plain(([1, 2.5], iter([3]), (4,), 5))
-    assert isinstance(found, tuple) and [type(one) for one in found] == [list, list, tuple, np.ndarray]
+    assert isinstance(found, tuple) and [type(one) for one in found] == [
+        list,
+        list,
+        tuple,
+        np.ndarray,
+    ]
     assert found[3].shape == () and found[3] == 5 and found[0][1] == 2.5 and found[1] == [3]
 
 
 @pytest.mark.parametrize(
     ("came", "named"),
-    [(None, "nothing (None)"), (np.float32(1), "one array"), (1.5, "one array"), ({}, "something else")],
+    [
+        (None, "nothing (None)"),
+        (np.float32(1), "one array"),
+        (1.5, "one array"),
+        ({}, "something else"),
+    ],
 )
 def test_what_came_is_named_in_few_words(came, named):
     assert refused(parts, came, 1).endswith(f"got {named}")

@@ -1,6 +1,7 @@
 """What root asks of the kernel before a submission runs: each call, as the kernel's manual has it, in order.
 
-The kernel here answers and does nothing, so that all of this can be asked on any machine, by anybody.
+The kernel here answers and does nothing, so that all of this can be asked on any machine, by
+anybody.
 """
 
 import errno
@@ -15,7 +16,11 @@ import pytest
 
 from hdrlab.course.sandbox import descent
 
-CREATE, ADD, RESTRICT = 444, 445, 446  # landlock_create_ruleset, landlock_add_rule, landlock_restrict_self
+CREATE, ADD, RESTRICT = (
+    444,
+    445,
+    446,
+)  # landlock_create_ruleset, landlock_add_rule, landlock_restrict_self
 RULES = 1000  # a descriptor that there is not
 
 
@@ -72,7 +77,12 @@ def test_the_numbers_are_those_of_the_kernels_headers():
     assert (descent.NEW_MOUNTS, descent.BIND, descent.RECURSIVE) == (0x20000, 0x1000, 0x4000)
     assert descent.PRIVATE == 0x40000
     assert (descent.CREATE, descent.ADD, descent.RESTRICT) == (CREATE, ADD, RESTRICT)
-    assert [descent.EXECUTE, descent.WRITE_FILE, descent.READ_FILE, descent.READ_DIR] == [1, 2, 4, 8]
+    assert [descent.EXECUTE, descent.WRITE_FILE, descent.READ_FILE, descent.READ_DIR] == [
+        1,
+        2,
+        4,
+        8,
+    ]
     assert (descent.DIE_WITH_PARENT, descent.NO_NEW_PRIVILEGES, descent.KILL) == (1, 38, 9)
 
 
@@ -117,7 +127,9 @@ def test_a_fence_handles_every_right_that_the_kernels_landlock_knows(version, ke
 
 
 def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(kernel, tmp_path):
-    folder, file, listed, written = (tmp_path / name for name in ("folder", "file", "listed", "written"))
+    folder, file, listed, written = (
+        tmp_path / name for name in ("folder", "file", "listed", "written")
+    )
     folder.mkdir()
     listed.mkdir()
     file.touch()
@@ -125,7 +137,9 @@ def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(ke
     descent.fence([str(folder), str(file)], [str(listed)], [str(written)])
     rights = {str(folder): 4 + 8 + 1, str(file): 4 + 1, str(listed): 8, str(written): 4 + 2}
     asked = kernel.asked[2:-3]
-    assert [one[:3] for one in asked if one[0] == "open"] == [("open", path, os.O_PATH) for path in rights]
+    assert [one[:3] for one in asked if one[0] == "open"] == [
+        ("open", path, os.O_PATH) for path in rights
+    ]
     rules = [one for one in asked if one[0] == ADD]
     assert [one[1:3] + one[4:] for one in rules] == [(RULES, 1, 0)] * 4
     assert [struct.unpack("=Qi", one[3])[0] for one in rules] == list(rights.values())
@@ -136,7 +150,9 @@ def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(ke
 def test_a_rule_is_about_the_place_that_was_opened_for_it(kernel, monkeypatch, tmp_path):
     places = []
     monkeypatch.setattr(
-        kernel, "open", lambda path, flags: places.append(Kernel.open(kernel, path, flags)) or places[-1]
+        kernel,
+        "open",
+        lambda path, flags: places.append(Kernel.open(kernel, path, flags)) or places[-1],
     )
     descent.fence([], [str(tmp_path)], [])
     (rule,) = [one for one in kernel.asked if one[0] == ADD]
@@ -157,13 +173,17 @@ def test_paths_are_bound_on_a_stage_of_this_process_alone(kernel, monkeypatch, t
         ("mount", b"none", b"/", none, 0x4000 | 0x40000, none),
         ("mount", b"tmpfs", where, b"tmpfs", 0, b"size=64k,mode=755"),
     ]
-    assert [one[2:] for one in mounts[3:]] == [(where + b"/%d" % j, none, 0x5000, none) for j in (0, 1)]
+    assert [one[2:] for one in mounts[3:]] == [
+        (where + b"/%d" % j, none, 0x5000, none) for j in (0, 1)
+    ]
     assert all(one[1].startswith(b"/proc/self/fd/") for one in mounts[3:])
     assert (stage / "0").is_dir() and (stage / "1").is_file() and not kernel.opened
     opened = [one[1] for one in kernel.asked if one[0] == "open"]
     assert opened == [str(folder), str(file), f"{stage}/1"]
     begun = [one[0] for one in kernel.asked]
-    assert begun.index("mount") < begun.index("open"), "what is opened before is of the old namespace"
+    assert begun.index("mount") < begun.index("open"), (
+        "what is opened before is of the old namespace"
+    )
 
 
 def test_nothing_of_root_is_left_to_who_becomes_another_user(kernel):
@@ -182,7 +202,13 @@ def order(**more):
 
 def test_an_order_without_a_stage_and_a_fence_becomes_the_user_and_starts_the_program(kernel):
     descent.main(order())
-    assert [one[0] for one in kernel.asked] == ["setgroups", "setresgid", "setresuid", "prctl", "execve"]
+    assert [one[0] for one in kernel.asked] == [
+        "setgroups",
+        "setresgid",
+        "setresuid",
+        "prctl",
+        "execve",
+    ]
     assert kernel.asked[-1] == ("execve", "/bin/a", ["/bin/a", "b"], {"C": "d"})
 
 

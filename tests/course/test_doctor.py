@@ -34,7 +34,9 @@ def test_a_finding_says_whether_a_tier_works_and_counts(tier, tried, finding, mo
     assert ("report this" in found.remedy) is ("it started, but" in found.says)
 
 
-@pytest.mark.parametrize(("failures", "tries", "works"), [(0, 1, True), (2, 3, True), (3, 3, False)])
+@pytest.mark.parametrize(
+    ("failures", "tries", "works"), [(0, 1, True), (2, 3, True), (3, 3, False)]
+)
 def test_a_tier_is_tried_three_times(failures, tries, works, monkeypatch):
     asked = []
 
@@ -84,7 +86,9 @@ def test_a_trial_asks_a_function_to_break_out_where_there_are_walls(tier, broken
     assert asked == [({"ready", "tried"}, f"{tier} sandbox"), "ready", *tried, "closed"]
 
 
-def test_what_would_help_is_told_by_the_reasons_first_line_and_the_systems_switches(monkeypatch, tmp_path):
+def test_what_would_help_is_told_by_the_reasons_first_line_and_the_systems_switches(
+    monkeypatch, tmp_path
+):
     words = {"no bwrap": "install it", "libseccomp": "install that"}
     switches = [
         {"file": "a/b", "keeps": "0", "help": "switch it"},

@@ -16,7 +16,9 @@ from hdrlab.course.checks import compare, inprocess
 HERE = Path(__file__).parents[1] / "equivalent"
 FILES = sorted(HERE.glob("*.py"))
 HOMEWORKS = plan.read().homeworks
-pytestmark = pytest.mark.skipif(not FILES, reason="no model solution is part of the source distribution")
+pytestmark = pytest.mark.skipif(
+    not FILES, reason="no model solution is part of the source distribution"
+)
 
 
 def aside(function):
@@ -60,7 +62,11 @@ def reversed_order(cells):
 def helpers_apart(cells):
     """Every statement in a cell of its own, with cells between that nobody asked for; the file is renamed."""
     split = [ast.unparse(one) for cell in cells for one in ast.parse(cell).body]
-    between = ["unused = [n**2 for n in range(9)]", "def plot_it(x):\n    return x", "%matplotlib inline\n"]
+    between = [
+        "unused = [n**2 for n in range(9)]",
+        "def plot_it(x):\n    return x",
+        "%matplotlib inline\n",
+    ]
     return [*between, *split, "!ls", "results = {}"], "Final version (2) of Ada.ipynb"
 
 
@@ -115,7 +121,9 @@ def notebook(cells):
 
 @pytest.mark.parametrize("homework", HOMEWORKS)
 def test_every_homework_has_five_ways_and_more(homework):
-    assert len([path for path in FILES if path.stem.startswith(f"{homework}_")]) + len(WAYS) >= 5 + 1
+    assert (
+        len([path for path in FILES if path.stem.startswith(f"{homework}_")]) + len(WAYS) >= 5 + 1
+    )
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

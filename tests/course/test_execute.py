@@ -34,7 +34,9 @@ def assert_no_kernel_is_left(asking):
     assert not list((asking.parent / "cache/kernels").iterdir())
 
 
-@pytest.mark.skipif(os.name != "posix", reason="a system without sockets in files gives its kernels ports")
+@pytest.mark.skipif(
+    os.name != "posix", reason="a system without sockets in files gives its kernels ports"
+)
 def test_a_kernel_listens_at_no_port_that_another_could_take_and_keeps_no_history(asking):
     transport, folder, history = told(asking)
     assert (transport, history) == ("ipc", "False")
@@ -42,7 +44,9 @@ def test_a_kernel_listens_at_no_port_that_another_could_take_and_keeps_no_histor
     assert_no_kernel_is_left(asking)
 
 
-def test_a_temporary_folder_whose_path_is_too_long_for_a_socket_is_no_hindrance(asking, monkeypatch):
+def test_a_temporary_folder_whose_path_is_too_long_for_a_socket_is_no_hindrance(
+    asking, monkeypatch
+):
     long = asking.parent / ("long" * 25)
     long.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(long))

@@ -44,7 +44,9 @@ def tool(tmp_path_factory):
     kernel = scratch / "share" / "kernels" / "python3"
     kernel.mkdir(parents=True)
     argv = [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"]
-    (kernel / "kernel.json").write_text(json.dumps({"argv": argv, "display_name": "P", "language": "python"}))
+    (kernel / "kernel.json").write_text(
+        json.dumps({"argv": argv, "display_name": "P", "language": "python"})
+    )
     own = {
         "JUPYTER_PATH": str(scratch / "share"),
         "JUPYTER_CONFIG_DIR": str(scratch / "config"),
@@ -52,7 +54,9 @@ def tool(tmp_path_factory):
         "JUPYTER_RUNTIME_DIR": str(scratch / "runtime"),
         "IPYTHONDIR": str(scratch / "ipython"),
         "HOME": str(scratch),
-        "PATH": os.pathsep.join([str(command.parent), os.environ["PATH"]]),  # it calls alembic by its name
+        "PATH": os.pathsep.join(
+            [str(command.parent), os.environ["PATH"]]
+        ),  # it calls alembic by its name
         "PYTHONPATH": os.pathsep.join(filter(None, [str(HERE), os.environ.get("PYTHONPATH")])),
     }
 
@@ -83,7 +87,11 @@ def test_a_source_notebook_has_points_locks_and_solutions(course):
         if "nbgrader" in cell["metadata"]
     }
     assert set(marks) == {f"{kind}-{task}" for kind in ("task", "check") for task in SHORT}
-    assert marks["check-hat"]["points"] == 10 and marks["check-hat"]["locked"] and marks["check-hat"]["grade"]
+    assert (
+        marks["check-hat"]["points"] == 10
+        and marks["check-hat"]["locked"]
+        and marks["check-hat"]["grade"]
+    )
     assert marks["task-hat"]["solution"] and not marks["task-hat"]["locked"]
     text = "".join(notebook["task-irradiance"]["source"])
     scope = {}
@@ -124,7 +132,9 @@ def test_nbgrader_makes_the_students_version_grades_it_and_gives_feedback(course
                 "def hat(n=256):\n    z = np.arange(n)\n    return np.minimum(z, n - 1 - z) / ((n - 1) // 2)"
             )
         if cell["id"] == "task-irradiance":  # the times are forgotten
-            cell["source"] = "def irradiance(Z, t, f, w):\n    return (w[Z] * f[Z]).sum(1) / w[Z].sum(1)"
+            cell["source"] = (
+                "def irradiance(Z, t, f, w):\n    return (w[Z] * f[Z]).sum(1) / w[Z].sum(1)"
+            )
     handed_in.write_text(json.dumps(written))
     tool(course, "autograde", "hw2", "--create")
     tool(course, "generate_feedback", "hw2")
@@ -159,7 +169,9 @@ def zipped(tmp_path_factory):
     (hidden / "test_hat.py").write_text(HIDDEN)
     own = folder / "plan.toml"
     own.write_text(PLAN)
-    (archive,) = gradescope.export(plan.read(own), folder, hidden=hidden, plan_file=own, secret="salt")
+    (archive,) = gradescope.export(
+        plan.read(own), folder, hidden=hidden, plan_file=own, secret="salt"
+    )
     with zipfile.ZipFile(archive) as opened:
         opened.extractall(folder / "source")
         modes = {one.filename: one.external_attr >> 16 for one in opened.infolist()}
@@ -213,7 +225,9 @@ def run(root, tier="practice"):
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["PYTHONPATH"] = str(root / "source")
     command = [sys.executable, "-m", "hdrlab.course.export.autograder", root, tier]
-    ran = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, timeout=300)
+    ran = subprocess.run(
+        command, cwd=root, env=environment, capture_output=True, text=True, timeout=300
+    )
     assert ran.returncode == 0, ran.stderr
     return json.loads((root / "results" / "results.json").read_text())
 
@@ -223,13 +237,18 @@ def handed_in(folder, tmp_path, name, text):
     (root / "submission").mkdir(parents=True)
     (root / "source").symlink_to(folder / "source")
     (root / "submission" / name).write_text(text)
-    (root / "submission_metadata.json").write_text(json.dumps({"users": [{"email": "ada@example.org"}]}))
+    (root / "submission_metadata.json").write_text(
+        json.dumps({"users": [{"email": "ada@example.org"}]})
+    )
     return root
 
 
 def test_an_autograder_grades_with_the_files_of_its_zip_alone(zipped, tmp_path):
     found = run(handed_in(zipped[0], tmp_path, "hw2.py", RIGHT))
-    of = {task: [one for one in found["tests"] if one["name"].startswith(f"{task}:")] for task in SHORT}
+    of = {
+        task: [one for one in found["tests"] if one["name"].startswith(f"{task}:")]
+        for task in SHORT
+    }
     hidden = [one for one in found["tests"] if one["visibility"] == "after_published"]
     assert len(hidden) == 1 and hidden[0]["output"] == "" and hidden[0]["score"] == 0
     public = [one for one in of["hat"] if one not in hidden]

@@ -27,7 +27,9 @@ def asked(path):
         return scoring.score(task, subject, plan.seed("secret", "ada", task))
 
 
-WAYS = sorted(path for path in FAIRNESS.glob("right/*/*.py") if path.stem != "sparse_lsqr")  # as slow as lsqr
+WAYS = sorted(
+    path for path in FAIRNESS.glob("right/*/*.py") if path.stem != "sparse_lsqr"
+)  # as slow as lsqr
 
 
 @pytest.mark.parametrize("path", WAYS, ids=lambda path: f"{path.parent.name}-{path.stem}")
@@ -58,7 +60,11 @@ def test_what_is_no_such_list_is_not(came):
 def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
     """Both have a sandbox, and one of them pytest."""
     fairness = pytest.importorskip("benchmarks.fairness")
-    way, whole_sheet, task = "hat_zero_in_the_middle", plan.read().homeworks["hw2"], plan.read().task("hat")
+    way, whole_sheet, task = (
+        "hat_zero_in_the_middle",
+        plan.read().homeworks["hw2"],
+        plan.read().task("hat"),
+    )
     homework = whole_sheet._replace(tasks=(task,))
     source = solutions.texts(homework, [way])["hat"]
     conditions = plan.Conditions("practice", "student 1", "fairness", draw=False)
@@ -66,5 +72,9 @@ def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
     *_, result = grading.check_steps(read, homework, conditions)
     _, second = fairness.graded((homework, {"hat": (way, source)}, 2))
     earned, whole = results.points(result.of("hat"))
-    assert second.share == earned / whole < 1 and second.named == way and "hat" in result.misconceptions
+    assert (
+        second.share == earned / whole < 1
+        and second.named == way
+        and "hat" in result.misconceptions
+    )
     assert list(second.broken) == [one.name for one in result.of("hat") if one.outcome != "holds"]

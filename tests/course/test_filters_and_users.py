@@ -58,10 +58,15 @@ def seccomp(monkeypatch):
 
 def numbers(*rooms):
     calls = [call for room in rooms for call in filters.CALLS[room] if call != "time"]
-    return [("allow", n) for n in (Rules.LACKING.get(call, 1000 + len(call)) for call in calls) if n >= 0]
+    return [
+        ("allow", n)
+        for n in (Rules.LACKING.get(call, 1000 + len(call)) for call in calls)
+        if n >= 0
+    ]
 
 
-# of a check, beside what it may call with any argument; the numbers are those of the kernel's headers
+# of a check, beside what it may call with any argument; the numbers are those of the kernel's
+# headers
 NARROW = [
     ("allow", "clone", (0, "masked", 0x10000, 0x10000)),
     (("errno", errno.ENOSYS), "clone3"),
@@ -73,7 +78,10 @@ NARROW = [
 
 @pytest.mark.parametrize(
     ("name", "rooms", "more"),
-    [("check", ("computing", "reading"), NARROW), ("supervisor", ("computing", "reading", "tending"), [])],
+    [
+        ("check", ("computing", "reading"), NARROW),
+        ("supervisor", ("computing", "reading", "tending"), []),
+    ],
 )
 def test_a_filter_allows_what_is_listed_that_this_processor_has_and_refuses_all_else(
     name, rooms, more, seccomp
@@ -92,7 +100,9 @@ def test_a_filter_allows_what_is_listed_that_this_processor_has_and_refuses_all_
     ],
 )
 def test_the_users_that_there_are_stand_in_the_map_of_the_namespace(text, mapped, monkeypatch):
-    monkeypatch.setattr(Path, "read_text", lambda self: text if str(self) == "/proc/self/uid_map" else "")
+    monkeypatch.setattr(
+        Path, "read_text", lambda self: text if str(self) == "/proc/self/uid_map" else ""
+    )
     assert users._mapped() == mapped
 
 
@@ -132,7 +142,9 @@ def test_a_lease_is_the_first_number_of_the_namespace_that_nobody_holds(monkeypa
     monkeypatch.setattr(Held, "made", [])
     monkeypatch.setattr(users, "_mapped", lambda: [range(10), range(60707, 60710)])
     leased = [users.lease() for _ in range(2)]
-    assert [user for user, _ in leased] == [60707, 60709] and not any(held.closed for _, held in leased)
+    assert [user for user, _ in leased] == [60707, 60709] and not any(
+        held.closed for _, held in leased
+    )
     assert [held for held in Held.made if not held.closed] == [held for _, held in leased]
     assert Held.taken == {f"\0hdrlab-user-{user}" for user in (60707, 60708, 60709)}
     with pytest.raises(Unavailable):

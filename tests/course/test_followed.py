@@ -43,9 +43,13 @@ def followed(monkeypatch, tmp_path):
             told.slept.append(seconds)
             told.now += seconds
 
-        monkeypatch.setattr(running, "time", SimpleNamespace(monotonic=lambda: told.now, sleep=sleep))
+        monkeypatch.setattr(
+            running, "time", SimpleNamespace(monotonic=lambda: told.now, sleep=sleep)
+        )
         monkeypatch.setattr(running.subprocess, "Popen", Process)
-        told.lines = running.run(tmp_path, tmp_path / "job.json", [tmp_path / "test_a.py"], patience)
+        told.lines = running.run(
+            tmp_path, tmp_path / "job.json", [tmp_path / "test_a.py"], patience
+        )
         return told
 
     return followed
@@ -58,7 +62,9 @@ def test_lines_come_as_they_are_whole(followed, tmp_path):
     assert list(told.lines) == [{"c": 3}] and told.done == ["kill", "wait"]
 
 
-def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(followed, tmp_path, monkeypatch):
+def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(
+    followed, tmp_path, monkeypatch
+):
     monkeypatch.setenv("PYTEST_ADDOPTS", "-x")
     monkeypatch.setenv("OF_MINE", "1")
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
@@ -70,11 +76,22 @@ def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(followe
     assert told.words[:4] == [sys.executable, "-P", "-m", "pytest"] and told.words[-1] == str(
         tmp_path / "test_a.py"
     )
-    for word in (f"--rootdir={empty}", f"--job={tmp_path / 'job.json'}", f"pythonpath={SPECIFICATION}"):
+    for word in (
+        f"--rootdir={empty}",
+        f"--job={tmp_path / 'job.json'}",
+        f"pythonpath={SPECIFICATION}",
+    ):
         assert word in told.words
     assert "PYTEST_ADDOPTS" not in environment and environment["OF_MINE"] == "1"
-    assert environment["TMPDIR"] == str(tmp_path) and environment["PYTHONPATH"] == running.import_path()
-    for name in ("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "PYTHONDONTWRITEBYTECODE", "OPENBLAS_NUM_THREADS"):
+    assert (
+        environment["TMPDIR"] == str(tmp_path)
+        and environment["PYTHONPATH"] == running.import_path()
+    )
+    for name in (
+        "PYTEST_DISABLE_PLUGIN_AUTOLOAD",
+        "PYTHONDONTWRITEBYTECODE",
+        "OPENBLAS_NUM_THREADS",
+    ):
         assert environment[name] == "1"
 
 
@@ -101,7 +118,11 @@ def test_its_end_means_something_by_its_code(code, said, error, followed):
 
 def test_when_its_time_is_over_it_is_ended_and_what_it_wrote_counts(followed):
     told = followed(['{"a": 1}\n'] + [""] * 999, 7, patience=0.99)
-    assert list(told.lines) == [{"a": 1}] and 49 <= len(told.slept) <= 51 and told.done == ["kill", "wait"]
+    assert (
+        list(told.lines) == [{"a": 1}]
+        and 49 <= len(told.slept) <= 51
+        and told.done == ["kill", "wait"]
+    )
 
 
 def test_who_listens_no_more_ends_it(followed):

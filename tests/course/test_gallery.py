@@ -42,7 +42,8 @@ def test_neither_the_order_of_ballots_nor_of_artifacts_changes_the_places(cast, 
 @given(some_ballots, st.sampled_from(IDS))
 def test_another_vote_never_lowers_a_place(cast, one):
     before, after = (
-        {row.artifact: row.place for row in ballots.standings(IDS, some)} for some in (cast, [*cast, {one}])
+        {row.artifact: row.place for row in ballots.standings(IDS, some)}
+        for some in (cast, [*cast, {one}])
     )
     assert after[one] <= before[one]
 
@@ -84,7 +85,9 @@ def test_a_new_title_keeps_the_votes_and_a_new_picture_begins_without(tmp_path):
     with closing(store.connect(room.folder)) as db:
         collect.hang(db, room.folder, collect.Entry("eve", "New", "", tmp_path / "eve.png"))
         assert store.artifacts(db)[room.artifacts["eve"]].title == "New"
-        collect.hang(db, room.folder, collect.Entry("fay", "New", "", small.picture(tmp_path / "f.png", 9)))
+        collect.hang(
+            db, room.folder, collect.Entry("fay", "New", "", small.picture(tmp_path / "f.png", 9))
+        )
         assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
         assert len(store.artifacts(db)) == 4
 
@@ -96,7 +99,9 @@ def test_the_gradebook_says_who_voted_and_not_for_what(tmp_path):
         ballots.cast(db, "cy", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
         ballots.cast(db, "dee", [], now=room.clock())
     with closing(store.connect(room.folder)) as db:
-        rows = {row[0]: dict(zip(ballots.GRADEBOOK, row, strict=True)) for row in ballots.gradebook(db)}
+        rows = {
+            row[0]: dict(zip(ballots.GRADEBOOK, row, strict=True)) for row in ballots.gradebook(db)
+        }
     assert [who for who, row in rows.items() if row["voted"] == "yes"] == ["ann", "cy"]
     assert [rows[who]["place"] for who in ("eve", "fay", "ann", "ben", "cy")] == [1, 2, 3, 3, 3]
     assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(ballots.GRADEBOOK)
@@ -116,7 +121,9 @@ def hdrlab(tmp_path, monkeypatch, capsys):
 
 
 def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
-    (tmp_path / "roster.csv").write_text("student,name,team\nann,Ann,team1\nben,Ben,team1\neve,Eve,\n")
+    (tmp_path / "roster.csv").write_text(
+        "student,name,team\nann,Ann,team1\nben,Ben,team1\neve,Eve,\n"
+    )
     art = tmp_path / "art"
     art.mkdir()
     small.picture(art / "team1.png")
@@ -147,14 +154,18 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
 
 
 @pytest.mark.parametrize("version", [0, store.VERSION - 1, store.VERSION + 1])
-def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(tmp_path, hdrlab, version):
+def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(
+    tmp_path, hdrlab, version
+):
     hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00")
     with closing(store.connect(tmp_path / "g")) as db:
         db.execute(f"PRAGMA user_version = {version}")
     for words in (("close", "g"), ("results", "g", "-o", "r.csv")):
         code, said = hdrlab(*words)
         assert code == 2 and said.count("\n") <= 2, said
-        assert f"expected a gallery of version {store.VERSION}, got" in said and "gallery init" in said
+        assert (
+            f"expected a gallery of version {store.VERSION}, got" in said and "gallery init" in said
+        )
     (tmp_path / "g" / store.DATABASE).write_text("half a database")
     assert hdrlab("close", "g")[0] == 2 and "cannot be read" in hdrlab("close", "g")[1]
 
@@ -171,7 +182,9 @@ def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path)
 def test_rows_of_the_benchmark_write_into_folders_of_their_own(tmp_path, monkeypatch):
     benchmark = pytest.importorskip("benchmarks.gallery", reason="the benchmarks are not installed")
     folders = []
-    monkeypatch.setattr(benchmark, "load", lambda folder, how, **_: folders.append(folder / how) or {})
+    monkeypatch.setattr(
+        benchmark, "load", lambda folder, how, **_: folders.append(folder / how) or {}
+    )
     for row in benchmark.ROWS[:3]:
         row.run(tmp_path)
     assert len(set(folders)) == 3
@@ -187,7 +200,9 @@ def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
 
 
 @served
-@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts the descriptors of a server in /proc")
+@pytest.mark.skipif(
+    not Path("/proc/self/fd").is_dir(), reason="counts the descriptors of a server in /proc"
+)
 def test_voters_are_answered_while_others_hold_all_places_with_half_requests(tmp_path):
     from benchmarks import gallery as bench
 

@@ -36,7 +36,9 @@ from hdrlab.course.gallery.web.writer import Writer
 from hdrlab.course.reports import sheets
 
 ORIGIN = {"origin": small.ADDRESS}
-ROSTER = Roster(tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m))
+ROSTER = Roster(
+    tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m)
+)
 
 
 @pytest.fixture
@@ -90,7 +92,13 @@ def test_every_row_of_the_table_has_its_test():
 def test_a_forged_link(client, room):
     link = room.links["ann"]
     other = "A" if link[-1] != "A" else "B"
-    for forged in (link[:12] + "x" * 43, link[:-1] + other, room.links["ben"][:12] + link[12:], "", "x" * 55):
+    for forged in (
+        link[:12] + "x" * 43,
+        link[:-1] + other,
+        room.links["ben"][:12] + link[12:],
+        "",
+        "x" * 55,
+    ):
         assert client.get(f"/enter/{forged}").status == 404
         assert client.post(f"/enter/{forged}", headers=ORIGIN).status == 404
     assert client.cookies == {}
@@ -121,8 +129,13 @@ def test_a_link_read_ahead(client, room):
 
 def test_a_link_that_leaks(client, room, capfd):
     page = client.get(f"/enter/{room.links['ann']}")
-    assert page.headers["referrer-policy"] == "same-origin" and page.headers["cache-control"] == "no-store"
-    assert not re.findall(r'(?:src|href|action)="(?!/)', page.text)  # nothing on it is fetched elsewhere
+    assert (
+        page.headers["referrer-policy"] == "same-origin"
+        and page.headers["cache-control"] == "no-store"
+    )
+    assert not re.findall(
+        r'(?:src|href|action)="(?!/)', page.text
+    )  # nothing on it is fetched elsewhere
     assert room.links["ann"] not in "".join(capfd.readouterr())
     assert serve.SERVER["access_log"] is False
 
@@ -155,7 +168,9 @@ def test_a_vote_for_the_own_team(client, room):
     answer = vote(client, key, room.artifacts["team1"], room.artifacts["team2"])
     assert answer.status == 409 and "own team" in answer.text
     assert saved(room, "ann") is None
-    assert room.artifacts["team1"] not in re.findall(r'name="mark" value="(\w+)"', client.get("/").text)
+    assert room.artifacts["team1"] not in re.findall(
+        r'name="mark" value="(\w+)"', client.get("/").text
+    )
 
 
 def test_a_second_ballot(client, room):
@@ -202,7 +217,9 @@ def test_the_ballots_of_others(client, room):
         enter(client, room, who)
         pages = [client.get(path).text for path in ("/", f"/look/{room.artifacts['eve']}")]
         assert "checked" not in pages[0] and "No vote yet" in pages[0]
-        assert all("ann" not in page.lower() for page in pages)  # not even who hung what, while it is open
+        assert all(
+            "ann" not in page.lower() for page in pages
+        )  # not even who hung what, while it is open
 
 
 def test_results_before_the_end(client, room):
@@ -238,7 +255,9 @@ def test_script_in_a_name(tmp_path):
         enter(client, room, "cy")
         page = client.get("/results")
     assert (
-        "&lt;script&gt;alert(1)" in page.text and "<script>alert" not in page.text and "{{7*7}}" in page.text
+        "&lt;script&gt;alert(1)" in page.text
+        and "<script>alert" not in page.text
+        and "{{7*7}}" in page.text
     )
     assert "<img src=x" not in page.text
     policy = page.headers["content-security-policy"]
@@ -254,7 +273,9 @@ def test_script_in_a_title(tmp_path):
             assert "<script>alert" not in page and "onerror=alert(2)>" not in page
             reader = Reader()
             reader.feed(page)
-            assert not [name for name in reader.attributes if name == "style" or name.startswith("on")]
+            assert not [
+                name for name in reader.attributes if name == "style" or name.startswith("on")
+            ]
             assert reader.scripts == [{"src": f"/static/{script}", "defer": None}]
     words = tmp_path / "team1.txt"
     words.write_text("A\u202etitle\x1b[2J \u0000\n" + "caption " * 100, encoding="utf8")
@@ -296,7 +317,10 @@ def test_a_decompression_bomb(tmp_path):
             (b"IDAT", rows),
             (b"IEND", b""),
         ]
-        body = [struct.pack(">L", len(d)) + k + d + struct.pack(">L", zlib.crc32(k + d)) for k, d in chunks]
+        body = [
+            struct.pack(">L", len(d)) + k + d + struct.pack(">L", zlib.crc32(k + d))
+            for k, d in chunks
+        ]
         return b"\x89PNG\r\n\x1a\n" + b"".join(body)
 
     for width, height in ((30_000, 30_000), (2**31 - 1, 2**31 - 1), (60_000, 2_000)):
@@ -366,7 +390,9 @@ def test_anothers_artifact(tmp_path, students, name):
         }
 
 
-@pytest.mark.parametrize("name", ["submission.zip", "nobody/submission.zip", "anne.zip", "project_ann.zip"])
+@pytest.mark.parametrize(
+    "name", ["submission.zip", "nobody/submission.zip", "anne.zip", "project_ann.zip"]
+)
 def test_an_artifact_of_nobody_is_refused_whoever_it_names(tmp_path, name):
     (tmp_path / "in" / name).parent.mkdir(parents=True)
     handed_in(tmp_path / "in" / name)
@@ -391,7 +417,9 @@ def test_votes_erased(client, room, tmp_path):
         assert rows["ann"][3] == rows["cy"][3] == "yes"  # who voted has voted
         assert db.execute("SELECT count(*) FROM votes").fetchone()[0] == 3
         assert "eve has hung another picture (eve.zip); 2 votes" in store.changes(db)[0]
-        assert vote(client, small.key(client.get("/").text), eve).status == 409  # it hangs no longer
+        assert (
+            vote(client, small.key(client.get("/").text), eve).status == 409
+        )  # it hangs no longer
         first = collect.Entry("eve", "Again", "", tmp_path / "eve.png")
         assert (
             collect.hang(db, room.folder, first) == 0
@@ -422,8 +450,16 @@ def test_path_traversal(client, room):
     good = room.artifacts["eve"]
     assert client.get(f"/picture/{good}/small").headers["content-type"] == "image/webp"
     for path in (
-        *("/picture/..%2f..%2fgallery.sqlite/small", "/picture/../gallery.sqlite", "/static/..%2fapp.py"),
-        *(f"/picture/{good}/..%2f..%2fgallery.sqlite", f"/picture/{good}/small%00", "/static/%2e%2e/app.py"),
+        *(
+            "/picture/..%2f..%2fgallery.sqlite/small",
+            "/picture/../gallery.sqlite",
+            "/static/..%2fapp.py",
+        ),
+        *(
+            f"/picture/{good}/..%2f..%2fgallery.sqlite",
+            f"/picture/{good}/small%00",
+            "/static/%2e%2e/app.py",
+        ),
         *("/picture//etc/passwd/small", "/static/wall.js/../../app.py", f"/look/..%2f{good}"),
     ):
         answer = client.get(path)
@@ -529,7 +565,9 @@ def test_half_a_request(sent, monkeypatch):
     monkeypatch.setattr(serve, "PATIENCE", 0.2)
     with served(50) as port:
         said = closed(ask(port, sent))  # which ends: nobody waits for the rest
-        assert said.count(b"200 OK") == sent.startswith(b"POST")  # a form is refused without being read
+        assert said.count(b"200 OK") == sent.startswith(
+            b"POST"
+        )  # a form is refused without being read
         whole = ask(port)
         assert closed(whole).endswith(b"here")  # and no connection is kept for nothing
 
@@ -555,9 +593,9 @@ def test_when_it_is_full_the_oldest_half_request_makes_room(monkeypatch, caplog)
         assert answer(waiting[-1]).endswith(b"here")
         for one in (*voters, *waiting[4:]):
             one.close()
-    assert [record.message.split(":")[0] for record in caplog.records if record.name == "hdrlab.gallery"] == [
-        "full"
-    ]
+    assert [
+        record.message.split(":")[0] for record in caplog.records if record.name == "hdrlab.gallery"
+    ] == ["full"]
 
 
 def test_a_full_log(tmp_path):
@@ -568,7 +606,11 @@ def test_a_full_log(tmp_path):
         for _ in range(300):
             serve.log.warning("x" * 20_000)
         sizes = [path.stat().st_size for path in tmp_path.iterdir()]
-        assert len(sizes) == 1 + serve.LOGS and max(sizes) <= serve.LOG_SIZE and sum(sizes) > serve.LOG_SIZE
+        assert (
+            len(sizes) == 1 + serve.LOGS
+            and max(sizes) <= serve.LOG_SIZE
+            and sum(sizes) > serve.LOG_SIZE
+        )
     finally:
         for one in root.handlers:
             one.close()
@@ -595,7 +637,13 @@ def test_csrf(client, room):
     cookie = client.cookies["gallery"]
     form = {"key": key, "mark": eve}
     assert client.post("/ballot", form).status == 403
-    for origin in ("http://evil.test", "null", "http://vote.test.evil.test", "https://vote.test", ""):
+    for origin in (
+        "http://evil.test",
+        "null",
+        "http://vote.test.evil.test",
+        "https://vote.test",
+        "",
+    ):
         assert client.post("/ballot", form, headers={"origin": origin}).status == 403
     assert vote(client, key, eve, **{"sec-fetch-site": "cross-site"}).status == 403
     for wrong in ("", "0" * 64, key[::-1]):
@@ -608,7 +656,9 @@ def test_csrf(client, room):
     mixed = {"cookie": f"gallery={cookie}"} | ORIGIN
     assert client.post("/ballot", {"key": other, "mark": eve}, headers=mixed).status == 403
     plain = mixed | {"content-type": "text/plain"}
-    assert client.post("/ballot", body=[f"key={key}&mark={eve}".encode()], headers=plain).status == 415
+    assert (
+        client.post("/ballot", body=[f"key={key}&mark={eve}".encode()], headers=plain).status == 415
+    )
     assert client.get(f"/ballot?key={key}&mark={eve}", headers=mixed).status == 405
     assert saved(room, "ann") is None
 
@@ -619,7 +669,9 @@ def test_sql_injection(client, room):
         assert vote(client, key, text).status == 409
         assert client.get(f"/look/{quote(text)}").status == 404
         assert (
-            client.get(f"/compare?{urlencode({'with': [text, room.artifacts['eve']]}, doseq=True)}").status
+            client.get(
+                f"/compare?{urlencode({'with': [text, room.artifacts['eve']]}, doseq=True)}"
+            ).status
             == 400
         )
         assert client.get(f"/enter/{quote(text)}").status == 404
@@ -636,20 +688,26 @@ def test_clickjacking(client, room):
     for path in ("/", "/nothing", "/static/wall.js", f"/picture/{room.artifacts['eve']}/small"):
         headers = client.get(path).headers
         assert "frame-ancestors 'none'" in headers["content-security-policy"]
-        assert headers["x-frame-options"] == "DENY" and headers["x-content-type-options"] == "nosniff"
+        assert (
+            headers["x-frame-options"] == "DENY" and headers["x-content-type-options"] == "nosniff"
+        )
 
 
 def test_enumeration(client, room, tmp_path):
     again = tmp_path / "again"
     again.mkdir()
-    assert not set(small.make(again).artifacts.values()) & set(room.artifacts.values())  # same pictures
+    assert not set(small.make(again).artifacts.values()) & set(
+        room.artifacts.values()
+    )  # same pictures
     unknown = client.get(f"/enter/{'A' * 55}")
     known = client.get(f"/enter/{room.links['ann'][:12]}{'A' * 43}")
     assert (unknown.status, unknown.text) == (known.status, known.text)
     for path in ("/", f"/picture/{room.artifacts['eve']}/small", f"/look/{room.artifacts['eve']}"):
         assert client.get(path).status == 401  # nothing of the class is public
     wall = enter(client, room, "cy") and client.get("/").text
-    assert not any(f">{name}<" in wall or f"{name}@" in wall for name in ("ann", "Ann", "ben", "eve"))
+    assert not any(
+        f">{name}<" in wall or f"{name}@" in wall for name in ("ann", "Ann", "ben", "eve")
+    )
 
 
 def test_header_injection(client, room):
@@ -694,7 +752,8 @@ def test_a_flood(client, room):
     assert vote(client, small.key(client.get("/").text), room.artifacts["eve"]).status == 303
     rates = guard.Rates(most=10)
     assert (
-        all(rates.take("requests", str(k), guard.Rate(1, 0)) for k in range(1000)) and len(rates._seen) == 10
+        all(rates.take("requests", str(k), guard.Rate(1, 0)) for k in range(1000))
+        and len(rates._seen) == 10
     )
 
 

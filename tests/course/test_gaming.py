@@ -42,7 +42,9 @@ CHEATS = {
     ),
     "a ramp": of_the_right_form(lambda x: np.linspace(0, 1, x.size).reshape(x.shape)),
     "the input": lambda task: lambda first, *given, **named: first,
-    "the input and nothing": lambda task: lambda first, *given, **named: (first, np.zeros_like(first)),
+    "the input and nothing": lambda task: (
+        lambda first, *given, **named: (first, np.zeros_like(first))
+    ),
     "the input as a state": lambda task: lambda first, *given, **named: [first] * 3,
 }
 
@@ -71,7 +73,9 @@ def test_an_answer_without_the_work_earns_a_tenth_at_most(task, cheat):
 def test_the_form_of_an_answer_without_its_substance_earns_little(task, cheat, most):
     for student in ("ada", "grace"):
         assert (
-            scoring.score(task, inprocess.Subject({task: cheat}), plan.seed("secret", student, task))[0]
+            scoring.score(
+                task, inprocess.Subject({task: cheat}), plan.seed("secret", student, task)
+            )[0]
             <= most
         )
 
@@ -125,7 +129,9 @@ def test_curves_that_are_learnt_by_heart_earn_little(student):
 @pytest.mark.parametrize("task", ["gsolve", "recover", "recover_steps"])
 def test_the_library_finds_the_curve_of_any_students_camera(task):
     for student in range(3):
-        share, said = scoring.score(task, inprocess.library(), plan.seed("secret", f"b{student}", task))
+        share, said = scoring.score(
+            task, inprocess.library(), plan.seed("secret", f"b{student}", task)
+        )
         assert share == 1, (student, said)
 
 
@@ -144,7 +150,9 @@ def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):
     (tmp_path / "hw4.py").write_text(
         "def scale(L, headroom=8.0, sigma=1.0):\n    return 1 / (headroom * L)\n"
     )
-    result = grading.grade(tmp_path / "hw4.py", homework, Conditions("practice", "ada", "salt", draw=False))
+    result = grading.grade(
+        tmp_path / "hw4.py", homework, Conditions("practice", "ada", "salt", draw=False)
+    )
     of = {one.name: one for one in result.checks}
     unit = of["test_the_unit_of_luminance_cancels_in_the_picture"]
     assert unit.outcome == "holds" and unit.points == 0 and "1" not in unit.message

@@ -52,8 +52,12 @@ def graded(tmp_path):
 
 
 def test_the_library_has_all_points_and_the_blank_handout_none(tmp_path, graded):
-    blocks = inline.inlined({task.id: task.function for task in of("hw2", "hat", "irradiance").tasks})
-    whole = graded("\n\n".join(block.text for block in blocks.values()), of("hw2", "hat", "irradiance"))
+    blocks = inline.inlined(
+        {task.id: task.function for task in of("hw2", "hat", "irradiance").tasks}
+    )
+    whole = graded(
+        "\n\n".join(block.text for block in blocks.values()), of("hw2", "hat", "irradiance")
+    )
     assert whole.score == whole.max_score == 20 and not whole.problems and not whole.misconceptions
     blank = shutil.copy(materials.folder("assignments") / "hw2.ipynb", tmp_path)
     found = grading.grade(blank, of("hw2", "hat", "irradiance"), PRACTICE)
@@ -86,14 +90,13 @@ def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
     assert drawn[0].frames[0][8:12] == b"WEBP"
     assert any("Yours: shape (256,), dtype float64, values " in one.message for one in found.checks)
     assert not any(
-        one.drawing.frames for one in graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False)).checks
+        one.drawing.frames
+        for one in graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False)).checks
     )
 
 
 def test_a_difference_of_pictures_is_drawn_three_times(graded):
-    wrong = (
-        "import numpy as np\ndef shrink(Y):\n    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
-    )
+    wrong = "import numpy as np\ndef shrink(Y):\n    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
     found = graded(wrong, of("hw1", "shrink"))
     drawing = next(one.drawing for one in found.checks if one.drawing.frames)
     assert len(drawing.frames) == 3 and drawing.captions[:2] == ("expected", "yours")
@@ -115,7 +118,9 @@ def test_a_difference_of_pictures_is_drawn_three_times(graded):
 def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, said):
     text = f"import numpy as np\ndef hat(n=256):\n    {body}\n"
     found = graded(text, conditions=PRACTICE._replace(timeout=1.0))
-    assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[0].message
+    assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[
+        0
+    ].message
 
 
 def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_other_task(graded):
@@ -123,7 +128,9 @@ def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_
     found = graded(endless, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=1.0))
     first, *others = found.of("irradiance")
     assert "took longer than" in first.message and results.points(found.of("hat")) == (10, 10)
-    assert all((one.kind, one.message, one.follows) == ("late", "", first.promise) for one in others)
+    assert all(
+        (one.kind, one.message, one.follows) == ("late", "", first.promise) for one in others
+    )
 
 
 @pytest.mark.parametrize("line", ["import cv2", "import hdrlab", "hat.weight = undefined"])
@@ -148,7 +155,9 @@ def test_lambda_read_as_1_costs_half_and_is_told_once(graded):
 
 def test_a_missing_task_costs_its_own_points_alone(graded):
     found = graded(RIGHT, of("hw2", "hat", "irradiance"))
-    assert found.score == 10 and any("irradiance was not found" in problem for problem in found.problems)
+    assert found.score == 10 and any(
+        "irradiance was not found" in problem for problem in found.problems
+    )
 
 
 @pytest.mark.parametrize("answer", ["[[1, 2], [3], 4]", "[[1], [[2]]]", "{'a': [1, [2]]}"])
@@ -175,7 +184,9 @@ def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_
     )
     found = graded(RIGHT, conditions=PRACTICE._replace(hidden=hidden))
     (own,) = (one for one in found.checks if one.hidden)
-    assert own.outcome == "fails" and own.max_points > 0 and found.max_score == 10 and found.score < 10
+    assert (
+        own.outcome == "fails" and own.max_points > 0 and found.max_score == 10 and found.score < 10
+    )
     for shown in (feedback.page(found), feedback.text(found), gradebook.gradescope(found).decode()):
         assert "secret" not in shown and "It is blue" in shown
     assert "the secret" in feedback.text(found, private=True)
@@ -199,7 +210,9 @@ def test_results_grow_check_by_check(tmp_path):
     assert len({one.max_score for one in steps}) == 1 and steps[-1].score == 10
 
 
-@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are looked for in /proc")
+@pytest.mark.skipif(
+    not Path("/proc/self/environ").exists(), reason="processes are looked for in /proc"
+)
 def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     """Neither a file nor a process: a function that never ends is at work at that moment."""
     scratch = tmp_path / "scratch"
@@ -247,7 +260,9 @@ def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(g
 
 def test_what_a_sheet_gives_is_known_to_the_grader():
     given = handouts.given_cells("hw2")
-    assert any("class Solution" in cell.text for cell in given) and all(cell.given for cell in given)
+    assert any("class Solution" in cell.text for cell in given) and all(
+        cell.given for cell in given
+    )
 
 
 def test_a_student_may_use_what_the_sheet_gives(graded):
@@ -268,7 +283,9 @@ def test_in_a_sandbox_the_library_has_all_points_and_a_blank_none(name, tmp_path
     file.write_text("\n\n".join(block.text for block in blocks.values()))
     strict = Conditions(student="ada", secret="salt")
     right = grading.grade(file, homework, strict)
-    assert right.score == right.max_score == homework.points, [one for one in right.checks if one.message]
+    assert right.score == right.max_score == homework.points, [
+        one for one in right.checks if one.message
+    ]
     assert right.for_credit and right.tier == "strict"
     blank = grading.grade(materials.folder("assignments") / f"{name}.ipynb", homework, strict)
     assert blank.score == 0 and blank.max_score == homework.points and not blank.problems

@@ -11,7 +11,9 @@ from hdrlab.course.classroom import handins
 from hdrlab.course.classroom.roster import Roster, Student
 
 ROSTER = Roster(
-    tuple(Student(id, id, "t1" if id in ("b01", "b02") else id) for id in ("b01", "b02", "b05", "b06"))
+    tuple(
+        Student(id, id, "t1" if id in ("b01", "b02") else id) for id in ("b01", "b02", "b05", "b06")
+    )
 )
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 LATE = NOON + timedelta(days=9)
@@ -31,7 +33,9 @@ def find(tmp_path):
             return handins.find(tmp_path / "in", roster)
         table = tmp_path / "times.csv"
         table.write_text(
-            "\n".join(["file,received", *(f"{name},{when.isoformat()}" for name, when in rows.items())])
+            "\n".join(
+                ["file,received", *(f"{name},{when.isoformat()}" for name, when in rows.items())]
+            )
         )
         return handins.find(tmp_path / "in", roster, handins.read_times(table))
 
@@ -73,7 +77,8 @@ def test_a_row_without_a_file_and_a_file_without_a_row_are_noted(find):
     found = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
     assert any(note.startswith("b02.py") and "no such file" in note for note in found.notes)
     assert (
-        any(note.startswith("b06.py") and "no row" in note for note in found.notes) and len(found.notes) == 2
+        any(note.startswith("b06.py") and "no row" in note for note in found.notes)
+        and len(found.notes) == 2
     )
 
 
@@ -146,9 +151,13 @@ def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
 
 def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
     real = os.access
-    monkeypatch.setattr(os, "access", lambda path, asked: "b05" not in str(path) and real(path, asked))
+    monkeypatch.setattr(
+        os, "access", lambda path, asked: "b05" not in str(path) and real(path, asked)
+    )
     found = find({"b05.py": "x", "b06.py": "y"})
-    assert found.refused == {"b05": "b05.py: a file that cannot be read"} and set(found.handins) == {"b06"}
+    assert found.refused == {"b05": "b05.py: a file that cannot be read"} and set(
+        found.handins
+    ) == {"b06"}
 
 
 def test_of_many_files_the_one_that_counts_is_read_alone(find, monkeypatch):
@@ -170,4 +179,6 @@ def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
     awkward("link", tmp_path / "in" / "b05" / "later.py")
     found = find({"b05/hw2.py": "x"})
-    assert found.handins["b05"].path.name == "hw2.py" and found.refused == {} and len(found.notes) == 1
+    assert (
+        found.handins["b05"].path.name == "hw2.py" and found.refused == {} and len(found.notes) == 1
+    )

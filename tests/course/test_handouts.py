@@ -24,7 +24,8 @@ PLAN = plan.read()
 NAMES = list(PLAN.homeworks)
 TASKS = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
 pytestmark = pytest.mark.skipif(
-    not SOURCES.is_dir(), reason="the handouts' prose is in a clone, and this is an installed package"
+    not SOURCES.is_dir(),
+    reason="the handouts' prose is in a clone, and this is an installed package",
 )
 
 
@@ -65,7 +66,9 @@ def bare(notebook):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_assignment_is_the_one_that_its_source_makes(made, name):
     file = materials.folder("assignments") / f"{name}.ipynb"
-    assert handouts.to_text(made(name).assignment) == file.read_text(encoding="utf8"), "hdrlab course build"
+    assert handouts.to_text(made(name).assignment) == file.read_text(encoding="utf8"), (
+        "hdrlab course build"
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -77,10 +80,16 @@ def test_the_solution_is_the_one_that_its_source_makes(made, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_solution_was_run_and_keeps_every_promise(name):
-    outputs = [output for cell in committed(SOURCES, name)["cells"] for output in cell.get("outputs", ())]
-    assert not [one for one in outputs if one["output_type"] == "error" or one.get("name") == "stderr"]
+    outputs = [
+        output for cell in committed(SOURCES, name)["cells"] for output in cell.get("outputs", ())
+    ]
+    assert not [
+        one for one in outputs if one["output_type"] == "error" or one.get("name") == "stderr"
+    ]
     texts = ["".join(one.get("data", {}).get("text/plain", "")) for one in outputs]
-    checked = [text for text in texts if re.search(r"^\S+: [\d.]+ of [\d.]+ points$", text, re.MULTILINE)]
+    checked = [
+        text for text in texts if re.search(r"^\S+: [\d.]+ of [\d.]+ points$", text, re.MULTILINE)
+    ]
     assert len(checked) == len(PLAN.homeworks[name].tasks) + 1
     assert not any("✗" in text for text in checked)
     whole = f"{PLAN.homeworks[name].points:g}"
@@ -120,7 +129,10 @@ def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name
     cells = {cell["id"]: cell for cell in made(name).assignment["cells"]}
     prose = "\n".join(cell["source"] for cell in cells.values() if cell["cell_type"] == "markdown")
     for task in PLAN.homeworks[name].tasks:
-        assert f"task-{task.id}" in cells and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
+        assert (
+            f"task-{task.id}" in cells
+            and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
+        )
         assert f"({task.points:g} points{', the minimum' * task.minimum})" in prose
     assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
     assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
@@ -129,10 +141,17 @@ def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name
 def test_what_the_plan_leaves_out_is_left_out_with_its_prose_and_its_pictures():
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     hw2 = PLAN.homeworks["hw2"]
-    few = hw2._replace(tasks=tuple(Task(one.id, one.function, 3) for one in hw2.tasks if one.id == "hat"))
+    few = hw2._replace(
+        tasks=tuple(Task(one.id, one.function, 3) for one in hw2.tasks if one.id == "hat")
+    )
     made = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), few)
     text = "\n".join(cell["source"] for cell in made.assignment["cells"])
-    assert "(3 points)" in text and "def hat" in text and "gsolve" not in text and "Robertson" not in text
+    assert (
+        "(3 points)" in text
+        and "def hat" in text
+        and "gsolve" not in text
+        and "Robertson" not in text
+    )
 
 
 def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
@@ -157,7 +176,10 @@ def test_a_sheet_of_choices_says_how_many_points_count_and_check_counts_no_more(
     hw4 = PLAN.homeworks["hw4"]
     sheet = handouts.handout((SOURCES / "hw4.py").read_text(encoding="utf8"), hw4).assignment
     text = "\n".join(cell["source"] for cell in sheet["cells"])
-    assert "UTC. 100 points." in text and "the tasks give 170 points, of which 100 count at most" in text
+    assert (
+        "UTC. 100 points." in text
+        and "the tasks give 170 points, of which 100 count at most" in text
+    )
     (cell,) = [cell["source"] for cell in sheet["cells"] if "use_plan(" in cell["source"]]
     monkeypatch.setattr(notebook, "_plan", {})
     exec(cell[cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
@@ -171,7 +193,11 @@ def test_any_two_or_three_of_the_four_papers_make_homework_4_whole():
         papers[task.function.split(".")[-2]] += task.points
     papers["fattal"] += papers.pop("poisson")
     needed = hw4.at_most - papers.pop("reinhard")
-    pairs = {frozenset(two) for two in combinations(papers, 2) if sum(papers[one] for one in two) >= needed}
+    pairs = {
+        frozenset(two)
+        for two in combinations(papers, 2)
+        if sum(papers[one] for one in two) >= needed
+    }
     assert {frozenset(("durand", "ward")), frozenset(("chiu", "fattal"))} <= pairs
     assert all(sum(papers[one] for one in three) >= needed for three in combinations(papers, 3))
     assert max(papers.values()) < needed
@@ -198,7 +224,9 @@ def test_the_projects_sheet_says_what_earns_how_many_points_by_hand(made):
     for one in PLAN.homeworks["project"].by_hand:
         assert f"- **{one.title}** ({one.points:g} points)\n  - {one.points:g}: " in text
         earned = [float(line.partition(":")[0]) for line in one.rubric]
-        assert len(earned) > 1 and earned == sorted(earned, reverse=True) and earned[0] == one.points
+        assert (
+            len(earned) > 1 and earned == sorted(earned, reverse=True) and earned[0] == one.points
+        )
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
@@ -219,7 +247,16 @@ def test_building_writes_both_and_nothing_else(tmp_path):
     """In a process of its own: notebooks are run with asyncio, and a browser may hold this one's loop."""
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     (tmp_path / "plan.toml").write_text(SHORT)
-    options = ["--plan", "plan.toml", "--sources", SOURCES, "--out", "assignments", "--solutions", "worked"]
+    options = [
+        "--plan",
+        "plan.toml",
+        "--sources",
+        SOURCES,
+        "--out",
+        "assignments",
+        "--solutions",
+        "worked",
+    ]
     command = [sys.executable, "-m", "hdrlab", "course", "build", *options]
     path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
     ran = subprocess.run(
@@ -231,7 +268,9 @@ def test_building_writes_both_and_nothing_else(tmp_path):
         timeout=300,
     )
     assert ran.returncode == 0, ran.stderr
-    files = {file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*") if file.is_file()}
+    files = {
+        file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*") if file.is_file()
+    }
     assert files == {"plan.toml", "assignments/hw3.ipynb", "worked/hw3.ipynb"}
     worked = json.loads((tmp_path / "worked" / "hw3.ipynb").read_text())
     said = [output for cell in worked["cells"] for output in cell.get("outputs", ())]

@@ -51,11 +51,25 @@ def grade(tmp_path, monkeypatch):
 
     def run(folder, students):
         (tmp_path / "roster.csv").write_text("student\n" + "\n".join(students))
-        words = ["grade", folder, "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml"]
+        words = [
+            "grade",
+            folder,
+            "--homework",
+            "hw2",
+            "--roster",
+            "roster.csv",
+            "--plan",
+            "plan.toml",
+        ]
         with pytest.raises(SystemExit) as ended:
-            cli.run([*words, "--tier", "strict", "-o", f"{folder}-out", "--jobs", "2", "--timeout", "3"])
+            cli.run(
+                [*words, "--tier", "strict", "-o", f"{folder}-out", "--jobs", "2", "--timeout", "3"]
+            )
         assert not ended.value.code
-        files = {path: path.read_bytes() for path in (tmp_path / f"{folder}-out" / "feedback").rglob("*.*")}
+        files = {
+            path: path.read_bytes()
+            for path in (tmp_path / f"{folder}-out" / "feedback").rglob("*.*")
+        }
         rows = sheets.read_csv(tmp_path / f"{folder}-out" / "gradebook.csv")
         return {row["student"]: row for row in rows}, {
             str(path.relative_to(tmp_path / f"{folder}-out")): data for path, data in files.items()

@@ -92,7 +92,9 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
             said.append(str(raised.value))
             subject._drop()
             subject._running.clear()
-            subject._running.left = min(subject._running.left, 0.0)  # a busy machine may not have used it
+            subject._running.left = min(
+                subject._running.left, 0.0
+            )  # a busy machine may not have used it
     assert said[0] == "hat took longer than 0.3 s"
     assert said[1] == "hat: the 1.2 s of a processor for a whole submission are used up"
 
@@ -168,9 +170,13 @@ def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, s
         except NoAnswer as error:
             message = str(error)
         assert shown(message) and shown(subject.said)
-        each = gradebook.write_results(tmp_path, result(message=message, said=subject.said, kind="raised"))
+        each = gradebook.write_results(
+            tmp_path, result(message=message, said=subject.said, kind="raised")
+        )
     told = {path.name: path.read_bytes().decode() for path in each}
-    assert "<script>alert" not in told["feedback.html"] and "<svg onload" not in told["feedback.html"]
+    assert (
+        "<script>alert" not in told["feedback.html"] and "<svg onload" not in told["feedback.html"]
+    )
     assert shown(told["feedback.html"]) and json.loads(told["gradescope.json"])
     ElementTree.fromstring(told["junit.xml"])
 
@@ -187,10 +193,16 @@ def test_the_one_gate_takes_out_what_escaping_does_not_mend(name):
 def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path, monkeypatch):
     monkeypatch.setattr(feedback, "page", lambda _: "\ud800")
     (tmp_path / "b1.json").write_bytes(results.to_json(result()))
-    done = classroom.write_feedback(tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json"))
-    assert done.result and done.why.startswith("its feedback could not be written: UnicodeEncodeError")
+    done = classroom.write_feedback(
+        tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json")
+    )
+    assert done.result and done.why.startswith(
+        "its feedback could not be written: UnicodeEncodeError"
+    )
     (tmp_path / "b1.json").write_text("half a res")
-    done = classroom.write_feedback(tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json"))
+    done = classroom.write_feedback(
+        tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json")
+    )
     assert "its feedback could not be written" in done.why
 
 

@@ -19,9 +19,19 @@ from hdrlab.course.classroom.roster import Roster, Student
 resource = pytest.importorskip("resource", reason="this system counts no process's seconds")
 LOST = {  # what can not be read; of the others the right function at the end is found
     *("empty dictionaries", "deep lists", "deep dictionaries", "a long number"),
-    *("many cells that are no Python", "sheets that are no lists", "a cell's source that is a number"),
+    *(
+        "many cells that are no Python",
+        "sheets that are no lists",
+        "a cell's source that is a number",
+    ),
     *("names of cells", "NUL", "an unknown coding", "a coding that is slow", "UTF-16 cut short"),
-    *("brackets in brackets", "signs in a row", "too much code", "a task that is too long", "a long sum"),
+    *(
+        "brackets in brackets",
+        "signs in a row",
+        "too much code",
+        "a task that is too long",
+        "a long sum",
+    ),
     "a long chain of attributes",
 }
 HAT = re.compile(r"import numpy as np\n.*", re.DOTALL)
@@ -91,7 +101,9 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
     with zipfile.ZipFile(tmp_path / "b1.zip", "w") as archive:
         archive.writestr("hw2.py", made())
     assert set(submission.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
-    (problem,) = submission.read(TRAPS["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]).problems
+    (problem,) = submission.read(
+        TRAPS["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]
+    ).problems
     assert problem.startswith("The archive is refused: ")
 
 
@@ -135,7 +147,9 @@ def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_pa
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
     found = handins.find(tmp_path, ROSTER)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
-    assert "b2" in found.handins and all(note.isprintable() and len(note) < 250 for note in found.notes)
+    assert "b2" in found.handins and all(
+        note.isprintable() and len(note) < 250 for note in found.notes
+    )
     if name in ("an empty file", "a notebook of 60 MB"):
         read = submission.tasks_of(found.handins["b1"].path, ["hat"])
         assert "is empty" in read.problems[0] or "has more than 50 MB" in read.problems[0]

@@ -53,14 +53,19 @@ def small(task):
 def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
     wrong = function(one.name, one.task, solutions.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
     for given, named in small(one.task):
-        came, filed = (misconceptions.call_quietly(asked, given, named) for asked in (wrong, one.function))
+        came, filed = (
+            misconceptions.call_quietly(asked, given, named) for asked in (wrong, one.function)
+        )
         assert filed is not None and misconceptions.difference(came, filed) == 0
 
 
 @pytest.mark.parametrize("homework", HOMEWORKS.values(), ids=HOMEWORKS)
 def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(homework, tmp_path):
     cells = solutions.texts(homework)
-    for name, text in (("a.ipynb", solutions.notebook(homework, cells)), ("a.py", solutions.script(cells))):
+    for name, text in (
+        ("a.ipynb", solutions.notebook(homework, cells)),
+        ("a.py", solutions.script(cells)),
+    ):
         (tmp_path / name).write_text(text, encoding="utf8")
         found = submission.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
         assert set(found.sources) == {task.id for task in homework.tasks}

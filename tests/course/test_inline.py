@@ -38,7 +38,9 @@ def test_what_is_copied_computes_what_the_library_does():
     exec(inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text, scope)
     Z, B = np.random.default_rng(0).integers(0, 256, (80, 4)), np.log([1, 2, 4, 8])
     for ours, copied in zip(
-        debevec.gsolve(Z, B, 10, weights.hat()), scope["gsolve"](Z, B, 10, weights.hat()), strict=True
+        debevec.gsolve(Z, B, 10, weights.hat()),
+        scope["gsolve"](Z, B, 10, weights.hat()),
+        strict=True,
     ):
         assert np.array_equal(ours, copied)
 
@@ -74,14 +76,22 @@ def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
 def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(task):
     text = inline.inlined({task.id: task.function})[task.id].text
     by_value = text
-    for name, value in re.findall(r"^([A-Z_]+) = (.+)$", text, re.MULTILINE):  # as the sheet has constants
+    for name, value in re.findall(
+        r"^([A-Z_]+) = (.+)$", text, re.MULTILINE
+    ):  # as the sheet has constants
         by_value = by_value.replace(f"={name}", f"={value}")
     assert stubs.stub(task).splitlines()[0] in by_value
     functions = [one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.FunctionDef)]
-    arguments = [one for node in functions for one in ast.walk(node.args) if isinstance(one, ast.arg)]
-    assert not any(node.returns for node in functions) and not any(one.annotation for one in arguments)
+    arguments = [
+        one for node in functions for one in ast.walk(node.args) if isinstance(one, ast.arg)
+    ]
+    assert not any(node.returns for node in functions) and not any(
+        one.annotation for one in arguments
+    )
     inside = [one for node in functions for one in node.body]
-    assert not any(isinstance(one, ast.If) and isinstance(one.body[-1], ast.Raise) for one in inside)
+    assert not any(
+        isinstance(one, ast.If) and isinstance(one.body[-1], ast.Raise) for one in inside
+    )
     assert "require_" not in text and "# noqa" not in text and "hdrlab" not in text
 
 
@@ -94,14 +104,19 @@ def test_of_a_function_no_more_is_left_out_than_what_only_raises():
 
 
 def test_a_class_that_the_notebook_gives_is_not_copied_again():
-    functions, given = {"gsolve": "response.debevec.gsolve"}, stubs.classes("response.debevec.gsolve")
+    functions, given = (
+        {"gsolve": "response.debevec.gsolve"},
+        stubs.classes("response.debevec.gsolve"),
+    )
     assert "class Solution" in inline.inlined(functions)["gsolve"].text
     assert "class Solution" not in inline.inlined(functions, given)["gsolve"].text
 
 
 def test_imports_from_one_module_stand_in_one_line():
     text = inline.inlined({"align": "align.mtb.align"})["align"].text
-    modules = [line.partition(" import ")[0] for line in text.splitlines() if line.startswith("from ")]
+    modules = [
+        line.partition(" import ")[0] for line in text.splitlines() if line.startswith("from ")
+    ]
     assert len(modules) == len(set(modules))
 
 

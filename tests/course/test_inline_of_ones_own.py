@@ -109,28 +109,40 @@ def inlined(tmp_path):
     def inlined(functions, given=()):
         for file, text, _ in functions.values():
             (tmp_path / file).write_text(text, encoding="utf8")
-        asked = {name: f"{tmp_path / file}:{function}" for name, (file, _, function) in functions.items()}
+        asked = {
+            name: f"{tmp_path / file}:{function}" for name, (file, _, function) in functions.items()
+        }
         given = [f"{tmp_path / file}:{function}" for file, function in given]
         return {name: block.text + "\n" for name, block in inline.inlined(asked, given).items()}
 
     return inlined
 
 
-def test_a_function_is_copied_with_comments_and_without_types_guards_and_the_rest_of_its_words(inlined):
+def test_a_function_is_copied_with_comments_and_without_types_guards_and_the_rest_of_its_words(
+    inlined,
+):
     found = inlined({"other": ("own.py", OWN, "main"), "again2": ("own.py", OWN, "again")})
     assert found == {"other": FIRST, "again2": SECOND}
 
 
 def test_what_is_given_is_not_copied(inlined):
-    found = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])["main"]
+    found = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])[
+        "main"
+    ]
     assert "class State" not in found and "WIDTH = 3" not in found and "TABLE = " in found
     assert "def again(x):" in found and "def main(" in found
 
 
 def test_two_helpers_of_one_name_part_by_their_files_and_two_alike_are_one(inlined):
-    texts = {k: f"def helper():\n    return {k}\n\n\ndef main():\n    return helper()\n" for k in (1, 2)}
+    texts = {
+        k: f"def helper():\n    return {k}\n\n\ndef main():\n    return helper()\n" for k in (1, 2)
+    }
     found = inlined(
-        {"a": ("a.py", texts[1], "main"), "b": ("b.py", texts[2], "main"), "c": ("c.py", texts[1], "main")}
+        {
+            "a": ("a.py", texts[1], "main"),
+            "b": ("b.py", texts[2], "main"),
+            "c": ("c.py", texts[1], "main"),
+        }
     )
     assert found == {
         "a": "def helper():\n    return 1\n\ndef a():\n    return helper()\n",
@@ -171,7 +183,9 @@ def test_of_each_docstring_within_a_definition_the_first_paragraph_stays(inlined
     assert found == whole("", method("a", ""), method("b", ""))
 
 
-def test_a_function_of_the_library_whose_name_is_taken_where_it_is_used_has_its_modules_too(inlined):
+def test_a_function_of_the_library_whose_name_is_taken_where_it_is_used_has_its_modules_too(
+    inlined,
+):
     text = "from hdrlab.core import weights\n\n\ndef main():\n    hat = weights.hat()\n    return hat\n"
     found = inlined({"main": ("a.py", text, "main")})["main"]
     assert "def hat_weights(" in found and "    hat = hat_weights()\n    return hat\n" in found
@@ -199,9 +213,21 @@ def test_functions_and_classes_stand_a_line_apart_and_constants_close(texts, joi
 
 
 def test_imports_stand_in_the_order_of_where_they_come_from():
-    lines = ["from scipy import b", "import numpy as np", "from typing import A", "import os", "import ast"]
+    lines = [
+        "from scipy import b",
+        "import numpy as np",
+        "from typing import A",
+        "import os",
+        "import ast",
+    ]
     assert sorted(lines, key=inline._rank) == [
-        *("import ast", "import os", "from typing import A", "import numpy as np", "from scipy import b")
+        *(
+            "import ast",
+            "import os",
+            "from typing import A",
+            "import numpy as np",
+            "from scipy import b",
+        )
     ]
 
 
@@ -214,7 +240,10 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
         ("def f(x: int, *, k: float = 2) -> int:\n    return x", "def f(x, *, k=2):\n    return x"),
         ("def f(x: int) -> int: return x", "def f(x: int) -> int: return x"),
         ("def f(\n    x: int,\n    k=1,\n) -> int:\n    return x", "def f(x, k=1):\n    return x"),
-        ("def f():\n    check_it(1)\n    a.require_it(2)\n    checked(3)", "def f():\n    checked(3)"),
+        (
+            "def f():\n    check_it(1)\n    a.require_it(2)\n    checked(3)",
+            "def f():\n    checked(3)",
+        ),
         ("def f():\n    if x:\n        y = 1\n        raise E\n    z", "def f():\n    z"),
         ("def f():\n    if x:\n        raise E\n    else:\n        y", None),
         ("def f():\n    if x:\n        y", None),
@@ -222,8 +251,14 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
         ("x: int = 3\ny: int\nz = 1", "x = 3\ny\nz = 1"),
         ("class A:\n    x: int = 3\n    y: dict[str, int]", None),
         ("class A:\n    z: Any", "class A:\n    z: np.ndarray"),
-        ("x = 1  # noqa: E731\ny = 2  # type: ignore[a]\nz = 3  # why", "x = 1\ny = 2\nz = 3  # why"),
-        ('def f():\n    """Return x, or raise a ValueError where not."""', 'def f():\n    """Return x."""'),
+        (
+            "x = 1  # noqa: E731\ny = 2  # type: ignore[a]\nz = 3  # why",
+            "x = 1\ny = 2\nz = 3  # why",
+        ),
+        (
+            'def f():\n    """Return x, or raise a ValueError where not."""',
+            'def f():\n    """Return x."""',
+        ),
         (f"def f({LONG}):\n    return 1", None),
     ],
 )

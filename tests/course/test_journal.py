@@ -17,7 +17,9 @@ from hdrlab.course.classroom import handins, journal
 from hdrlab.course.classroom.executors import processes
 from hdrlab.course.classroom.roster import Roster, Student
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="submissions here are ended by signals of POSIX")
+pytestmark = pytest.mark.skipif(
+    os.name != "posix", reason="submissions here are ended by signals of POSIX"
+)
 
 RUN = """
 import sys
@@ -43,7 +45,9 @@ def graded(home, work=errands.grade, again=False):
 def test_nothing_is_graded_twice(tmp_path):
     first, results = graded(tmp_path)
     again, same = graded(tmp_path)
-    assert all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
+    assert (
+        all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
+    )
     assert len(errands.begun(tmp_path / "class")) == len(results) == 5
 
 
@@ -83,7 +87,11 @@ def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_grade
     _, alone = graded(tmp_path / "alone")
     done, results = graded(tmp_path, errands.fatal)
     lost = [one for one in done if one.result is None]
-    assert [one.piece.owner for one in lost] == ["s3"] and "3 times" in lost[0].why and "(-9)" in lost[0].why
+    assert (
+        [one.piece.owner for one in lost] == ["s3"]
+        and "3 times" in lost[0].why
+        and "(-9)" in lost[0].why
+    )
     assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
 
 
@@ -105,7 +113,9 @@ def test_an_error_is_told_of_in_a_line(tmp_path):
 
 def test_two_runs_do_not_write_to_one_folder(tmp_path):
     (tmp_path / "feedback").mkdir()
-    (tmp_path / "feedback" / ".hdrlab-1234.html").write_text("half of a page, by a run that was killed")
+    (tmp_path / "feedback" / ".hdrlab-1234.html").write_text(
+        "half of a page, by a run that was killed"
+    )
     with journal.lock_folder(tmp_path):
         with pytest.raises(ValueError, match="another run"), journal.lock_folder(tmp_path):
             pass

@@ -1,7 +1,7 @@
 """Kill -9 at random moments, of the run, of what it has started, of a cluster's workers: no result changes.
 
-The class is small and its checks are few. It is graded by the command that instructors use, in the practice
-tier: what is tried here are processes that end.
+The class is small and its checks are few. It is graded by the command that instructors use, in the
+practice tier: what is tried here are processes that end.
 """
 
 import os
@@ -56,7 +56,18 @@ def folder(tmp_path_factory):
 
 
 def begin(home, out, *more):
-    words = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", str(out)]
+    words = [
+        "grade",
+        "in",
+        "--homework",
+        "hw2",
+        "--tier",
+        "practice",
+        "--plan",
+        "plan.toml",
+        "-o",
+        str(out),
+    ]
     words += ["--roster", "roster.csv", "--hidden", "checks", *more]
     scratch = home / "scratch"
     scratch.mkdir(exist_ok=True)
@@ -68,7 +79,11 @@ def begin(home, out, *more):
 
 
 def contents(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 def different(some, other):
@@ -77,7 +92,9 @@ def different(some, other):
     for name in sorted({*some, *other}):
         if some.get(name) != other.get(name):
             both = [each.get(name, b"(no file)").splitlines() for each in (some, other)]
-            found[name] = next(filter(lambda pair: len({*pair}) > 1, zip_longest(*both)), "the last byte")
+            found[name] = next(
+                filter(lambda pair: len({*pair}) > 1, zip_longest(*both)), "the last byte"
+            )
     return found
 
 
@@ -91,7 +108,10 @@ def finished(home, out):
 
 def family(pid):
     """Return the processes that have come from this one."""
-    parents = {one: int(said.rpartition(b")")[2].split()[1]) for one, said in processes.told("stat").items()}
+    parents = {
+        one: int(said.rpartition(b")")[2].split()[1])
+        for one, said in processes.told("stat").items()
+    }
     found = [pid]
     for one in found:
         found += [child for child, parent in parents.items() if parent == one]
@@ -107,7 +127,9 @@ def besieged(run, rng, most, others=list):
             break
         started = [*family(run.pid), *others()]
         with suppress(ProcessLookupError):
-            os.kill(rng.choice(started) if started and rng.random() < 0.6 else run.pid, signal.SIGKILL)
+            os.kill(
+                rng.choice(started) if started and rng.random() < 0.6 else run.pid, signal.SIGKILL
+            )
         kills += 1
     return kills
 
@@ -132,7 +154,9 @@ def whole(folder):
     return finished(folder, folder / "whole")
 
 
-PROC = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds a run's processes in /proc")
+PROC = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists(), reason="finds a run's processes in /proc"
+)
 
 
 @PROC
@@ -157,7 +181,9 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole):
         words = "--cluster", running.scheduler_address
         undisturbed, _ = graded(folder, folder / "cluster", random.Random(1), 0, *words)
         assert different(undisturbed, whole) == {}
-        results, kills = graded(folder, folder / "killed", random.Random(4), 6, *words, others=workers)
+        results, kills = graded(
+            folder, folder / "killed", random.Random(4), 6, *words, others=workers
+        )
     assert different(results, whole) == {} and kills
 
 
@@ -195,7 +221,9 @@ def _kill(words, below):
 
 
 SLOW = GOOD.replace("    return", "    import time\n    time.sleep(0.3)\n    return")
-HAT = Homework("hw2", "T", datetime(2026, 10, 23, tzinfo=UTC), (Task("hat", "core.weights.hat", 10),))
+HAT = Homework(
+    "hw2", "T", datetime(2026, 10, 23, tzinfo=UTC), (Task("hat", "core.weights.hat", 10),)
+)
 
 
 @PROC

@@ -20,7 +20,11 @@ def costs(handed, **knobs):
 
 def test_ten_days_in_all_are_free_and_the_eleventh_costs_a_point():
     found = costs(
-        [Handed("hw1", 4, (ANNA,), 100), Handed("hw2", 6, (ANNA,), 100), Handed("hw3", 1, (ANNA,), 100)]
+        [
+            Handed("hw1", 4, (ANNA,), 100),
+            Handed("hw2", 6, (ANNA,), 100),
+            Handed("hw3", 1, (ANNA,), 100),
+        ]
     )
     assert [found[ANNA, f"hw{k}"].penalty for k in (1, 2, 3)] == [0, 0, 1]
     assert [found[ANNA, f"hw{k}"].left for k in (1, 2, 3)] == [6, 0, 0]
@@ -56,7 +60,9 @@ def test_nobody_spends_more_grace_than_there_is_and_every_late_day_is_accounted_
         mine = [one for (who, _), one in found.items() if who == student]
         assert sum(one.excused for one in mine) <= grace
         assert all(one.score >= 0 and 0 <= one.excused <= one.late for one in mine)
-        assert all(one.penalty == min(one.penalty + one.score, one.late - one.excused) for one in mine)
+        assert all(
+            one.penalty == min(one.penalty + one.score, one.late - one.excused) for one in mine
+        )
 
 
 @given(terms, days, points)
@@ -78,7 +84,8 @@ def test_the_what_if_table_holds_what_would_come_of_it():
     term = [Handed("hw1", 7, (ANNA,), 100), Handed("project", 0, (ANNA, BEN), 90)]
     for late, rows in what_if(term, "project"):
         assert rows == {
-            who: costs([term[0], term[1]._replace(late=late)])[who, "project"] for who in (ANNA, BEN)
+            who: costs([term[0], term[1]._replace(late=late)])[who, "project"]
+            for who in (ANNA, BEN)
         }
     assert [rows[ANNA].penalty for _, rows in what_if(term, "project", (3, 4, 99))] == [0, 1, 90]
 

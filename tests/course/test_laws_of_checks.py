@@ -36,7 +36,9 @@ def test_each_scene_of_the_laws_is_the_same_in_every_year(name):
     shape, *values, whole = SCENES[name]
     L = laws.RADIANCES[name]
     assert L.shape == shape
-    assert np.allclose([L.flat[0], L.flat[min(1, L.size - 1)], L.flat[-1]], values, rtol=1e-6, atol=0)
+    assert np.allclose(
+        [L.flat[0], L.flat[min(1, L.size - 1)], L.flat[-1]], values, rtol=1e-6, atol=0
+    )
     assert np.isclose(L.sum(dtype=np.float64), whole, rtol=1e-6, atol=0)
 
 
@@ -55,7 +57,13 @@ def test_the_scene_has_a_soft_light_a_window_and_a_dark_floor_with_texture_of_th
     L = np.log(laws.scene((7, 10), seed=3).astype(np.float64))
     texture = np.random.default_rng(3).standard_normal((7, 10))
     light = (L - 0.3 * texture) / 1.5
-    soft = [4 * np.exp(-8 * 0.45), 4, 4 * np.exp(-8 * 0.04), 4 * np.exp(-8 * 0.09), 4 * np.exp(-8 * 0.04)]
+    soft = [
+        4 * np.exp(-8 * 0.45),
+        4,
+        4 * np.exp(-8 * 0.04),
+        4 * np.exp(-8 * 0.09),
+        4 * np.exp(-8 * 0.04),
+    ]
     places = [(0, 0), (3, 6), (3, 8), (3, 9), (5, 6)]
     assert np.allclose([light[at] for at in places], np.add(soft, [0, 0, 0, 3, 0]), atol=1e-6)
     assert np.isclose(light[6, 6], 4 * np.exp(-8 * 0.09) - 2, atol=1e-6)
@@ -70,7 +78,13 @@ def simple(L):
 
 def shown(L, *, sign=1, stripes=0.0, boost=0.0):
     """A picture of the mean light of each region, in stripes that cancel within one."""
-    log = np.log(np.maximum(L, 1e-9)).reshape(6, 16, 8, 16).mean(axis=(1, 3)).repeat(16, 0).repeat(16, 1)
+    log = (
+        np.log(np.maximum(L, 1e-9))
+        .reshape(6, 16, 8, 16)
+        .mean(axis=(1, 3))
+        .repeat(16, 0)
+        .repeat(16, 1)
+    )
     ranks = (log - log.min()) / np.ptp(log)
     even = np.where(np.arange(96) % 2, -1, 1)[:, None]
     return 0.5 + sign * 0.06 * (ranks - 0.5) + stripes * even + np.where(even > 0, boost * ranks, 0)
@@ -102,9 +116,13 @@ def test_an_operator_that_reads_values_alone_takes_any_memory_layout_and_one_tha
 def test_stripes_that_cancel_within_a_region_change_no_verdict_of_a_law_about_regions(law):
     for stripes in (0, 0.3):
         law(lambda L, stripes=stripes: shown(L, stripes=stripes))
-        mixed = np.random.default_rng(0).permutation(48).reshape(6, 8).repeat(16, 0).repeat(16, 1) / 480
+        mixed = (
+            np.random.default_rng(0).permutation(48).reshape(6, 8).repeat(16, 0).repeat(16, 1) / 480
+        )
         with pytest.raises(AssertionError):
-            law(lambda L, mixed=mixed, stripes=stripes: shown(0 * L + 1e-3 + mixed, stripes=stripes))
+            law(
+                lambda L, mixed=mixed, stripes=stripes: shown(0 * L + 1e-3 + mixed, stripes=stripes)
+            )
 
 
 def test_light_that_is_upside_down_shows_the_scene_and_is_not_the_right_way_up():
@@ -163,12 +181,16 @@ def test_a_drawn_response_mixes_a_gamma_and_a_film_curve_in_the_drawn_shares():
 
 def test_the_same_seed_draws_the_same_response_in_every_year():
     f, _ = laws.drawn_response(np.random.default_rng(0))
-    assert np.allclose(f(np.array([0.01, 0.1, 0.5])), [0.08670684, 0.29540986, 0.70758302], rtol=1e-6)
+    assert np.allclose(
+        f(np.array([0.01, 0.1, 0.5])), [0.08670684, 0.29540986, 0.70758302], rtol=1e-6
+    )
 
 
 def test_a_curve_that_says_nothing_errs_by_the_spread_of_the_truth_over_levels_10_to_250():
     levels = np.log(np.maximum(np.arange(256.0), 1))
-    assert np.isclose(laws.curve_error(np.zeros(256), levels), np.sqrt((241**2 - 1) / 12) / 250, rtol=1e-12)
+    assert np.isclose(
+        laws.curve_error(np.zeros(256), levels), np.sqrt((241**2 - 1) / 12) / 250, rtol=1e-12
+    )
     assert laws.curve_error(levels + 5, levels) < 1e-15
 
 

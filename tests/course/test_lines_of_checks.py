@@ -17,19 +17,31 @@ from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.submission import Submission
 
 HW2 = plan.read().homeworks["hw2"]
-HOMEWORK = HW2._replace(tasks=tuple(one for one in HW2.tasks if one.id in ("hat", "gsolve")), at_most=None)
+HOMEWORK = HW2._replace(
+    tasks=tuple(one for one in HW2.tasks if one.id in ("hat", "gsolve")), at_most=None
+)
 READ = Submission({"hat": "def hat(): ..."}, ("a problem",), "digest", ("numpy",))
 
 
 def check(name, task="hat", *, points="1", needs="", case="", hidden=False, hints=("h",)):
     """The line of a check before it is run."""
-    line = {"check": f"test_{task}.py::{name}{case}", "task": task, "name": name, "promise": f"It {name}s"}
+    line = {
+        "check": f"test_{task}.py::{name}{case}",
+        "task": task,
+        "name": name,
+        "promise": f"It {name}s",
+    }
     return line | {"points": points, "needs": needs, "hints": list(hints), "hidden": hidden}
 
 
 def ending(name, outcome="holds", task="hat", *, case="", message="", said="", **more):
     """The line of a check that has run."""
-    line = {"ended": f"test_{task}.py::{name}{case}", "outcome": outcome, "message": message, "said": said}
+    line = {
+        "ended": f"test_{task}.py::{name}{case}",
+        "outcome": outcome,
+        "message": message,
+        "said": said,
+    }
     return line | more
 
 
@@ -42,7 +54,9 @@ def heard(monkeypatch):
         def run(folder, job, files, patience):
             told = json.loads(job.read_text("utf8"))
             texts = {file: file.read_text("utf8") for file in files}
-            jobs.append((folder, job, files, patience, told, texts, (folder / "lines").read_bytes()))
+            jobs.append(
+                (folder, job, files, patience, told, texts, (folder / "lines").read_bytes())
+            )
             yield from lines
 
         monkeypatch.setattr(running, "run", run)
@@ -150,7 +164,12 @@ def test_a_check_says_of_its_ending_what_was_written_down(heard):
     (*_, found) = heard(check("fail", hints=("a", "b")), line)
     (one,) = found.checks
     assert one[:3] == ("hat", "fail", "It fails") and one.hints == ("a", "b")
-    assert (one.outcome, one.kind, one.hidden, one.drawing) == ("no answer", "late", False, Drawing())
+    assert (one.outcome, one.kind, one.hidden, one.drawing) == (
+        "no answer",
+        "late",
+        False,
+        Drawing(),
+    )
     assert one.message == "m" * 2000 and one.said == "s" * 2000
 
 
@@ -209,10 +228,14 @@ def test_a_named_mistake_is_the_cause_of_what_fails_in_its_task(more, earned, he
     lines = [check("hold", points="2"), check("fail", points="3"), check("err", points="3")]
     ends = [ending("hold"), ending("fail", "fails"), ending("err", "fails")]
     homework = HOMEWORK._replace(tasks=tuple(one._replace(points=8.0) for one in HOMEWORK.tasks))
-    *_, found = heard(*lines, *ends, {"recognised": "hat", "sentence": "S", **more}, homework=homework)
+    *_, found = heard(
+        *lines, *ends, {"recognised": "hat", "sentence": "S", **more}, homework=homework
+    )
     assert [one.follows for one in found.checks] == ["", "", "It fails"]
     assert [one.points for one in found.checks] == earned
-    *_, found = heard(*lines, *ends, {"recognised": "gsolve", "sentence": "S", **more}, homework=homework)
+    *_, found = heard(
+        *lines, *ends, {"recognised": "gsolve", "sentence": "S", **more}, homework=homework
+    )
     assert [one.points for one in found.checks] == [2, 0, 0]
     assert [one.follows for one in found.checks] == ["", "", ""]
 
@@ -236,7 +259,9 @@ def drawn(kind, shape, wrong):
 @pytest.mark.parametrize(
     ("kind", "shape", "frames"), [("curve", (30,), 1), ("image", (12, 9), 3), ("image", (4,), 0)]
 )
-def test_a_difference_is_drawn_for_the_task_it_is_of_and_none_where_it_cannot_be(kind, shape, frames, heard):
+def test_a_difference_is_drawn_for_the_task_it_is_of_and_none_where_it_cannot_be(
+    kind, shape, frames, heard
+):
     line = ending("fail", "fails", differs=drawn(kind, shape, 3))
     for end in (line, line | {"ended": "/tmp/a/test_hat.py::fail"}):
         begun = check("fail") | {"check": end["ended"]}

@@ -114,9 +114,13 @@ def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
 
 def test_a_ratio_is_said_in_whole_times_also_of_nothing():
     big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
-    with pytest.raises(Refused, match=r"^it unpacks to 262144 times its size, expected at most 200$"):
+    with pytest.raises(
+        Refused, match=r"^it unpacks to 262144 times its size, expected at most 200$"
+    ):
         members.check_sizes(big, 4, LIMITS)
-    with pytest.raises(Refused, match=r"^it unpacks to 1048577 times its size, expected at most 200$"):
+    with pytest.raises(
+        Refused, match=r"^it unpacks to 1048577 times its size, expected at most 200$"
+    ):
         members.check_sizes(big, 0, LIMITS)
     members.check_sizes([Member(PurePosixPath("a"), 1 << 20)], 0, LIMITS)
     with pytest.raises(Refused, match="^'a' claims 8 bytes, expected at most 7$"):
@@ -126,7 +130,9 @@ def test_a_ratio_is_said_in_whole_times_also_of_nothing():
 
 
 @pytest.mark.parametrize("size", [0, 1, 65535, 65536, 65537, 200_000])
-def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less_is_refused(size, tmp_path):
+def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less_is_refused(
+    size, tmp_path
+):
     data = bytes(k % 251 for k in range(size))
     members.write(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
     assert (tmp_path / "new" / "folder" / "a").read_bytes() == data
@@ -169,7 +175,9 @@ def test_what_is_packed_is_the_same_to_the_byte_in_every_year_and_says_what_can_
     whole = packed(files, ["run"])
     assert whole == packed(dict(reversed(files.items())), ("run",))
     with zipfile.ZipFile(io.BytesIO(whole)) as opened:
-        told = [(one.filename, one.external_attr >> 16, one.compress_type) for one in opened.infolist()]
+        told = [
+            (one.filename, one.external_attr >> 16, one.compress_type) for one in opened.infolist()
+        ]
         assert {one.date_time for one in opened.infolist()} == {(1980, 1, 1, 0, 0, 0)}
         assert {one.filename: opened.read(one) for one in opened.infolist()} == files
     assert told == [("a.txt", 0o100644, 8), ("b.PNG", 0o100644, 0), ("run", 0o100755, 8)]

@@ -47,14 +47,20 @@ def test_a_mistake_costs_points_and_not_all_of_them(one):
 
 @pytest.mark.parametrize("one", KNOWN, ids=NAMES)
 def test_a_mistake_has_a_sentence_and_says_what_to_do(one):
-    assert one.name.startswith(one.task) and 40 < len(one.sentence) < 200 and one.sentence.endswith(".")
+    assert (
+        one.name.startswith(one.task)
+        and 40 < len(one.sentence) < 200
+        and one.sentence.endswith(".")
+    )
 
 
 def test_nine_in_ten_are_recognised_by_name_for_any_student():
     for student in ("ada", "grace"):
         missed = []
         for one in KNOWN:
-            calls = [(given, named, roughened(came)) for given, named, came in asked(one, student)[1]]
+            calls = [
+                (given, named, roughened(came)) for given, named, came in asked(one, student)[1]
+            ]
             found = misconceptions.closest(PLAN.task(one.task), calls)
             missed += [] if found is not None and found.name == one.name else [one.name]
         assert len(missed) <= 0.1 * len(KNOWN), missed
@@ -74,7 +80,13 @@ def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
 def test_nonsense_is_no_known_mistake():
     Z = np.random.default_rng(0).integers(0, 256, (30, 4))
     given = (Z, np.arange(4.0), 10.0, np.ones(256))
-    answers = (np.arange(256.0), np.zeros(30)), (np.zeros(3), np.zeros(2)), "no", [1.0], (np.zeros(256),)
+    answers = (
+        (np.arange(256.0), np.zeros(30)),
+        (np.zeros(3), np.zeros(2)),
+        "no",
+        [1.0],
+        (np.zeros(256),),
+    )
     for answer in answers:
         assert misconceptions.closest(PLAN.task("gsolve"), [(given, {}, answer)]) is None
 
@@ -111,17 +123,23 @@ def test_a_mistake_costs_half_at_most_unless_it_misses_what_the_task_is_about(on
 
 
 def test_no_two_sentences_are_the_same():
-    assert [said for said, count in Counter(one.sentence for one in KNOWN).items() if count > 1] == []
+    assert [
+        said for said, count in Counter(one.sentence for one in KNOWN).items() if count > 1
+    ] == []
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 def test_how_far_two_answers_are_apart_is_a_share_of_their_size_however_small(scale):
-    assert misconceptions.difference([1.1 * scale, -1.1 * scale], [scale, -scale]) == pytest.approx(0.1)
+    assert misconceptions.difference([1.1 * scale, -1.1 * scale], [scale, -scale]) == pytest.approx(
+        0.1
+    )
     assert misconceptions.difference([scale, scale], [0.0, 0.0]) == misconceptions.MOST
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_named(order, monkeypatch):
+def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_named(
+    order, monkeypatch
+):
     def answers(share):
         return lambda L: 3 * (1 + share * L.max())
 
@@ -144,7 +162,9 @@ def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_nam
         ("solve", np.eye(3), np.eye(3) - 5),
     ],
 )
-def test_answers_that_differ_in_their_scale_or_gauge_alone_are_compared_as_the_same(task, answer, other):
+def test_answers_that_differ_in_their_scale_or_gauge_alone_are_compared_as_the_same(
+    task, answer, other
+):
     in_gauge = misconceptions.in_gauge
     assert misconceptions.difference(in_gauge(task, other), in_gauge(task, answer)) < 1e-12
     assert misconceptions.difference(other, answer) > 0.5

@@ -62,7 +62,9 @@ def test_what_counts_as_the_same_is_a_thousandth_and_a_mistake_explains_nine_ten
         ([4, 3], [2, 2], 1),
     ],
 )
-def test_the_difference_of_two_answers_is_that_of_its_worst_part_as_a_share_of_what_is_expected(a, b, apart):
+def test_the_difference_of_two_answers_is_that_of_its_worst_part_as_a_share_of_what_is_expected(
+    a, b, apart
+):
     assert difference(a, b) == pytest.approx(apart, rel=1e-12)
 
 
@@ -72,7 +74,11 @@ def test_the_difference_of_two_answers_is_that_of_its_worst_part_as_a_share_of_w
         ("hat", np.array([1.0, 4.0, 2.0]), [0.25, 1, 0.5]),
         ("hat", [1, 4, 2], [0.25, 1, 0.5]),
         ("gsolve", (np.array([1.0, 2.0, 4.0]), np.array([9.0])), ([-1, 0, 2], [7])),
-        ("gsolve", (np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.array([9.0])), ([-3, -2, 0, 4, 12], [5])),
+        (
+            "gsolve",
+            (np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.array([9.0])),
+            ([-3, -2, 0, 4, 12], [5]),
+        ),
         ("recover", np.arange(256.0) ** 2, (np.arange(256.0) ** 2 - 128**2).tolist()),
         ("recover", list(range(256)), list(range(-128, 128))),
         ("recover_steps", [(np.arange(256.0), 7)], [(np.arange(256) / 128).tolist()]),
@@ -83,8 +89,14 @@ def test_the_difference_of_two_answers_is_that_of_its_worst_part_as_a_share_of_w
         ("merge", np.array([1.0, 2.0]), [1, 2]),
     ],
 )
-def test_an_answer_is_compared_in_the_gauge_or_scale_that_its_checks_leave_free(task, answer, gauged):
-    parts = type(gauged)(map(np.array, gauged)) if task in ("gsolve", "recover_steps") else np.array(gauged)
+def test_an_answer_is_compared_in_the_gauge_or_scale_that_its_checks_leave_free(
+    task, answer, gauged
+):
+    parts = (
+        type(gauged)(map(np.array, gauged))
+        if task in ("gsolve", "recover_steps")
+        else np.array(gauged)
+    )
     assert difference(in_gauge(task, answer), parts) < 1e-12
 
 
@@ -105,7 +117,10 @@ def named(monkeypatch):
     """named({name: answer}, came, right) -> the name of the mistake that an answer shows; right is 1."""
 
     def named(answers, *came, right=1.0):
-        mistakes = [Misconception(name, "merge", "", lambda k, one=one: one) for name, one in answers.items()]
+        mistakes = [
+            Misconception(name, "merge", "", lambda k, one=one: one)
+            for name, one in answers.items()
+        ]
         monkeypatch.setattr(misconceptions, "of_task", lambda task: mistakes)
         monkeypatch.setattr(plan, "function", lambda task: lambda k: right)
         found = closest(TASK, [((k,), {}, one) for k, one in enumerate(came)])
@@ -199,7 +214,9 @@ def test_of_the_librarys_tasks_each_has_the_changes_that_begin_with_its_name():
         expected = [one for one in misconceptions.CHANGES if misconceptions.task_of(one) == task.id]
         assert names == sorted(expected) and names
     once = {one.name: one.once for one in misconceptions.known()}
-    assert once == {name: "misses" not in one for name, one in sorted(misconceptions.CHANGES.items())}
+    assert once == {
+        name: "misses" not in one for name, one in sorted(misconceptions.CHANGES.items())
+    }
     assert (MISTAKES / "changes.toml").is_file() and set(once.values()) == {True, False}
 
 
@@ -210,7 +227,9 @@ def test_a_change_must_stand_once_in_the_solution(monkeypatch):
     assert misconceptions.put_in(cells, "merge_x") == {"hat": "old", "merge": "new and less"}
     assert cells["merge"] == "old and more"
     for text in ("more", "old old more"):
-        with pytest.raises(ValueError, match="expected once in the solution of merge, for merge_x: old"):
+        with pytest.raises(
+            ValueError, match="expected once in the solution of merge, for merge_x: old"
+        ):
             misconceptions.put_in({"merge": text}, "merge_x")
 
 

@@ -31,7 +31,20 @@ HEADER = (
 
 
 def row(number, name, id="", email="", grade="", most="100.00", text=""):
-    return (f"Participant {number}", name, id, email, "Submitted", grade, most, "Yes", "-", text, "-", "Well")
+    return (
+        f"Participant {number}",
+        name,
+        id,
+        email,
+        "Submitted",
+        grade,
+        most,
+        "Yes",
+        "-",
+        text,
+        "-",
+        "Well",
+    )
 
 
 WORKSHEET = [
@@ -81,7 +94,9 @@ def test_the_gradebook_s_table_says_who_in_three_ways_and_the_score_after_its_pe
     assert [line[3] for line in read[1:]] == ["88.5", "88.5", "0.0", "0.0"]
 
 
-def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the_scores(write, tmp_path):
+def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the_scores(
+    write, tmp_path
+):
     write()
     with open(tmp_path / "moodle_worksheet.csv", encoding="utf-8-sig", newline="") as file:
         lines = list(csv.DictReader(file))
@@ -91,7 +106,9 @@ def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the
     assert grades == {"4711": "88.5", "4712": "88.5", "4713": "12.00", "4714": "", "4715": "55.00"}
 
 
-def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can_read(write, tmp_path):
+def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can_read(
+    write, tmp_path
+):
     write()
     with zipfile.ZipFile(tmp_path / "moodle_feedback.zip") as archive:
         found = {importer(name): archive.read(name) for name in archive.namelist()}
@@ -99,7 +116,9 @@ def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can
     assert found == {(4711, kind, "feedback.html"): page, (4712, kind, "feedback.html"): page}
 
 
-def test_whom_the_roster_does_not_know_is_told_of_and_names_in_a_student_s_text_count_for_nothing(write):
+def test_whom_the_roster_does_not_know_is_told_of_and_names_in_a_student_s_text_count_for_nothing(
+    write,
+):
     (said,) = write()
     assert "sheet.csv" in said and "'Eve'" in said
 

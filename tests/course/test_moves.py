@@ -115,9 +115,14 @@ def test_requests_are_a_teams_in_four_hundred_characters(tmp_path):
     table = tmp_path / "a.csv"
     table.write_text(f"student,task,words\nB1,hat,why?\n'=b2,merge,{'n' * 500}\nb1,x,y\n", "utf8")
     found = regrade.requests([table, table], CLASS)
-    assert found["t"] == ["hat: why?", "x: y"] * 2 and [len(one) for one in found["u"]] == [400, 400]
+    assert found["t"] == ["hat: why?", "x: y"] * 2 and [len(one) for one in found["u"]] == [
+        400,
+        400,
+    ]
     table.write_text("student,task\nb1,hat\n", "utf8")
-    with pytest.raises(ValueError, match="expected the columns student, task, words, got student, task"):
+    with pytest.raises(
+        ValueError, match="expected the columns student, task, words, got student, task"
+    ):
         regrade.requests([table], CLASS)
 
 
@@ -126,19 +131,27 @@ def applied(out, *found, secret="secret", **said):
     return [json.loads(one) for one in (out / "journal.jsonl").read_text("utf8").splitlines()]
 
 
-def test_what_counts_is_copied_the_old_goes_into_history_and_the_journal_grows_by_a_signed_line(folder):
+def test_what_counts_is_copied_the_old_goes_into_history_and_the_journal_grows_by_a_signed_line(
+    folder,
+):
     out = folder(result(5), result(7))
     lines = applied(out, *moves(out), why="a bug")
     assert (
-        [line["number"] for line in lines] == [1] and lines[0]["before"] == "" and lines[0]["why"] == "a bug"
+        [line["number"] for line in lines] == [1]
+        and lines[0]["before"] == ""
+        and lines[0]["why"] == "a bug"
     )
     assert lines[0]["moved"] == {"t": [5.0, 7.0]} and len(lines[0]["signature"]) == 64
     assert regrade._read(journal.place(out / "results", PIECE)) == result(7)
     old = journal.place(out / "history" / "1", PIECE._replace(key="old"))
     assert regrade._read(old) == result(5) and old.parent.stat().st_mode & 0o777 == 0o700
     again = applied(out, Move(PIECE, 7, 6, 7, 0, False, ()))
-    assert [line["number"] for line in again] == [1, 2] and again[1]["before"] == lines[0]["signature"]
-    assert again[1]["moved"] == {} and regrade._read(journal.place(out / "results", PIECE)) == result(7)
+    assert [line["number"] for line in again] == [1, 2] and again[1]["before"] == lines[0][
+        "signature"
+    ]
+    assert again[1]["moved"] == {} and regrade._read(
+        journal.place(out / "results", PIECE)
+    ) == result(7)
     assert regrade.signed_lines(out, "secret") == again and applied(out) == again
     for secret in ("other", ""):
         with pytest.raises(
@@ -147,7 +160,9 @@ def test_what_counts_is_copied_the_old_goes_into_history_and_the_journal_grows_b
             applied(out, secret=secret)
 
 
-@pytest.mark.parametrize("change", [{"number": 3}, {"before": "x"}, {"why": "none"}, {"signature": "0"}])
+@pytest.mark.parametrize(
+    "change", [{"number": 3}, {"before": "x"}, {"why": "none"}, {"signature": "0"}]
+)
 def test_a_line_that_was_changed_is_found(change, folder):
     out = folder(result(5), result(7))
     assert regrade.signed_lines(out, "secret") == []
@@ -157,7 +172,8 @@ def test_a_line_that_was_changed_is_found(change, folder):
     text = "".join(json.dumps(line) + "\n" for line in (first, second | change))
     (out / "journal.jsonl").write_text(text, "utf8")
     with pytest.raises(
-        ValueError, match="journal.jsonl, line 2: expected a line that the course's secret has signed"
+        ValueError,
+        match="journal.jsonl, line 2: expected a line that the course's secret has signed",
     ):
         regrade.signed_lines(out, "secret")
     (out / "journal.jsonl").write_text(json.dumps(dict(reversed(first.items()))) + "\n", "utf8")
@@ -173,9 +189,14 @@ def test_a_result_that_is_kept_stays_under_the_new_key(folder):
 
 def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monkeypatch):
     asked = []
-    monkeypatch.setattr(regrade, "render_page", lambda *given, **words: asked.append(words) or "a page")
+    monkeypatch.setattr(
+        regrade, "render_page", lambda *given, **words: asked.append(words) or "a page"
+    )
     change = ("a", "It ps", "fails \u2192 holds")
-    found = [Move(PIECE, 0.5, 9, 9, 8.5, True, (change,)), Move(PIECE, None, 3, 3, 3, True, (change,))]
+    found = [
+        Move(PIECE, 0.5, 9, 9, 8.5, True, (change,)),
+        Move(PIECE, None, 3, 3, 3, True, (change,)),
+    ]
     page = regrade.write(tmp_path, found, 10, "replace")
     assert page == tmp_path / "regrade" / "regrade.html" and page.read_text("utf8") == "a page"
     assert page.parent.stat().st_mode & 0o777 == 0o700
@@ -183,7 +204,11 @@ def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monk
     assert (words["found"], words["whole"], words["policy"]) == (found, 10, "replace")
     assert words["promises"] == [(change, 2)]
     bins = list(words["bins"])
-    assert bins[0] == ((0, 1), (0, 0)) and bins[3] == ((30, 0), (30, 1)) and bins[9] == ((90, 0), (90, 1))
+    assert (
+        bins[0] == ((0, 1), (0, 0))
+        and bins[3] == ((30, 0), (30, 1))
+        and bins[9] == ((90, 0), (90, 1))
+    )
 
 
 def test_a_teams_name_may_have_dots(tmp_path):

@@ -23,7 +23,9 @@ def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monke
     seen = []
 
     def run(work, piece, *, patience, stopped):
-        seen.append((work, piece.owner, piece.path.name, piece.path.read_bytes(), patience, stopped))
+        seen.append(
+            (work, piece.owner, piece.path.name, piece.path.read_bytes(), patience, stopped)
+        )
         if fails:
             raise alone.Failed("it fails")
         return b"result"
@@ -32,7 +34,12 @@ def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monke
     monkeypatch.setattr(cluster, "_watch", lambda: "watched")
     ready = []
     task = Task(
-        len, lambda: ready.append(1), Piece("ada", Path("/far/hw.py"), "k"), b"x", 3.0, cluster.version()
+        len,
+        lambda: ready.append(1),
+        Piece("ada", Path("/far/hw.py"), "k"),
+        b"x",
+        3.0,
+        cluster.version(),
     )
     assert cluster.do(task) == (b"-it fails" if fails else b"+result")
     assert seen == [(len, "ada", "hw.py", b"x", 3.0, "watched")] and ready == [1]
@@ -42,7 +49,10 @@ def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monke
 
 
 def test_a_task_is_no_longer_wanted_when_it_is_forgotten_or_cancelled(monkeypatch):
-    tasks = {"mine": SimpleNamespace(state="executing"), "other": SimpleNamespace(state="cancelled")}
+    tasks = {
+        "mine": SimpleNamespace(state="executing"),
+        "other": SimpleNamespace(state="cancelled"),
+    }
     worker = SimpleNamespace(get_current_task=lambda: "mine", state=SimpleNamespace(tasks=tasks))
     monkeypatch.setattr(cluster.distributed, "get_worker", lambda: worker)
     stopped = cluster._watch()

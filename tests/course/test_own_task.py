@@ -67,7 +67,9 @@ def test_a_name_that_is_there_or_that_no_function_can_have_is_refused(folder, na
         list(own_task.write(folder, name, "extra"))
 
 
-def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(folder, tmp_path, monkeypatch):
+def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
+    folder, tmp_path, monkeypatch
+):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     out = tmp_path / "handout"
     made = list(handouts.build_steps(plan.read(folder / "plan.toml"), folder / "sheets", out, None))
@@ -81,7 +83,9 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(folder, tm
     monkeypatch.chdir(out)
     exec(given[given.index("use_plan(") :], {"use_plan": notebook.use_plan})
     homework, tasks = notebook.find_tasks("flat_field")
-    assert tasks == ["flat_field"] and grading.files_of(homework, None) == [checks / "test_flat_field.py"]
+    assert tasks == ["flat_field"] and grading.files_of(homework, None) == [
+        checks / "test_flat_field.py"
+    ]
 
 
 def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
@@ -97,9 +101,13 @@ def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, 
 @pytest.mark.parametrize(("marks", "points"), [((), "1"), ((3,), "3"), ((0.5,), "1/2")])
 def test_a_check_is_worth_what_its_marker_says_and_without_one_a_point(marks, points, tmp_path):
     mark = pytest.mark.points(*marks).mark if marks else None
-    check = SimpleNamespace(name="test_a", path=Path("test_hat.py"), get_closest_marker=lambda name: mark)
+    check = SimpleNamespace(
+        name="test_a", path=Path("test_hat.py"), get_closest_marker=lambda name: mark
+    )
     out = tmp_path / "lines"
-    Checking({"out": str(out), "hidden": ""}).pytest_collection_finish(SimpleNamespace(items=[check]))
+    Checking({"out": str(out), "hidden": ""}).pytest_collection_finish(
+        SimpleNamespace(items=[check])
+    )
     assert json.loads(out.read_text())["points"] == points
 
 
@@ -119,14 +127,18 @@ def test_gradescope_gets_the_task_its_checks_and_its_mistakes(folder, tmp_path):
         tmp_path / "source", ["plan.toml", "flat_field.py", "test_flat_field.py"]
     )
     held = zipfile.ZipFile(file).namelist()
-    assert "mistakes/flat_field_multiplied.py" in held and not any(one.startswith("hidden/") for one in held)
+    assert "mistakes/flat_field_multiplied.py" in held and not any(
+        one.startswith("hidden/") for one in held
+    )
     assert grading.files_of(extra(tmp_path / "source"), None)[0].is_file()
 
 
 def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):
     task = extra(folder).tasks[0]
     text = (folder / "flat_field.py").read_text()
-    text = text.replace("import numpy as np", "import numpy as np\n\nfrom hdrlab.core.weights import hat")
+    text = text.replace(
+        "import numpy as np", "import numpy as np\n\nfrom hdrlab.core.weights import hat"
+    )
     task.own.write_text(text.replace("flat.mean() / flat", "hat().max() * flat.mean() / flat"))
     block = inline.inlined({task.id: task.function})[task.id].text
     assert "def hat(" in block and "hdrlab" not in block
@@ -135,6 +147,9 @@ def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):
 
 def test_its_own_tests_hold_as_written(folder):
     ran = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", str(folder)], cwd=folder, capture_output=True, text=True
+        [sys.executable, "-m", "pytest", "-q", str(folder)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
     )
     assert ran.returncode == 0 and "15 passed" in ran.stdout, ran.stdout

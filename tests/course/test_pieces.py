@@ -44,7 +44,12 @@ class Book:
 def test_a_piece_is_tried_three_times_and_its_defaults_blame_it():
     assert journal.TRIES == 3
     (piece,) = pieces("a")
-    assert Ending(piece, None) == (piece, None, "", True) and Done(piece, None) == (piece, None, "", True)
+    assert Ending(piece, None) == (piece, None, "", True) and Done(piece, None) == (
+        piece,
+        None,
+        "",
+        True,
+    )
 
 
 def test_each_result_is_written_for_its_owner_alone_as_soon_as_it_is_there(tmp_path):
@@ -94,13 +99,20 @@ def test_older_results_of_an_owner_go_when_the_new_one_is_there_and_those_of_oth
     wanted = pieces("a")
     assert journal.older(tmp_path, wanted) == {"a": [old]}
     assert journal.older(tmp_path, pieces("a.b", key="2")) == {"a.b": [dotted]}
-    assert journal.older(tmp_path, pieces("a", key="1")) == {} == journal.older(tmp_path, pieces("x"))
+    assert (
+        journal.older(tmp_path, pieces("a", key="1")) == {} == journal.older(tmp_path, pieces("x"))
+    )
     (failed,) = journal.done_steps(wanted, Book(a=["no"]), tmp_path)
     assert failed.result is None and old.exists()
     steps = journal.done_steps(wanted, Book(), tmp_path)
     old.unlink()
     assert next(steps).result == tmp_path / "a.k.json"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.b.1.json", "a.k.json", "a.txt", "b.1.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "a.b.1.json",
+        "a.k.json",
+        "a.txt",
+        "b.1.json",
+    ]
     old.write_bytes(b"old")
     list(journal.done_steps(wanted, Book(), tmp_path))
     assert not old.exists() and other.exists() and dotted.exists()
@@ -128,7 +140,9 @@ def test_a_file_is_on_the_disk_before_it_has_its_name_and_then_its_folder_is(tmp
     def fsync(handle):
         handles.append(handle)
         kind = os.fstat(handle)
-        synced.append(("folder" if stat.S_ISDIR(kind.st_mode) else kind.st_size, (tmp_path / "a").exists()))
+        synced.append(
+            ("folder" if stat.S_ISDIR(kind.st_mode) else kind.st_size, (tmp_path / "a").exists())
+        )
         real(handle)
 
     monkeypatch.setattr(os, "fsync", fsync)

@@ -30,7 +30,10 @@ def test_what_is_not_said_is_nothing_and_the_strict_tier():
 
 
 def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp_path):
-    library, own = Task("a", "response.debevec.gsolve", 1), Task("a", f"{tmp_path}/v.1.py:vignette", 1)
+    library, own = (
+        Task("a", "response.debevec.gsolve", 1),
+        Task("a", f"{tmp_path}/v.1.py:vignette", 1),
+    )
     assert (library.name, library.own) == ("gsolve", None)
     assert (own.name, own.own) == ("vignette", tmp_path / "v.1.py")
     assert Task("a", "plain", 1).name == "plain"
@@ -53,13 +56,17 @@ def test_a_solution_is_the_librarys_a_variants_or_ones_own(tmp_path):
 def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
     found = read(tasks=f"{{ {TASK}, points = 2, minimum = true }}").homeworks["hw9"]
     assert found.tasks == (Task("gsolve", "response.debevec.gsolve", 2.0, True),)
-    assert not read(tasks=f"{{ {TASK}, points = 2, minimum = 1 }}").homeworks["hw9"].tasks[0].minimum
+    assert (
+        not read(tasks=f"{{ {TASK}, points = 2, minimum = 1 }}").homeworks["hw9"].tasks[0].minimum
+    )
     shift = 'id = "shift", function = "align.mtb.shift", points = 1'
     names = list(plan.rewording.parameters("shift"))
     for some in ([], names[:1], names):
         task = read(tasks=f"{{ {shift}, parameters = {some} }}").homeworks["hw9"].tasks[0]
         assert task.parameters == tuple(some)
-    with pytest.raises(ValueError, match=rf"expected parameters of shift out of {', '.join(names)}, got"):
+    with pytest.raises(
+        ValueError, match=rf"expected parameters of shift out of {', '.join(names)}, got"
+    ):
         read(tasks=f"{{ {shift}, parameters = ['other'] }}")
     with pytest.raises(ValueError, match="expected parameters of gsolve out of none"):
         read(tasks=f"{{ {TASK}, points = 1, parameters = ['other'] }}")
@@ -101,7 +108,9 @@ def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, re
     ],
 )
 def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
-    lines = f"by_hand = [{{ title = 'T', points = {by_hand}, rubric = ['a', 1] }}]" if by_hand else ""
+    lines = (
+        f"by_hand = [{{ title = 'T', points = {by_hand}, rubric = ['a', 1] }}]" if by_hand else ""
+    )
     if said:
         with pytest.raises(ValueError, match=said):
             read(lines, f"{{ {TASK}, points = {points} }}")
@@ -114,7 +123,9 @@ def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
 @pytest.mark.parametrize(
     ("at_most", "taken"), [(7.5, True), (0.1, True), (10.5, True), (10.6, False), (0, False)]
 )
-def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_hand(at_most, taken, read):
+def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_hand(
+    at_most, taken, read
+):
     lines = f"at_most = {at_most}\nby_hand = [{{ title = 'T', points = 3 }}]"
     if taken:
         assert read(lines).homeworks["hw9"].at_most == at_most
@@ -141,14 +152,18 @@ def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
     if taken:
         assert read(before=late).late == (free, a_day)
     else:
-        with pytest.raises(ValueError, match=r"expected free_days and points_a_day, at least 0, in \[late\]"):
+        with pytest.raises(
+            ValueError, match=r"expected free_days and points_a_day, at least 0, in \[late\]"
+        ):
             read(before=late)
 
 
 @pytest.mark.parametrize("due", ["2026-10-01T12:00:00", "2026-10-01", "7", "12:00:00"])
 def test_a_due_date_has_a_time_and_a_zone(due, read):
     assert read().homeworks["hw9"].due.isoformat() == "2026-10-01T12:00:00+00:00"
-    with pytest.raises(ValueError, match=r"expected due of \[hw9\] as a date with time and zone, got"):
+    with pytest.raises(
+        ValueError, match=r"expected due of \[hw9\] as a date with time and zone, got"
+    ):
         read(due=due)
 
 
@@ -163,7 +178,9 @@ def test_a_task_stands_once_in_all_homeworks_and_is_found_by_its_id(read):
         read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
 
 
-def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_no_homework(tmp_path):
+def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_no_homework(
+    tmp_path,
+):
     own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))
     with pytest.raises(ValueError, match=f"expected checks for hw2 in {tmp_path}, got none"):
         grading.files_of(own, None)

@@ -13,7 +13,15 @@ from PIL.PngImagePlugin import PngInfo
 from hdrlab.course.projects import exif as parts, privacy
 from hdrlab.io.decode import look
 
-SECRETS = (b"SERIAL-4711", b"LENS-0815", b"Ada Owner", b"MAKERNOTE", b"gps:51.5N", b"home address", b"THUMB")
+SECRETS = (
+    b"SERIAL-4711",
+    b"LENS-0815",
+    b"Ada Owner",
+    b"MAKERNOTE",
+    b"gps:51.5N",
+    b"home address",
+    b"THUMB",
+)
 NUMBERS = [struct.pack(f"{s}LL", *pair) for s in "<>" for pair in ((51, 1), (4711, 13))]
 
 
@@ -35,7 +43,9 @@ def picture(shape=(40, 60, 3)):
 
 def jpeg(**knobs):
     file = io.BytesIO()
-    picture().save(file, "JPEG", exif=exif(), comment=b"home address", xmp=b"<x gps:51.5N GPS/>", **knobs)
+    picture().save(
+        file, "JPEG", exif=exif(), comment=b"home address", xmp=b"<x gps:51.5N GPS/>", **knobs
+    )
     return file.getvalue() + b"THUMB" + exif().tobytes()
 
 
@@ -63,7 +73,12 @@ def tiff():
         data += parts._written(inner, len(data), sign)
     given += [one for one in entries if one.tag in (0x010F, 0x0110, 0x013B)]
     given.append(parts.Entry(0x02BC, 1, 14, b"<x gps:51.5N/>", 0))
-    return data[:4] + struct.pack("<L", len(data)) + data[8:] + parts._written(sorted(given), len(data), sign)
+    return (
+        data[:4]
+        + struct.pack("<L", len(data))
+        + data[8:]
+        + parts._written(sorted(given), len(data), sign)
+    )
 
 
 FILES = {
@@ -83,7 +98,9 @@ def pixels(data):
 @pytest.mark.parametrize("name", FILES)
 def test_nothing_tells_where_and_by_which_camera(name):
     before = FILES[name]
-    assert any(secret in before for secret in SECRETS) and any(number in before for number in NUMBERS)
+    assert any(secret in before for secret in SECRETS) and any(
+        number in before for number in NUMBERS
+    )
     after = privacy.clean(name, before)
     assert not [secret for secret in SECRETS if secret in after.data]
     assert not [number for number in NUMBERS if number in after.data]

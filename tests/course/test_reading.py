@@ -68,7 +68,9 @@ def test_a_file_is_read_in_two_seconds_and_an_archive_in_five(name, seconds, tri
 def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
     asked = tried(failed(own=True))
     said = "a.zip takes more than 5 s or 500 MB to read, as no homework does"
-    assert submission.read(Path("a.zip"), "hw2", []) == Submission({}, (said,), "") and len(asked) == 1
+    assert (
+        submission.read(Path("a.zip"), "hw2", []) == Submission({}, (said,), "") and len(asked) == 1
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,7 +83,9 @@ def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
         ([failed(killed=True), failed(), SAID], 2, False),
     ],
 )
-def test_a_process_that_somebody_ends_is_tried_three_times_and_any_other_once(endings, tries, read, tried):
+def test_a_process_that_somebody_ends_is_tried_three_times_and_any_other_once(
+    endings, tries, read, tried
+):
     asked = tried(*endings)
     if read:
         assert submission.read(Path("a.py"), "hw2", []).hash == "digest"
@@ -166,7 +170,10 @@ def test_twelve_problems_are_told_each_in_three_hundred_characters(read):
     ("data", "problems"),
     [
         (b"", ("hw.py is empty",)),
-        (b" \n", ("hw.py is empty", "f was not found: no cell defines a function of this name")[:1]),
+        (
+            b" \n",
+            ("hw.py is empty", "f was not found: no cell defines a function of this name")[:1],
+        ),
         (b"\xff", ("hw.py is neither a notebook nor Python text; save it in UTF-8",)),
         (b"# nothing", ("f was not found: no cell defines a function of this name",)),
         (b'{"cells": []}', ("f was not found: no cell defines a function of this name",)),

@@ -23,7 +23,16 @@ STUDENTS = {"b1": "t", "b2": "t", "b3": "b3", "b4": "b4", "b5": "b5"}
 TEAMS = sorted({*STUDENTS.values()})
 BOOKS = ("gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html")
 HISTORIES = int(os.environ.get("HDRLAB_HISTORIES", "20"))  # a thousand take a quarter of an hour
-WORDS = ["--homework", "hw2", "--plan", "plan.toml", "--roster", "roster.csv", "--received", "times.csv"]
+WORDS = [
+    "--homework",
+    "hw2",
+    "--plan",
+    "plan.toml",
+    "--roster",
+    "roster.csv",
+    "--received",
+    "times.csv",
+]
 WORDS += ["--hidden", "checks"]
 OPEN = [*WORDS]
 WORDS += ["--secret-file", "secret.txt"]
@@ -79,7 +88,9 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "_executor", Guessing)
     monkeypatch.setattr(command, "_compare", lambda *_: None)
-    monkeypatch.setattr(os, "fsync", lambda _: None)  # which is for the mains switch: a kill leaves the disk
+    monkeypatch.setattr(
+        os, "fsync", lambda _: None
+    )  # which is for the mains switch: a kill leaves the disk
     make_class(tmp_path)
     return tmp_path
 
@@ -104,7 +115,9 @@ def hand_in(team, text, days):
     Path(f"in/{team}_hw2.py").write_text(f"# {team}: {text}\n")
     table = Path("times.csv")
     lines = table.read_text().splitlines() if table.exists() else ["file,received"]
-    times = dict(line.split(",") for line in lines) | {f"{team}_hw2.py": f"2026-10-{23 + days}T12:00Z"}
+    times = dict(line.split(",") for line in lines) | {
+        f"{team}_hw2.py": f"2026-10-{23 + days}T12:00Z"
+    }
     table.write_text("".join(f"{name},{when}\n" for name, when in times.items()))
 
 
@@ -120,7 +133,9 @@ def grade(out="out", *more):
 
 def work(out="out"):
     """Return each student's points before what being late costs."""
-    return {row["student"]: float(row["work"]) for row in sheets.read_csv(Path(out) / "gradebook.csv")}
+    return {
+        row["student"]: float(row["work"]) for row in sheets.read_csv(Path(out) / "gradebook.csv")
+    }
 
 
 def contents(out, *parts):
@@ -142,7 +157,9 @@ def moved(seed, direction):
 
 
 def guessed(team):
-    return Guessing(None, None).result(type("Piece", (), {"owner": team, "path": Path(f"in/{team}_hw2.py")}))
+    return Guessing(None, None).result(
+        type("Piece", (), {"owner": team, "path": Path(f"in/{team}_hw2.py")})
+    )
 
 
 def test_who_moves_by_how_much_and_why_is_seen_before_anything_counts(folder, capsys):
@@ -166,7 +183,9 @@ def test_who_moves_by_how_much_and_why_is_seen_before_anything_counts(folder, ca
     assert f"{len(TEAMS)} were graded anew: {up} would move up, {down} down" in said
     page = Path("out/regrade/regrade.html").read_text()
     assert "→" in page and f"{up + down} of {len(TEAMS)} works would get other points" in page
-    assert all(f"feedback/{team}/feedback.html" in page for team in TEAMS if before[team] != after[team])
+    assert all(
+        f"feedback/{team}/feedback.html" in page for team in TEAMS if before[team] != after[team]
+    )
 
 
 def test_what_is_applied_is_what_grading_from_scratch_gives_and_the_old_results_stay(folder):
@@ -209,7 +228,17 @@ def test_only_who_is_listed_or_has_asked_moves(folder):
         if all(before[who] != after[who] for who in STUDENTS):
             break
     Path("asked.csv").write_text('student,task,words\nB3,hat,"the middle, please"\n')
-    run("regrade", "out", "--policy", "only-listed", "--only", "b1", "--requests", "asked.csv", "--apply")
+    run(
+        "regrade",
+        "out",
+        "--policy",
+        "only-listed",
+        "--only",
+        "b1",
+        "--requests",
+        "asked.csv",
+        "--apply",
+    )
     listed = ("b1", "b2", "b3")  # of a team, both
     assert work() == {who: (after if who in listed else before)[who] for who in STUDENTS}
     assert "hat: the middle, please" in Path("out/regrade/regrade.html").read_text()
@@ -268,7 +297,9 @@ def test_what_cannot_be_graded_anew_keeps_its_points(folder, monkeypatch, capsys
     )
     run("regrade", "out", "--apply")
     assert "warning: b4: it ended 3 times without a result" in capsys.readouterr().err
-    expected = {who: json.loads(guessed(team))["score"] for who, team in STUDENTS.items() if team != "b4"}
+    expected = {
+        who: json.loads(guessed(team))["score"] for who, team in STUDENTS.items() if team != "b4"
+    }
     assert work() == expected | {"b4": before["b4"]}
 
 
@@ -284,9 +315,17 @@ def test_a_secret_that_is_gone_is_told_of_and_not_made_anew(folder, capsys):
     ("prepare", "words", "said"),
     [
         (lambda: None, [], "expected the results of a class that `hdrlab grade` has graded"),
-        (lambda: grade("out"), ["--requests", "roster.csv"], "expected the columns student, task, words"),
+        (
+            lambda: grade("out"),
+            ["--requests", "roster.csv"],
+            "expected the columns student, task, words",
+        ),
         (lambda: grade("out"), ["--only", "b9"], "expected a student of the roster, got 'b9'"),
-        (lambda: (run("grade", "in", *OPEN, "-o", "out"), correct("1")), ["--apply"], "with --secret-file"),
+        (
+            lambda: (run("grade", "in", *OPEN, "-o", "out"), correct("1")),
+            ["--apply"],
+            "with --secret-file",
+        ),
     ],
 )
 def test_what_cannot_be_regraded_is_told_in_a_line(folder, capsys, prepare, words, said):
@@ -345,7 +384,9 @@ def lived(rng):
         elif event == "grade":
             kills += killed(rng, "grade", "in", *WORDS, "-o", "out")
         elif event == "regrade":
-            more = rng.choice([[], ["--apply"], ["--apply", "--policy", "only-listed", "--only", "b3"]])
+            more = rng.choice(
+                [[], ["--apply"], ["--apply", "--policy", "only-listed", "--only", "b3"]]
+            )
             kills += killed(rng, "regrade", "out", *more)
         elif event == "never-lower":
             grade()

@@ -33,7 +33,9 @@ def hostile():
         picture,
         HOSTILE,
     )
-    hidden = bad._replace(name="test_c", promise="The hidden one", hidden=True, message="the secret", said="")
+    hidden = bad._replace(
+        name="test_c", promise="The hidden one", hidden=True, message="the secret", said=""
+    )
     return Result(
         student=HOSTILE,
         homework="hw2",
@@ -53,7 +55,9 @@ def test_the_json_is_read_again_as_it_was(hostile):
     data = results.to_json(hostile)
     assert results.from_json(data) == hostile
     read = json.loads(data)
-    assert {"score", "max_score", "tier", "checks"} <= set(read) and read["version"] == results.VERSION
+    assert {"score", "max_score", "tier", "checks"} <= set(read) and read[
+        "version"
+    ] == results.VERSION
     assert data.isascii()
 
 
@@ -88,7 +92,11 @@ def test_without_a_secret_a_score_is_for_practice_whatever_the_tier(hostile):
 def values(read):
     """All texts of a JSON."""
     if isinstance(read, dict | list):
-        return [text for one in (read.values() if isinstance(read, dict) else read) for text in values(one)]
+        return [
+            text
+            for one in (read.values() if isinstance(read, dict) else read)
+            for text in values(one)
+        ]
     return [str(read)]
 
 
@@ -96,14 +104,27 @@ SECRETS = ("the message", "first hint", "expected 0.25", "what it printed", "tes
 
 
 def test_a_teams_copy_holds_of_a_hidden_check_its_words_and_points_alone(hostile):
-    picture = Drawing((web.encode_webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",))
-    hidden = Check("gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1])
-    hidden = hidden._replace(hints=("first hint",), drawing=picture, said="what it printed", hidden=True)
+    picture = Drawing(
+        (web.encode_webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",)
+    )
+    hidden = Check(
+        "gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1]
+    )
+    hidden = hidden._replace(
+        hints=("first hint",), drawing=picture, said="what it printed", hidden=True
+    )
     own = hostile.checks[1]._replace(message="yours to read")
     whole = results.to_json(hostile._replace(checks=(own, hidden)))
     shown = json.loads(results.for_team(whole))
     assert not [text for text in values(shown) if any(secret in text for secret in SECRETS)]
-    assert set(shown["checks"][1]) == {"task", "promise", "points", "max_points", "outcome", "hidden"}
+    assert set(shown["checks"][1]) == {
+        "task",
+        "promise",
+        "points",
+        "max_points",
+        "outcome",
+        "hidden",
+    }
     assert shown["checks"][0]["message"] == "yours to read" and shown["score"] == 0
 
 
@@ -141,7 +162,9 @@ def test_gradescope_gets_what_its_schema_asks(hostile):
         assert isinstance(one["score"], float) and isinstance(one["max_score"], float)
         assert one["status"] in {"passed", "failed"} and one["visibility"] in visibilities
         assert (
-            isinstance(one["name"], str) and isinstance(one["output"], str) and one["output_format"] == "text"
+            isinstance(one["name"], str)
+            and isinstance(one["output"], str)
+            and one["output_format"] == "text"
         )
     assert sum(one["score"] for one in read["tests"]) == pytest.approx(read["score"])
     assert "the secret" not in json.dumps(read)
@@ -173,7 +196,10 @@ def test_the_hints_are_three_steps_each_within_the_one_before(hostile):
     check = hostile.checks[1]._replace(hints=("first", "second", "third"))
     page = feedback.fragment(hostile._replace(checks=(check,)))
     assert (
-        page.index("first") < page.index("Another hint") < page.index("second") < page.index("The last hint")
+        page.index("first")
+        < page.index("Another hint")
+        < page.index("second")
+        < page.index("The last hint")
     )
     assert page.count("<details") == page.count("</details>")
 
@@ -188,7 +214,9 @@ def test_a_terminal_sees_hints_only_when_it_asks(hostile):
     check = hostile.checks[1]._replace(hints=("first", "second", "third"))
     result = hostile._replace(checks=(check,))
     assert "first" not in feedback.text(result)
-    assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(result, hints=1)
+    assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(
+        result, hints=1
+    )
     assert "third" in feedback.text(result, hints=3)
 
 
@@ -196,7 +224,12 @@ def chosen(earned, at_most):
     """A Result of three tasks of 40 points each, of which so many count."""
     checks = [
         Check(
-            f"task{n}", "test_a", "It holds", Fraction(points), Fraction(40), "holds" if points else "fails"
+            f"task{n}",
+            "test_a",
+            "It holds",
+            Fraction(points),
+            Fraction(40),
+            "holds" if points else "fails",
         )
         for n, points in enumerate(earned)
     ]
@@ -208,15 +241,22 @@ def chosen(earned, at_most):
 
 
 @pytest.mark.parametrize(
-    ("earned", "at_most", "score"), [((40, 40, 0), 80, 80), ((40, 40, 40), 80, 80), ((40, 20, 0), 80, 60)]
+    ("earned", "at_most", "score"),
+    [((40, 40, 0), 80, 80), ((40, 40, 40), 80, 80), ((40, 20, 0), 80, 60)],
 )
-def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(earned, at_most, score):
+def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(
+    earned, at_most, score
+):
     result = chosen(earned, at_most)
     assert (result.score, result.max_score) == (score, 80)
     assert json.loads(gradebook.gradescope(result))["score"] == score
     assert f"hw4: {score} of 80 points" in feedback.text(result)
     (row,) = csv.DictReader(io.StringIO(gradebook.table(result)))
-    assert (float(row["score"]), float(row["max_score"]), float(row["task1"])) == (score, 80, earned[1])
+    assert (float(row["score"]), float(row["max_score"]), float(row["task1"])) == (
+        score,
+        80,
+        earned[1],
+    )
     assert results.from_json(results.to_json(result)) == result
 
 

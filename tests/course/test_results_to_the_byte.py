@@ -57,27 +57,38 @@ def test_a_result_is_this_text():
 
 
 def test_a_teams_copy_is_the_same_text_without_what_is_hidden():
-    hidden = RESULT._replace(checks=(CHECK, CHECK._replace(hidden=True, message="secret", said="s")))
+    hidden = RESULT._replace(
+        checks=(CHECK, CHECK._replace(hidden=True, message="secret", said="s"))
+    )
     shown = results.for_team(results.to_json(hidden))
     assert shown.startswith(b'{\n "version": 1,\n "student": "ada",') and shown.endswith(b"}\n")
     read = json.loads(shown)
-    assert set(read["checks"][0]) == set(results.OF_OWN) and set(read["checks"][1]) == set(results.OF_HIDDEN)
+    assert set(read["checks"][0]) == set(results.OF_OWN) and set(read["checks"][1]) == set(
+        results.OF_HIDDEN
+    )
     assert b"\\u00e9" in shown and b"secret" not in shown and "at_most" not in read
 
 
 @pytest.mark.parametrize("version", [0, 2, "1", None])
 def test_another_version_is_refused(version):
     with pytest.raises(ValueError, match="expected a result of version 1, written by hdrlab grade"):
-        results.from_json(json.dumps(json.loads(results.to_json(RESULT)) | {"version": version}).encode())
+        results.from_json(
+            json.dumps(json.loads(results.to_json(RESULT)) | {"version": version}).encode()
+        )
     with pytest.raises(ValueError, match="expected a result of version 1"):
         results.from_json(b"[1]")
 
 
 @pytest.mark.parametrize(
-    ("at_most", "score", "most"), [(None, 3.3333, 6), (3.0, 3, 3), (3.3333, 3.3333, 3.3333), (7.0, 3.3333, 6)]
+    ("at_most", "score", "most"),
+    [(None, 3.3333, 6), (3.0, 3, 3), (3.3333, 3.3333, 3.3333), (7.0, 3.3333, 6)],
 )
 def test_a_score_is_what_counts_of_the_points(at_most, score, most):
-    checks = (CHECK, CHECK._replace(task="b", points=Fraction(2)), CHECK._replace(points=Fraction(1)))
+    checks = (
+        CHECK,
+        CHECK._replace(task="b", points=Fraction(2)),
+        CHECK._replace(points=Fraction(1)),
+    )
     found = RESULT._replace(checks=checks, at_most=at_most)
     assert (found.score, found.max_score, found.tasks) == (score, most, ("a", "b"))
     assert found.of("a") == (checks[0], checks[2]) and results.points(found.of("b")) == (2, 2)
@@ -85,7 +96,12 @@ def test_a_score_is_what_counts_of_the_points(at_most, score, most):
 
 @pytest.mark.parametrize(
     ("tier", "seed", "credit"),
-    [("strict", "x", True), ("container", "x", True), ("practice", "x", False), ("strict", "", False)],
+    [
+        ("strict", "x", True),
+        ("container", "x", True),
+        ("practice", "x", False),
+        ("strict", "", False),
+    ],
 )
 def test_what_counts_ran_behind_walls_on_inputs_that_nobody_knew(tier, seed, credit):
     found = RESULT._replace(tier=tier, seed=seed)
@@ -99,7 +115,9 @@ def test_an_early_result_lacks_what_came_later():
     assert results.from_json(json.dumps(read).encode()) == RESULT
     for name in ("student", "checks", "problems"):
         with pytest.raises(ValueError, match="expected a result written by hdrlab grade"):
-            results.from_json(json.dumps({key: one for key, one in read.items() if key != name}).encode())
+            results.from_json(
+                json.dumps({key: one for key, one in read.items() if key != name}).encode()
+            )
     del read["checks"][0]["said"]
     with pytest.raises(ValueError, match="'said'"):
         results.from_json(json.dumps(read).encode())
@@ -107,7 +125,10 @@ def test_an_early_result_lacks_what_came_later():
 
 def test_pictures_travel_as_text():
     drawing = Drawing((b"RIFF", b"2"), ("a", "b"), ("c", "d"))
-    told = [{"webp": "UklGRg==", "alt": "a", "caption": "c"}, {"webp": "Mg==", "alt": "b", "caption": "d"}]
+    told = [
+        {"webp": "UklGRg==", "alt": "a", "caption": "c"},
+        {"webp": "Mg==", "alt": "b", "caption": "d"},
+    ]
     assert results.drawing_to_json(drawing) == told and results.drawing_from_json(told) == drawing
     with pytest.raises(ValueError, match="zip"):
         results.drawing_to_json(drawing._replace(alts=("a",)))
@@ -137,7 +158,10 @@ def test_all_forms_are_for_their_owner_alone(tmp_path):
         files = gradebook.write_results(folder, RESULT, shown)
         assert files == [folder / name for name in gradebook.FILES]
         assert {file.stat().st_mode & 0o777 for file in files} == {0o600}
-        assert folder.stat().st_mode & 0o777 == 0o700 and (folder / "result.json").read_bytes() == expected
+        assert (
+            folder.stat().st_mode & 0o777 == 0o700
+            and (folder / "result.json").read_bytes() == expected
+        )
     assert (
         gradebook.table(RESULT)
         == "student,homework,tier,score,max_score,a\r\nada,hw2,strict,0.3333,2.0,0.3333\r\n"

@@ -84,7 +84,9 @@ def test_names_that_no_file_confuses_are_taken(listed, text):
 @settings(max_examples=30)
 @given(
     st.lists(
-        st.text("ab1_-", min_size=1, max_size=4).filter(lambda id: id[0] != "-"), unique=True, min_size=1
+        st.text("ab1_-", min_size=1, max_size=4).filter(lambda id: id[0] != "-"),
+        unique=True,
+        min_size=1,
     )
 )
 def test_of_a_roster_that_is_taken_each_file_has_one_owner(tmp_path_factory, ids):
@@ -108,7 +110,18 @@ def test_a_stranger_and_a_mixed_team_are_told(listed):
 
 
 @pytest.mark.parametrize(
-    "cell", ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r\n=cmd|' /C calc'!A0", "|calc", "%x", "\uff1d1+1"]
+    "cell",
+    [
+        "=1+1",
+        "+1+1",
+        "-1+1",
+        "@SUM(A1)",
+        "\t=1",
+        "\r\n=cmd|' /C calc'!A0",
+        "|calc",
+        "%x",
+        "\uff1d1+1",
+    ],
 )
 def test_no_cell_is_a_formula(cell):
     assert sheets.safe(cell).startswith("'")

@@ -119,7 +119,11 @@ def test_answers_come_as_plain_arrays(subject):
     x = np.arange(6.0).reshape(2, 3)
     np.testing.assert_array_equal(subject.scaled(x, k=3), 3 * x)
     states = subject.steps(x)
-    assert [type(state) for state in states] == [tuple] * 3 and [int(n) for _, n in states] == [0, 1, 2]
+    assert [type(state) for state in states] == [tuple] * 3 and [int(n) for _, n in states] == [
+        0,
+        1,
+        2,
+    ]
     np.testing.assert_array_equal(states[2][0], x + 2)
     (array, one), raw, none, text, truth = subject.both(x)
     assert raw == b"bytes" and none is None and text == "text" and truth == 1 and one == 1
@@ -131,14 +135,24 @@ def test_answers_come_as_plain_arrays(subject):
 @pytest.mark.parametrize(
     ("task", "kind", "says"),
     [
-        ("wrong", "raised", r"wrong raised ZeroDivisionError: division by zero \(line \d+: y = 1 / 0\)"),
-        ("absent", "raised", "No module named 'cv2' .numpy, scipy and Python's own modules are here"),
+        (
+            "wrong",
+            "raised",
+            r"wrong raised ZeroDivisionError: division by zero \(line \d+: y = 1 / 0\)",
+        ),
+        (
+            "absent",
+            "raised",
+            "No module named 'cv2' .numpy, scipy and Python's own modules are here",
+        ),
         ("leaves", "died", "leaves ended its process, and gave no answer"),
         ("writes", "raised", "PermissionError: a function that is checked cannot write a file"),
         ("forks", "raised", "PermissionError: a function that is checked cannot start a process"),
     ],
 )
-def test_what_goes_wrong_is_said_in_plain_words_and_the_next_call_is_answered(subject, task, kind, says):
+def test_what_goes_wrong_is_said_in_plain_words_and_the_next_call_is_answered(
+    subject, task, kind, says
+):
     with pytest.raises(NoAnswer, match=says) as told:
         getattr(subject, task)(1.0)
     assert told.value.kind == kind
@@ -164,7 +178,11 @@ def test_nothing_is_kept_from_one_check_to_the_next(subject):
 
 def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject):
     subject.loud(1.0)
-    assert "said\n" in subject.said and "UserWarning: warned" in subject.said and "red\n" in subject.said
+    assert (
+        "said\n" in subject.said
+        and "UserWarning: warned" in subject.said
+        and "red\n" in subject.said
+    )
     assert "\x1b" not in subject.said
     subject.fresh()
     assert subject.said == ""
@@ -221,7 +239,16 @@ def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
     assert [int(hard) for _, hard in limits] == list(running.LIMITS.values())
     assert {int(answer) for answer in calls} == {-1}
     if tier == "strict":
-        assert set(places[0]) <= {"course", "dev", "etc", "lib", "lib64", "packages", "python", "usr"}
+        assert set(places[0]) <= {
+            "course",
+            "dev",
+            "etc",
+            "lib",
+            "lib64",
+            "packages",
+            "python",
+            "usr",
+        }
         assert set(places[1] or ()) <= {"alternatives", "ld.so.cache"}
         assert places[2:8] == [None] * 6
         assert places[8:] == [["null"], sorted(contents.OURS)]
@@ -267,7 +294,9 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
 
 
 @pytest.mark.parametrize("apart", [True, False])
-def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_are_there(apart, monkeypatch):
+def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_are_there(
+    apart, monkeypatch
+):
     whole = {"/lib", "/usr/lib"}
     own = {f"{folder}/riscv64-linux-gnu" for folder in whole}
     there = whole | own if apart else whole
@@ -304,7 +333,9 @@ def test_large_answers_are_not_remembered_without_end():
 
 
 def test_an_unknown_tier_is_an_error():
-    with pytest.raises(ValueError, match="expected one of the tiers strict, container, practice, got 'none'"):
+    with pytest.raises(
+        ValueError, match="expected one of the tiers strict, container, practice, got 'none'"
+    ):
         tiers.choose("none")
 
 
@@ -447,7 +478,11 @@ def as_user(user, code):
     ]
     told = subprocess.run(
         ["/usr/bin/env", "python3", "-B", "-c", code],
-        env={"PYTHONPATH": ":".join(map(str, paths)), "PATH": os.defpath, "OPENBLAS_NUM_THREADS": "1"},
+        env={
+            "PYTHONPATH": ":".join(map(str, paths)),
+            "PATH": os.defpath,
+            "OPENBLAS_NUM_THREADS": "1",
+        },
         user=user,
         group=user,
         extra_groups=[],
@@ -507,12 +542,17 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     assert all(sentence in found["practice"].says for sentence in practice.DOES_NOT_STOP)
     strict.bubblewrap.cache_clear()
     without.setattr(shutil, "which", lambda name: None)
-    assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
+    assert (
+        not doctor.examine("strict").works
+        and "apt install bubblewrap" in doctor.examine("strict").remedy
+    )
 
 
 def test_what_is_missing_is_to_be_installed_and_not_what_is_there_and_did_not_start():
     assert doctor.remedy("the strict tier needs bubblewrap").startswith("install bubblewrap")
-    assert "install" not in doctor.remedy("the strict sandbox did not start: bwrap: Permission denied")
+    assert "install" not in doctor.remedy(
+        "the strict sandbox did not start: bwrap: Permission denied"
+    )
     assert doctor.remedy("the practice sandbox gave no answer") == ""
 
 
@@ -529,7 +569,10 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
     monkeypatch.setitem(tiers.TIERS, "practice", lambda: practice.sandbox()._replace(launch=launch))
     finding = doctor.examine("practice")
     assert finding.works == works and next(starts) == doctor.TRIES
-    assert works or finding[3:] == ("the practice sandbox did not start: it was ended by signal 9", "")
+    assert works or finding[3:] == (
+        "the practice sandbox did not start: it was ended by signal 9",
+        "",
+    )
 
 
 def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
@@ -566,7 +609,14 @@ def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_contai
         "from hdrlab.course.sandbox import doctor\n"
         "for finding in doctor.report(): print(finding.tier, finding.works, finding.says)\n"
     )
-    less = ["setpriv", "--bounding-set=-sys_admin", "--inh-caps=-sys_admin", sys.executable, "-c", code]
+    less = [
+        "setpriv",
+        "--bounding-set=-sys_admin",
+        "--inh-caps=-sys_admin",
+        sys.executable,
+        "-c",
+        code,
+    ]
     told = subprocess.run(less, capture_output=True, text=True).stdout.splitlines()
     assert told[0].startswith("strict False the strict ")
     assert "container True started in" in told[1] and told[2].startswith("practice True")
@@ -576,7 +626,11 @@ def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
     weak = practice.sandbox()._replace(tier="strict", credit=True)
     monkeypatch.setitem(tiers.TIERS, "strict", lambda: weak)
     finding = doctor.examine("strict")
-    assert not finding.works and finding.credit and "a file of the grader could be read" in finding.says
+    assert (
+        not finding.works
+        and finding.credit
+        and "a file of the grader could be read" in finding.says
+    )
     assert "a process could be started" in finding.says and "a socket could be made" in finding.says
     assert not Path("/tmp/hdrlab-doctor").exists()
 
@@ -605,7 +659,9 @@ def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks()
         "scipy.sparse",
         "scipy.sparse.linalg",
     ]
-    with opened("practice", {"f": "import sys\ndef f(): return 'scipy.fft' in sys.modules"}) as subject:
+    with opened(
+        "practice", {"f": "import sys\ndef f(): return 'scipy.fft' in sys.modules"}
+    ) as subject:
         assert not subject.f()
 
 
@@ -678,7 +734,9 @@ def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
     subject._drop()
 
 
-@pytest.mark.parametrize(("tier", "counts"), [("strict", True), ("container", True), ("practice", False)])
+@pytest.mark.parametrize(
+    ("tier", "counts"), [("strict", True), ("container", True), ("practice", False)]
+)
 def test_a_score_may_count_where_walls_hold(tier, counts):
     opened(tier)
     assert tiers.choose(tier).credit is counts

@@ -30,7 +30,9 @@ def place(tmp_path, monkeypatch):
 def sleeper(place):
     """Start a process that holds such a folder, and return it with the folder."""
     environment = os.environ | {"TMPDIR": str(place)}
-    process = subprocess.Popen([sys.executable, "-c", SLEEPER], env=environment, stdout=subprocess.PIPE)
+    process = subprocess.Popen(
+        [sys.executable, "-c", SLEEPER], env=environment, stdout=subprocess.PIPE
+    )
     return process, Path(process.stdout.readline().decode().strip())
 
 

@@ -36,13 +36,22 @@ LOOPS, GAUGE, FLOAT32 = (
     next(path.read_text() for path in MADE_APART if path.stem == f"hw2_{name}")
     for name in ("loops", "gauge", "float32")
 )
-NAMES = {"above": "upper", "below": "lower", "known": "seen", "row": "line", "total": "sums", "Ei": "e"}
+NAMES = {
+    "above": "upper",
+    "below": "lower",
+    "known": "seen",
+    "row": "line",
+    "total": "sums",
+    "Ei": "e",
+}
 
 
 def renamed(text):
     """Return a text with other names, comments and spaces."""
     text = re.sub(r"\b(" + "|".join(NAMES) + r")\b", lambda found: NAMES[found[1]], text)
-    text = re.sub(r"^( +)(for|return)", r"\1# my own idea, step by step\n\1\2", text, flags=re.MULTILINE)
+    text = re.sub(
+        r"^( +)(for|return)", r"\1# my own idea, step by step\n\1\2", text, flags=re.MULTILINE
+    )
     return text.replace("# NaN is not", "# leave out").replace(" * ", "*").replace(" + ", "  +  ")
 
 
@@ -113,7 +122,9 @@ def test_solutions_that_were_written_apart_are_far_below_the_threshold(homework)
     assert len(works) >= 3 and all(one.texts and not one.notes for one in works)
     blocks = inline.inlined({task.id: task.function for task in asked.tasks}).values()
     text = "\n\n".join(block.text for block in blocks)
-    found = similarity.compare(list(similarity.printed_steps(works)), authored.handout_code(homework), text)
+    found = similarity.compare(
+        list(similarity.printed_steps(works)), authored.handout_code(homework), text
+    )
     assert found.counts[3:].sum() == 0 and not found.pairs  # the page says: less than 30 percent
     assert homework == "project" or found.counts.sum() >= 3
 
@@ -128,10 +139,17 @@ def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
     blank = "\n\n".join(authored.handout_code("hw2"))
     found = likeness(tmp_path, a=blank, b=blank)
     assert found.counts.sum() == 0 and not any(found.own.values())
-    solved = "def gsolve(Z, B, smoothness, w):\n    return Solution(Z, B)"  # the handout's own class
-    assert work(tmp_path, "c", "import numpy as np\n" + blank + "\n\n" + solved).texts["gsolve"] == solved
+    solved = (
+        "def gsolve(Z, B, smoothness, w):\n    return Solution(Z, B)"  # the handout's own class
+    )
+    assert (
+        work(tmp_path, "c", "import numpy as np\n" + blank + "\n\n" + solved).texts["gsolve"]
+        == solved
+    )
     both = list(similarity.printed_steps(work(tmp_path, team, LOOPS) for team in "de"))
-    assert similarity.compare(both, [LOOPS]).counts.sum() == 0 < similarity.compare(both).counts.sum()
+    assert (
+        similarity.compare(both, [LOOPS]).counts.sum() == 0 < similarity.compare(both).counts.sum()
+    )
 
 
 def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
@@ -146,7 +164,9 @@ def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):
     texts = [LOOPS, GAUGE, FLOAT32, renamed(LOOPS), "def hat(n=256):\n    return 1\n"]
     given = similarity.fingerprint("\n\n".join(authored.handout_code("hw2"))).hashes
     for task in ("gsolve", "recover", "update"):
-        works = [work(tmp_path, f"w{n}", text).texts.get(task, "pass\n") for n, text in enumerate(texts)]
+        works = [
+            work(tmp_path, f"w{n}", text).texts.get(task, "pass\n") for n, text in enumerate(texts)
+        ]
         prints = [similarity.without(similarity.fingerprint(text), given) for text in works]
         expected = [[compare_files(one, other)[0] for other in prints] for one in prints]
         assert np.array_equal(similarity.covered(prints), expected)
@@ -166,12 +186,18 @@ def test_a_passage_that_stands_twice_counts_twice():
         ("none of the tasks can be read", "def gsolve(Z, B:\n"),
         ("none of the tasks can be read", "def gsolve():\n    return '\0'\n"),
         ("none of the tasks can be read", "def gsolve():\n    return " + "-" * 60_000 + "1\n"),
-        ("none of the tasks can be read", "def gsolve():\n    return " + "+".join("a" * 40_000) + "\n"),
+        (
+            "none of the tasks can be read",
+            "def gsolve():\n    return " + "+".join("a" * 40_000) + "\n",
+        ),
         ("neither a notebook nor Python", b"\xff\xfe\x00"),
         ("cut short or damaged", '{"cells": ' + "[" * 50_000),
         ("1,000,000 characters", "x = 1\n" * 350_000),  # two megabytes
         ("none of the tasks can be read", "x=1\n" * 20_000),
-        ("gsolve has more than 30,000", "a = []\n" + "a.append(a)\n" * 3_900 + "def gsolve(): return a\n"),
+        (
+            "gsolve has more than 30,000",
+            "a = []\n" + "a.append(a)\n" * 3_900 + "def gsolve(): return a\n",
+        ),
         ("gsolve has more than 30,000", "def gsolve():\n    return [" + "1," * 20_000 + "]\n"),
     ],
 )
@@ -195,7 +221,10 @@ def test_all_tasks_together_are_bounded_too(tmp_path):
     body = "\n".join(f"    x{k} = {k}" for k in range(1_500))
     (tmp_path / "hw2.py").write_text("\n".join(f"def {name}():\n{body}\n" for name in names))
     work = authored.read("x", tmp_path / "hw2.py", "hw2", names)
-    assert list(work.texts) == names[:4] and "recover has more than 30,000 characters, or" in work.notes[0]
+    assert (
+        list(work.texts) == names[:4]
+        and "recover has more than 30,000 characters, or" in work.notes[0]
+    )
 
 
 def calls_of(act):
@@ -221,13 +250,18 @@ def test_a_file_that_changes_a_thing_twice_as_often_costs_not_much_more_than_twi
 def test_statements_are_cut_where_the_parser_sees_them():
     text = "µ = 'µ'; b = µ\r\nc = '\x0c' + b  # a form feed ends no line\rdef gsolve(): return c\n"
     sources, said = closure.closed([closure.Cell(text)], ["gsolve"])
-    assert sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n" and not said
+    assert (
+        sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n"
+        and not said
+    )
 
 
 def test_names_and_sources_are_text_on_the_page(tmp_path):
     script = "<script>alert(1)</script>"
     mean = LOOPS.replace("k += 1", f"k += 1  # {script} \u202e\x1b[31m </pre></mark>", 1)
-    page, table = written(tmp_path, {script: mean, '"><b onclick="x()">': mean, "=HYPERLINK(1)": mean})
+    page, table = written(
+        tmp_path, {script: mean, '"><b onclick="x()">': mean, "=HYPERLINK(1)": mean}
+    )
     found = tags(page)
     assert not {"script", "b onclick"} & {tag for tag, _ in found}
     assert not any(name.startswith("on") for _, attributes in found for name in attributes)
@@ -279,7 +313,8 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
         subprocess.run(
             [sys.executable, "-c", program, str(out), *files],
             check=True,
-            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(alike.__file__).parents[2])},
+            env=os.environ
+            | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(alike.__file__).parents[2])},
         )
         came.append([(out / name).read_bytes() for name in ("similar.html", "similar.csv")])
     assert came[0] == came[1] and b"a0" in came[0][0]

@@ -55,7 +55,9 @@ def notebook(path, title, *cells):
         f"# {title}\n\nRun the cells from the top. So $g(Z) = \\ln E$, see [one](01_one.ipynb) and "
         "[three](03_three.ipynb).\n\n$$x^2$$"
     )
-    made = nbformat.v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
+    made = nbformat.v4.new_notebook(
+        metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    )
     made.cells = [nbformat.v4.new_markdown_cell(words, id="title")]
     made.cells += [nbformat.v4.new_code_cell(cell, id=f"cell-{k}") for k, cell in enumerate(cells)]
     for cell in made.cells:
@@ -73,7 +75,9 @@ def command(out, *notebooks):
 
 def run(out, *notebooks, folder, **environment):
     words, env = command(out, *notebooks), os.environ | environment
-    return subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, timeout=PATIENCE)
+    return subprocess.run(
+        words, cwd=folder, env=env, capture_output=True, text=True, timeout=PATIENCE
+    )
 
 
 @pytest.fixture(scope="module")
@@ -105,8 +109,12 @@ def found(made):
 
 
 def test_a_link_leads_to_what_the_site_has_and_is_plain_text_otherwise():
-    text = "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](05_y.ipynb) [d](../assignments/x.ipynb)"
-    assert build._linked(text, {"hw1", "04_x"}) == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
+    text = (
+        "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](05_y.ipynb) [d](../assignments/x.ipynb)"
+    )
+    assert (
+        build._linked(text, {"hw1", "04_x"}) == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
+    )
 
 
 class Addresses(HTMLParser):
@@ -140,11 +148,22 @@ def pages(site):
     return {page: Addresses(page.read_text("utf-8")) for page in site.rglob("*.html")}
 
 
-def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_a_clock_are_lacking(made):
+def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_a_clock_are_lacking(
+    made,
+):
     folder, site, notebooks, ran = made
-    of_others = ("mkdir -p failed", "Matplotlib created", "IPython parent", "warn(")  # on what they lack
-    assert [line for line in ran.stderr.splitlines() if not any(word in line for word in of_others)] == []
-    assert "4 widgets, 4 notebooks; run now: 5" in ran.stdout  # the first page has a picture to wipe
+    of_others = (
+        "mkdir -p failed",
+        "Matplotlib created",
+        "IPython parent",
+        "warn(",
+    )  # on what they lack
+    assert [
+        line for line in ran.stderr.splitlines() if not any(word in line for word in of_others)
+    ] == []
+    assert (
+        "4 widgets, 4 notebooks; run now: 5" in ran.stdout
+    )  # the first page has a picture to wipe
     assert sorted(folder.iterdir()) == sorted([site, folder / ".site.cache", *notebooks])
     assert not list((folder / ".site.cache" / "kernels").iterdir())
     assert not [path for path in folder.rglob("*") if path.name.startswith((".hdrlab-", "tmp"))]
@@ -179,13 +198,17 @@ def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(found):
         for address in addresses.asked:
             if not address.startswith("data:"):
                 assert not re.match(r"\w+:|//", address), f"{page.name}: {address}"
-                assert (page.parent / address.partition("?")[0]).is_file(), f"{page.name}: {address}"
+                assert (page.parent / address.partition("?")[0]).is_file(), (
+                    f"{page.name}: {address}"
+                )
 
 
 def test_style_sheets_and_scripts_name_no_address_outside(made):
     codes = set((made[1] / "_widgets").glob("code-*.js"))
     for file in [*(made[1] / "_static").glob("*.css"), *(made[1] / "_widgets").glob("*.js")]:
-        text = file.read_text("utf-16" if file.parent.name == "_widgets" and file not in codes else "utf-8")
+        text = file.read_text(
+            "utf-16" if file.parent.name == "_widgets" and file not in codes else "utf-8"
+        )
         text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
@@ -224,7 +247,9 @@ def test_a_page_does_not_say_how_to_run_what_has_been_run(made):
     assert "<p>So " in text and "Run the cells" not in text
     welcome = json.loads((NOTEBOOKS / "00_welcome.ipynb").read_text("utf-8"))["cells"][0]["source"]
     left = build.OF_RUNNING.sub("", "".join(welcome))
-    assert "How to use a page like this.** The gray boxes" in left and left.endswith("or the arrow keys.")
+    assert "How to use a page like this.** The gray boxes" in left and left.endswith(
+        "or the arrow keys."
+    )
 
 
 def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):
@@ -257,11 +282,15 @@ def test_a_page_of_the_reference_has_the_legend_the_parameters_and_the_source(ma
 
 
 def test_a_cell_that_is_folded_in_jupyterlab_is_folded_on_its_page_with_its_picture_below(made):
-    one, two = ((made[1] / f"notebooks/{name}.html").read_text("utf-8") for name in ("01_one", "02_two"))
+    one, two = (
+        (made[1] / f"notebooks/{name}.html").read_text("utf-8") for name in ("01_one", "02_two")
+    )
     assert "<details" not in one and two.count("<details") == 1
     before, _, folded = two.partition("<details")
     code, _, after = folded.partition("</details>")
-    assert "widgets" in before and "Show the code" in code and "pictures" in code and "<img" in after
+    assert (
+        "widgets" in before and "Show the code" in code and "pictures" in code and "<img" in after
+    )
 
 
 def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
@@ -289,7 +318,9 @@ def test_what_is_unchanged_is_not_made_again(made):
 def test_the_pages_of_a_notebook_that_is_gone_are_removed(made, tmp_path):
     """In its place, for elsewhere Sphinx would read all pages again; it is put back, for others read it."""
     folder, site, (one, two, _, plain), _ = made
-    assert (site / "notebooks" / "03_gone.html").exists() and list((site / "_widgets").glob("03_gone*"))
+    assert (site / "notebooks" / "03_gone.html").exists() and list(
+        (site / "_widgets").glob("03_gone*")
+    )
     whole = shutil.copytree(folder, tmp_path / "whole")
     try:
         ran = run("site", one, two, plain, folder=folder)
@@ -306,7 +337,9 @@ def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
     bad = notebook(tmp_path / "bad.ipynb", "Bad", "x = 1", "light = x / 0")
     ran = run(tmp_path / "site", bad, folder=tmp_path)
     assert ran.returncode == 1
-    expected = "hdrlab: bad.ipynb, cell 3 ('cell-1', 'light = x / 0'): ZeroDivisionError: division by zero"
+    expected = (
+        "hdrlab: bad.ipynb, cell 3 ('cell-1', 'light = x / 0'): ZeroDivisionError: division by zero"
+    )
     assert ran.stderr.strip().splitlines() == [expected]
     assert not (tmp_path / "site" / "index.html").exists()
 
@@ -335,7 +368,10 @@ def test_a_photograph_in_a_cells_html_is_a_file_to_the_byte(tmp_path):
     cells = [nbformat.v4.new_code_cell("room", outputs=[output])]
     live.set_apart(one := nbformat.v4.new_notebook(cells=cells), "room", tmp_path, "../apart")
     assert (tmp_path / "room-p1.jpeg").read_bytes() == taken
-    assert 'src="../apart/room-p1.jpeg" width="12" height="8"' in one.cells[0].outputs[0]["data"]["text/html"]
+    assert (
+        'src="../apart/room-p1.jpeg" width="12" height="8"'
+        in one.cells[0].outputs[0]["data"]["text/html"]
+    )
 
 
 def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_they_are():
@@ -343,7 +379,8 @@ def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_t
     bitmap = np.uint8(255) * (photograph.mean(axis=-1) > 128)
     exact = [web.encode_webp(picture, lossless=True) for picture in (photograph, bitmap)]
     apart = [
-        {"path": ["pictures", k], "data": base64.b64encode(each).decode()} for k, each in enumerate(exact)
+        {"path": ["pictures", k], "data": base64.b64encode(each).decode()}
+        for k, each in enumerate(exact)
     ]
     state = {"_esm": "", "scales": [], "pictures": [None, None], "alt": "A room"}
     shown = live.live({"state": state, "buffers": apart}, "room-1").state["pictures"]
@@ -358,7 +395,8 @@ def test_a_dark_page_turns_plots_about_and_leaves_photographs_and_maps_their_col
     line = curves.lines(np.arange(9), {"nine": np.arange(9)}, across="place", up="light")
     slope = tones.maps({"": np.indices((64, 96))[0] - 32}, label="stops", signed=True)
     shown = [
-        live.Live("", "", "", {}, pictures.encode(each), "").as_html("") for each in (line, slope, photograph)
+        live.Live("", "", "", {}, pictures.encode(each), "").as_html("")
+        for each in (line, slope, photograph)
     ]
     assert ["data-ink" in each for each in shown] == [True, False, False]
 
@@ -410,7 +448,16 @@ def _alive(number):
 
 
 def test_the_words_of_a_docstring_stay_as_they_are():
-    lines = ["L   luminance   (H, W)", "    any unit", "s*  scale", "", "Then |x| * 2.", "", ">>> 2 * 3", "6"]
+    lines = [
+        "L   luminance   (H, W)",
+        "    any unit",
+        "s*  scale",
+        "",
+        "Then |x| * 2.",
+        "",
+        ">>> 2 * 3",
+        "6",
+    ]
     text = "\n".join(reference.laid_out(lines, module=True))
     assert "``L``\n   luminance · (H, W)\n   any unit" in text
     assert "Then \\|x\\| \\* 2." in text
@@ -427,18 +474,28 @@ def test_every_row_of_the_lecture_names_what_there_is():
             try:
                 importlib.import_module(".".join(parts))
             except ModuleNotFoundError:
-                assert hasattr(importlib.import_module(".".join(parts[:-1])), parts[-1]), (lecture, name)
+                assert hasattr(importlib.import_module(".".join(parts[:-1])), parts[-1]), (
+                    lecture,
+                    name,
+                )
 
 
 def test_the_sources_of_the_site_travel_with_the_package():
     folder = Path(live.__file__).parent
-    for name in ("pages/index.md", "pages/front.ipynb", "theme/layout.html", "theme/static/live.js"):
+    for name in (
+        "pages/index.md",
+        "pages/front.ipynb",
+        "theme/layout.html",
+        "theme/static/live.js",
+    ):
         assert (folder / name).is_file()
 
 
 def test_every_case_that_a_guide_names_is_pictured_with_alt_text():
     pages = Path(live.__file__).parent / "pages"
-    named = dict(re.findall(r"!\[(.+)\]\((cases/\w+\.webp)\)", (pages / "verdicts.md").read_text("utf-8")))
+    named = dict(
+        re.findall(r"!\[(.+)\]\((cases/\w+\.webp)\)", (pages / "verdicts.md").read_text("utf-8"))
+    )
     assert set(named.values()) == {f"cases/{file.name}" for file in pages.glob("cases/*")}
     assert all(alt.startswith("Three photographs of the ") for alt in named)
 
@@ -459,9 +516,14 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
     ):
         nodes = list(ast.walk(ast.parse(file.read_text("utf-8"))))
         strings = [one.values for one in nodes if isinstance(one, ast.JoinedStr)]
-        strings += [[one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        strings += [
+            [one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)
+        ]
         for parts in strings:
-            printed += "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts) + "\n"
+            printed += (
+                "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts)
+                + "\n"
+            )
     printed += "\n".join(re.sub(r"\{.*?\}", "%", one) for one in doubts.SENTENCES.values())
     quotes = quotes_of_the_page_on_warnings()[: -len(REFUSED)]
     assert len(quotes) >= 12
@@ -506,14 +568,19 @@ def refusal(read, *arguments):
 
 @pytest.mark.parametrize("what", REFUSED)
 def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_path):
-    taken, stated = scenes.photographs((160, 120)), [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000]
+    taken, stated = (
+        scenes.photographs((160, 120)),
+        [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000],
+    )
     for j, Z in enumerate(taken.images[::-1], 1):
         halved = j % 2 == 0 and what == "two sizes"  # a half of them: fewer would be left out
         write_picture(tmp_path / f"frame{j}.jpg", Z[::2, ::2] if halved else Z)
     said = {
         "without times": lambda: refusal(read_bracket, tmp_path),
         "one photograph": lambda: refusal(read_bracket, tmp_path / "frame1.jpg"),
-        "times the other way round": lambda: refusal(pipeline.assemble, read_bracket(tmp_path, stated[::-1])),
+        "times the other way round": lambda: refusal(
+            pipeline.assemble, read_bracket(tmp_path, stated[::-1])
+        ),
         "two sizes": lambda: refusal(read_bracket, tmp_path, stated),
     }[what]()
     assert said.replace(f"{tmp_path}/", "") in quotes_of_the_page_on_warnings()[-len(REFUSED) :]
@@ -522,7 +589,9 @@ def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_pat
 def test_the_page_quotes_what_is_said_of_the_stated_times_of_the_photographs_that_travel():
     taken = scenes.photographs((320, 240))._replace(times=1 / np.array([1000, 120, 60, 15, 8, 4]))
     said = pipeline.assemble(taken).doubts[0].partition(", but")[0]
-    (quote,) = (one for one in quotes_of_the_page_on_warnings() if one.startswith("the stated times"))
+    (quote,) = (
+        one for one in quotes_of_the_page_on_warnings() if one.startswith("the stated times")
+    )
     assert re.sub(r"[\d.]+", "", said) == re.sub(r"[\d.]+", "", quote)
     off = [float(re.search(r"[\d.]+", one)[0]) for one in (said, quote)]
     assert off[0] == pytest.approx(off[1], abs=0.02)  # that of all their pixels is 1.07

@@ -23,7 +23,9 @@ def test_the_pack_has_a_notebook_and_a_file_for_each_homework_and_a_table_of_the
     assert {file.name for file in pack.iterdir()} == names | {"README.md"}
     table = (pack / "README.md").read_text()
     assert all(
-        f"| `{task.id}` | {task.points:g} |" in table for one in PLAN.homeworks.values() for task in one.tasks
+        f"| `{task.id}` | {task.points:g} |" in table
+        for one in PLAN.homeworks.values()
+        for task in one.tasks
     )
 
 
@@ -37,7 +39,9 @@ def test_what_stands_in_it_runs_without_the_library_and_is_whole(pack, name):
 
 @pytest.mark.parametrize("task", ["hat", "bound", "compress", "pq"])
 def test_a_function_of_it_keeps_every_promise(pack, task):
-    (name,) = [name for name, one in PLAN.homeworks.items() if task in [own.id for own in one.tasks]]
+    (name,) = [
+        name for name, one in PLAN.homeworks.items() if task in [own.id for own in one.tasks]
+    ]
     scope = {"__name__": "pack"}
     exec((pack / f"{name}.py").read_text(), scope)
     assert scoring.score(task, inprocess.Subject({task: scope[task]}))[0] == 1

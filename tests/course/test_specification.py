@@ -24,7 +24,9 @@ def unanswered():
 @pytest.mark.parametrize("task", IDS)
 @pytest.mark.parametrize("student", ["ada", "grace", "Emmy Noether"])
 def test_the_library_keeps_every_promise_whatever_a_student_draws(task, student):
-    share, said = scoring.score(task, inprocess.library(), plan.seed("the course's secret", student, task))
+    share, said = scoring.score(
+        task, inprocess.library(), plan.seed("the course's secret", student, task)
+    )
     assert share == 1, {name: str(error) for name, error in said.items() if error}
 
 
@@ -67,7 +69,9 @@ def test_every_promise_has_points_three_hints_and_a_sentence_for_a_name(task):
 
 
 def test_there_is_a_file_of_checks_for_every_task_and_a_task_for_every_file():
-    assert sorted(path.stem for path in HERE.glob("test_*.py")) == sorted(f"test_{id}" for id in IDS)
+    assert sorted(path.stem for path in HERE.glob("test_*.py")) == sorted(
+        f"test_{id}" for id in IDS
+    )
 
 
 @pytest.mark.parametrize("task", TASKS, ids=IDS)
@@ -121,7 +125,10 @@ def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (('title = "Curves"', ""), r"expected title, due and tasks in \[hw9\], KeyError\('title'\)"),
+        (
+            ('title = "Curves"', ""),
+            r"expected title, due and tasks in \[hw9\], KeyError\('title'\)",
+        ),
         (("2026-10-01T12:00:00Z", '"soon"'), "as a date with time and zone, got soon"),
         (("T12:00:00Z", ""), "as a date with time and zone"),
         (("tasks = [{", "at_most = 8\ntasks = [{"), "above 0 and at most 7.5, got 8"),
@@ -131,7 +138,10 @@ def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
         (("7.5", "-1"), "of 0 points or more each"),
         (("7.5", '"many"'), "expected title, due and tasks"),
         (("[hw9]", "[hw9"), "expected a plan in TOML"),
-        (("points = 7.5 }", "points = 7.5 }, { id = 'gsolve', function = 'a.b', points = 1 }"), "each once"),
+        (
+            ("points = 7.5 }", "points = 7.5 }, { id = 'gsolve', function = 'a.b', points = 1 }"),
+            "each once",
+        ),
         ((SHEET, ""), "expected tasks"),
         (("[hw9]", "[late]\nfree_days = -1\n[hw9]"), "at least 0"),
         (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "expected free_days and points_a_day"),
@@ -171,7 +181,10 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
     ("came", "said"),
     [
         *((None, "nothing came"), ("text", "one array of numbers"), ({}, "one array of numbers")),
-        *(([[1], [2, 3]], "one array of numbers"), (np.array([1j]), "real numbers, got dtype complex128")),
+        *(
+            ([[1], [2, 3]], "one array of numbers"),
+            (np.array([1j]), "real numbers, got dtype complex128"),
+        ),
     ],
 )
 def test_what_is_no_array_of_numbers_is_told_by_what_came_instead(came, said):

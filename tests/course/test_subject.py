@@ -19,7 +19,12 @@ def opened(monkeypatch):
 
 
 def test_what_a_submission_may_take_is_what_the_page_for_instructors_says():
-    assert (module.TIMEOUT, module.OUTPUT, module.REMEMBERED, module.KILLED) == (10, 65536, 8 << 20, 9)
+    assert (module.TIMEOUT, module.OUTPUT, module.REMEMBERED, module.KILLED) == (
+        10,
+        65536,
+        8 << 20,
+        9,
+    )
     assert (module.CHECK, module.WHOLE, module.PROCESSOR, module.SETTLE) == (3, 20, 4, 1)
 
 
@@ -109,20 +114,36 @@ def test_what_is_printed_is_kept_up_to_its_first_characters(opened, monkeypatch)
         (("refused", ("", 1)), "an answer of no kind"),
         (("raised", ("", "a")), "an answer of no kind"),
         (("of no kind", ("", "a")), "an answer of no kind"),
-        (("raised", ("", {"error": "E", "message": "", "text": "", "line": "1"})), "an answer of no kind"),
-        (("raised", ("", {"error": "E", "message": "", "text": "", "line": 1, "more": 1})), "of no kind"),
-        (("refused", ("", {"error": "E", "message": "", "text": "", "line": 1})), "an answer of no kind"),
+        (
+            ("raised", ("", {"error": "E", "message": "", "text": "", "line": "1"})),
+            "an answer of no kind",
+        ),
+        (
+            ("raised", ("", {"error": "E", "message": "", "text": "", "line": 1, "more": 1})),
+            "of no kind",
+        ),
+        (
+            ("refused", ("", {"error": "E", "message": "", "text": "", "line": 1})),
+            "an answer of no kind",
+        ),
     ],
 )
 def test_an_answer_of_another_form_is_none(answer, why, opened):
     subject, _ = opened((0, answer))
     with subject:
         kind, said = silence(subject)
-        assert kind == "damaged" and said.startswith("f sent what is no answer: ") and said.endswith(why)
+        assert (
+            kind == "damaged"
+            and said.startswith("f sent what is no answer: ")
+            and said.endswith(why)
+        )
 
 
 def test_what_came_before_it_was_asked_for_is_no_answer(opened):
-    for spoken, said in ((b"x", "f sent what is no answer: something before it was asked"), (b"", None)):
+    for spoken, said in (
+        (b"x", "f sent what is no answer: something before it was asked"),
+        (b"", None),
+    ):
         subject, process = opened(right(7))
         process.spoken = spoken
         with subject:

@@ -17,7 +17,9 @@ def opened(monkeypatch):
     return partial(answering.opened, monkeypatch)
 
 
-def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submissions_seconds(opened):
+def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submissions_seconds(
+    opened,
+):
     subject, process = opened(*[right(1, seconds=9.0)] * 3, right(1, seconds=3.0))
     with subject:
         for left in (191, 182, 173, 170):
@@ -32,7 +34,9 @@ def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submis
 
 
 def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened):
-    subject, process = opened(*[right(1, seconds=30.0)] * 6, right(1, seconds=15.0), right(1, seconds=5.0))
+    subject, process = opened(
+        *[right(1, seconds=30.0)] * 6, right(1, seconds=15.0), right(1, seconds=5.0)
+    )
     with subject:
         for _ in range(8):
             subject.f()
@@ -69,7 +73,9 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
         (channel.Damaged("half"), 0, 9.0, True, "damaged", "f sent what is no answer: half"),
     ],
 )
-def test_who_gave_no_answer_is_told_by_how_the_process_ended(error, ended, used, forks, kind, said, opened):
+def test_who_gave_no_answer_is_told_by_how_the_process_ended(
+    error, ended, used, forks, kind, said, opened
+):
     subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
     with subject:
         assert silence(subject) == (kind, said)

@@ -59,7 +59,9 @@ def test_a_function_comes_with_what_it_needs_of_other_cells_and_with_nothing_els
 def test_reordered_cells_are_put_in_the_order_in_which_they_run(read):
     found = read(
         notebook(
-            "def gsolve(x=WIDTH):\n    return x", "WIDTH = double(4)", "def double(x):\n    return 2 * x"
+            "def gsolve(x=WIDTH):\n    return x",
+            "WIDTH = double(4)",
+            "def double(x):\n    return 2 * x",
         )
     )
     assert run(found.sources["gsolve"])() == 8
@@ -68,7 +70,9 @@ def test_reordered_cells_are_put_in_the_order_in_which_they_run(read):
 def test_a_name_that_is_local_to_a_function_brings_nothing_along(read):
     found = read(
         notebook(
-            "Z = load('photographs')", "def gsolve(Z):\n    E = [z for z in Z]\n    return E", "E = merge()"
+            "Z = load('photographs')",
+            "def gsolve(Z):\n    E = [z for z in Z]\n    return E",
+            "E = merge()",
         )
     )
     assert "load" not in found.sources["gsolve"] and "merge" not in found.sources["gsolve"]
@@ -112,14 +116,18 @@ def test_what_the_sheet_gives_is_taken_from_our_copy(read):
 
 def test_a_helper_of_the_students_own_may_have_a_given_name(read):
     given = [Cell("def given():\n    return 'ours'", given=True)]
-    found = read(notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"), given=given)
+    found = read(
+        notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"), given=given
+    )
     assert run(found.sources["gsolve"])() == "own"
 
 
 def test_a_broken_cell_costs_what_is_in_it_alone(read):
     found = read(notebook(("def gsolve(:\n    pass", "gsolve"), "def merge():\n    return 1"))
     assert set(found.sources) == {"merge"}
-    assert any("cell 1, which holds gsolve, is no Python, line 1" in problem for problem in found.problems)
+    assert any(
+        "cell 1, which holds gsolve, is no Python, line 1" in problem for problem in found.problems
+    )
     assert any("gsolve was not found" in problem for problem in found.problems)
 
 
@@ -151,7 +159,10 @@ def test_what_only_a_notebook_understands_is_no_error(read, cell):
         (b'{"cells": 7}', "has no cells"),
         (b"[" * 100_000, "not a notebook"),
         (b'{"cells": ' + b"[" * 100_000, "cut short or damaged"),
-        (b'{"cells": [{"cell_type": "code", "source": 7, "metadata": []}, 5, null]}', "gsolve was not found"),
+        (
+            b'{"cells": [{"cell_type": "code", "source": 7, "metadata": []}, 5, null]}',
+            "gsolve was not found",
+        ),
         (
             b'{"cells": [{"cell_type": "code", "source": ["x = ", 7, "1"], "metadata": {"hdrlab": 3}}]}',
             "not found",
@@ -171,7 +182,11 @@ def test_a_folder_and_a_missing_file_are_told_in_words(tmp_path):
 
 def test_deeply_nested_code_costs_its_cell_alone(read):
     found = read(
-        notebook("x = " + "(" * 5000 + ")" * 5000, "y = " + "-" * 50_000 + "1", "def gsolve():\n    return 1")
+        notebook(
+            "x = " + "(" * 5000 + ")" * 5000,
+            "y = " + "-" * 50_000 + "1",
+            "def gsolve():\n    return 1",
+        )
     )
     assert set(found.sources) == {"gsolve"}
 
@@ -179,12 +194,24 @@ def test_deeply_nested_code_costs_its_cell_alone(read):
 def test_a_python_file_is_read_as_well_with_cells_and_without(read):
     plain = "import math\ndef gsolve():\n    return math.pi\n"
     assert run(read(plain, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
-    percent = '# %% [markdown]\n# gsolve\n# %%\nimport math\n# %% task="gsolve"\n' + plain.partition("\n")[2]
+    percent = (
+        '# %% [markdown]\n# gsolve\n# %%\nimport math\n# %% task="gsolve"\n'
+        + plain.partition("\n")[2]
+    )
     assert run(read(percent, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
 
 
 def test_what_is_no_python_in_a_python_file_is_told_with_the_line_at_which_its_cell_begins(read):
-    lines = ["# %%", "import numpy", "", '# %% task="gsolve"', "def gsolve(:", "# %%", "", "x = = 1"]
+    lines = [
+        "# %%",
+        "import numpy",
+        "",
+        '# %% task="gsolve"',
+        "def gsolve(:",
+        "# %%",
+        "",
+        "x = = 1",
+    ]
     problems = read("\n".join(lines), "hw.py").problems
     assert problems[0].startswith("line 4, which holds gsolve, is no Python, line 2")
     assert problems[1].startswith("line 6 is no Python, line 3")
@@ -192,7 +219,9 @@ def test_what_is_no_python_in_a_python_file_is_told_with_the_line_at_which_its_c
 
 def test_nothing_of_the_file_is_run(read, tmp_path):
     mark = tmp_path / "mark"
-    read(notebook(f"open({str(mark)!r}, 'w')\nx = open({str(mark)!r}, 'w')\ndef gsolve(): return x"))
+    read(
+        notebook(f"open({str(mark)!r}, 'w')\nx = open({str(mark)!r}, 'w')\ndef gsolve(): return x")
+    )
     assert not mark.exists()
 
 

@@ -59,7 +59,9 @@ def home(tmp_path):
     for name in ("photographs", "figures", "source", ".git", "__pycache__"):
         (folder / name).mkdir(parents=True)
     E = scenes.room((48, 72))
-    for k, (image, time) in enumerate(zip(camera.shoot(E, TIMES, rng=1).images, TIMES, strict=True)):
+    for k, (image, time) in enumerate(
+        zip(camera.shoot(E, TIMES, rng=1).images, TIMES, strict=True)
+    ):
         photograph(folder / "photographs" / f"{9 - k}.jpg", image, time)
     radiance.write_radiance(folder / "map.hdr", E)
     response_files.write_curve(folder / "response.csv", np.log(np.linspace(0.01, 2, 256)))
@@ -69,7 +71,9 @@ def home(tmp_path):
     (folder / "source" / "helpers.py").write_text("def merge():\n    pass\n")
     (folder / ".git" / "config").write_text("secret")
     (folder / "__pycache__" / "hdr.pyc").write_bytes(b"x")
-    (folder / "project.toml").write_text('students = ["b1", "b2"]\ntitle = "Dusk"\ncaption = "By <hand>."\n')
+    (folder / "project.toml").write_text(
+        'students = ["b1", "b2"]\ntitle = "Dusk"\ncaption = "By <hand>."\n'
+    )
     (folder / "report.md").write_text(REPORT)
     return folder
 
@@ -117,13 +121,24 @@ def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):
     assert code == 0 and "MISSING" not in said and "location" in said and "serial numbers" in said
     members = unpack(tmp_path / "submission.zip", tmp_path / "there")
     names = {str(path) for path, _ in members}
-    assert {"map.hdr", "report.html", "photographs/9.jpg", "source/hdr.py", "submission.json"} <= names
+    assert {
+        "map.hdr",
+        "report.html",
+        "photographs/9.jpg",
+        "source/hdr.py",
+        "submission.json",
+    } <= names
     assert not [name for name in names if ".git" in name or "pycache" in name]
     described = json.loads((tmp_path / "there" / "submission.json").read_text())
-    assert described["students"] == ["b1", "b2"] and set(described["files"]) == names - {"submission.json"}
+    assert described["students"] == ["b1", "b2"] and set(described["files"]) == names - {
+        "submission.json"
+    }
     roster = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t")))
     with collect.entry(tmp_path / "submission.zip", roster, "b1_project") as entry:
-        assert entry[:3] == ("t", "Dusk", "By <hand>.") and entry.picture.read_bytes()[:4] == b"\x89PNG"
+        assert (
+            entry[:3] == ("t", "Dusk", "By <hand>.")
+            and entry.picture.read_bytes()[:4] == b"\x89PNG"
+        )
 
 
 def test_photographs_arrive_with_their_exposures_and_without_their_places(home, tmp_path, hdrlab):
@@ -134,7 +149,10 @@ def test_photographs_arrive_with_their_exposures_and_without_their_places(home, 
             data = archive.read("photographs/9.jpg")
         assert (b"SERIAL-4711" in data) == there
         (tmp_path / "a.jpg").write_bytes(data)
-        with Image.open(tmp_path / "a.jpg") as now, Image.open(home / "photographs" / "9.jpg") as before:
+        with (
+            Image.open(tmp_path / "a.jpg") as now,
+            Image.open(home / "photographs" / "9.jpg") as before,
+        ):
             assert bool(dict(now.getexif().get_ifd(0x8825))) == there
             assert np.array_equal(np.asarray(now), np.asarray(before))
         assert look(tmp_path / "a.jpg").exposure.seconds == pytest.approx(TIMES[0])
@@ -144,7 +162,9 @@ def test_the_same_project_makes_the_same_archive(home, tmp_path):
     reports.write_report(project.look(home))
     found = project.look(home)
     for name in ("a.zip", "b.zip"):
-        handing.write(found, tmp_path / name, list(handing.pack(found)), now=handing.datetime(2026, 3, 1))
+        handing.write(
+            found, tmp_path / name, list(handing.pack(found)), now=handing.datetime(2026, 3, 1)
+        )
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
 
 
@@ -187,7 +207,11 @@ def test_what_is_broken_is_said_too(home):
     os.utime(home / "report.md", (2e9, 2e9))
     found = bad(home)
     assert set(found) == {"source", "map", "artifact", "photographs", "report"}
-    assert "line 1" in found["source"] and "newer" in found["report"] and "EXIF" in found["photographs"]
+    assert (
+        "line 1" in found["source"]
+        and "newer" in found["report"]
+        and "EXIF" in found["photographs"]
+    )
     assert all(str(home) not in said for said in found.values())
 
 
@@ -197,7 +221,9 @@ def test_photographs_of_one_exposure_make_no_bracket(home):
     assert "same exposure" in bad(home)["photographs"]
 
 
-def test_nothing_is_written_where_something_is_missing_unless_it_is_asked_for(home, tmp_path, hdrlab):
+def test_nothing_is_written_where_something_is_missing_unless_it_is_asked_for(
+    home, tmp_path, hdrlab
+):
     (home / "map.hdr").unlink()
     code, said, notes = hdrlab("submit", home)
     assert code == 2 and "MISSING" in said and not (tmp_path / "submission.zip").exists()
@@ -212,7 +238,14 @@ def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):
 
 def test_figures_stand_where_they_belong(home):
     page = Page(reports.write_report(project.look(home)).page.read_text())
-    heads = ["Description", "What we learnt", "Algorithm", "Implementation", "Results", "Bells and whistles"]
+    heads = [
+        "Description",
+        "What we learnt",
+        "Algorithm",
+        "Implementation",
+        "Results",
+        "Bells and whistles",
+    ]
     at = {head: page.order.index(head) for head in heads}
     assert sorted(at.values()) == list(at.values())
     place = {
@@ -278,11 +311,23 @@ def test_a_notebook_is_as_good_as_markdown(home):
         },
     ]
     (home / "report.md").unlink()
-    (home / "report.ipynb").write_text(json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5}))
+    (home / "report.ipynb").write_text(
+        json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5})
+    )
     said = words.read(home / "report.ipynb")
     assert (said.title, [one.asked for one in said.sections]) == ("Dusk", ["results"])
-    assert "<img" in said.sections[0].html and "script" not in said.sections[0].html and said.notes == ()
-    for broken in ("{}", "[]", "{", '{"cells": [1]}', '{"cells": [{"cell_type": "markdown", "source": 7}]}'):
+    assert (
+        "<img" in said.sections[0].html
+        and "script" not in said.sections[0].html
+        and said.notes == ()
+    )
+    for broken in (
+        "{}",
+        "[]",
+        "{",
+        '{"cells": [1]}',
+        '{"cells": [{"cell_type": "markdown", "source": 7}]}',
+    ):
         (home / "report.ipynb").write_text(broken)
         with pytest.raises(ValueError, match="notebook"):
             words.read(home / "report.ipynb")

@@ -40,7 +40,13 @@ class Supervisor:
     """The other ends of a sandbox: each launch takes the next list of words, which lie there at once."""
 
     def __init__(self, *scripts, process=Process, **knobs):
-        self.scripts, self.process, self.ends, self.processes, self.ended = list(scripts), process, [], [], []
+        self.scripts, self.process, self.ends, self.processes, self.ended = (
+            list(scripts),
+            process,
+            [],
+            [],
+            [],
+        )
         self.sandbox = Sandbox("practice", False, self.launch, **knobs)
 
     def launch(self, control):
@@ -68,7 +74,11 @@ def begun():
 
     def begun(*scripts, seconds=None, modules=("scipy",), **knobs):
         behind = Supervisor(*scripts, **knobs)
-        made = Running(behind.sandbox, modules, seconds) if seconds else Running(behind.sandbox, modules)
+        made = (
+            Running(behind.sandbox, modules, seconds)
+            if seconds
+            else Running(behind.sandbox, modules)
+        )
         held.append((made, behind))
         return made, behind
 
@@ -88,9 +98,18 @@ def test_the_seconds_and_defaults_of_a_sandbox():
 
 def test_a_supervisor_is_told_its_sandbox_first_and_waited_for_when_it_is_needed(begun):
     made, behind = begun([READY], alone=True, program=b"rules", limits={"CPU": 1})
-    order = {"credit": False, "program": b"rules", "alone": True, "forks": True, "limits": {"CPU": 1}}
+    order = {
+        "credit": False,
+        "program": b"rules",
+        "alone": True,
+        "forks": True,
+        "limits": {"CPU": 1},
+    }
     kind, call, value = behind.told()
-    assert (kind, call) == ("order", 0) and value == order | {"modules": ["scipy"], "scratch": "scratch 1"}
+    assert (kind, call) == ("order", 0) and value == order | {
+        "modules": ["scipy"],
+        "scratch": "scratch 1",
+    }
     assert (made.left, made.granted, made._ready, made.modules) == (math.inf, 0, False, ["scipy"])
     made.wait()
     made.wait()
@@ -170,7 +189,9 @@ def test_a_word_that_is_not_the_one_awaited_ends_the_sandbox_and_another_is_star
 
 
 def test_a_sandbox_that_is_ended_twice_cannot_be_had(begun):
-    made, behind = begun([READY, ("no", None, 0)], [READY, ("no", None, 0)], [READY, ("begun", None, 1)])
+    made, behind = begun(
+        [READY, ("no", None, 0)], [READY, ("no", None, 0)], [READY, ("begun", None, 1)]
+    )
     with pytest.raises(Unavailable, match="^the practice sandbox was ended from outside, twice$"):
         made.check()
     assert behind.ended == [1, 2] and len(behind.ends) == 3
@@ -198,7 +219,8 @@ def test_a_sandbox_that_does_not_start_says_its_last_words_or_its_signal(code, s
 
 
 @pytest.mark.parametrize(
-    ("ready", "forks", "patience"), [(True, True, 10), (False, True, 0), (True, False, 0), (False, False, 0)]
+    ("ready", "forks", "patience"),
+    [(True, True, 10), (False, True, 0), (True, False, 0), (False, False, 0)],
 )
 def test_a_supervisor_that_is_ready_has_time_to_end_its_check(ready, forks, patience, begun):
     for stubborn in (False, True):

@@ -30,7 +30,9 @@ def test_the_library_has_it(row):
     for place in row[2]:
         module, thing = systems.find(place)
         assert thing is module or callable(thing), place
-        assert module.__name__ in reference.modules() or module.__name__.startswith("hdrlab.course"), place
+        assert module.__name__ in reference.modules() or module.__name__.startswith(
+            "hdrlab.course"
+        ), place
 
 
 @each
@@ -56,7 +58,9 @@ def test_the_tasks_that_grade_it_are_in_the_plan_and_are_functions_of_it(row):
     }
     modules = {systems.find(place)[0].__name__ for place in row[2]}
     for task in row[4]:
-        assert f"hdrlab.{plan[task]}".rpartition(".")[0] in modules or row[2][0].startswith("course."), task
+        assert f"hdrlab.{plan[task]}".rpartition(".")[0] in modules or row[2][0].startswith(
+            "course."
+        ), task
 
 
 def test_every_task_grades_one_of_the_systems():

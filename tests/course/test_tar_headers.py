@@ -131,10 +131,13 @@ def test_headers_that_speak_of_others_are_no_members(taken):
 
 def test_folders_are_members_too(taken):
     folders = b"".join(header(name, b"5") for name in "bcd")
-    assert refused(taken, folders + header("a"), members=3) == "it has 4 members, expected at most 3"
+    assert (
+        refused(taken, folders + header("a"), members=3) == "it has 4 members, expected at most 3"
+    )
 
 
-# a tar may unpack to what the limits allow, and of each member a header and the rest of a block, and a record
+# a tar may unpack to what the limits allow, and of each member a header and the rest of a block,
+# and a record
 @pytest.mark.parametrize("more", [0, 512])
 def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(more, tmp_path):
     limits = Limits(members=3, total=70_000, ratio=1)
@@ -143,14 +146,18 @@ def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(mo
     fresh.mkdir()
     archive.write_bytes(header("a") + bytes(most - 512) + bytes(more))
     if more:
-        with pytest.raises(Refused, match=f"^it unpacks to more than {most} bytes, or 1 times its size$"):
+        with pytest.raises(
+            Refused, match=f"^it unpacks to more than {most} bytes, or 1 times its size$"
+        ):
             tarball.unpack(archive, fresh, limits)
     else:
         assert len(tarball.unpack(archive, fresh, limits)) == 1
 
 
 @pytest.mark.parametrize("packing", [gzip, bz2, lzma])
-def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_its_ratio(packing, taken):
+def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_its_ratio(
+    packing, taken
+):
     most, data = 1 << 20, os.urandom(6000)
     whole = header("a", size=6000) + data + bytes(most - 6512)
     assert taken(packing.compress(whole), ratio=1) == {"a": data}
@@ -161,4 +168,6 @@ def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_it
     assert taken(larger, ratio=enough) == {"a": data}
     assert refused(taken, larger, ratio=enough - 1) == said(most, enough - 1)
     assert refused(taken, larger, ratio=enough, total=6000, members=1).startswith("it has")
-    assert refused(taken, larger, ratio=enough, total=8000, members=1) == said(8000 + 1024 + 10240, enough)
+    assert refused(taken, larger, ratio=enough, total=8000, members=1) == said(
+        8000 + 1024 + 10240, enough
+    )

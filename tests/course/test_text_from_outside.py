@@ -42,13 +42,18 @@ def test_a_member_without_a_name_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         archive.writestr("x", b"y")
     data = (tmp_path / "a.zip").read_bytes()
-    for at, length in ((0, 26), (data.index(b"PK\1\2"), 28)):  # in its header, and in the list of members
+    for at, length in (
+        (0, 26),
+        (data.index(b"PK\1\2"), 28),
+    ):  # in its header, and in the list of members
         data = data[: at + length] + struct.pack("<H", 0) + data[at + length + 2 :]
     local, listed = data.index(b"xy"), data.rindex(b"x")
     data = data[:local] + data[local + 1 : listed] + data[listed + 1 :]
     end = data.index(b"PK\5\6")
     size, start = end - data.index(b"PK\1\2"), data.index(b"PK\1\2")
-    (tmp_path / "a.zip").write_bytes(data[: end + 12] + struct.pack("<LL", size, start) + data[end + 20 :])
+    (tmp_path / "a.zip").write_bytes(
+        data[: end + 12] + struct.pack("<LL", size, start) + data[end + 20 :]
+    )
     with pytest.raises(unpack.Refused):
         unpack.unpack(tmp_path / "a.zip", tmp_path / "files")
 
@@ -123,7 +128,9 @@ def test_a_zip_whose_list_begins_before_the_file_is_refused_as_damaged(tmp_path)
         archive.writestr("x", b"y")
     data = (tmp_path / "a.zip").read_bytes()
     end = data.index(b"PK\5\6")
-    (tmp_path / "a.zip").write_bytes(data[: end + 16] + struct.pack("<L", 1 << 20) + data[end + 20 :])
+    (tmp_path / "a.zip").write_bytes(
+        data[: end + 16] + struct.pack("<L", 1 << 20) + data[end + 20 :]
+    )
     with pytest.raises(unpack.Refused):
         unpack.unpack(tmp_path / "a.zip", tmp_path / "files")
 

@@ -42,9 +42,13 @@ def test_every_notebook_stands_in_the_table_under_its_title(page):
     assert listed == {name: title for name, (title, _) in timetable.notebooks().items()}
 
 
-def test_a_notebook_begins_with_its_minutes_what_comes_before_it_and_what_one_can_do_afterwards(page):
+def test_a_notebook_begins_with_its_minutes_what_comes_before_it_and_what_one_can_do_afterwards(
+    page,
+):
     for _, name, needs, minutes in rows(timetable.NOTEBOOK, page):
-        notebook = json.loads((timetable.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8"))
+        notebook = json.loads(
+            (timetable.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8")
+        )
         said = "".join(notebook["cells"][0]["source"]).split("\n\n")[1].replace("\n", " ")
         begin, what = said.split(". Afterwards you can ")
         time, _, after = begin.partition(" minutes")
@@ -61,8 +65,12 @@ def test_the_first_page_has_every_notebook_in_one_chapter_with_a_picture(page):
 
 
 def test_every_task_of_the_plan_stands_in_the_table_with_its_points(page):
-    listed = [(sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)]
-    assert listed == [(sheet, name, points) for name, (sheet, points, _) in timetable.tasks().items()]
+    listed = [
+        (sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)
+    ]
+    assert listed == [
+        (sheet, name, points) for name, (sheet, points, _) in timetable.tasks().items()
+    ]
 
 
 def test_the_minutes_are_those_of_the_rule_within_ten(page):
@@ -106,7 +114,9 @@ def test_a_homework_is_due_in_its_week_and_after_the_notebooks_that_explain_it(p
             week = 1 + (homework["due"].replace(tzinfo=None) - FIRST_WEEK) // timedelta(weeks=1)
             assert weeks[week - 1][3].startswith(f"{name}, due"), name
             taught = {number for row in weeks[:week] for number in numbers(row[1])}
-            assert {notebook.strip() for sheet, _, notebook, _, _ in explained if sheet == name} <= taught
+            assert {
+                notebook.strip() for sheet, _, notebook, _, _ in explained if sheet == name
+            } <= taught
 
 
 def test_the_lab_and_the_project_skip_nothing_they_build_on(page):
@@ -138,9 +148,14 @@ def test_a_minute_is_150_words_a_prediction_or_a_picture(tmp_path):
 
 
 def test_the_first_notebook_links_to_the_others_by_their_titles():
-    cells = json.loads((timetable.ROOT / "notebooks/00_welcome.ipynb").read_text(encoding="utf8"))["cells"]
+    cells = json.loads((timetable.ROOT / "notebooks/00_welcome.ipynb").read_text(encoding="utf8"))[
+        "cells"
+    ]
     text = "\n".join("".join(cell["source"]) for cell in cells)
-    named = {name: title for title, name in re.findall(r"\| \[(\d\d · [^\]]+)\]\((\w+)\.ipynb\) \|", text)}
+    named = {
+        name: title
+        for title, name in re.findall(r"\| \[(\d\d · [^\]]+)\]\((\w+)\.ipynb\) \|", text)
+    }
     titles = {name: title for name, (title, _) in timetable.notebooks().items()}
     assert named == {name: title for name, title in titles.items() if name != "00_welcome"}
 

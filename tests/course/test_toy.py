@@ -77,7 +77,11 @@ def test_who_is_right_gets_all_points_who_is_blank_or_hostile_none_and_the_other
 
 
 def test_late_days_cost_a_point_only_beyond_those_that_are_free(rows):
-    late = {who: (int(row["late"]), float(row["penalty"])) for who, row in rows.items() if row["late"] != "0"}
+    late = {
+        who: (int(row["late"]), float(row["penalty"]))
+        for who, row in rows.items()
+        if row["late"] != "0"
+    }
     assert late == {"s03": (3, 0), "s04": (3, 0), "s05": (12, 2), "s08": (1, 0)}
     assert float(rows["s05"]["score"]) == 98 and rows["s14"]["note"] == "not handed in"
 
@@ -112,7 +116,9 @@ def test_what_attackers_print_is_text_on_every_page(graded):
 
 def test_canvas_gets_the_points_after_the_penalty(graded):
     lines = (graded / "results" / "canvas.csv").read_text(encoding="utf-8-sig").splitlines()
-    assert len(lines) == 1 + 1 + 14 and any(line.startswith("Student 05,") and "98" in line for line in lines)
+    assert len(lines) == 1 + 1 + 14 and any(
+        line.startswith("Student 05,") and "98" in line for line in lines
+    )
 
 
 def test_the_hostile_change_no_other_result_by_a_byte(graded, tmp_path):
@@ -147,7 +153,9 @@ def test_the_readme_has_the_two_commands():
 def test_two_toy_classes_are_the_same(tmp_path):
     for name in ("a", "b"):
         toy.write(tmp_path / name)
-    files = [file.relative_to(tmp_path / "a") for file in (tmp_path / "a").rglob("*") if file.is_file()]
+    files = [
+        file.relative_to(tmp_path / "a") for file in (tmp_path / "a").rglob("*") if file.is_file()
+    ]
     assert len(files) == 12 + 3
     for file in files:
         if file.name != "README.md":  # it names the folder
@@ -177,7 +185,9 @@ def test_without_a_sandbox_both_commands_say_what_to_do(tmp_path, capsys, monkey
     monkeypatch.setitem(tiers.TIERS, "strict", none)
     run(["course", "toy", str(tmp_path / "class")])
     said = capsys.readouterr()
-    assert "--tier practice" in said.out and "bubblewrap" in said.err and "hdrlab doctor" in said.err
+    assert (
+        "--tier practice" in said.out and "bubblewrap" in said.err and "hdrlab doctor" in said.err
+    )
     with pytest.raises(SystemExit) as ended:
         cli.run(toy.COMMAND.format(folder=tmp_path / "class").split()[1:])
     said = capsys.readouterr().err

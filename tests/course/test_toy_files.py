@@ -21,7 +21,9 @@ def short(monkeypatch):
 
     monkeypatch.setattr(solutions, "texts", texts)
     monkeypatch.setattr(solutions, "script", lambda cells: f"script {cells}")
-    monkeypatch.setattr(solutions, "notebook", lambda homework, cells: f"notebook {homework.name} {cells}")
+    monkeypatch.setattr(
+        solutions, "notebook", lambda homework, cells: f"notebook {homework.name} {cells}"
+    )
 
 
 def test_there_are_fourteen_students_two_of_them_a_team():
@@ -47,7 +49,10 @@ def test_each_hands_in_what_the_list_says(short, monkeypatch):
         {"hw2.ipynb": f"notebook hw2 {{'tasks': {tasks}, 'm': []}}".encode(), "other.txt": b"x"}
     )
     times = [(HOMEWORK.due + timedelta(hours=hours)).isoformat() for hours in (1, -2)]
-    assert toy.received(list(each.values())[:2], HOMEWORK) == [("s01.py", times[0]), ("s02.ipynb", times[1])]
+    assert toy.received(list(each.values())[:2], HOMEWORK) == [
+        ("s01.py", times[0]),
+        ("s02.ipynb", times[1]),
+    ]
 
 
 @pytest.mark.parametrize("made", [True, False])
@@ -59,7 +64,9 @@ def test_a_class_is_written_into_a_new_or_empty_folder_alone(made, short, tmp_pa
     assert files == [folder / "submissions" / name for name in toy.HANDED]
     assert all(file.is_file() and file.stat().st_size for file in files)
     rows = [*csv.DictReader((folder / "roster.csv").read_text("utf-8-sig").splitlines())]
-    assert [row["student"] for row in rows] == list(toy.STUDENTS) and rows[4]["name"] == "Student 05"
+    assert [row["student"] for row in rows] == list(toy.STUDENTS) and rows[4][
+        "name"
+    ] == "Student 05"
     assert [row["student"] for row in rows if row["team"] == "t1"] == ["s03", "s04"]
     assert {row["team"] for row in rows} == {"t1", ""}
     came = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
@@ -68,5 +75,7 @@ def test_a_class_is_written_into_a_new_or_empty_folder_alone(made, short, tmp_pa
     text = (folder / "README.md").read_text("utf8")
     assert text.endswith("\n") and str(folder) in text and all(name in text for name in toy.HANDED)
     for taken in (folder, folder / "README.md"):
-        with pytest.raises(ValueError, match="expected a new folder for the toy class, something is there"):
+        with pytest.raises(
+            ValueError, match="expected a new folder for the toy class, something is there"
+        ):
             toy.write(taken)

@@ -8,7 +8,17 @@ from hdrlab import cli
 from hdrlab.course import submission
 from hdrlab.course.reports import results, sheets
 
-LISTED = ("link", "absolute", "drive", "climbs", "device", "pipe", "bomb", "share bytes", "larger than")
+LISTED = (
+    "link",
+    "absolute",
+    "drive",
+    "climbs",
+    "device",
+    "pipe",
+    "bomb",
+    "share bytes",
+    "larger than",
+)
 NAMES = [name for name in TRAPS if any(word in name for word in LISTED)]
 
 

@@ -35,7 +35,9 @@ def test_a_plain_archive_is_unpacked_byte_by_byte(mode, tmp_path):
     else:
         tarred(archive, [(info(name), data) for name, data in FILES.items()], mode)
     members = unpack(archive, tmp_path / "new")
-    assert {str(path): size for path, size in members} == {name: len(data) for name, data in FILES.items()}
+    assert {str(path): size for path, size in members} == {
+        name: len(data) for name, data in FILES.items()
+    }
     assert {name: (tmp_path / "new" / name).read_bytes() for name in FILES} == FILES
 
 
@@ -48,7 +50,9 @@ def test_rights_of_an_archive_are_not_taken_over(tmp_path):
 def test_an_archive_inside_an_archive_stays_packed(tmp_path):
     inner = zipped(tmp_path / "inner.zip", {"../x": b"x"})
     zipped(tmp_path / "outer.zip", {"inner.zip": inner.read_bytes()})
-    assert [str(path) for path, _ in unpack(tmp_path / "outer.zip", tmp_path / "new")] == ["inner.zip"]
+    assert [str(path) for path, _ in unpack(tmp_path / "outer.zip", tmp_path / "new")] == [
+        "inner.zip"
+    ]
 
 
 def test_a_folder_that_is_there_is_not_touched(tmp_path):
@@ -84,7 +88,9 @@ def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kin
 
 
 @pytest.mark.parametrize("mode", ["w:gz", "w:bz2", "w:xz"])
-def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_would_fit(mode, tmp_path):
+def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_would_fit(
+    mode, tmp_path
+):
     files = [(info(f"{k}.txt"), bytes(900_000)) for k in range(4)]
     archive, plain_tar = tarred(tmp_path / "packed", files, mode), tarred(tmp_path / "plain", files)
     assert len(unpack(plain_tar, tmp_path / "new")) == 4

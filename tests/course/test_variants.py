@@ -25,7 +25,8 @@ from hdrlab.course.reports import sheets
 SOURCES = materials.folder("tests").parent / "solutions"
 if not (SOURCES / "hw1.py").is_file():
     pytest.skip(
-        "the handouts' prose is in a clone, and this is an installed package", allow_module_level=True
+        "the handouts' prose is in a clone, and this is an installed package",
+        allow_module_level=True,
     )
 PLAN = plan.read()
 TASKS = sorted(path.stem for path in rewording.FOLDER.glob("*.toml"))
@@ -54,7 +55,9 @@ def asked(task, variant):
 def homework_of(task, variant):
     """Return the homework of a task, of which a variant is asked."""
     whole = HOMEWORK[task]
-    return whole._replace(tasks=tuple(asked(task, variant) if one.id == task else one for one in whole.tasks))
+    return whole._replace(
+        tasks=tuple(asked(task, variant) if one.id == task else one for one in whole.tasks)
+    )
 
 
 @cache
@@ -102,7 +105,17 @@ def run(*words, code=None):
 
 
 def build(out, *more):
-    words = ("--plan", "plan.toml", "--sources", SOURCES, "--out", out, "--variants", "roster.csv", *more)
+    words = (
+        "--plan",
+        "plan.toml",
+        "--sources",
+        SOURCES,
+        "--out",
+        out,
+        "--variants",
+        "roster.csv",
+        *more,
+    )
     run("course", "build", *words, "--secret-file", "secret.txt")
 
 
@@ -121,7 +134,9 @@ def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(ta
     digests = set()
     for variant in rewording.every(task):
         homework = homework_of(task, variant)
-        heard = grading.heard_steps(submission.Submission({}, (), ""), homework, Conditions(tier="practice"))
+        heard = grading.heard_steps(
+            submission.Submission({}, (), ""), homework, Conditions(tier="practice")
+        )
         digests.add(next(heard)["specification"])
         heard.close()
     assert len(digests) == len(rewording.every(task)) > 1
@@ -139,10 +154,14 @@ def test_three_tasks_have_three_parameters_each_and_the_librarys_own_values_come
 def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
     used = set()
     texts = [*about(task, "").values()]
-    texts += [text for one in misconceptions.known() if one.task == task for text in changes_of(one.name)]
+    texts += [
+        text for one in misconceptions.known() if one.task == task for text in changes_of(one.name)
+    ]
     for variant in rewording.every(task):
         for text in texts:
-            for values, value in zip(rewording.parameters(task).values(), variant.split("/"), strict=True):
+            for values, value in zip(
+                rewording.parameters(task).values(), variant.split("/"), strict=True
+            ):
                 for was, now in values[value]:
                     used |= {(value, was)} if was in text else set()
                     text = text.replace(was, now)
@@ -162,12 +181,15 @@ def changes_of(name):
 @pytest.mark.parametrize(("task", "variant"), EVERY)
 def test_what_a_variant_rewords_stands_nowhere_any_more(task, variant):
     for kind, text in about(task, variant).items():
-        for values, value in zip(rewording.parameters(task).values(), variant.split("/"), strict=True):
+        for values, value in zip(
+            rewording.parameters(task).values(), variant.split("/"), strict=True
+        ):
             for was, now in values[value]:
                 assert was not in text.replace(now, ""), f"{kind}: {was}"
 
 
-# of each value, what the prose of the sheet says then and for no other value, and the same of the last hints
+# of each value, what the prose of the sheet says then and for no other value, and the same of the
+# last hints
 SAID = {
     "exclusion": {
         "clipped": {"excluded": ("codes 0 and 255", "neither 0 nor 255")},
@@ -184,14 +206,20 @@ SAID = {
             "goes": ("must move, ", "where the image must move: "),
             "came": ("has moved, ", "how far the image has moved: "),
         },
-        "order": {"rows": ("$(dy, dx)$", "offset (dy, dx)"), "columns": ("$(dx, dy)$", "offset (dx, dy)")},
+        "order": {
+            "rows": ("$(dy, dx)$", "offset (dy, dx)"),
+            "columns": ("$(dx, dy)$", "offset (dx, dy)"),
+        },
     },
     "weight": {
         "planes": {
             "rgb": ("R, G and B as planes", ", of the gray Y.\n"),
             "bgr": ("**B first**", "F[0] is blue"),
         },
-        "neighbours": {"sides": (r"Y_\text{up}", "|up + down"), "corners": (r"Y_\text{NW}", "|NW + NE")},
+        "neighbours": {
+            "sides": (r"Y_\text{up}", "|up + down"),
+            "corners": (r"Y_\text{NW}", "|NW + NE"),
+        },
         "curve": {
             "narrow": ("0.2^2", "0.2^2"),
             "wide": ("0.3^2", "0.3^2"),
@@ -217,7 +245,10 @@ def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
 
     given = re.search(r"shift\(grays, (.*?)\)\)", about("shift", variant)["pictures"])[1]
     rng = np.random.default_rng(3)
-    grays, offsets = rng.integers(0, 256, (3, 30, 40), np.uint8), np.array([[0, 0], [4, -3], [-2, 5]])
+    grays, offsets = (
+        rng.integers(0, 256, (3, 30, 40), np.uint8),
+        np.array([[0, 0], [4, -3], [-2, 5]]),
+    )
     came = plan.function(asked("shift", variant))(grays, eval(given, {"offsets": offsets}))
     common = (slice(None), *crop(offsets, grays.shape[1:]))
     expected = shift(grays, offsets)
@@ -231,7 +262,9 @@ def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
 @pytest.mark.parametrize("student", ["ada", "Emmy Noether"])
 def test_the_solution_of_every_variant_keeps_every_promise(task, student):
     for variant in rewording.every(task):
-        share, said = scoring.score(task, subject(task, variant), plan.seed("x", student, task), variant)
+        share, said = scoring.score(
+            task, subject(task, variant), plan.seed("x", student, task), variant
+        )
         assert share == 1, (variant, {name: str(error) for name, error in said.items() if error})
 
 
@@ -267,7 +300,10 @@ def test_mistakes_of_variants_can_be_imitated_for_a_class(task):
 def test_alignment_takes_whatever_exclusion_bitmap_its_student_was_asked():
     for variant in rewording.every("exclusion")[:: len(rewording.every("exclusion")) - 1]:
         scope = {}
-        exec("\n\n".join(misconceptions.solutions(homework_of("exclusion", variant).tasks).values()), scope)
+        exec(
+            "\n\n".join(misconceptions.solutions(homework_of("exclusion", variant).tasks).values()),
+            scope,
+        )
         assert scoring.score("align", inprocess.Subject({"align": scope["align"]}))[0] == 1
 
 
@@ -279,10 +315,14 @@ def test_a_plan_without_parameters_asks_everybody_the_same():
         assert variants.draw(homework, "b1", SECRET) == homework
 
 
-def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_says_nothing_stay(course):
+def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_says_nothing_stay(
+    course,
+):
     some = course.homeworks["hw1"].tasks[0]._replace(parameters=("margin", "tie"))
     each = [
-        variants.draw(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET).tasks[0].variant
+        variants.draw(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET)
+        .tasks[0]
+        .variant
         for n in range(600)
     ]
     counted = [Counter(one) for one in zip(*(variant.split("/") for variant in each), strict=True)]
@@ -296,7 +336,9 @@ def test_the_same_roster_and_secret_make_the_same_sheets_and_a_team_has_one(cour
     build("two")
     files = sorted(path.relative_to("one") for path in Path("one").rglob("*.ipynb"))
     assert [str(path) for path in files] == ["b1/hw1.ipynb", "pair/hw1.ipynb"]
-    assert all((Path("one") / path).read_bytes() == (Path("two") / path).read_bytes() for path in files)
+    assert all(
+        (Path("one") / path).read_bytes() == (Path("two") / path).read_bytes() for path in files
+    )
     for team in ("b1", "pair"):
         drawn = variants.draw(course.homeworks["hw1"], team, SECRET)
         sheet = submission.tasks_of(f"one/{team}/hw1.ipynb", ["exclusion", "shift"])
@@ -304,10 +346,14 @@ def test_the_same_roster_and_secret_make_the_same_sheets_and_a_team_has_one(cour
         assert "NotImplementedError" not in Path(f"worked/{team}/hw1.ipynb").read_text()
     Path("secret.txt").write_text("another\n")
     build("three")
-    assert any((Path("one") / path).read_bytes() != (Path("three") / path).read_bytes() for path in files)
+    assert any(
+        (Path("one") / path).read_bytes() != (Path("three") / path).read_bytes() for path in files
+    )
 
 
-def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can_reword(course, capsys):
+def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can_reword(
+    course, capsys
+):
     words = ("course", "build", "--plan", "plan.toml", "--variants", "roster.csv", "--out", "out")
     run(*words, "--sources", SOURCES, code=2)
     assert "expected --secret-file with --variants" in capsys.readouterr().err
@@ -331,7 +377,11 @@ def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can
         ('"tie"', '"knot"', "expected parameters of exclusion out of clipped, tie, margin, got"),
         ('["clipped", "tie", "margin"]', '"tie"', "expected parameters of exclusion"),
         ('["clipped", "tie", "margin"]', "7", "expected title, due and tasks"),
-        ('"align.mtb.exclusion"', '"mine.py:exclusion"', "expected parameters of exclusion out of none"),
+        (
+            '"align.mtb.exclusion"',
+            '"mine.py:exclusion"',
+            "expected parameters of exclusion out of none",
+        ),
         (
             'id = "exclusion", function = "align.mtb.exclusion"',
             'id = "hat", function = "core.weights.hat"',
@@ -357,10 +407,16 @@ def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, mon
     )
     result = grading.grade(path, plain, Conditions("practice"))
     assert result.score == 25 and not result.problems
-    (cell,) = (one for one in json.loads(path.read_text())["cells"] if "use_plan(" in "".join(one["source"]))
+    (cell,) = (
+        one
+        for one in json.loads(path.read_text())["cells"]
+        if "use_plan(" in "".join(one["source"])
+    )
     monkeypatch.setattr(notebook, "_plan", {})
     exec("".join(cell["source"]).partition("\nroom =")[0], {})
-    assert [one.variant for one in notebook.find_tasks("hw1")[0].tasks] == [one.variant for one in own.tasks]
+    assert [one.variant for one in notebook.find_tasks("hw1")[0].tasks] == [
+        one.variant for one in own.tasks
+    ]
 
 
 def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(course, tmp_path):
@@ -379,7 +435,9 @@ def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(cours
 
 
 @pytest.mark.parametrize("named", ["", "a/b/c", "excluded/from/six/and", "../../x/y/z", "<b>/x/y"])
-def test_a_sheet_that_names_no_variant_that_there_is_is_checked_as_the_library_is(named, course, tmp_path):
+def test_a_sheet_that_names_no_variant_that_there_is_is_checked_as_the_library_is(
+    named, course, tmp_path
+):
     path = tmp_path / "hw1.py"
     path.write_text(
         f'use_plan("hw1", variants={{"exclusion": "{named}"}})\n\n# %%\nimport numpy as np\n\n\n'
@@ -397,7 +455,16 @@ def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
     Path("in").mkdir()
     Path("in/b1_hw1.ipynb").write_bytes(Path("worked/pair/hw1.ipynb").read_bytes())
     Path("in/pair_hw1.ipynb").write_bytes(Path("worked/pair/hw1.ipynb").read_bytes())
-    words = ("--homework", "hw1", "--plan", "plan.toml", "--roster", "roster.csv", "--tier", "practice")
+    words = (
+        "--homework",
+        "hw1",
+        "--plan",
+        "plan.toml",
+        "--roster",
+        "roster.csv",
+        "--tier",
+        "practice",
+    )
     run("grade", "in", *words, "--secret-file", "secret.txt", "-o", "out")
     points = {row["student"]: float(row["score"]) for row in sheets.read_csv("out/gradebook.csv")}
     assert points["b2"] == points["b3"] == 25 and points["b1"] <= 0.75 * 25
@@ -408,7 +475,9 @@ def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
 
 
 def test_a_benchmark_builds_the_sheets_of_a_class_and_asks_whether_they_are_graded_so(tmp_path):
-    benchmark = pytest.importorskip("benchmarks.class_.sheets", reason="the benchmarks are not installed")
+    benchmark = pytest.importorskip(
+        "benchmarks.class_.sheets", reason="the benchmarks are not installed"
+    )
     found = benchmark.build(tmp_path, 3)
     assert found["sheets"] == 3 * 2 and found["different ones"] > 2
     assert found["sheets that ask what is not graded"] == 0
@@ -440,14 +509,17 @@ def written(folder, texts, course):
     return (folder / "similar.html").read_text(), sheets.read_csv(folder / "similar.csv")
 
 
-def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sheet_it_is(course, tmp_path):
+def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sheet_it_is(
+    course, tmp_path
+):
     apart = materials.folder("tests") / "equivalent"
     text, other = ((apart / f"hw1_{name}.py").read_text() for name in ("loops", "float32"))
     copied = text.replace("> 4\n", ">= 6\n").replace("(dy, dx) in", "(dx, dy) in")
     assert copied != text
     homework = course.homeworks["hw1"]
     names = {
-        team: {one.id: one.variant for one in variants.draw(homework, team, SECRET).tasks} for team in "ab"
+        team: {one.id: one.variant for one in variants.draw(homework, team, SECRET).tasks}
+        for team in "ab"
     }
     head = {team: f'use_plan("hw1", variants={json.dumps(names[team])})\n\n# %%\n' for team in "ab"}
     texts = {"a": head["a"] + text, "b": head["a"] + copied, "c": other}

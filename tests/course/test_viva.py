@@ -74,14 +74,18 @@ EVERY = [
     ),
     question("line", texts=[f"x = 1  # {NASTY}"] * 3, lines=[1, 2, 3]),
     question("part", own=IMAGE, given=IMAGE, marks=[0, 9, 18, 63], call=NASTY, scale=(0.0, 1.0)),
-    question("picture", own=CURVE, figures=[CURVE, IMAGE, CURVE, IMAGE], call=NASTY, scale=(0.0, 1.0)),
+    question(
+        "picture", own=CURVE, figures=[CURVE, IMAGE, CURVE, IMAGE], call=NASTY, scale=(0.0, 1.0)
+    ),
     question("value", call=f"twice({NASTY!r})", texts=["1", "2", NASTY, "4"]),
 ]
 
 
 def written(questions, student=NASTY):
     """Return all files of some questions, by name."""
-    asked = SimpleNamespace(student=student, tier="strict", seed=7, submission=Path(NASTY.replace("/", "")))
+    asked = SimpleNamespace(
+        student=student, tier="strict", seed=7, submission=Path(NASTY.replace("/", ""))
+    )
     words = {"homework": HOMEWORKS["hw2"], "read": SimpleNamespace(hash="abc"), "asked": asked}
     found = [{"passed": ["twice"]}, *({"question": one} for one in questions)]
     return dict(pages.pages(found, **words))
@@ -115,7 +119,9 @@ def test_a_version_is_python_that_differs_in_one_token(task):
         old, new = one.change.split(" → ")
         (was, now) = [
             (source[a:b], one.source[c:d])
-            for tag, a, b, c, d in difflib.SequenceMatcher(None, source, one.source, False).get_opcodes()
+            for tag, a, b, c, d in difflib.SequenceMatcher(
+                None, source, one.source, False
+            ).get_opcodes()
             if tag != "equal"
         ][0]
         assert was in old and now in new
@@ -155,7 +161,11 @@ def test_an_image_shows_the_photograph_in_the_levels_that_it_had():
     rng = np.random.default_rng(1)
     image, photo = rng.random((3, 20, 30)).astype(np.float32), rng.integers(0, 256, (40, 50))
     (shown, curve), named = inputs.photographed(((image, np.arange(5.0)), {"k": 2}), photo)
-    assert shown.shape == (3, 60, 90) and shown.dtype == np.float32 and np.array_equal(curve, np.arange(5.0))
+    assert (
+        shown.shape == (3, 60, 90)
+        and shown.dtype == np.float32
+        and np.array_equal(curve, np.arange(5.0))
+    )
     assert named == {"k": 2}
     for before, after in zip(image, shown, strict=True):
         assert np.array_equal(np.unique(before), np.unique(after))
@@ -202,7 +212,9 @@ def test_the_examiner_alone_is_told_which_is_right():
 
 def test_code_in_the_notebook_has_its_lines_where_no_style_is():
     notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
-    cell = next(one["source"] for one in notebook["cells"] if "promises from the top" in one["source"])
+    cell = next(
+        one["source"] for one in notebook["cells"] if "promises from the top" in one["source"]
+    )
     code = re.sub("<[^>]+>", "", re.search(r"<pre>(.*?)</pre>", cell, re.DOTALL)[1]).split("\n")
     assert code[0] == "  1  def twice(x):"
     assert [line[:3] for line in code if line] == ["  1", "  2", "   ", "  3"]
@@ -231,7 +243,9 @@ def test_the_notebook_checks_itself_and_then_says_what_each_option_comes_from(ca
 
 def test_fewer_than_five_are_said_in_words():
     for name, text in written(EVERY[:2]).items():
-        assert "2 of five questions." in (json.loads(text)["cells"][0]["source"] if "ipynb" in name else text)
+        assert "2 of five questions." in (
+            json.loads(text)["cells"][0]["source"] if "ipynb" in name else text
+        )
         assert "twice" in text
 
 
@@ -258,11 +272,16 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
 
 @pytest.mark.parametrize(("memory", "right"), [("zeros", True), ("empty", False)])
 def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
-    monkeypatch.setattr(np, "empty", np.empty)  # which the run of a version changes, in a process of its own
+    monkeypatch.setattr(
+        np, "empty", np.empty
+    )  # which the run of a version changes, in a process of its own
     monkeypatch.setattr(np, "empty_like", np.empty_like)
     run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
     asked = examining.Asked(run, "twice", [], np.random.default_rng(3))
-    texts = [f"import numpy as np\n\n\ndef twice():\n    return np.{memory}(1)[0] + {k}\n" for k in range(4)]
+    texts = [
+        f"import numpy as np\n\n\ndef twice():\n    return np.{memory}(1)[0] + {k}\n"
+        for k in range(4)
+    ]
 
     def view(version):
         scope = {}
@@ -277,12 +296,16 @@ def test_a_call_is_told_by_its_parameters_and_of_large_arrays_the_size_and_range
     source = "def scale(x, by=2, *, offset=0):\n    return by * x + offset\n"
     run = SimpleNamespace(job={"sources": {"scale": source}}, calls={"scale": []})
     asked = examining.Asked(run, "scale", [], np.random.default_rng(3))
-    said = asked._told(((np.linspace(0, 1, 100).reshape(10, 10), 3), {"offset": np.array([0.5, 1])}))
+    said = asked._told(
+        ((np.linspace(0, 1, 100).reshape(10, 10), 3), {"offset": np.array([0.5, 1])})
+    )
     assert said == "scale(x=‹10 × 10 numbers from 0 to 1›, by=3, offset=[0.5, 1.0])"
 
 
 @pytest.mark.parametrize("name", SHEETS)
-def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_they_are_run_again(name, made):
+def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_they_are_run_again(
+    name, made
+):
     _, passed, questions = made(name)
     assert len(passed) == len(HOMEWORKS[name].tasks)
     assert [one["again"] for one in questions] == [True] * 5
@@ -319,7 +342,9 @@ def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more
         def question(self, kind):
             tried.append((self.most, kind, self.task))
             return (
-                {"kind": kind, "task": self.task} if (kind, self.task) in known or self.most > few else None
+                {"kind": kind, "task": self.task}
+                if (kind, self.task) in known or self.most > few
+                else None
             )
 
     monkeypatch.setattr(examining, "Asked", Asked)

@@ -7,12 +7,25 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.sandbox import container, contents, descent, filters, practice, running, strict, users
+from hdrlab.course.sandbox import (
+    container,
+    contents,
+    descent,
+    filters,
+    practice,
+    running,
+    strict,
+    users,
+)
 from hdrlab.course.sandbox.contents import Contents
 from hdrlab.course.sandbox.running import Unavailable
 
 INSIDE = Contents(
-    "/usr", "/python/bin/python3", {"/b": "/out/b", "/a": "/out/a"}, ("/a/x",), {"numpy": "/packages/numpy"}
+    "/usr",
+    "/python/bin/python3",
+    {"/b": "/out/b", "/a": "/out/a"},
+    ("/a/x",),
+    {"numpy": "/packages/numpy"},
 )
 
 
@@ -100,7 +113,9 @@ def test_the_strict_tier_is_launched_by_bubblewrap_and_root_becomes_a_spare_user
     assert launched.ended == (["lease"] if root else [])
 
 
-def test_the_container_tier_is_launched_through_homes_that_root_has_opened(launched, monkeypatch, tmp_path):
+def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
+    launched, monkeypatch, tmp_path
+):
     (tmp_path / "scipy.libs").mkdir()
     found = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
     monkeypatch.setattr(running, "packages", lambda: found)
@@ -109,11 +124,21 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(launc
     made = container.launch(CONTROL)
     (order,) = launched.orders
     program = running.PROGRAM
-    assert order["homes"] == ["/usr", str(program.parent), *found.values(), f"{tmp_path}/scipy.libs"]
+    assert order["homes"] == [
+        "/usr",
+        str(program.parent),
+        *found.values(),
+        f"{tmp_path}/scipy.libs",
+    ]
     walk, read = inside.readable()
-    assert order["fence"] == {"read": read, "walk": walk, "write": [os.devnull]} and order["user"] == 60706
+    assert (
+        order["fence"] == {"read": read, "walk": walk, "write": [os.devnull]}
+        and order["user"] == 60706
+    )
     told = {"numpy": "{2}", "scipy": "{3}"}
-    assert order["command"] == running.command("{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told)
+    assert order["command"] == running.command(
+        "{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told
+    )
     more = {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib:{4}"}
     assert order["environment"] == running.ENVIRONMENT | more
     assert launched.started == [(["descend"], {}, 5)] and not launched.ended
@@ -127,7 +152,15 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     monkeypatch.setattr(os, "geteuid", lambda: here["user"])
     monkeypatch.setattr(descent, "landlock", lambda: here["landlock"])
     made = container.sandbox()
-    assert made == ("container", True, container.launch, b"rules of a check", False, True, running.LIMITS)
+    assert made == (
+        "container",
+        True,
+        container.launch,
+        b"rules of a check",
+        False,
+        True,
+        running.LIMITS,
+    )
     for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
         here[name] = value
         with pytest.raises(Unavailable, match=f"the container tier {said}"):
@@ -138,18 +171,27 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
 
 
 @pytest.mark.parametrize("variables", [{"SYSTEMROOT": "C:"}, {}])
-def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(variables, launched, monkeypatch):
+def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
+    variables, launched, monkeypatch
+):
     began = []
-    monkeypatch.setattr(running, "start", lambda *words, **knobs: began.append((words, knobs)) or "process")
+    monkeypatch.setattr(
+        running, "start", lambda *words, **knobs: began.append((words, knobs)) or "process"
+    )
     monkeypatch.delenv("SYSTEMROOT", raising=False)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     made = practice.launch(CONTROL)
     (((words, environment, control), knobs),) = began
     python = getattr(sys, "_base_executable", sys.executable)
-    assert words == running.command(python, str(running.PROGRAM), 5, running.packages()) and control == 5
+    assert (
+        words == running.command(python, str(running.PROGRAM), 5, running.packages())
+        and control == 5
+    )
     own = {"HOME": made.scratch, "TMPDIR": made.scratch}
-    assert environment == running.ENVIRONMENT | own | variables and knobs == {"folder": made.scratch}
+    assert environment == running.ENVIRONMENT | own | variables and knobs == {
+        "folder": made.scratch
+    }
     assert os.listdir(made.scratch) == []
     Path(made.scratch, "left").touch()
     made.after()
@@ -171,12 +213,24 @@ def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_pat
     listed, read = inside.readable()
     assert sorted(listed) == [f"{tmp_path}/lib", f"{tmp_path}/lib/b"]
     assert read == [f"{tmp_path}/lib/a", f"{tmp_path}/other"]
-    assert Contents("", "", places, (), {}).readable() == ([], [f"{tmp_path}/lib", f"{tmp_path}/other"])
+    assert Contents("", "", places, (), {}).readable() == (
+        [],
+        [f"{tmp_path}/lib", f"{tmp_path}/other"],
+    )
 
 
 def test_folders_of_packages_are_found_in_what_is_placed(tmp_path):
-    for folder in ("a/site-packages", "a/python3.11/dist-packages", "a/b/site-packages", "p/x-packages"):
+    for folder in (
+        "a/site-packages",
+        "a/python3.11/dist-packages",
+        "a/b/site-packages",
+        "p/x-packages",
+    ):
         (tmp_path / folder).mkdir(parents=True)
-    places = {"/python/lib": f"{tmp_path}/a", "/packages/p": f"{tmp_path}/p", "/f": f"{tmp_path}/none"}
+    places = {
+        "/python/lib": f"{tmp_path}/a",
+        "/packages/p": f"{tmp_path}/p",
+        "/f": f"{tmp_path}/none",
+    }
     found = contents._others(places)
     assert found == ["/python/lib/python3.11/dist-packages", "/python/lib/site-packages"]

@@ -22,7 +22,9 @@ shell.run_cell({GOOD!r}, store_history=True)
 shell.run_cell("from hdrlab.course.notebook import check\\nfound = check('hat')", store_history=True)
 print(shell.user_ns["found"])
 """
-lacking = pytest.mark.skipif(sys.platform != "linux", reason="takes away from Linux what others do not have")
+lacking = pytest.mark.skipif(
+    sys.platform != "linux", reason="takes away from Linux what others do not have"
+)
 
 
 @pytest.fixture
@@ -85,7 +87,17 @@ def test_an_instructor_grades_a_class_for_practice(on_windows, tmp_path):
     (tmp_path / "in" / "ada").mkdir(parents=True)
     (tmp_path / "in" / "ada" / "hw2.py").write_text(GOOD, encoding="utf8")
     (tmp_path / "roster.csv").write_text("student,name\nada,Ada\n", encoding="utf8")
-    words = ("in", "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml", "--tier", "practice")
+    words = (
+        "in",
+        "--homework",
+        "hw2",
+        "--roster",
+        "roster.csv",
+        "--plan",
+        "plan.toml",
+        "--tier",
+        "practice",
+    )
     code, out, err = on_windows("-m", "hdrlab", "grade", *words, "--out", "results")
     assert code == 0, (out, err)
     kept = [json.loads(file.read_bytes()) for file in (tmp_path / "results").rglob("*.*.json")]
@@ -105,13 +117,17 @@ def imported(path):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             yield node.module or ""
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "_optional")):
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(
+            ("import_module", "_optional")
+        ):
             yield from (one.value for one in node.args if isinstance(one, ast.Constant))
 
 
 def test_one_module_imports_what_posix_alone_has():
     files = [
-        path for path in HOME.rglob("*.py") if any(one in path.read_text(encoding="utf8") for one in POSIX)
+        path
+        for path in HOME.rglob("*.py")
+        if any(one in path.read_text(encoding="utf8") for one in POSIX)
     ]
     assert {path.relative_to(HOME) for path in files if POSIX & set(imported(path))} == {SYSTEM}
 

@@ -45,7 +45,9 @@ def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered
     assert task == (len, bool, piece("p0"), b"p0", 7.0, cluster.version())
 
 
-def test_a_piece_that_is_to_be_alone_waits_for_a_worker_without_any_and_has_it_to_itself(clustered, piece):
+def test_a_piece_that_is_to_be_alone_waits_for_a_worker_without_any_and_has_it_to_itself(
+    clustered, piece
+):
     made, client = clustered(a=2)
     assert made.start(piece("first")) and not made.start(piece("doubted"), alone=True)
     (future,) = made._running
@@ -102,7 +104,9 @@ def ended(made, status, answer=None, which=0):
         ("error", KilledWorker("task", None, 3), (None, "its worker a was lost", True)),
     ],
 )
-def test_a_piece_ends_with_its_result_or_with_why_there_is_none(status, answer, ending, clustered, piece):
+def test_a_piece_ends_with_its_result_or_with_why_there_is_none(
+    status, answer, ending, clustered, piece
+):
     made, client = clustered(a=2)
     made.start(piece(), alone=True)
     assert made.endings() == [] and set(made.clock.slept) == {0.05}
@@ -209,12 +213,18 @@ def test_a_cluster_of_another_hdrlab_or_without_the_tier_is_refused(knobs, said,
 
 
 def test_where_there_is_no_cluster_it_is_said_with_the_address(entered):
-    for error, why in ((OSError("x"), "there is none$"), (ValueError("odd"), "there is none: odd$")):
+    for error, why in (
+        (OSError("x"), "there is none$"),
+        (ValueError("odd"), "there is none: odd$"),
+    ):
         made, _ = entered(error)
         with pytest.raises(ValueError, match=f"expected a Dask cluster at {ADDRESS}, {why}"), made:
             pass
     made, client = entered()
     made._address = "nowhere://x"
-    with pytest.raises(ValueError, match="expected a Dask cluster at nowhere://x, there is none: "), made:
+    with (
+        pytest.raises(ValueError, match="expected a Dask cluster at nowhere://x, there is none: "),
+        made,
+    ):
         pass
     assert client.closed == 0

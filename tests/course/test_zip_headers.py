@@ -127,7 +127,9 @@ def test_a_list_may_claim_as_many_members_and_bytes_as_are_allowed(taken):
 
 def test_what_else_a_reader_cannot_do_with_it_is_told_in_eighty_characters(taken, monkeypatch):
     for error, why in ((ValueError("n" * 200), "n" * 79 + "\u2026"), (EOFError(), "EOFError")):
-        monkeypatch.setattr(tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error))
+        monkeypatch.setattr(
+            tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error)
+        )
         assert refused(taken, b"x") == f"{TOLD} ({why})"
     place = OSError(errno.EINVAL, "a place before the beginning")
     monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(place))

@@ -27,7 +27,9 @@ def medians(taken, times, g=G):
 def test_a_perfect_bracket_has_no_spread(bracket):
     E, taken = bracket
     true = consistency.measure_level_exposures(taken.images, taken.times, E)
-    assert consistency.measure_spread(true) < 0.003  # what is left are the medians of some hundred pixels
+    assert (
+        consistency.measure_spread(true) < 0.003
+    )  # what is left are the medians of some hundred pixels
     assert consistency.measure_spread(medians(taken, taken.times)) < 0.003
 
 
@@ -61,7 +63,11 @@ def test_the_frame_whose_time_is_wrong_departs_to_its_side_and_no_other_but_its_
     apart = consistency.measure_deviations(medians(taken, times))
     named = np.flatnonzero(np.abs(apart) > 0.1)
     assert frame in named and np.sign(apart[frame]) == np.sign(stops)
-    assert set(named) <= {frame - 1, frame, frame + 1}  # a neighbour, which the map draws to the other side
+    assert set(named) <= {
+        frame - 1,
+        frame,
+        frame + 1,
+    }  # a neighbour, which the map draws to the other side
     assert np.all(np.abs(consistency.measure_deviations(medians(taken, taken.times))) < 0.01)
 
 
@@ -72,9 +78,13 @@ def test_a_wrong_response_shows_where_the_frames_are_merged(bracket):
 
 def test_the_unit_of_the_map_does_not_matter(bracket):
     E, taken = bracket
-    one, other = (consistency.measure_level_exposures(taken.images, taken.times, k * E) for k in (1, 1000))
+    one, other = (
+        consistency.measure_level_exposures(taken.images, taken.times, k * E) for k in (1, 1000)
+    )
     assert np.isclose(consistency.measure_spread(one), consistency.measure_spread(other), atol=1e-5)
-    assert np.allclose(consistency.measure_deviations(one), consistency.measure_deviations(other), atol=1e-5)
+    assert np.allclose(
+        consistency.measure_deviations(one), consistency.measure_deviations(other), atol=1e-5
+    )
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
@@ -111,7 +121,8 @@ def test_frames_that_share_no_level_have_no_spread_and_no_deviation():
     images = np.stack([np.full((10, 10), z, np.uint8) for z in (60, 200)])
     found = consistency.measure_level_exposures(images, [1, 4], np.ones((10, 10)))
     assert (
-        np.isnan(consistency.measure_spread(found)) and np.isnan(consistency.measure_deviations(found)).all()
+        np.isnan(consistency.measure_spread(found))
+        and np.isnan(consistency.measure_deviations(found)).all()
     )
 
 
@@ -132,7 +143,9 @@ def test_what_does_not_fit_together_is_refused(given, said):
 
 def test_the_true_response_and_times_leave_no_residual(bracket):
     E, taken = bracket
-    r = consistency.measure_residuals(consistency.measure_level_exposures(taken.images, taken.times, E), G)
+    r = consistency.measure_residuals(
+        consistency.measure_level_exposures(taken.images, taken.times, E), G
+    )
     r -= np.nanmedian(r)  # E is in a unit of its own
     assert r.shape == (5, 1, 256) and np.nanmax(np.abs(r[..., 20:230])) < 0.02
 
@@ -148,8 +161,12 @@ def test_a_wrong_response_bends_the_residuals_of_all_frames_alike(bracket):
 
 def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
     _, taken = bracket
-    times = taken.times * np.array([1, 1, 2**-0.5, 1, 1])  # the middle frame saw longer than it says
-    off = np.nanmedian(consistency.measure_residuals(medians(taken, times), G)[..., 30:226], axis=(1, 2))
+    times = taken.times * np.array(
+        [1, 1, 2**-0.5, 1, 1]
+    )  # the middle frame saw longer than it says
+    off = np.nanmedian(
+        consistency.measure_residuals(medians(taken, times), G)[..., 30:226], axis=(1, 2)
+    )
     assert np.argmax(off) == 2 and off[2] - np.delete(off, 2).mean() > 0.2
 
 

@@ -53,12 +53,16 @@ CORNERS = shots(falloff=0.25)
 STEPPED = shots(times=TIMES * [1, 1, 0.6, 1])
 PASSED = Z1.copy()
 PASSED[1, 60:120, 80:150], PASSED[2, 90:140, 20:90] = 140, 60
-PLAIN = np.minimum(shots(np.repeat([[0.4, 0.03]], [20, 12], axis=1) * np.ones((20, 1)), noise=0), 250)
+PLAIN = np.minimum(
+    shots(np.repeat([[0.4, 0.03]], [20, 12], axis=1) * np.ones((20, 1)), noise=0), 250
+)
 PLAIN[1, 4:12, 4:12], PLAIN[2, 12:, 8:20] = 90, 0
 PART = np.zeros(PLAIN.shape, bool)
 PART[:3, 4:12, 8:16], PART[:, ::4, ::4] = True, True
 FLICKERED = np.rint(
-    np.clip(Z1 * (1 + 0.15 * np.sin(np.arange(210) / 9 + 2 * np.arange(4)[:, None]))[..., None], 0, 255)
+    np.clip(
+        Z1 * (1 + 0.15 * np.sin(np.arange(210) / 9 + 2 * np.arange(4)[:, None]))[..., None], 0, 255
+    )
 ).astype(np.uint8)
 VALID = RNG.random(Z1.shape) > 0.001
 RISING = np.repeat(np.arange(30, 130, dtype=np.uint8), 10).reshape(25, 40)
@@ -77,7 +81,9 @@ POISSON = (
     )
     / 1500
 )
-NOISY = np.rint(65535 * np.clip(POISSON + 0.002 * RNG.standard_normal(POISSON.shape), 0, 1)).astype(np.uint16)
+NOISY = np.rint(65535 * np.clip(POISSON + 0.002 * RNG.standard_normal(POISSON.shape), 0, 1)).astype(
+    np.uint16
+)
 LINEAR = np.log(np.maximum(np.arange(65536), 0.25) / 32768)
 THREE = np.arange(70)[:, None] + [0, 90, 180]  # columns of three channels
 AVERAGE = (NOISY * 2.0 ** (-2 * np.arange(4))[:, None, None]).mean(axis=0) / 65535
@@ -92,7 +98,10 @@ def judged(images, times, **named):
     """Return the contradictions of photographs, and what is said of them."""
     found = contradictions.find_contradictions(images, times, **named)
     names = "abcdef"
-    said = [contradictions.warn_of_contradictions(found, names, s) for s in (0.014, 0.015, 0.09, 0.11, INF)]
+    said = [
+        contradictions.warn_of_contradictions(found, names, s)
+        for s in (0.014, 0.015, 0.09, 0.11, INF)
+    ]
     return found, found.wrong, found.local, said
 
 
@@ -112,7 +121,11 @@ def warned(**named):
 def estimated(images, times, **named):
     """Return times that the pixels tell, and what is said of them."""
     found = exposure_times.estimate_times(images, times, **named)
-    return found, exposure_times.note(found, "abcdef"[: len(found.stops)]), exposure_times.doubts(found)
+    return (
+        found,
+        exposure_times.note(found, "abcdef"[: len(found.stops)]),
+        exposure_times.doubts(found),
+    )
 
 
 def doubted(stops, accepted=True):
@@ -129,12 +142,16 @@ def marked():
     Z = np.rint(128 * (X + rng.normal(0, np.sqrt(X / 900 + 0.01**2)))).astype(int)
     Z[0, 100:102], Z[0, 200:201], Z[1, 301:304], Z[:, 400:500], E[400:500] = 1, 0, 250, 128, 1
     groups[5], groups[6:] = groups[5][:60], groups[6:8]
-    return noise._fit(Z, np.array([1.0, 2.0]), np.log(np.maximum(np.arange(256), 0.25) / 128), E, groups, 250)
+    return noise._fit(
+        Z, np.array([1.0, 2.0]), np.log(np.maximum(np.arange(256), 0.25) / 128), E, groups, 250
+    )
 
 
 def fainter(steps, times):
     """Return how far a curve departs from ranks, of which the longer exposure has others by these steps."""
-    Z = np.stack([np.arange(100, 100 + len(steps)), np.arange(100, 100 + len(steps)) + steps], axis=1)
+    Z = np.stack(
+        [np.arange(100, 100 + len(steps)), np.arange(100, 100 + len(steps)) + steps], axis=1
+    )
     return plausibility.neighbour_errors(Z[..., None], np.array(times), G[:, None])
 
 
@@ -157,7 +174,8 @@ best.__module__ = "hdrlab.diagnostics.flat_patches"
 judged.__module__ = warned.__module__ = "hdrlab.diagnostics.contradictions"
 estimated.__module__ = doubted.__module__ = "hdrlab.diagnostics.exposure_times"
 LOOSE = dict.fromkeys(
-    ("diagnostics.noise.estimate_noise", "diagnostics.noise._solve", "diagnostics.noise.marked"), 1e-4
+    ("diagnostics.noise.estimate_noise", "diagnostics.noise._solve", "diagnostics.noise.marked"),
+    1e-4,
 )
 TOLERANCE = 1e-5
 CASES = recorded.named(

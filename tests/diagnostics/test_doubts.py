@@ -23,7 +23,9 @@ def test_each_sentence_is_said_and_each_that_is_said_is_there():
 
 def test_what_a_sentence_has_places_for_is_what_is_given_to_it():
     for name, given in SAID:
-        places = {field for _, field, _, _ in string.Formatter().parse(doubts.SENTENCES[name]) if field}
+        places = {
+            field for _, field, _, _ in string.Formatter().parse(doubts.SENTENCES[name]) if field
+        }
         assert given == places, name
 
 

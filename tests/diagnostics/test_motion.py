@@ -25,7 +25,9 @@ def bands(axis, cycles=3, size=0.2):
     phases = [2 * np.pi * (cycles * np.arange(n) / n + j / 3) for j in range(3)]
     lamps = [1 + size * np.sin(one) for one in phases]
     times = np.array([0.25, 0.5, 1.0])
-    light = [WALL * (one[:, None] if axis == 0 else one) * t for one, t in zip(lamps, times, strict=True)]
+    light = [
+        WALL * (one[:, None] if axis == 0 else one) * t for one, t in zip(lamps, times, strict=True)
+    ]
     Z = np.interp(np.log(light), G, np.arange(256)).round().astype(np.uint8)
     return motion.measure_motion(Z, times, G, W)[1]
 
@@ -40,7 +42,9 @@ def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
     gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
     wide = gray.repeat(2, axis=1).repeat(2, axis=2)
     monkeypatch.setattr(motion, "PIXELS", WALL.size)
-    assert share(30, images=wide) == share(30, images=np.stack([wide] * 3, axis=-1)) == share(30) > 0
+    assert (
+        share(30, images=wide) == share(30, images=np.stack([wide] * 3, axis=-1)) == share(30) > 0
+    )
 
 
 def test_what_a_photograph_does_not_show_does_not_count():

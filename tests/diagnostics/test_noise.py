@@ -29,7 +29,9 @@ def merged(images, times, g):
 
 
 @pytest.mark.parametrize("well", [2_000, 8_000, 30_000])
-@pytest.mark.parametrize(("response", "bits"), [("linear", 16), ("gamma", 8), ("film", 8), ("srgb", 16)])
+@pytest.mark.parametrize(
+    ("response", "bits"), [("linear", 16), ("gamma", 8), ("film", 8), ("srgb", 16)]
+)
 def test_the_electrons_of_a_pixel_are_found_whatever_the_response(response, bits, well, room):
     images, times, g, whole = shot(room[..., 1], response, bits, well)
     found = estimate_noise(images, times, g, merged(images, times, g))
@@ -39,7 +41,9 @@ def test_the_electrons_of_a_pixel_are_found_whatever_the_response(response, bits
 @pytest.mark.parametrize("read", [4.0, 8.0, 16.0])
 def test_the_read_noise_is_found(read, room):
     images, times, g, _ = shot(room[..., 1], "linear", 16, read=read)
-    assert estimate_noise(images, times, g, merged(images, times, g)).R == pytest.approx(read, rel=0.12)
+    assert estimate_noise(images, times, g, merged(images, times, g)).R == pytest.approx(
+        read, rel=0.12
+    )
 
 
 def test_a_response_that_is_not_right_is_told_from_photons(room):
@@ -66,7 +70,9 @@ def test_with_the_noise_that_was_found_95_of_100_pixels_lie_within(response, roo
         images, times, g, *estimate_noise(images, times, g, merged(images, times, g))
     )
     known = np.isfinite(found.s)
-    assert np.mean((np.abs(found.E - whole * room) < 1.96 * found.s)[known]) == pytest.approx(0.95, abs=0.015)
+    assert np.mean((np.abs(found.E - whole * room) < 1.96 * found.s)[known]) == pytest.approx(
+        0.95, abs=0.015
+    )
 
 
 def test_what_moved_in_a_corner_does_not_count_as_noise(room):
@@ -86,7 +92,10 @@ def test_a_time_that_is_wrong_does_not_count_as_photons_but_as_an_error_of_the_l
 def test_the_order_of_the_frames_changes_nothing(room):
     images, times, g, _ = shot(room[..., 1])
     E = merged(images, times, g)
-    one, other = estimate_noise(images, times, g, E), estimate_noise(images[::-1], times[::-1], g, E)
+    one, other = (
+        estimate_noise(images, times, g, E),
+        estimate_noise(images[::-1], times[::-1], g, E),
+    )
     assert np.allclose(np.concatenate(one), np.concatenate(other), rtol=1e-3, atol=1e-5)
 
 

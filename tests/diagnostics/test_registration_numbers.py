@@ -73,7 +73,11 @@ def lowered(how, k):
     if how is bits:
         pair, compared = bits(MOVED), rng.integers(0, 300, 4) * (np.arange(4) > k % 3)
         other = np.stack([compared * rng.uniform(0.05, 0.4, 4), compared], axis=-1)
-        return pair.lower(other * [1 - 0.06 * k, 1], other), pair.error(other), pair.error(other * 0)
+        return (
+            pair.lower(other * [1 - 0.06 * k, 1], other),
+            pair.error(other),
+            pair.error(other * 0),
+        )
     pair = registration.compare_light(0, 1, LIGHT[:, :40, :50], 1 + k % 3)
     other = rng.normal(0, 0.3, 2000)
     d = other * rng.uniform(0.6 + 0.02 * k, 1.05, 2000) ** (1 + k % 2)

@@ -31,7 +31,8 @@ def test_a_tenth_of_the_patches_moves_the_steps_by_least_squares_and_hardly_the_
 
     assert np.abs(corrections(pair_tables(0.0), response_steps.fit_steps)).max() < 0.02
     moved, held = (
-        np.abs(corrections(pair_tables(0.1), fit)).max() for fit in (plain, response_steps.fit_steps)
+        np.abs(corrections(pair_tables(0.1), fit)).max()
+        for fit in (plain, response_steps.fit_steps)
     )
     assert moved > 0.08 and held < moved / 3
 
@@ -40,7 +41,11 @@ def test_least_squares_over_the_pairs_that_occur_are_those_over_one_equation_for
     H, sd, C = pair_tables(0.1), np.log(2) / 6, response_steps.CURVATURES
     V, Q = response_steps.weight_pairs(H), response_steps.free_directions(B)
     found = response_steps.solve_steps(V, B, Q, sd=sd, smoothness=1.0)
-    unit, F, k = np.sqrt(response_steps.MOST) / response_steps.SIGMA, np.diff(Q, axis=0), np.arange(len(V.V))
+    unit, F, k = (
+        np.sqrt(response_steps.MOST) / response_steps.SIGMA,
+        np.diff(Q, axis=0),
+        np.arange(len(V.V)),
+    )
     patches = np.zeros((len(k), 256 + Q.shape[1]))  # sqrt V (g(b) - g(a) - F y) = sqrt V step
     np.add.at(patches, (k, V.b), 1)
     np.add.at(patches, (k, V.a), -1)

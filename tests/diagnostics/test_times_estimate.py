@@ -10,7 +10,13 @@ from scipy.ndimage import gaussian_filter
 from hdrlab import cli, pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.weights import gaussian
-from hdrlab.diagnostics import consistency, exposure_times, flat_patches, plausibility, response_steps
+from hdrlab.diagnostics import (
+    consistency,
+    exposure_times,
+    flat_patches,
+    plausibility,
+    response_steps,
+)
 from hdrlab.diagnostics.contradictions import (
     Contradictions,
     find_contradictions,
@@ -55,7 +61,9 @@ def off_by(factors, found, stated):
 def tone_mapped(images, strength=0.4, sigma=20):
     """Return photographs of which each was brightened where it is dark, as a phone does."""
     local = gaussian_filter(images.mean(axis=-1) + 1, (0, sigma, sigma))
-    return np.clip(np.round(images * (local[..., None] / 128) ** -strength), 0, 255).astype(np.uint8)
+    return np.clip(np.round(images * (local[..., None] / 128) ** -strength), 0, 255).astype(
+        np.uint8
+    )
 
 
 # Patches
@@ -69,9 +77,14 @@ def test_a_patch_is_the_mean_of_its_pixels_and_flat_where_these_are_alike():
     images[1, 7:, 14:] = 90
     images[1, 0, 20] = 251
     found = flat_patches.find_flat_patches(images)
-    assert found.Z.shape == (2, 1, 2, 3) and found.Z[0, 0, 0, 0] == np.round(images[0, :7, :7].mean())
+    assert found.Z.shape == (2, 1, 2, 3) and found.Z[0, 0, 0, 0] == np.round(
+        images[0, :7, :7].mean()
+    )
     assert found.flat.all(axis=0).tolist() == [[True, True, False], [False, True, True]]
-    assert flat_patches.find_static(found.Z)[0].tolist() == [[True, True, True], [True, True, False]]
+    assert flat_patches.find_static(found.Z)[0].tolist() == [
+        [True, True, True],
+        [True, True, False],
+    ]
     assert found.Z[1, 0, 0, 2] == 0  # clipped: no measurement
 
 
@@ -90,8 +103,13 @@ def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
 def test_a_pair_of_neighbours_has_its_own_flat_patches():
     images = np.full((3, 7, 14), 100, np.uint8)
     images[1], images[2] = 150, 200
-    images[2, :7, :7] = np.arange(49, dtype=np.uint8).reshape(7, 7) + 160  # flat in the first two alone
-    assert flat_patches.find_flat_patches(images).best[:, 0].tolist() == [[True, True], [False, True]]
+    images[2, :7, :7] = (
+        np.arange(49, dtype=np.uint8).reshape(7, 7) + 160
+    )  # flat in the first two alone
+    assert flat_patches.find_flat_patches(images).best[:, 0].tolist() == [
+        [True, True],
+        [False, True],
+    ]
 
 
 def test_where_most_of_a_pair_darkens_the_patches_that_brighten_are_those_that_moved():
@@ -105,7 +123,9 @@ def test_levels_of_equal_rank_take_the_place_of_patches():
     images = np.stack([levels, 2 * levels]).astype(np.uint8)
     Z = flat_patches.rank_levels(images)
     assert Z.shape == (2, 1, plausibility.RANKS, 1) and np.array_equal(Z[1], 2 * Z[0])
-    assert flat_patches.rank_levels(np.stack([images[0], images[0] // 50])).all(axis=(1, 2, 3)).tolist() == [
+    assert flat_patches.rank_levels(np.stack([images[0], images[0] // 50])).all(
+        axis=(1, 2, 3)
+    ).tolist() == [
         True,
         False,
     ]
@@ -136,7 +156,10 @@ def test_times_off_by_up_to_a_tenth_are_recovered(taken, count, seed):
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, count)
     found = estimate_times(images, true * factors, lambda times: spread(images, times))
     assert found.accepted and np.abs(off_by(factors, found, true * factors)).max() < 0.02
-    assert found.bias_after < 0.2 * found.bias_before and found.spread_after < 0.2 * found.spread_before
+    assert (
+        found.bias_after < 0.2 * found.bias_before
+        and found.spread_after < 0.2 * found.spread_before
+    )
     assert np.allclose(found.times, true * factors * 2**found.stops, rtol=1e-12)
 
 
@@ -183,7 +206,9 @@ def test_the_gauge_keeps_the_mean_and_the_span_of_the_stated_times(taken):
     B = np.log(stated)
     assert abs(found.stops.mean()) < 1e-9 and abs(found.stops @ (B - B.mean())) < 1e-9
     other = estimate_times(images, 60 * stated)
-    assert np.allclose(other.stops, found.stops, atol=1e-9) and np.allclose(other.times, 60 * found.times)
+    assert np.allclose(other.stops, found.stops, atol=1e-9) and np.allclose(
+        other.times, 60 * found.times
+    )
 
 
 @pytest.mark.parametrize("count", [3, 5, 7])
@@ -205,8 +230,14 @@ def test_an_estimate_is_shrunk_to_the_stated_times(taken):
 def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
     images, true = taken(5)[:2]
     stated = true * [1, 1, 1.1, 1, 1]
-    found = estimate_times(images, stated, lambda times: 0.01 if np.array_equal(times, stated) else verdict)
-    assert not found.accepted and np.array_equal(found.times, stated) and "spread would rise" in found.reason
+    found = estimate_times(
+        images, stated, lambda times: 0.01 if np.array_equal(times, stated) else verdict
+    )
+    assert (
+        not found.accepted
+        and np.array_equal(found.times, stated)
+        and "spread would rise" in found.reason
+    )
     assert "stated times stay" in note(found, "abcde")
 
 
@@ -237,7 +268,9 @@ def test_the_frame_whose_time_is_wrong_is_named_with_its_factor(taken, frame, st
     wrong[frame] *= 2**stops
     found = find_contradictions(images, wrong)
     assert found.wrong == (frame,) and not found.local
-    assert abs(found.stops[frame] + stops) < 0.15  # its own error bends the exponent of the response a little
+    assert (
+        abs(found.stops[frame] + stops) < 0.15
+    )  # its own error bends the exponent of the response a little
     assert np.abs(np.delete(found.stops, frame)).max() < 0.03
     assert f"{names[frame]} by {found.stops[frame]:+.2f}" in warn_of_contradictions(found, names)
 
@@ -262,26 +295,37 @@ def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
     found = find_contradictions(tone_mapped(images), times)
     assert found.local and "stops in parts of the picture" in warn_of_contradictions(found, names)
     curve = np.round(255 * (np.arange(256) / 255) ** 0.7).astype(np.uint8)
-    same = find_contradictions(curve[images], times)  # one and the same tone curve for all is a response
+    same = find_contradictions(
+        curve[images], times
+    )  # one and the same tone curve for all is a response
     assert not same.local and warn_of_contradictions(same, names) == ""
 
 
 @pytest.mark.parametrize(("strength", "local"), [(0, False), (0.3, True), (0.4, True)])
-def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(photographs, strength, local):
+def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(
+    photographs, strength, local
+):
     """frobisher has 426 x 640 pixels, and true times; at 0.3 its parts disagree by 0.08 stops."""
     images, times = photographs("frobisher")[:2]
     assert find_contradictions(tone_mapped(images, strength, 32), times).local == local
 
 
 @pytest.mark.parametrize("count", [5, 7])
-def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(taken, count):
+def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(
+    taken, count
+):
     images, times = taken(count)[:2]
     assert find_contradictions(tone_mapped(images, 0.2), times).local
 
 
 def test_what_is_slight_counts_only_where_it_is_sure():
     stops = np.zeros(3)
-    for regions, signs, local in ((0.03, 5, True), (0.06, 3.2, False), (0.01, 9, False), (0.2, 1, True)):
+    for regions, signs, local in (
+        (0.03, 5, True),
+        (0.06, 3.2, False),
+        (0.01, 9, False),
+        (0.2, 1, True),
+    ):
         assert Contradictions(stops, np.full(2, regions), np.full(2, signs)).local == local
 
 
@@ -290,7 +334,9 @@ def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping(
     y, x = (np.linspace(-1, 1, n) for n in room.shape[:2])
     falloff = (y[:, None] ** 2 + x**2)[..., None].astype(np.float32)
     times = camera.times_around(room, 5, stops=1.5)
-    images = [camera.shoot(room * (1 - 0.1 * j * falloff), t).images[0] for j, t in enumerate(times)]
+    images = [
+        camera.shoot(room * (1 - 0.1 * j * falloff), t).images[0] for j, t in enumerate(times)
+    ]
     assert "the aperture" in warn_of_contradictions(find_contradictions(images, times), "abcde")
 
 
@@ -302,7 +348,9 @@ def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
     shifted[frame] = warm.images[frame]
     found = find_contradictions(shifted, times)
     assert found.tints.argmax() == frame and found.tints[frame] == pytest.approx(0.43, abs=0.05)
-    said = warn_of_contradictions(found, names, 0.001)  # also where the map explains its photographs
+    said = warn_of_contradictions(
+        found, names, 0.001
+    )  # also where the map explains its photographs
     assert said.startswith(f"{names[frame]} has another white balance")
     assert find_contradictions(images, times).tints.max() < 0.05
 
@@ -362,13 +410,19 @@ def test_frames_that_no_patch_ties_to_others_are_left_open():
     found = find_contradictions(images, [1, 2, 4])
     assert np.isnan(found.stops).all() and np.isnan(found.regions).all()
     assert found.wrong == () and not found.local and warn_of_contradictions(found, "abc") == ""
-    assert warn_of_contradictions(Contradictions(np.array([0, np.nan, 1.0]), np.full(2, np.nan)), "abc")
+    assert warn_of_contradictions(
+        Contradictions(np.array([0, np.nan, 1.0]), np.full(2, np.nan)), "abc"
+    )
 
 
 def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
     B = np.arange(5.0)
-    assert np.allclose(response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
-    both = np.array([0, 0, 0, 0, 1.0, 1.0])  # a line from end to end would leave less in sum, and four wrong
+    assert np.allclose(
+        response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5]
+    )
+    both = np.array(
+        [0, 0, 0, 0, 1.0, 1.0]
+    )  # a line from end to end would leave less in sum, and four wrong
     assert np.allclose(response_steps.remove_trend(both - np.arange(6.0), np.arange(6.0)), both)
 
 
@@ -399,7 +453,9 @@ def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
     stated = pipeline.assemble(wrong, times="stated")
     assert any("left out" in one and wrong.names[2] in one for one in stated.notes)
     found = pipeline.assemble(wrong)
-    assert found.spread < 0.03 and len(found.doubts) == 1 and "contrast of the map" in found.doubts[0]
+    assert (
+        found.spread < 0.03 and len(found.doubts) == 1 and "contrast of the map" in found.doubts[0]
+    )
 
 
 def test_other_words_than_correct_stated_and_estimate_are_refused(taken):
@@ -440,7 +496,9 @@ def test_a_calibration_estimates_times_in_the_same_words(rough, capsys, argument
         cli.run(["calibrate", *rough, "--align", "none", "--times", *arguments])
     said = capsys.readouterr()
     estimated = arguments != ["times.csv"]
-    assert not stop.value.code and ("note: times estimated from the pixels" in said.err) == estimated
+    assert (
+        not stop.value.code and ("note: times estimated from the pixels" in said.err) == estimated
+    )
     line = next(line for line in said.out.splitlines() if line.startswith("spread"))
     spread = next(float(word) for word in line.split()[::-1] if word[0].isdigit())
     assert (spread < 0.015) == estimated
@@ -488,4 +546,6 @@ def test_a_fit_to_half_of_the_patches_is_asked_of_the_other_half():
     apart = exposure_times.cross_validate(found, B, nothing, g=linear_g, sd=0.1)
     assert apart == pytest.approx(0.15, abs=0.03)
     alike = flat_patches.FlatPatches(np.where(half, Z, Z[..., ::-1, :]), found.flat)
-    assert exposure_times.cross_validate(alike, B, nothing, g=linear_g, sd=0.1) != pytest.approx(apart)
+    assert exposure_times.cross_validate(alike, B, nothing, g=linear_g, sd=0.1) != pytest.approx(
+        apart
+    )

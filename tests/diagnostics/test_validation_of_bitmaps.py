@@ -27,7 +27,11 @@ def test_seven_frames_of_twelve_stops_are_aligned_through_their_neighbours(seed)
     true = np.cumsum(rng.integers(-9, 10, (7, 2)), axis=0)
     true -= true[3]
     images = bracket(
-        true, 4.0 ** np.arange(-3, 4), texture=[astronaut(), coffee()][seed % 2], decades=5.0, seed=seed
+        true,
+        4.0 ** np.arange(-3, 4),
+        texture=[astronaut(), coffee()][seed % 2],
+        decades=5.0,
+        seed=seed,
     )
     assert np.abs(offsets_of(images) - true).max() <= 1
     assert all(one.informative for one in validations(images))
@@ -121,7 +125,9 @@ def test_a_picture_that_repeats_itself_is_reported_in_words_that_are_true(period
     (one,) = validations(np.stack([waves[8:], waves[6:-2]]).astype(np.uint8))
     assert one.informative and not one.reliable
     said = "the picture repeats itself: 8 pixels away the photographs fit as well"
-    assert one.failure == said if period == 8 else "8 pixels away the photographs fit" in one.failure
+    assert (
+        one.failure == said if period == 8 else "8 pixels away the photographs fit" in one.failure
+    )
 
 
 def test_a_motion_beyond_the_range_is_reported():

@@ -47,7 +47,8 @@ def test_a_right_move_is_not_doubted_and_tells_what_it_is(room):
     one = validation(taken.images, times=taken.times, g=true_g())
     assert one.reliable and one.confidence > 0.6 and one.after < one.before / 4
     assert (
-        one.degrees == pytest.approx(2, abs=0.1) and np.abs(np.array(one.offset) - (5.5, -3.25)).max() < 0.3
+        one.degrees == pytest.approx(2, abs=0.1)
+        and np.abs(np.array(one.offset) - (5.5, -3.25)).max() < 0.3
     )
 
 
@@ -134,7 +135,9 @@ def test_a_rival_is_a_peak_of_the_autocorrelation_of_light_less_its_local_mean(s
     texture[5:9, 7:12] = np.nan  # measures nothing
     texture = texture.astype(np.float32)
     x = np.where(np.isfinite(texture), texture - light.local_mean(texture), 0)
-    c = scipy.fft.fftshift(scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (128, 160))) ** 2, (128, 160)))
+    c = scipy.fft.fftshift(
+        scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (128, 160))) ** 2, (128, 160))
+    )
     found = cerman.peaks(c[:, 80:], registration.RIVALS + 1) + [0, 40]  # c is symmetric
     expected = [one for one in found.tolist() if max(np.abs(one)) > registration.NEAR]
     assert np.array_equal(registration.rivals(texture), expected)

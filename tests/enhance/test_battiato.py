@@ -72,7 +72,9 @@ def test_a_picture_of_nothing_but_black_or_white_is_left_as_it_is(level):
 
 def test_a_histogram_is_smoothed_over_five_levels():
     smoothed = battiato.histogram(np.full((4, 5), 100.0))
-    assert smoothed[98:103] == pytest.approx(np.full(5, 4.0)) and smoothed.sum() == pytest.approx(20)
+    assert smoothed[98:103] == pytest.approx(np.full(5, 4.0)) and smoothed.sum() == pytest.approx(
+        20
+    )
 
 
 def test_contrast_is_the_mean_distance_from_the_mean():
@@ -99,7 +101,10 @@ def test_the_blocks_with_detail_are_the_relevant_ones():
 
 def test_sixty_four_blocks_cover_any_picture():
     for shape in ((480, 640), (63, 65), (3, 5), (1, 1)):
-        assert battiato.find_relevant_blocks(np.random.default_rng(0).uniform(0, 255, shape)).shape == shape
+        assert (
+            battiato.find_relevant_blocks(np.random.default_rng(0).uniform(0, 255, shape)).shape
+            == shape
+        )
 
 
 def test_a_quarter_of_a_mosaic_has_each_cells_red_mean_green_and_blue():
@@ -126,7 +131,11 @@ def test_against_the_light_the_face_is_what_matters_and_comes_out_right(EV):
     found = battiato.correct(Z)
     assert found.by == "skin" and found.relevant[face].mean() > 0.8
     assert (
-        battiato.brightness(Z)[face].mean() < 60 < 110 < battiato.brightness(found.picture)[face].mean() < 150
+        battiato.brightness(Z)[face].mean()
+        < 60
+        < 110
+        < battiato.brightness(found.picture)[face].mean()
+        < 150
     )
 
 
@@ -175,7 +184,9 @@ def test_pictures_that_are_none_are_refused():
 
 
 def test_every_state_leads_to_the_last():
-    assert last(relight.settle_steps(relight.shares(np.full((4, 4), 40)))).mean == pytest.approx(128, abs=0.5)
+    assert last(relight.settle_steps(relight.shares(np.full((4, 4), 40)))).mean == pytest.approx(
+        128, abs=0.5
+    )
 
 
 # --- skin ---

@@ -24,7 +24,9 @@ F3, F1 = mertens.split_planes(Z), mertens.split_planes(GRAY)
 LEVELS = np.array([0, 1, 64, 127.5, 200, 254])
 LOCUS = RNG.integers(0, 256, (40, 30, 3))
 LOCUS[:, :15] = [140, 100, 80] + RNG.integers(-12, 13, (40, 15, 3))
-SAMPLES = np.array([[200, 150, 130], [180, 120, 100], [120, 80, 70], [90, 66, 50], [240, 200, 190.0]])
+SAMPLES = np.array(
+    [[200, 150, 130], [180, 120, 100], [120, 80, 70], [90, 66, 50], [240, 200, 190.0]]
+)
 SOMETHING = skin.Skin(np.array([-10.0, 20.0]), np.array([[30.0, 5], [5, 60]]))
 
 

@@ -13,7 +13,9 @@ from hdrlab.enhance import mertens
 def bracket(shape=(97, 131, 3), frames=3, dtype=np.uint8, seed=0):
     """Return photographs of colourful noise over soft light, each a step brighter."""
     rng = np.random.default_rng(seed)
-    light = np.linspace(-2, 2, shape[1]).reshape(1, -1, *[1] * (len(shape) - 2)) + rng.standard_normal(shape)
+    light = np.linspace(-2, 2, shape[1]).reshape(
+        1, -1, *[1] * (len(shape) - 2)
+    ) + rng.standard_normal(shape)
     top = np.iinfo(dtype).max
     steps = np.linspace(-1.5, 1.5, frames)
     return np.stack([np.round(top / (1 + np.exp(-light - step))) for step in steps]).astype(dtype)
@@ -21,7 +23,9 @@ def bracket(shape=(97, 131, 3), frames=3, dtype=np.uint8, seed=0):
 
 def opencv(images, powers=(1, 1, 1)):
     """Return OpenCV's fusion, of photographs in the order R, G, B."""
-    return cv2.createMergeMertens(*powers).process([np.ascontiguousarray(image) for image in images])
+    return cv2.createMergeMertens(*powers).process(
+        [np.ascontiguousarray(image) for image in images]
+    )
 
 
 def photographs(folder):
@@ -32,7 +36,9 @@ def photographs(folder):
 def test_contrast_is_the_absolute_laplacian_of_gray():
     F = np.zeros((3, 5, 5), np.float32)
     F[:, 2, 2] = 1
-    assert mertens.contrast(F)[1:4, 1:4] == pytest.approx(np.array([[0, 1, 0], [1, 4, 1], [0, 1, 0]]))
+    assert mertens.contrast(F)[1:4, 1:4] == pytest.approx(
+        np.array([[0, 1, 0], [1, 4, 1], [0, 1, 0]])
+    )
     F = mertens.split_planes(bracket()[0])
     gray = 0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2]
     assert np.allclose(mertens.contrast(F), np.abs(cv2.Laplacian(gray, cv2.CV_32F)), atol=1e-6)
@@ -102,17 +108,22 @@ def test_opencv_differs_in_a_house_by_its_rounding_alone_and_only_where_no_photo
 ):
     """In 1 % of these pixels every photograph is gray or flat, and the formula has no weight for any of them.
 
-    Ours then weighs all alike. In OpenCV what rounding leaves of R - mean, some 1e-8, is far above its trace
-    of 1e-12 and decides. With its rounding in our place of the two measures, all pixels are alike; without
-    it, those that differ are such pixels or next to one.
+    Ours then weighs all alike. In OpenCV what rounding leaves of R - mean, some 1e-8, is far above
+    its trace of 1e-12 and decides. With its rounding in our place of the two measures, all pixels
+    are alike; without it, those that differ are such pixels or next to one.
     """
     images = photographs(shared("mertens_house"))
     theirs, ours = opencv(images), mertens.fuse(images)
-    exact, heaviest = list(mertens.weights(images)), np.max([weigh(image) for image in images], axis=0)
+    exact, heaviest = (
+        list(mertens.weights(images)),
+        np.max([weigh(image) for image in images], axis=0),
+    )
     monkeypatch.setattr(mertens, "contrast", contrast_with_opencvs_rounding)
     monkeypatch.setattr(mertens, "saturation", saturation_with_opencvs_rounding)
     assert np.abs(mertens.fuse(images) - theirs).max() < 1e-5
-    moved = np.max([np.abs(W - E) for W, E in zip(mertens.weights(images), exact, strict=True)], axis=0)
+    moved = np.max(
+        [np.abs(W - E) for W, E in zip(mertens.weights(images), exact, strict=True)], axis=0
+    )
     rounded = moved > 0.01
     assert 0.005 < rounded.mean() < 0.015 and heaviest[rounded].max() < 1e-5  # of 0.01, usually
     near = cv2.dilate(rounded.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
@@ -142,11 +153,18 @@ def test_every_step_adds_one_photograph_to_every_level():
         total = sum(step.weights[level] * step.details[level] for step in steps)
         assert np.allclose(steps[-1].blended[level], total, atol=1e-6)
         assert np.allclose(sum(step.weights[level] for step in steps), 1, atol=1e-5)
-    assert np.allclose(pyramid.collapse(steps[1].details), mertens.split_planes(images[1]), atol=1e-5)
+    assert np.allclose(
+        pyramid.collapse(steps[1].details), mertens.split_planes(images[1]), atol=1e-5
+    )
     assert steps[0].weights[-1].shape == (2, 3)
 
 
-@given(frames=st.integers(1, 4), height=st.integers(1, 20), width=st.integers(1, 20), colour=st.booleans())
+@given(
+    frames=st.integers(1, 4),
+    height=st.integers(1, 20),
+    width=st.integers(1, 20),
+    colour=st.booleans(),
+)
 def test_copies_of_one_photograph_fuse_to_it_at_any_size(frames, height, width, colour):
     one = bracket((height, width, 3) if colour else (height, width), frames=1)[0]
     fused = mertens.fuse(np.stack([one] * frames))
@@ -156,7 +174,9 @@ def test_copies_of_one_photograph_fuse_to_it_at_any_size(frames, height, width, 
 
 def test_sixteen_bits_fuse_as_eight():
     images = bracket((60, 70, 3))
-    assert np.allclose(mertens.fuse(images.astype(np.uint16) * 257), mertens.fuse(images), atol=1e-3)
+    assert np.allclose(
+        mertens.fuse(images.astype(np.uint16) * 257), mertens.fuse(images), atol=1e-3
+    )
 
 
 def test_the_order_of_the_photographs_does_not_matter():

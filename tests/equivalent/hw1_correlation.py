@@ -11,9 +11,13 @@ def align(images, *, bits=6, luma=False):
     order = np.argsort([image.mean() for image in images], kind="stable")
     offsets, middle = np.zeros((len(images), 2), np.int32), len(images) // 2
     for k in range(middle, len(images) - 1):
-        offsets[order[k + 1]] = offsets[order[k]] + found(images[order[k]], images[order[k + 1]], 2**bits - 1)
+        offsets[order[k + 1]] = offsets[order[k]] + found(
+            images[order[k]], images[order[k + 1]], 2**bits - 1
+        )
     for k in range(middle, 0, -1):
-        offsets[order[k - 1]] = offsets[order[k]] + found(images[order[k]], images[order[k - 1]], 2**bits - 1)
+        offsets[order[k - 1]] = offsets[order[k]] + found(
+            images[order[k]], images[order[k - 1]], 2**bits - 1
+        )
     return offsets
 
 
@@ -46,7 +50,12 @@ def found(fixed, moving, limit):
 
 def shift(images, offsets):
     world = np.full(
-        (len(images), *(np.array(images.shape[1:3]) + 2 * np.abs(offsets).max(0)), *images.shape[3:]), -1
+        (
+            len(images),
+            *(np.array(images.shape[1:3]) + 2 * np.abs(offsets).max(0)),
+            *images.shape[3:],
+        ),
+        -1,
     )
     pad = np.abs(offsets).max(axis=0)
     H, W = images.shape[1:3]
@@ -63,7 +72,9 @@ def shift(images, offsets):
 def shrink(Y):
     even = Y[: len(Y) - len(Y) % 2, : Y.shape[1] - Y.shape[1] % 2].astype(np.uint16)
     rows = np.add.reduceat(even, np.arange(0, even.shape[0], 2), axis=0)
-    return np.rint(np.add.reduceat(rows, np.arange(0, even.shape[1], 2), axis=1) / 4).astype(np.uint8)
+    return np.rint(np.add.reduceat(rows, np.arange(0, even.shape[1], 2), axis=1) / 4).astype(
+        np.uint8
+    )
 
 
 # %% task="exclusion"

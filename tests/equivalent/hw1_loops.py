@@ -75,7 +75,10 @@ def shrink(Y):
 def shift(images, offsets):
     H, W = images.shape[1:3]
     top, left = max(0, *(int(o[0]) for o in offsets)), max(0, *(int(o[1]) for o in offsets))
-    bottom, right = H + min(0, *(int(o[0]) for o in offsets)), W + min(0, *(int(o[1]) for o in offsets))
+    bottom, right = (
+        H + min(0, *(int(o[0]) for o in offsets)),
+        W + min(0, *(int(o[1]) for o in offsets)),
+    )
     moved = np.zeros((len(images), bottom - top, right - left, *images.shape[3:]), images.dtype)
     for j, (dy, dx) in enumerate(offsets):
         for y in range(top, bottom):
@@ -123,7 +126,11 @@ def align(images, *, bits=6, luma=False):
     offsets = np.zeros((len(gray), 2), int)
     middle = len(gray) // 2
     for k in range(middle + 1, len(gray)):
-        offsets[order[k]] = offsets[order[k - 1]] + offset_of(gray[order[k - 1]], gray[order[k]], bits)
+        offsets[order[k]] = offsets[order[k - 1]] + offset_of(
+            gray[order[k - 1]], gray[order[k]], bits
+        )
     for k in range(middle - 1, -1, -1):
-        offsets[order[k]] = offsets[order[k + 1]] + offset_of(gray[order[k + 1]], gray[order[k]], bits)
+        offsets[order[k]] = offsets[order[k + 1]] + offset_of(
+            gray[order[k + 1]], gray[order[k]], bits
+        )
     return offsets

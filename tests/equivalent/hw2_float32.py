@@ -61,7 +61,9 @@ def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
     t = (times / np.max(times)).astype(f32)
     f_inv = np.linspace(0, 255 / 128, 256, dtype=f32)
     level = np.arange(256)
-    empty = (np.bincount(Z.ravel(), minlength=256) == 0) | (level == 0) | (level > level[w > 0].max())
+    empty = (
+        (np.bincount(Z.ravel(), minlength=256) == 0) | (level == 0) | (level > level[w > 0].max())
+    )
     yield f_inv, f32(np.inf), empty
     for _ in range(max_iterations):
         new = update(Z, t, irradiance(Z, t, f_inv, w))
@@ -87,9 +89,9 @@ def powers(M, order):
 def recover(images, times, *, order=5, eps=1e-3):
     images = images if images.ndim == 4 else images[..., None]
     order_of_time = np.argsort(times)
-    M = np.moveaxis(images[order_of_time].reshape(len(times), -1, images.shape[-1]), -1, 0).astype(f32) / f32(
-        255
-    )
+    M = np.moveaxis(images[order_of_time].reshape(len(times), -1, images.shape[-1]), -1, 0).astype(
+        f32
+    ) / f32(255)
     t = np.asarray(times, f32)[order_of_time]
     R, held = t[:-1] / t[1:], (M > 0.05) & (M < 0.98)
     both = held[:, :-1] & held[:, 1:]
@@ -97,7 +99,9 @@ def recover(images, times, *, order=5, eps=1e-3):
     for _ in range(30):
         a = np.stack([fit(M[c], both[c], R, order) for c in range(len(M))])
         f = np.stack([M[c] ** order + powers(M[c], order) @ a[c] for c in range(len(M))])
-        R = np.where(both, f[:, :-1], 0).sum(axis=(0, 2)) / np.where(both, f[:, 1:], 0).sum(axis=(0, 2))
+        R = np.where(both, f[:, :-1], 0).sum(axis=(0, 2)) / np.where(both, f[:, 1:], 0).sum(
+            axis=(0, 2)
+        )
         z = np.arange(256, dtype=f32) / f32(255)
         curve = (z**order)[:, None] + powers(z, order) @ a.T
         if last is not None and np.abs(curve - last).max() < eps:

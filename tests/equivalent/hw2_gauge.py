@@ -16,7 +16,8 @@ def recover(images, times, *, order=5, eps=1e-3):
     frames, t = channels[by_time][:, ::2, ::2] / 255.0, np.asarray(times)[by_time]
     C, start = channels.shape[-1], np.log(t[:-1] / t[1:])
     pairs = [
-        [held(M[..., c], N[..., c]) for M, N in zip(frames[:-1], frames[1:], strict=True)] for c in range(C)
+        [held(M[..., c], N[..., c]) for M, N in zip(frames[:-1], frames[1:], strict=True)]
+        for c in range(C)
     ]
 
     def missed(x):

@@ -93,7 +93,11 @@ def recover(images, times, *, order=5, eps=1e-3):
             pairs = [both_hold(images[q, ..., c], images[q + 1, ..., c]) for q in range(len(R))]
             A, b = [], []
             for (M, N), r in zip(pairs, R, strict=True):
-                A.append(np.stack([M**n - M**order - r * (N**n - N**order) for n in range(1, order)], axis=1))
+                A.append(
+                    np.stack(
+                        [M**n - M**order - r * (N**n - N**order) for n in range(1, order)], axis=1
+                    )
+                )
                 b.append(r * N**order - M**order)
             a = np.linalg.lstsq(np.concatenate(A), np.concatenate(b), rcond=None)[0]
             a = np.append(a, 1 - sum(a))

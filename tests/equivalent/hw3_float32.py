@@ -12,7 +12,11 @@ f32 = np.float32
 
 def merge(images, times, g, w=None):
     g = np.asarray(g, f32)
-    w = np.minimum(np.arange(256), 255 - np.arange(256)).astype(f32) if w is None else np.asarray(w, f32)
+    w = (
+        np.minimum(np.arange(256), 255 - np.arange(256)).astype(f32)
+        if w is None
+        else np.asarray(w, f32)
+    )
     B = np.log(np.asarray(times, f32))
     above, below = np.zeros(images.shape[1:], f32), np.zeros(images.shape[1:], f32)
     least, most = np.full(images.shape[1:], -np.inf, f32), np.full(images.shape[1:], np.inf, f32)
@@ -69,7 +73,9 @@ def from_bytes(data):
     values = np.frombuffer(data, f32, offset=start)
     if float(scale) > 0:
         values = values.byteswap()
-    return np.flipud(values.reshape(H, W, -1).squeeze(-1) if kind == b"Pf" else values.reshape(H, W, 3))
+    return np.flipud(
+        values.reshape(H, W, -1).squeeze(-1) if kind == b"Pf" else values.reshape(H, W, 3)
+    )
 
 
 # %% task="to_pixels"
@@ -81,9 +87,9 @@ def to_pixels(E):
         e = np.floor(np.log2(brightest)) + f32(1)
     e = np.where(brightest > 1e-32, e, f32(-128))
     m = np.floor(E * np.exp2(8 - e.astype(float))[..., None])
-    return np.concatenate([np.where(brightest[..., None] > 1e-32, m, 0), e[..., None] + 128], axis=2).astype(
-        f32
-    )
+    return np.concatenate(
+        [np.where(brightest[..., None] > 1e-32, m, 0), e[..., None] + 128], axis=2
+    ).astype(f32)
 
 
 # %% task="to_radiance"

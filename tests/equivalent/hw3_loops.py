@@ -143,7 +143,12 @@ def label(mask):
         waiting = [tuple(start)]
         while waiting:
             y, x = waiting.pop()
-            if 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1] and mask[y, x] and not labels[y, x]:
+            if (
+                0 <= y < mask.shape[0]
+                and 0 <= x < mask.shape[1]
+                and mask[y, x]
+                and not labels[y, x]
+            ):
                 labels[y, x] = count
                 waiting += [(y + a, x + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
     return labels
@@ -212,7 +217,11 @@ def ratio_steps(found, *, limit=9.0, tolerance=1e-6, rounds=100):
                 top += v * v * x * y
                 bottom += v * v * x * x
         k = top / bottom
-        errors = [(v * (y - k * x)) ** 2 for (x, y, v), counts in zip(pairs, inside, strict=True) if counts]
+        errors = [
+            (v * (y - k * x)) ** 2
+            for (x, y, v), counts in zip(pairs, inside, strict=True)
+            if counts
+        ]
         V = sum(errors) / len(errors)
         yield k, list(inside), V
         if abs(k - before) < tolerance:

@@ -33,7 +33,9 @@ def from_bytes(data):
         end = min(i for i in (data.find(b"\n", at), data.find(b" ", at)) if i >= 0)
         head.append(data[at:end])
         at = end + 1
-    rows = np.frombuffer(data[at:], ">f4" if float(head[3]) > 0 else "<f4").reshape(int(head[2]), -1)
+    rows = np.frombuffer(data[at:], ">f4" if float(head[3]) > 0 else "<f4").reshape(
+        int(head[2]), -1
+    )
     E = np.stack([rows[-1 - y] for y in range(len(rows))]).astype(float)
     return E.reshape(len(rows), int(head[1]), 3) if head[0] == b"PF" else E
 

@@ -96,9 +96,13 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     for k, level in reversed(list(enumerate(pyramid))):
         dy, dx = np.gradient(level)
         slope = np.sqrt(dy**2 + dx**2) / f32(2**k)
-        phi = (np.maximum(slope, f32(0.01) * slope.mean()) / (f32(alpha) * slope.mean())) ** f32(beta - 1)
+        phi = (np.maximum(slope, f32(0.01) * slope.mean()) / (f32(alpha) * slope.mean())) ** f32(
+            beta - 1
+        )
         H, W = phi.shape
-        larger = zoom(Phi, (H / Phi.shape[0], W / Phi.shape[1]), order=1, mode="nearest", grid_mode=True)
+        larger = zoom(
+            Phi, (H / Phi.shape[0], W / Phi.shape[1]), order=1, mode="nearest", grid_mode=True
+        )
         Phi = larger * phi
         yield k, level, slope, phi, Phi
 

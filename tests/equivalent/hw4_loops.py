@@ -59,7 +59,9 @@ def layers(lL, *, sigma_s, sigma_r=0.4):
             top, left = max(0, y - r), max(0, x - r)
             q = lL[top : y + r + 1, left : x + r + 1].astype(float)
             i, j = np.ogrid[top - y : top - y + q.shape[0], left - x : left - x + q.shape[1]]
-            weight = np.exp(-(i**2 + j**2) / (2 * sigma_s**2) - (q - lL[y, x]) ** 2 / (2 * sigma_r**2))
+            weight = np.exp(
+                -(i**2 + j**2) / (2 * sigma_s**2) - (q - lL[y, x]) ** 2 / (2 * sigma_r**2)
+            )
             base[y, x] = (weight * q).sum() / weight.sum()
     return base, lL - base
 

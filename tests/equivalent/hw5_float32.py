@@ -68,7 +68,9 @@ def pq(FD):
 
 
 def gain_map(sdr, hdr, low, high, *, gamma=1.0, k=(1 / 1024, 1 / 1024)):
-    below, above = (np.asarray(one, f32) + f32(offset) for one, offset in zip((sdr, hdr), k, strict=True))
+    below, above = (
+        np.asarray(one, f32) + f32(offset) for one, offset in zip((sdr, hdr), k, strict=True)
+    )
     low, high = np.asarray(low, f32), np.asarray(high, f32)
     part = (np.log2(above / below) - low) / (high - low)
     return np.minimum(np.maximum(part, f32(0)), f32(1)) ** f32(gamma)
@@ -171,7 +173,9 @@ def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
         w = np.exp(-d2 / (2 * np.exp(2 * log_sigma)))
         return (w[core].sum() / w.sum() - inside) ** 2
 
-    best = minimize_scalar(off, bounds=(np.log(0.05), np.log(3)), method="bounded", options={"xatol": 1e-8})
+    best = minimize_scalar(
+        off, bounds=(np.log(0.05), np.log(3)), method="bounded", options={"xatol": 1e-8}
+    )
     w = np.exp(-d2 / (2 * np.exp(2 * best.x)))
     return (w / w.sum()).reshape(shape).astype(np.float32)
 

@@ -30,9 +30,9 @@ def inverse_variance_merge(X, D, measured, t, N, R):
                     t[j] ** 2 / (x / N + (R / N) ** 2 + D[j, i, k] ** 2 / 12)
                     for j, x in zip(seen, light, strict=True)
                 ]
-                E[i, k] = sum(w * X[j, i, k] / t[j] for w, j in zip(weights, seen, strict=True)) / sum(
-                    weights
-                )
+                E[i, k] = sum(
+                    w * X[j, i, k] / t[j] for w, j in zip(weights, seen, strict=True)
+                ) / sum(weights)
                 light = [E[i, k] * t[j] for j in seen]
             s[i, k] = sum(weights) ** -0.5
     return E, s
@@ -55,7 +55,9 @@ def guided(I, p=None, *, radius, epsilon):
     q = np.zeros((H, W))
     for y in range(H):
         for x in range(W):
-            holders = found[max(0, y - radius) : y + radius + 1, max(0, x - radius) : x + radius + 1]
+            holders = found[
+                max(0, y - radius) : y + radius + 1, max(0, x - radius) : x + radius + 1
+            ]
             a, b = holders.mean(axis=(0, 1))
             q[y, x] = a * I[y, x] + b
     return q
@@ -171,7 +173,10 @@ def weight(F, powers=(1, 1, 1)):
         for x in range(W):
             r, g, b = (float(one) for one in F[:, y, x])
             near = (
-                Y[max(y - 1, 0), x] + Y[min(y + 1, H - 1), x] + Y[y, max(x - 1, 0)] + Y[y, min(x + 1, W - 1)]
+                Y[max(y - 1, 0), x]
+                + Y[min(y + 1, H - 1), x]
+                + Y[y, max(x - 1, 0)]
+                + Y[y, min(x + 1, W - 1)]
             )
             mean = (r + g + b) / 3
             C = abs(near - 4 * Y[y, x])

@@ -26,7 +26,9 @@ def tonemap(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
     if white is None:
         white = max(1.0, sorted(scaled)[math.ceil(0.9999 * len(scaled)) - 1])
     held = around(np.reshape(scaled, (H, W)), key, phi, threshold) if local else scaled
-    shown = [min(1.0, v * (1 + v / white / white) / (1 + V)) for v, V in zip(scaled, held, strict=True)]
+    shown = [
+        min(1.0, v * (1 + v / white / white) / (1 + V)) for v, V in zip(scaled, held, strict=True)
+    ]
     return np.reshape(shown, (H, W))
 
 

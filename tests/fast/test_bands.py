@@ -26,13 +26,17 @@ def test_bands_answer_what_the_whole_picture_answers(height):
 
 def test_bands_take_planes_and_several_pictures():
     u, planes = noise((70, 9)), noise((3, 70, 9), 1)
-    assert np.array_equal(bands.banded(lambda u, p: u * p.sum(axis=0), u, planes), u * planes.sum(axis=0))
+    assert np.array_equal(
+        bands.banded(lambda u, p: u * p.sum(axis=0), u, planes), u * planes.sum(axis=0)
+    )
 
 
 def test_pyramids_of_several_bands_and_planes_are_the_lesson_s():
     rng = np.random.default_rng(2)
     picture = rng.uniform(0, 1, (2, 300, 261)).astype(np.float32)
-    for found, expected in zip(quick.laplacian(picture, 3), lesson.laplacian(picture, 3), strict=True):
+    for found, expected in zip(
+        quick.laplacian(picture, 3), lesson.laplacian(picture, 3), strict=True
+    ):
         np.testing.assert_allclose(found, expected, atol=1e-6)
     fine = quick.interpolate(picture[0], (600, 522))
     np.testing.assert_allclose(fine, lesson.interpolate(picture[0], (600, 522)), atol=1e-6)

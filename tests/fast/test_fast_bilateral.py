@@ -28,8 +28,8 @@ def rms(a, b):
 def spatial_weights(win_size, sigma, *, dtype=float):
     """Return g over the window, as scikit-image's table of it should be.
 
-    Its own runs from -n // 2, one row and column too many for an odd n, and is then read with rows of n: a
-    Gaussian sheared over the window.
+    Its own runs from -n // 2, one row and column too many for an odd n, and is then read with rows
+    of n: a Gaussian sheared over the window.
     """
     far = np.arange(win_size) - win_size // 2
     return np.exp(-(far[:, None] ** 2 + far**2) / (2 * sigma**2)).astype(dtype).ravel()
@@ -42,7 +42,10 @@ def test_the_definition_is_scikit_images_within_a_thousandth(sigma_s, sigma_r, m
     v, r = room().astype(np.float64), int(np.ceil(3 * sigma_s))
     theirs = denoise_bilateral(v - v.min(), 2 * r + 1, sigma_r, sigma_s, bins=100_000) + v.min()
     inside = (slice(r, -r), slice(r, -r))
-    assert np.abs(by_definition(v, sigma_s=sigma_s, sigma_r=sigma_r).mean - theirs)[inside].max() < 1e-3
+    assert (
+        np.abs(by_definition(v, sigma_s=sigma_s, sigma_r=sigma_r).mean - theirs)[inside].max()
+        < 1e-3
+    )
 
 
 @pytest.mark.parametrize("sigma_s", [1, 2.9, 4, 6, 8.5, 12])
@@ -57,7 +60,11 @@ def test_the_grid_is_the_definition_within_a_hundredth_of_sigma_r(sigma_s):
 
 @pytest.mark.parametrize("name", ["memorial", "lobby"])
 def test_on_photographs_the_base_is_within_five_thousandths_of_a_decade(shared, name):
-    path = shared("memorial") / "memorial.hdr" if name == "memorial" else shared("hdri_cc0") / f"{name}.hdr"
+    path = (
+        shared("memorial") / "memorial.hdr"
+        if name == "memorial"
+        else shared("hdri_cc0") / f"{name}.hdr"
+    )
     L = luminance(rgbe.read(path))[::4, ::4]
     v = np.log10(np.maximum(L, L[L > 0].min()))
     for sigma_s in (3, 6):
@@ -70,7 +77,9 @@ def test_a_constant_stays_and_all_neighbours_weigh_in_full(method):
     found = method(np.full((61, 73), 3.7), sigma_s=5, sigma_r=0.4)
     assert np.allclose(found.mean, 3.7, atol=0.02 * 0.4)
     assert found.k[30, 36] == pytest.approx(2 * np.pi * 5**2, rel=0.02)
-    assert found.k[0, 0] == pytest.approx(found.k[30, 36] / 4, rel=0.3), "beyond the corner there is nothing"
+    assert found.k[0, 0] == pytest.approx(found.k[30, 36] / 4, rel=0.3), (
+        "beyond the corner there is nothing"
+    )
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])
@@ -79,7 +88,9 @@ def test_a_pixel_unlike_all_others_is_its_own_mean_and_says_so(method, sigma_s):
     v = np.zeros((50, 60))
     v[20, 33] = 5
     found = method(v, sigma_s=sigma_s, sigma_r=0.4)
-    assert found.mean[20, 33] == pytest.approx(5, abs=0.02) and found.k[20, 33] == pytest.approx(1, abs=0.25)
+    assert found.mean[20, 33] == pytest.approx(5, abs=0.02) and found.k[20, 33] == pytest.approx(
+        1, abs=0.25
+    )
     v[20, 33] = found.mean[20, 33] = 0
     assert np.abs(found.mean).max() < 0.01, "and nobody else notices"
 
@@ -134,7 +145,9 @@ def test_closeness_is_the_gaussian_of_the_distance_between_bin_and_level():
     w, away = np.split(grid._closeness(a), 2, axis=1)
     assert w[0, 0] == 1 and away[0, 0] == 0
     one = grid.LEVELS * grid.BINS  # sigma_r away
-    assert w[one, 0] == pytest.approx(np.exp(-0.5)) and away[one, 0] == pytest.approx(0.4 * np.exp(-0.5))
+    assert w[one, 0] == pytest.approx(np.exp(-0.5)) and away[one, 0] == pytest.approx(
+        0.4 * np.exp(-0.5)
+    )
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])

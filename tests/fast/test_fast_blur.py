@@ -57,7 +57,9 @@ def test_six_decades_below_a_lamp_a_wide_blur_is_still_the_gaussian_to_a_seventh
     assert np.abs(blur._direct(image, sigma) / exact - 1).max() > 0.75
 
 
-@pytest.mark.parametrize(("sigma", "h", "shape"), [(9, 4, (70, 90)), (40, 16, (50, 33)), (200, 64, (7, 1))])
+@pytest.mark.parametrize(
+    ("sigma", "h", "shape"), [(9, 4, (70, 90)), (40, 16, (50, 33)), (200, 64, (7, 1))]
+)
 def test_folding_the_band_matrix_is_reflecting_the_picture(sigma, h, shape):
     """The picture is read where it stands; the plain form continues it first, as often as need be."""
     image = np.random.default_rng(3).random(shape, dtype=np.float32)

@@ -34,12 +34,16 @@ def test_the_fast_solution_is_the_slides(seed, smoothness, w):
 def test_under_a_cut_the_fast_solution_is_the_slides_and_constant_above_it(seed):
     Z, B = samples(seed=seed)
     fast, slow = debevec.gsolve(Z, B, 30, CUT).g, lesson.gsolve(Z, B, 30, CUT).g
-    reached = np.flatnonzero(CUT)[-1] + 1  # the last smoothness row reaches one level beyond the cut
+    reached = (
+        np.flatnonzero(CUT)[-1] + 1
+    )  # the last smoothness row reaches one level beyond the cut
     assert np.allclose(fast, slow, rtol=0, atol=1e-8)
     assert np.all(fast[reached:] == fast[reached])
 
 
-@given(seed=st.integers(0, 99), smoothness=st.floats(0.1, 1000), P=st.integers(2, 8), cut=st.booleans())
+@given(
+    seed=st.integers(0, 99), smoothness=st.floats(0.1, 1000), P=st.integers(2, 8), cut=st.booleans()
+)
 def test_the_gauge_holds_exactly(seed, smoothness, P, cut):
     Z, B = samples(P=P, seed=seed)
     assert debevec.gsolve(Z, B, smoothness, CUT if cut else weights.hat()).g[128] == 0
@@ -57,7 +61,11 @@ def test_lE_of_a_sample_that_no_frame_saw_well_is_0_and_it_changes_nothing_else(
     Z, B = samples()
     seen = debevec.gsolve(Z, B, 30, CUT)
     more = debevec.gsolve(np.concatenate([Z, np.full((1, len(B)), 255)]), B, 30, CUT)
-    assert more.lE[-1] == 0 and np.allclose(more.g, seen.g, atol=1e-12) and np.allclose(more.lE[:-1], seen.lE)
+    assert (
+        more.lE[-1] == 0
+        and np.allclose(more.g, seen.g, atol=1e-12)
+        and np.allclose(more.lE[:-1], seen.lE)
+    )
 
 
 def test_a_sample_of_one_frame_moves_no_curve():
@@ -109,7 +117,15 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         (STACK * 0 + 255, [1, 2], "expected samples seen well in two exposures"),
         (STACK.astype(float), [1, 2], "uint8 or uint16"),
     ],
-    ids=["one frame", "equal times", "zero time", "a time too few", "all black", "all white", "float"],
+    ids=[
+        "one frame",
+        "equal times",
+        "zero time",
+        "a time too few",
+        "all black",
+        "all white",
+        "float",
+    ],
 )
 def test_a_bracket_that_tells_nothing_is_refused(images, times, said):
     with pytest.raises(ValueError, match=said):
@@ -148,7 +164,9 @@ def test_the_noise_of_a_phone_leaves_the_response_within_one_percent(name, seed,
 
 def test_the_cut_is_what_makes_the_noisy_experiment_of_cerman_and_hlavac_come_out():
     E = np.geomspace(1 / 4096, 1, 40_000, dtype=np.float32).reshape(200, 200)
-    taken = camera.shoot(E, 4.0 ** np.arange(6), camera.Camera(response="cubic", gray_noise=1.0), rng=0)
+    taken = camera.shoot(
+        E, 4.0 ** np.arange(6), camera.Camera(response="cubic", gray_noise=1.0), rng=0
+    )
     knobs = dict(smoothness=20, samples=200, choose=sampling.by_grid)
     hat = debevec.recover(taken.images, taken.times, w=weights.hat(), **knobs)
     cut = debevec.recover(taken.images, taken.times, **knobs)
@@ -161,7 +179,8 @@ def test_each_channel_has_the_curve_of_its_own_photographs(decades):
     E = decades((60, 80))
     times = camera.times_around(E, 5, stops=2)
     gray = [
-        camera.shoot(E, times, camera.Camera(response=name)).images for name in ("film", "gamma", "linear")
+        camera.shoot(E, times, camera.Camera(response=name)).images
+        for name in ("film", "gamma", "linear")
     ]
     g = debevec.recover(np.stack(gray, axis=-1), times)
     assert g.shape == (256, 3)
@@ -171,7 +190,9 @@ def test_each_channel_has_the_curve_of_its_own_photographs(decades):
 
 def test_the_curve_rises_even_where_noise_would_make_it_fall(decades):
     E = decades((40, 50))
-    taken = camera.shoot(E, camera.times_around(E, 3, stops=4), camera.Camera(gray_noise=8.0), rng=2)
+    taken = camera.shoot(
+        E, camera.times_around(E, 3, stops=4), camera.Camera(gray_noise=8.0), rng=2
+    )
     knobs = dict(samples=30, smoothness=0.5, choose=sampling.by_grid)
     g = debevec.recover(taken.images, taken.times, **knobs)
     assert np.all(np.diff(g) >= 0) and g[128] == 0

@@ -18,7 +18,9 @@ def test_counting_in_words_is_counting_pixel_by_pixel(rows, columns, seed, data)
     offset = data.draw(st.tuples(st.integers(-15, 15), st.integers(-150, 150)))
     both = mtb.Photograph(moving), mtb.Photograph(fixed)
     differ, compared = both[0].count_differences(both[1], offset, 0).sum(axis=0)
-    assert differ / max(compared, 1) == lesson.error(lesson.bitmaps(fixed), lesson.bitmaps(moving), offset)
+    assert differ / max(compared, 1) == lesson.error(
+        lesson.bitmaps(fixed), lesson.bitmaps(moving), offset
+    )
 
 
 @pytest.mark.parametrize("offset", [(0, 0), (7, -4), (-90, 33)])

@@ -45,7 +45,14 @@ TALL = RNG.random((3, 41, 900)).astype(np.float32)
 TIMES = np.array([0.25, 1.0, 4.0])
 LIGHT = gaussian_filter(RNG.lognormal(-1.5, 1.5, (50, 38, 3)), (1, 1, 0))
 Z3 = np.rint(255 * np.clip(np.multiply.outer(TIMES, LIGHT), 0, 1) ** (1 / 2.2)).astype(np.uint8)
-Z3[:, 2, 3], Z3[:, 4, 4, 0], Z3[:, 5, 5], Z3[0, 6, 6], Z3[1:, 6, 6], Z3[:, 7, 7, 1:] = 255, 255, 0, 0, 255, 0
+Z3[:, 2, 3], Z3[:, 4, 4, 0], Z3[:, 5, 5], Z3[0, 6, 6], Z3[1:, 6, 6], Z3[:, 7, 7, 1:] = (
+    255,
+    255,
+    0,
+    0,
+    255,
+    0,
+)
 Z1 = Z3[..., 1].copy()
 DEEP = Z1.astype(np.uint16) * 257
 FIVE = np.concatenate([Z3, Z3[:2, ::-1]])
@@ -55,7 +62,10 @@ VALID = RNG.random(Z1.shape) > 0.2
 GRAY = RNG.integers(0, 256, (70, 150), np.uint8)
 MOVED = np.roll(GRAY, (3, -5), axis=(0, 1))
 WIDE = gaussian_filter(RNG.normal(120, 900, (3, 80, 170)), (0, 3, 3)).clip(0, 255).astype(np.uint8)
-WIDE[1], WIDE[2] = np.roll(WIDE[0], (2, -3), axis=(0, 1)), np.roll(WIDE[0] // 2, (-4, 9), axis=(0, 1))
+WIDE[1], WIDE[2] = (
+    np.roll(WIDE[0], (2, -3), axis=(0, 1)),
+    np.roll(WIDE[0] // 2, (-4, 9), axis=(0, 1)),
+)
 SIXTY = RNG.integers(0, 256, (600, 900), np.uint8)
 HUGE = np.tile(SIXTY, (2, 1))
 WORDS = RNG.integers(0, 2**63, (2, 3, 4)).astype(np.uint64)

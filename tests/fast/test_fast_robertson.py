@@ -60,9 +60,15 @@ def test_seven_frames_give_the_response_to_three_tenths_of_a_percent(name, seven
 def test_without_smoothness_frames_2_stops_apart_leave_the_start_in_the_curve(decades):
     """The ambiguity of equal steps: 4 % at 2 stops, 0.5 % at 1 stop; uneven steps heal it."""
     E, found = decades(seed=3), []
-    for stops in (np.arange(7) * 2.0, np.arange(7) * 1.0, np.cumsum([0, 1, 2.3, 1.4, 0.7, 2.6, 1.2])):
+    for stops in (
+        np.arange(7) * 2.0,
+        np.arange(7) * 1.0,
+        np.cumsum([0, 1, 2.3, 1.4, 0.7, 2.6, 1.2]),
+    ):
         times = camera.times_around(E, 1)[0] * 2.0 ** (stops - stops.mean())
-        taken = camera.shoot(E, times, camera.Camera(response="gamma", full_well=50_000, read_noise=5), rng=3)
+        taken = camera.shoot(
+            E, times, camera.Camera(response="gamma", full_well=50_000, read_noise=5), rng=3
+        )
         g = robertson.recover(
             taken.images, taken.times, steps=partial(robertson.recover_steps, max_iterations=50)
         )
@@ -107,7 +113,8 @@ def test_all_pixels_of_colour_are_those_of_its_channels(decades):
     E = decades((40, 50))
     times = camera.times_around(E, 5, stops=1.5)
     gray = [
-        camera.shoot(E, times, camera.Camera(response=name)).images for name in ("film", "gamma", "linear")
+        camera.shoot(E, times, camera.Camera(response=name)).images
+        for name in ("film", "gamma", "linear")
     ]
     g = smooth(np.stack(gray, axis=-1), times, choose=sampling.every_pixel)
     for c, images in enumerate(gray):

@@ -11,7 +11,10 @@ def test_it_is_interpolation_between_knots_and_level_beyond_them(n):
     rng = np.random.default_rng(n)
     knots, t = rng.standard_normal(n + 1), rng.uniform(-2, n + 2, (40, 50)).astype(np.float32)
     read = lookup.interpolate(lookup.tabulate(knots), t)
-    assert np.allclose(read, np.interp(t, np.arange(n + 1), knots), atol=1e-5) and read.dtype == np.float32
+    assert (
+        np.allclose(read, np.interp(t, np.arange(n + 1), knots), atol=1e-5)
+        and read.dtype == np.float32
+    )
 
 
 def test_a_knot_is_read_as_it_is():

@@ -31,7 +31,9 @@ def functions(module):
     return {
         name: one
         for name, one in own
-        if inspect.isfunction(one) and one.__module__ == module.__name__ and not name.startswith("_")
+        if inspect.isfunction(one)
+        and one.__module__ == module.__name__
+        and not name.startswith("_")
     }
 
 
@@ -46,7 +48,11 @@ def lesson(module, name):
     return None
 
 
-PAIRS = [(module, name) for module in MODULES for name in functions(import_module(f"hdrlab.fast.{module}"))]
+PAIRS = [
+    (module, name)
+    for module in MODULES
+    for name in functions(import_module(f"hdrlab.fast.{module}"))
+]
 NAMES = [f"{module}.{name}" for module, name in PAIRS]
 
 
@@ -58,7 +64,9 @@ def test_a_function_of_fast_has_a_lesson_with_the_same_parameters(module, name):
     assert list(ours) == list(theirs)
     for one in ours:
         assert ours[one].kind == theirs[one].kind, one
-        if not callable(ours[one].default):  # a lesson takes the filter that is to be fast as an argument
+        if not callable(
+            ours[one].default
+        ):  # a lesson takes the filter that is to be fast as an argument
             assert ours[one].default == theirs[one].default, one
 
 
@@ -71,7 +79,11 @@ def test_a_function_of_fast_answers_what_its_lesson_answers(module, name, kind):
         return
     args, named = given
     compare(
-        lesson(module, name), getattr(import_module(f"hdrlab.fast.{module}"), name), args, named, tolerance
+        lesson(module, name),
+        getattr(import_module(f"hdrlab.fast.{module}"), name),
+        args,
+        named,
+        tolerance,
     )
 
 

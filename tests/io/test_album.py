@@ -65,7 +65,9 @@ def test_of_a_pair_one_is_taken_and_a_note_says_which(tmp_path):
 def test_an_edited_copy_is_left_out_with_a_note(tmp_path, copy):
     save(bracket_in(tmp_path) / f"{copy}.jpg", 255 - RGB, seconds=1.0)
     bracket, notes = read_noting(tmp_path)
-    assert len(bracket.names) == 3 and notes == [f"{copy}.jpg: left out, it is named as a copy of IMG_0001"]
+    assert len(bracket.names) == 3 and notes == [
+        f"{copy}.jpg: left out, it is named as a copy of IMG_0001"
+    ]
 
 
 def test_names_that_only_look_alike_stay(tmp_path):

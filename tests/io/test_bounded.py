@@ -35,7 +35,9 @@ def two_parts(path):
 @pytest.mark.parametrize("read", [exr.read, exr.read_dtypes])
 def test_the_second_part_of_an_exr_never_stands_for_a_damaged_first(tmp_path, read):
     two_parts(tmp_path / "parts.exr")
-    with pytest.raises(ValueError, match=r"parts\.exr: expected an OpenEXR file, it is cut short or damaged"):
+    with pytest.raises(
+        ValueError, match=r"parts\.exr: expected an OpenEXR file, it is cut short or damaged"
+    ):
         read(tmp_path / "parts.exr")
 
 
@@ -119,10 +121,15 @@ def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeyp
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(OSError, match="No space left") as stop, files.replacing(tmp_path / "room.pfm"):
+    with (
+        pytest.raises(OSError, match="No space left") as stop,
+        files.replacing(tmp_path / "room.pfm"),
+    ):
         full()
     assert stop.value.filename == str(tmp_path / "room.pfm")
-    monkeypatch.setattr(OpenEXR.File, "write", lambda *_: (_ for _ in ()).throw(RuntimeError("disk")))
+    monkeypatch.setattr(
+        OpenEXR.File, "write", lambda *_: (_ for _ in ()).throw(RuntimeError("disk"))
+    )
     with pytest.raises(OSError, match=r"is the disk full.*room\.exr"):
         exr.write(tmp_path / "room.exr", np.ones((4, 5, 3)))
     assert not list(tmp_path.iterdir())
@@ -177,7 +184,9 @@ def test_a_tile_far_beyond_its_picture_is_refused_before_it_is_made(tmp_path):
 @pytest.mark.parametrize("exposure", ["1e-320", "1e300"])
 def test_an_exposure_beyond_float32_is_refused_and_divides_nothing(tmp_path, exposure):
     path = tmp_path / "a.hdr"
-    path.write_bytes(f"#?RADIANCE\nEXPOSURE={exposure}\n\n-Y 1 +X 1\n".encode() + bytes([9, 9, 9, 128]))
+    path.write_bytes(
+        f"#?RADIANCE\nEXPOSURE={exposure}\n\n-Y 1 +X 1\n".encode() + bytes([9, 9, 9, 128])
+    )
     with pytest.raises(ValueError, match=r"a\.hdr: expected positive exposures"):
         rgbe.read(path)
 

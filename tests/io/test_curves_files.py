@@ -112,7 +112,9 @@ def test_a_file_that_is_cut_short_is_refused_wherever_it_ends(suffix, tmp_path):
     path = tmp_path / f"g{suffix}"
     write_curve(path, RGB)
     data = path.read_bytes()
-    end = data.index(b"# Weighting") - 2 if suffix == ".m" else len(data) - 1  # the weights are not read
+    end = (
+        data.index(b"# Weighting") - 2 if suffix == ".m" else len(data) - 1
+    )  # the weights are not read
     for length in [0, 1, 30, *np.linspace(100, end, 12).astype(int), *range(end - 20, end + 1)]:
         path.write_bytes(data[:length])
         with pytest.raises(ValueError, match=re.escape(str(path))):
@@ -137,7 +139,9 @@ values = st.one_of(st.sampled_from(b"\n\r ,.-e019#\x00\xff"), st.integers(0, 255
     length=st.one_of(st.none(), places),
     inserted=st.tuples(places, st.binary(max_size=8)),
 )
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 def test_a_damaged_file_reads_as_a_response_or_is_refused(whole, suffix, changes, length, inserted):
     data = bytearray((whole / f"g{suffix}").read_bytes())
     for place, value in changes:
@@ -160,7 +164,9 @@ def test_a_file_that_claims_more_than_any_response_is_refused(tmp_path):
         read_curve(tmp_path / "g.csv")
 
 
-@pytest.mark.parametrize("text", ["level,red\n", "a,b,c\n", "", "level,gray (ln exposure)\n0,1\n2,3\n"])
+@pytest.mark.parametrize(
+    "text", ["level,red\n", "a,b,c\n", "", "level,gray (ln exposure)\n0,1\n2,3\n"]
+)
 def test_another_table_is_no_response(text, tmp_path):
     (tmp_path / "g.csv").write_text(text)
     with pytest.raises(ValueError, match="expected"):
@@ -173,7 +179,9 @@ def pfstools(bracket, *options):
         if not shutil.which(program):
             pytest.skip(f"{program} is not installed")
     out = bracket / "theirs.pfm"
-    steps = f"pfsinhdrgen list.hdrgen | pfshdrcalibrate {' '.join(map(str, options))} | pfsout {out}"
+    steps = (
+        f"pfsinhdrgen list.hdrgen | pfshdrcalibrate {' '.join(map(str, options))} | pfsout {out}"
+    )
     done = subprocess.run(
         ["bash", "-o", "pipefail", "-c", steps], cwd=bracket, capture_output=True, timeout=600
     )
@@ -189,4 +197,6 @@ def test_pfstools_writes_what_we_read_and_reads_what_we_write(bracket, tmp_path)
     write_curve(tmp_path / "ours.m", g)
     ratio = pfstools(bracket, "-f", tmp_path / "ours.m") / theirs
     assert np.ptp(ratio.reshape(-1, 3), axis=0).max() < 1e-4
-    assert np.ptp(np.log(pfstools(bracket, "-r", "gamma") / theirs)) > 0.1  # another curve, another map
+    assert (
+        np.ptp(np.log(pfstools(bracket, "-r", "gamma") / theirs)) > 0.1
+    )  # another curve, another map

@@ -48,7 +48,9 @@ WRITERS = {
     "progressive.jpg": lambda path: Image.fromarray(RGB).save(path, progressive=True),
     "float.tif": lambda path: write_radiance(path, E),
     "x.tif": lambda path: Image.fromarray(RGB).save(path, exif=_exif()),
-    "deflated.tif": lambda path: tifffile.imwrite(path, RGB, photometric="rgb", compression="deflate"),
+    "deflated.tif": lambda path: tifffile.imwrite(
+        path, RGB, photometric="rgb", compression="deflate"
+    ),
 }
 
 
@@ -70,15 +72,20 @@ def reader_of(name):
 
 places = st.one_of(st.integers(0, 400), st.integers(0, 4000))
 changes = st.lists(
-    st.tuples(places, st.one_of(st.sampled_from([0, 1, 2, 127, 128, 255]), st.integers(0, 255))), max_size=6
+    st.tuples(places, st.one_of(st.sampled_from([0, 1, 2, 127, 128, 255]), st.integers(0, 255))),
+    max_size=6,
 )
 
 
 @pytest.mark.parametrize("name", WRITERS)
 @given(
-    changes=changes, length=st.one_of(st.none(), places), inserted=st.tuples(places, st.binary(max_size=8))
+    changes=changes,
+    length=st.one_of(st.none(), places),
+    inserted=st.tuples(places, st.binary(max_size=8)),
 )
-@settings(max_examples=60, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=60, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 def test_a_damaged_file_reads_or_is_refused(folder, name, changes, length, inserted):
     data = bytearray((folder / name).read_bytes())
     for place, value in changes:
@@ -99,7 +106,9 @@ def test_a_damaged_file_reads_or_is_refused(folder, name, changes, length, inser
 
 @pytest.mark.parametrize("name", WRITERS)
 @given(data=st.binary(max_size=300))
-@settings(max_examples=30, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=30, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 def test_any_bytes_after_a_good_beginning_read_or_are_refused(folder, name, data):
     path = folder / f"begun-{name}"
     path.write_bytes((folder / name).read_bytes()[:60] + data)

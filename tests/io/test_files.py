@@ -40,7 +40,10 @@ def test_a_folder_is_not_replaced(tmp_path):
 
 
 def test_a_device_is_not_replaced():
-    with pytest.raises(ValueError, match="expected the name of a file"), files.replacing(os.devnull):
+    with (
+        pytest.raises(ValueError, match="expected the name of a file"),
+        files.replacing(os.devnull),
+    ):
         pytest.fail("the block ran")
 
 

@@ -21,7 +21,12 @@ from hdrlab.io import photos, radiance, screens
 from hdrlab.io.decode import look
 
 PAGE = Path(hdrlab.__file__).parent / "course/site/pages/photographs.md"
-RGB = np.random.default_rng(0).integers(30, 220, (4, 6, 3), np.uint8).repeat(8, axis=0).repeat(8, axis=1)
+RGB = (
+    np.random.default_rng(0)
+    .integers(30, 220, (4, 6, 3), np.uint8)
+    .repeat(8, axis=0)
+    .repeat(8, axis=1)
+)
 DEEP = RGB.astype(np.uint16) * 257
 E = (RGB / np.float32(64)) ** 2
 NO_PHOTOGRAPH = r": expected a photograph \(TIFF, JPEG, .*, JXL\), got b"
@@ -44,13 +49,17 @@ def glass():
 
 def heic(mode="RGB", image=RGB):
     module = pytest.importorskip("pillow_heif", reason="HEIC needs the extra `heic`")
-    module.from_bytes(mode, RGB.shape[1::-1], image.tobytes()).save(file := io.BytesIO(), quality=-1)
+    module.from_bytes(mode, RGB.shape[1::-1], image.tobytes()).save(
+        file := io.BytesIO(), quality=-1
+    )
     return file.getvalue()
 
 
 def avif(bits):
     codes = RGB.astype(np.uint16) << (bits - 8)
-    return imagecodecs.avif_encode(codes if bits > 8 else RGB, bitspersample=bits, pixelformat="444")
+    return imagecodecs.avif_encode(
+        codes if bits > 8 else RGB, bitspersample=bits, pixelformat="444"
+    )
 
 
 def gains():
@@ -98,14 +107,24 @@ def exr():
         return Path(folder, "theirs.exr").read_bytes()
 
 
-# a row of the table: files by other writers, each with what it is as a photograph and as a map: a dtype, or
-# the words with which it is refused
+# a row of the table: files by other writers, each with what it is as a photograph and as a map: a
+# dtype, or the words with which it is refused
 FILES = {
     "JPEG, also `.jfif`, and with a film behind it": [
         ("a.jpg", lambda: pillow("JPEG"), "uint8", "a JPEG with a gain map"),
         ("a.jfif", lambda: pillow("JPEG"), "uint8", NO_MAP),
-        ("film.jpg", lambda: pillow("JPEG") + bytes(4) + b"ftypmp42" + bytes(99), "uint8", "with a gain map"),
-        ("ink.jpg", lambda: pillow("JPEG", "CMYK"), "expected gray or RGB of 8 or 16 bits, got CMYK", None),
+        (
+            "film.jpg",
+            lambda: pillow("JPEG") + bytes(4) + b"ftypmp42" + bytes(99),
+            "uint8",
+            "with a gain map",
+        ),
+        (
+            "ink.jpg",
+            lambda: pillow("JPEG", "CMYK"),
+            "expected gray or RGB of 8 or 16 bits, got CMYK",
+            None,
+        ),
     ],
     "Ultra HDR, a JPEG with a gain map": [
         ("a.jpg", gains, "uint8", "float32"),
@@ -129,8 +148,18 @@ FILES = {
     ],
     "TIFF": [
         ("a.tif", lambda: tiff(RGB), "uint8", "expected gray or RGB of floating-point samples"),
-        ("deep.tiff", lambda: tiff(DEEP), "uint16", "expected gray or RGB of floating-point samples"),
-        ("light.tif", lambda: tiff(E), "expected gray or RGB of 8 or 16 bits, got 3 x float32", "float32"),
+        (
+            "deep.tiff",
+            lambda: tiff(DEEP),
+            "uint16",
+            "expected gray or RGB of floating-point samples",
+        ),
+        (
+            "light.tif",
+            lambda: tiff(E),
+            "expected gray or RGB of 8 or 16 bits, got 3 x float32",
+            "float32",
+        ),
     ],
     "WebP": [("a.webp", lambda: pillow("WEBP"), "uint8", NO_MAP)],
     "AVIF": [
@@ -139,15 +168,30 @@ FILES = {
         ("twelve.avif", lambda: avif(12), "uint16", NO_MAP),
     ],
     "JPEG XL": [
-        ("a.jxl", lambda: imagecodecs.jpegxl_encode(RGB), "uint8", "floating-point samples, got 3 x uint8"),
+        (
+            "a.jxl",
+            lambda: imagecodecs.jpegxl_encode(RGB),
+            "uint8",
+            "floating-point samples, got 3 x uint8",
+        ),
         (
             "deep.jxl",
             lambda: imagecodecs.jpegxl_encode(DEEP),
             "uint16",
             "floating-point samples, got 3 x uint16",
         ),
-        ("light.jxl", lambda: imagecodecs.jpegxl_encode(E), "8 or 16 bits, got 3 x float32", "float32"),
-        ("alpha.jxl", lambda: imagecodecs.jpegxl_encode(glass()), "8 or 16 bits, .* more channels", None),
+        (
+            "light.jxl",
+            lambda: imagecodecs.jpegxl_encode(E),
+            "8 or 16 bits, got 3 x float32",
+            "float32",
+        ),
+        (
+            "alpha.jxl",
+            lambda: imagecodecs.jpegxl_encode(glass()),
+            "8 or 16 bits, .* more channels",
+            None,
+        ),
     ],
     "HEIC": [
         ("a.heic", heic, "uint8", NO_MAP),
@@ -155,7 +199,12 @@ FILES = {
     ],
     "RAW, DNG": [
         ("linear.dng", raw, "uint16", NO_MAP),
-        ("packed.dng", lambda: raw(compression=52546, tile=(32, 48)), "does not read JPEG XL, set", NO_MAP),
+        (
+            "packed.dng",
+            lambda: raw(compression=52546, tile=(32, 48)),
+            "does not read JPEG XL, set",
+            NO_MAP,
+        ),
     ],
     "RGBE (`.hdr`), OpenEXR, PFM": [
         ("a.hdr", lambda: opencv(".hdr"), NO_PHOTOGRAPH, "float32"),
@@ -163,7 +212,11 @@ FILES = {
         ("a.pfm", pfm, NO_PHOTOGRAPH, "float32"),
     ],
 }
-EACH = [pytest.param(row, *file, id=f"{row[:8]}-{file[0]}") for row, files in FILES.items() for file in files]
+EACH = [
+    pytest.param(row, *file, id=f"{row[:8]}-{file[0]}")
+    for row, files in FILES.items()
+    for file in files
+]
 
 
 def table():
@@ -263,7 +316,9 @@ def program(folder, *words):
 def test_pfstools_reads_the_values_of_an_exr_of_ours(light, half, tmp_path):
     radiance.write_radiance(tmp_path / "ours.exr", light, half=half)
     frame = program(tmp_path, "pfsinexr", "ours.exr")
-    subprocess.run(["pfsoutpfm", "theirs.pfm"], cwd=tmp_path, input=frame, capture_output=True, check=True)
+    subprocess.run(
+        ["pfsoutpfm", "theirs.pfm"], cwd=tmp_path, input=frame, capture_output=True, check=True
+    )
     came = radiance.read_radiance(tmp_path / "theirs.pfm")
     came = came if light.ndim == 3 or came.ndim == 2 else came[..., 1]
     assert np.allclose(came, light, rtol=1e-3 if half else 1e-4)  # it goes by XYZ
@@ -312,17 +367,21 @@ def test_display_p3_of_cjxl_is_converted_as_the_profile_of_a_png_is(depth, tmp_p
         b"P6\n48 32\n%d\n" % (2**depth - 1) + levels.astype(f">u{depth // 8}").tobytes()
     )
     program(tmp_path, "cjxl", "a.ppm", "a.jxl", "-d", "0", "-x", "color_space=RGB_D65_DCI_Rel_SRG")
-    matrix = np.array([[1.22494, -0.22494, 0], [-0.04206, 1.04206, 0], [-0.01964, -0.07864, 1.09827]])
+    matrix = np.array(
+        [[1.22494, -0.22494, 0], [-0.04206, 1.04206, 0], [-0.01964, -0.07864, 1.09827]]
+    )
     expected = decode_srgb(levels / (2**depth - 1)) @ matrix.T
     came = decode_srgb(photos.read_photo(tmp_path / "a.jxl") / (2**depth - 1))
     shown = (expected > 0.002) & (expected < 1)
-    assert np.abs(came - expected)[shown].max() < (0.01 if depth == 8 else 2e-4) and not np.array_equal(
-        came, expected
-    )
+    assert np.abs(came - expected)[shown].max() < (
+        0.01 if depth == 8 else 2e-4
+    ) and not np.array_equal(came, expected)
 
 
 @pytest.mark.parametrize("distance", [0, 0.1])
-def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_refused(distance, tmp_path):
+def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_refused(
+    distance, tmp_path
+):
     radiance.write_radiance(tmp_path / "a.pfm", E)
     where = [f"-d {distance}", "-x color_space=RGB_D65_SRG_Rel_Lin", "--progressive_dc=1"]
     program(tmp_path, "cjxl", "a.pfm", "a.jxl", *where[0].split(), *where[1].split())
@@ -338,6 +397,8 @@ def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_r
 
 @pytest.mark.parametrize("suffix", [".webp", ".heic", ".jfif"])
 def test_a_picture_of_a_kind_that_is_not_written_is_refused_in_one_line(suffix, tmp_path):
-    with pytest.raises(ValueError, match=rf"a\{suffix}: expected a picture file \(.*\), got \{suffix}"):
+    with pytest.raises(
+        ValueError, match=rf"a\{suffix}: expected a picture file \(.*\), got \{suffix}"
+    ):
         photos.write_picture(tmp_path / f"a{suffix}", RGB)
     assert not list(tmp_path.iterdir())

@@ -36,13 +36,27 @@ def header(*fields, frame=((1, 1),)):
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32])
-@pytest.mark.parametrize("knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str)
+@pytest.mark.parametrize(
+    "knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str
+)
 def test_a_header_says_what_the_decoder_gives(dtype, knobs, tmp_path):
     """All forms of a size: multiples of 8, each ratio of width and height, small, large, and gray."""
-    shapes = [(8, 8, 3), (64, 48), (5, 9, 3), (40, 80, 3), (1, 1, 3), (600, 17), (900, 1600, 3), (72, 96, 3)]
+    shapes = [
+        (8, 8, 3),
+        (64, 48),
+        (5, 9, 3),
+        (40, 80, 3),
+        (1, 1, 3),
+        (600, 17),
+        (900, 1600, 3),
+        (72, 96, 3),
+    ]
     for shape in [*shapes, (10, 12, 3), (30, 20, 3), (20, 30), (16, 20, 3), (8, 520, 3)]:
         path = written(tmp_path / "x.jxl", np.full(shape, 1, dtype), **knobs)
-        said, pixels = jpegxl.look(path, path.read_bytes()), imagecodecs.jpegxl_decode(path.read_bytes())
+        said, pixels = (
+            jpegxl.look(path, path.read_bytes()),
+            imagecodecs.jpegxl_decode(path.read_bytes()),
+        )
         assert said[:4] == (pixels.shape, pixels.dtype, 8 * pixels.itemsize, 1)
 
 
@@ -79,7 +93,9 @@ def boxed(data, tags):
 def test_one_that_was_a_jpeg_stands_upright(orientation, tmp_path):
     tags = Image.Exif()
     tags[0x0112] = orientation
-    Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(file := io.BytesIO(), "JPEG", quality=98, exif=tags)
+    Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(
+        file := io.BytesIO(), "JPEG", quality=98, exif=tags
+    )
     (tmp_path / "x.jpg").write_bytes(file.getvalue())
     (tmp_path / "x.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
     one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("x.jpg", "x.jxl"))
@@ -99,7 +115,9 @@ def test_its_exif_tells_the_exposure_and_its_own_header_how_it_is_turned(tmp_pat
 
 def test_a_folder_of_them_is_a_bracket(tmp_path):
     for name, t in ("a", 1), ("b", 4):
-        written(tmp_path / f"{name}.jxl", np.minimum(RGB // 5 * t, 255).astype(np.uint8), lossless=True)
+        written(
+            tmp_path / f"{name}.jxl", np.minimum(RGB // 5 * t, 255).astype(np.uint8), lossless=True
+        )
     bracket = photos.read_bracket(tmp_path, {"a.jxl": 1.0, "b.jxl": 4.0})
     assert bracket.names == ("a.jxl", "b.jxl") and np.array_equal(bracket.images[0], RGB // 5)
 
@@ -121,24 +139,35 @@ def test_a_map_whose_values_are_no_radiance_is_refused_and_can_be_cleaned(tmp_pa
 
 
 SIZE = [(0, 1), (0, 2), (11, 9), (0, 3), (0, 2), (16, 9)]  # 12 rows, 17 columns
-AS_USUAL, U8 = [(0, 1), (0, 1)], [(0, 1), (0, 2), (1, 1), (0, 2), (1, 1)]  # 8 bits, no more channels, XYB
+AS_USUAL, U8 = (
+    [(0, 1), (0, 1)],
+    [(0, 1), (0, 2), (1, 1), (0, 2), (1, 1)],
+)  # 8 bits, no more channels, XYB
 SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
 
 
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4), (0, 1), (2, 2), (6, 4)], "of sRGB"),  # P3, linear
+        (
+            [*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4), (0, 1), (2, 2), (6, 4)],
+            "of sRGB",
+        ),  # P3, linear
         ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (7, 4)], "the primaries of sRGB"),  # BT.2020
         ([*SIZE, *AS_USUAL, *U8, (0, 1), (1, 1), (0, 2)], "the primaries of sRGB"),  # a profile
         ([*SIZE, *AS_USUAL, (0, 1), (0, 2), (1, 1), (1, 2)], "8 bits and 1 more channels"),  # alpha
         ([*SIZE, *AS_USUAL, (0, 1), (3, 2), (31, 6), (1, 1), (0, 2)], "got 32 bits"),
         ([*SIZE, (0, 1), (1, 1), (0, 3), (0, 1), (2, 2)], "an animation or a preview"),
-        ([(0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1)], f"expected at most {MAX_PIXELS} in all"),
+        (
+            [(0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1)],
+            f"expected at most {MAX_PIXELS} in all",
+        ),
         ([(0, 1), (2, 2), (10_000, 18), (1, 3), (1, 1), (1, 1)], "cut short or damaged"),
     ],
 )
-def test_what_is_not_read_is_refused_by_name_before_a_pixel_is_decoded(fields, said, tmp_path, monkeypatch):
+def test_what_is_not_read_is_refused_by_name_before_a_pixel_is_decoded(
+    fields, said, tmp_path, monkeypatch
+):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
     (tmp_path / "odd.jxl").write_bytes(header(*fields))
     for read in (photos.read_photo, radiance.read_radiance):
@@ -154,9 +183,31 @@ PLACED = [(1, 1), *[(0, 10)] * 2, *[(3, 2), (30_000 - 18_688, 30)] * 2, (0, 2), 
 @pytest.mark.parametrize(
     "frame",
     [
-        [(0, 1), (0, 2), (1, 1), (0, 2), (0, 2), (0, 2), (0, 2), *PLACED],  # 30,000 x 30,000 of 17 x 12
+        [
+            (0, 1),
+            (0, 2),
+            (1, 1),
+            (0, 2),
+            (0, 2),
+            (0, 2),
+            (0, 2),
+            *PLACED,
+        ],  # 30,000 x 30,000 of 17 x 12
         [(0, 1), (2, 2), (1, 1), (0, 2), (0, 2), (0, 2), *PLACED],  # kept for another
-        [(0, 1), (0, 2), (0, 1), (0, 2), (0, 2), (0, 6), (1, 2), (1, 2), (0, 8), (0, 1), (0, 2), (0, 1)],
+        [
+            (0, 1),
+            (0, 2),
+            (0, 1),
+            (0, 2),
+            (0, 2),
+            (0, 6),
+            (1, 2),
+            (1, 2),
+            (0, 8),
+            (0, 1),
+            (0, 2),
+            (0, 1),
+        ],
     ],
     ids=["larger", "kept", "one of several"],
 )
@@ -173,14 +224,29 @@ def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_
     "passes", [[(0, 2)], [(2, 2), (1, 2), (0, 4), (1, 2), (3, 2), (5, 3)]], ids=["1", "3"]
 )
 def test_a_frame_of_several_passes_is_a_picture(passes, tmp_path):
-    frame = [(0, 1), (0, 2), (0, 1), (2, 2), (111, 8), (0, 2), (0, 6), *passes, (0, 1), (0, 2), (1, 1)]
+    frame = [
+        (0, 1),
+        (0, 2),
+        (0, 1),
+        (2, 2),
+        (111, 8),
+        (0, 2),
+        (0, 6),
+        *passes,
+        (0, 1),
+        (0, 2),
+        (1, 1),
+    ]
     (tmp_path / "x.jxl").write_bytes(header(*USUAL, frame=frame))
     assert look(tmp_path / "x.jxl").shape == (12, 17, 3)
 
 
 def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
     """What looks like a codestream within EXIF is none; and what several boxes hold is one."""
-    data, decoy = imagecodecs.jpegxl_encode(RGB, lossless=True), b"jxlc" + header(*SIZE, (1, 1), (1, 1))
+    data, decoy = (
+        imagecodecs.jpegxl_encode(RGB, lossless=True),
+        b"jxlc" + header(*SIZE, (1, 1), (1, 1)),
+    )
     big = header((0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1))
     for name, parts in (
         ("good", [(0, data[:9]), (1 << 31 | 1, data[9:])]),

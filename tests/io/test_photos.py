@@ -16,7 +16,12 @@ from hdrlab.io.photos import read_bracket, read_photo, write_picture
 RNG = np.random.default_rng(0)
 RGB8 = RNG.integers(0, 256, (13, 21, 3), np.uint8)
 RGB16 = RNG.integers(0, 65536, (13, 21, 3), np.uint16)
-IMAGES = {"rgb8": RGB8, "gray8": RGB8[..., 1].copy(), "rgb16": RGB16, "gray16": RGB16[..., 1].copy()}
+IMAGES = {
+    "rgb8": RGB8,
+    "gray8": RGB8[..., 1].copy(),
+    "rgb16": RGB16,
+    "gray16": RGB16[..., 1].copy(),
+}
 
 
 def exif(orientation=1, *, seconds=None, f_number=None, iso=None):
@@ -38,7 +43,9 @@ def png(path, width, height, depth=8, kind=2, *chunks):
     data = b"\x89PNG\r\n\x1a\n"
     ihdr = struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, 0)
     for name, body in (b"IHDR", ihdr), *chunks, (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b""):
-        data += struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        data += (
+            struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        )
     path.write_bytes(data)
     return path
 
@@ -46,7 +53,10 @@ def png(path, width, height, depth=8, kind=2, *chunks):
 @pytest.mark.parametrize("name", IMAGES)
 def test_png_keeps_every_bit_that_opencv_wrote(tmp_path, name):
     image = IMAGES[name]
-    cv2.imwrite(str(tmp_path / "x.png"), np.ascontiguousarray(image[..., ::-1]) if image.ndim == 3 else image)
+    cv2.imwrite(
+        str(tmp_path / "x.png"),
+        np.ascontiguousarray(image[..., ::-1]) if image.ndim == 3 else image,
+    )
     read = read_photo(tmp_path / "x.png")
     assert read.dtype == image.dtype and np.array_equal(read, image)
 
@@ -62,7 +72,9 @@ def test_png_is_written_so_that_opencv_and_pillow_read_every_bit(tmp_path, shape
 
 
 @pytest.mark.parametrize("name", IMAGES)
-@pytest.mark.parametrize("how", [{}, {"compression": "deflate", "predictor": True}, {"byteorder": ">"}])
+@pytest.mark.parametrize(
+    "how", [{}, {"compression": "deflate", "predictor": True}, {"byteorder": ">"}]
+)
 def test_tiff_keeps_every_bit(tmp_path, name, how):
     image = IMAGES[name]
     photometric = "rgb" if image.ndim == 3 else "minisblack"
@@ -92,7 +104,9 @@ def test_jpeg_decodes_as_in_pillow_and_opencv(tmp_path, name, progressive):
 @pytest.mark.parametrize("name", ["rgb8", "gray8"])
 def test_exif_orientation_is_applied(tmp_path, orientation, suffix, name):
     path = save(tmp_path / f"x.{suffix}", IMAGES[name], orientation=orientation)
-    oracle = save(tmp_path / "y.png", IMAGES[name], orientation=orientation) if suffix == "tif" else path
+    oracle = (
+        save(tmp_path / "y.png", IMAGES[name], orientation=orientation) if suffix == "tif" else path
+    )
     with Image.open(oracle) as image:  # gray TIFF is turned twice by Pillow
         upright = np.asarray(ImageOps.exif_transpose(image))
     read = read_photo(path)
@@ -106,9 +120,13 @@ def tiff_with_exif(path):
     at = len(data) + len(data) % 2
     entry = struct.Struct("<HHII")
     values = at + 2 + 3 * entry.size + 4
-    directory = struct.pack("<H", 3) + entry.pack(33434, 5, 1, values) + entry.pack(33437, 5, 1, values + 8)
+    directory = (
+        struct.pack("<H", 3) + entry.pack(33434, 5, 1, values) + entry.pack(33437, 5, 1, values + 8)
+    )
     directory += entry.pack(34855, 3, 1, 400) + bytes(4) + struct.pack("<4I", 1, 80, 56, 10)
-    data = data.replace(struct.pack("<HHII", 65000, 4, 1, 0x7A7A7A7A), struct.pack("<HHII", 34665, 4, 1, at))
+    data = data.replace(
+        struct.pack("<HHII", 65000, 4, 1, 0x7A7A7A7A), struct.pack("<HHII", 34665, 4, 1, at)
+    )
     path.write_bytes(data.ljust(at, b"\0") + directory)
     return path
 
@@ -127,7 +145,8 @@ def test_exposure_is_read_from_exif_of_every_format(tmp_path, suffix):
 def test_damaged_exif_does_not_spoil_the_photograph(tmp_path):
     Image.fromarray(RGB8).save(tmp_path / "x.png", exif=b"Exif\0\0II*\0\xff\xff\xff\xff" + bytes(9))
     assert (
-        np.array_equal(read_photo(tmp_path / "x.png"), RGB8) and look(tmp_path / "x.png").exposure[0] is None
+        np.array_equal(read_photo(tmp_path / "x.png"), RGB8)
+        and look(tmp_path / "x.png").exposure[0] is None
     )
 
 
@@ -143,8 +162,16 @@ def test_a_folder_is_its_photographs_from_the_shortest_to_the_longest(tmp_path):
         (tmp_path / name).write_text("not a photograph")
     (tmp_path / "folder.png").mkdir()
     bracket = read_bracket(tmp_path)
-    assert bracket.names == ("c.png", "a.png", "b.png") and not bracket.linear and bracket.valid is None
-    assert bracket.times.tolist() == [0.25, 1, 4] and bracket.images[:, 0, 0, 0].tolist() == [1, 11, 21]
+    assert (
+        bracket.names == ("c.png", "a.png", "b.png")
+        and not bracket.linear
+        and bracket.valid is None
+    )
+    assert bracket.times.tolist() == [0.25, 1, 4] and bracket.images[:, 0, 0, 0].tolist() == [
+        1,
+        11,
+        21,
+    ]
     assert np.array_equal(read_bracket([tmp_path]).images, bracket.images)
 
 
@@ -185,7 +212,9 @@ def test_pixels_of_the_mask_colour_are_not_valid(tmp_path):
 
 def test_a_mask_colour_needs_colour_photographs(tmp_path):
     bracket_of(tmp_path, image=RGB8[..., 0])
-    with pytest.raises(ValueError, match=r"expected RGB photographs for the mask colour \(0, 0, 255\)"):
+    with pytest.raises(
+        ValueError, match=r"expected RGB photographs for the mask colour \(0, 0, 255\)"
+    ):
         read_bracket(tmp_path, mask=(0, 0, 255))
 
 
@@ -246,7 +275,9 @@ def test_frames_that_do_not_go_together_are_both_named(tmp_path, first, second, 
 def test_a_photograph_without_a_time_is_named_with_the_way_out(tmp_path, missing):
     save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     save(tmp_path / "b.jpg", RGB8, seconds=missing)
-    with pytest.raises(ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"):
+    with pytest.raises(
+        ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"
+    ):
         read_bracket(tmp_path)
 
 
@@ -278,13 +309,19 @@ def test_other_kinds_of_pixels_are_refused_by_name(tmp_path, mode, suffix, says)
 
 def test_other_kinds_of_tiff_and_png_are_refused_by_name(tmp_path):
     tifffile.imwrite(tmp_path / "x.tif", RGB8.astype(np.float32), photometric="rgb")
-    with pytest.raises(ValueError, match="x.tif: expected gray or RGB of 8 or 16 bits, got 3 x float32, RGB"):
+    with pytest.raises(
+        ValueError, match="x.tif: expected gray or RGB of 8 or 16 bits, got 3 x float32, RGB"
+    ):
         read_photo(tmp_path / "x.tif")
     path = png(tmp_path / "x.png", 1, 1, 8, 2, (b"tRNS", bytes(6)))
-    with pytest.raises(ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got an alpha channel"):
+    with pytest.raises(
+        ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got an alpha channel"
+    ):
         read_photo(path)
     path = png(tmp_path / "x.png", 1, 1, 4, 0)
-    with pytest.raises(ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got 4-bit pixels"):
+    with pytest.raises(
+        ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got 4-bit pixels"
+    ):
         read_photo(path)
 
 
@@ -302,7 +339,9 @@ def test_a_photograph_that_is_cut_short_is_refused(tmp_path, suffix):
     path = tmp_path / f"x.{suffix}"
     write_picture(path, RNG.integers(0, 256, (60, 80, 3), np.uint8))
     data = path.read_bytes()
-    last = len(data) - (2 if suffix == "jpg" else 13)  # of a PNG without its last mark all pixels are there
+    last = len(data) - (
+        2 if suffix == "jpg" else 13
+    )  # of a PNG without its last mark all pixels are there
     for length in (*range(1, last, 501), last):
         path.write_bytes(data[:length])
         with pytest.raises(ValueError, match=f"x.{suffix}: "):
@@ -317,15 +356,21 @@ def test_a_thumbnail_in_the_exif_does_not_hide_that_a_jpeg_is_cut_short(tmp_path
         read_photo(tmp_path / "x.jpg")
 
 
-@pytest.mark.parametrize(("width", "height"), [(65536, 32768), (2**31 - 1, 1), (30000, 3000), (12000, 11000)])
+@pytest.mark.parametrize(
+    ("width", "height"), [(65536, 32768), (2**31 - 1, 1), (30000, 3000), (12000, 11000)]
+)
 def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, width, height):
     with pytest.raises(ValueError, match="x.png: its header claims"):
         read_photo(png(tmp_path / "x.png", width, height))
     tifffile.imwrite(tmp_path / "x.tif", RGB8, photometric="rgb")
     data = (tmp_path / "x.tif").read_bytes()
     for tag, old, new in (256, 21, width), (257, 13, height):
-        data = data.replace(struct.pack("<HHII", tag, 4, 1, old), struct.pack("<HHII", tag, 4, 1, new))
-        data = data.replace(struct.pack("<HHIHH", tag, 3, 1, old, 0), struct.pack("<HHII", tag, 4, 1, new))
+        data = data.replace(
+            struct.pack("<HHII", tag, 4, 1, old), struct.pack("<HHII", tag, 4, 1, new)
+        )
+        data = data.replace(
+            struct.pack("<HHIHH", tag, 3, 1, old, 0), struct.pack("<HHII", tag, 4, 1, new)
+        )
     (tmp_path / "x.tif").write_bytes(data)
     with pytest.raises(ValueError, match="x.tif: its header claims"):
         read_photo(tmp_path / "x.tif")
@@ -355,7 +400,9 @@ def test_what_is_no_picture_is_not_written(tmp_path, name, image):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(("name", "frames"), [("window", 12), ("stlouis_arch", 4), ("frobisher", 3)])
+@pytest.mark.parametrize(
+    ("name", "frames"), [("window", 12), ("stlouis_arch", 4), ("frobisher", 3)]
+)
 def test_real_brackets_have_the_times_of_their_exif(shared, name, frames):
     folder = shared(name)
     bracket, listed = read_bracket(folder), read_bracket(folder, folder / "exposures.csv")
@@ -369,9 +416,14 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
     folder = shared("memorial")
     bracket = read_bracket(folder, folder / "memorial.hdr_image_list.txt", mask=(0, 0, 255))
     assert bracket.images.shape == (16, 768, 512, 3) and bracket.names[0] == "memorial0076.png"
-    assert np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid) and not bracket.valid.all()
+    assert (
+        np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid)
+        and not bracket.valid.all()
+    )
 
 
 def test_the_crusader_bracket_without_times_says_what_to_do(shared):
-    with pytest.raises(ValueError, match="1.jpeg: expected an exposure time in its EXIF.*--times FILE"):
+    with pytest.raises(
+        ValueError, match="1.jpeg: expected an exposure time in its EXIF.*--times FILE"
+    ):
         read_bracket(shared("crusader") / "frames")

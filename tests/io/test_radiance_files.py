@@ -8,7 +8,9 @@ from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
 from hdrlab.show.describe import describe_file
 
-E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(np.float32)  # RGBE keeps one power
+E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(
+    np.float32
+)  # RGBE keeps one power
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -16,7 +18,9 @@ def test_every_suffix_reads_what_it_wrote(tmp_path, suffix):
     gray = E[..., 0].copy()
     write_radiance(tmp_path / f"x{suffix}", gray)
     read = read_radiance(tmp_path / f"x{suffix}")
-    assert read.dtype == np.float32 and np.array_equal(read if read.ndim == 2 else read[..., 1], gray)
+    assert read.dtype == np.float32 and np.array_equal(
+        read if read.ndim == 2 else read[..., 1], gray
+    )
 
 
 def test_the_suffix_may_be_in_capitals(tmp_path):
@@ -46,13 +50,19 @@ def spoiled(path):
 
 
 def test_values_that_are_no_radiance_are_counted_and_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*clean=True"):
+    with pytest.raises(
+        ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*clean=True"
+    ):
         read_radiance(spoiled(tmp_path / "x.pfm"))
 
 
-def test_cleaning_fills_nan_from_around_it_and_makes_infinity_the_largest_and_negative_values_0(tmp_path):
+def test_cleaning_fills_nan_from_around_it_and_makes_infinity_the_largest_and_negative_values_0(
+    tmp_path,
+):
     path = spoiled(tmp_path / "x.pfm")
-    assert np.allclose(read_radiance(path, clean=True), [[7, 7, 3, 0, 0, 7]])  # at -inf: the mean of 7 and -1
+    assert np.allclose(
+        read_radiance(path, clean=True), [[7, 7, 3, 0, 0, 7]]
+    )  # at -inf: the mean of 7 and -1
     assert np.isnan(pfm.read(path)[0, 0])
 
 
@@ -76,8 +86,14 @@ def test_a_missing_file_or_folder_is_missing(tmp_path, suffix):
     ("suffix", "says"),
     [
         (".hdr", {"format": "Radiance RGBE", "channels": 3, "axes": "-Y+X", "exposure": [1, 1, 1]}),
-        (".pfm", {"format": "PFM", "channels": 3, "values": "float32", "endian": "little", "scale": 1}),
-        (".exr", {"format": "OpenEXR", "channels": "B, G, R", "values": "float32", "compression": "ZIP"}),
+        (
+            ".pfm",
+            {"format": "PFM", "channels": 3, "values": "float32", "endian": "little", "scale": 1},
+        ),
+        (
+            ".exr",
+            {"format": "OpenEXR", "channels": "B, G, R", "values": "float32", "compression": "ZIP"},
+        ),
         (".png", {"format": "PNG", "channels": 3, "values": "uint8", "orientation": 1}),
         (".jpg", {"format": "JPEG", "channels": 3, "values": "uint8", "orientation": 1}),
         (".tif", {"format": "TIFF", "channels": 3, "values": "uint8", "orientation": 1}),

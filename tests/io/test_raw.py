@@ -15,8 +15,28 @@ rawpy = pytest.importorskip("rawpy", reason="RAW photographs need the extra `raw
 
 BLACK, SATURATED = 64, 4095
 BALANCE = np.array([2.0, 1.0, 1.5])  # what the camera multiplies its red, green and blue by
-SRGB = [3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259, 1.0572252]
-CAMERA = [0.6722, -0.0635, -0.0963, -0.4287, 1.2460, 0.2028, -0.0908, 0.2162, 0.5668]  # of a common camera
+SRGB = [
+    3.2404542,
+    -1.5371385,
+    -0.4985314,
+    -0.9692660,
+    1.8760108,
+    0.0415560,
+    0.0556434,
+    -0.2040259,
+    1.0572252,
+]
+CAMERA = [
+    0.6722,
+    -0.0635,
+    -0.0963,
+    -0.4287,
+    1.2460,
+    0.2028,
+    -0.0908,
+    0.2162,
+    0.5668,
+]  # of a common camera
 
 
 def dng(path, scene, *, seconds=(1, 60), f_number=(8, 1), matrix=SRGB, orientation=1):
@@ -74,7 +94,9 @@ def test_a_pixel_clipped_in_one_colour_is_white_in_all(tmp_path):
     scene[:, :48] = (800, 1900, 800)
     Z = read_photo(dng(tmp_path / "x.dng", scene, matrix=CAMERA))
     assert np.all(Z[10:-10, 60:-10] == 65535)
-    assert np.all(Z[10:-10, 10:36, 1] < 65535) and np.all(Z[10:-10, 10:36, 1] > 3 * Z[10:-10, 10:36, 0])
+    assert np.all(Z[10:-10, 10:36, 1] < 65535) and np.all(
+        Z[10:-10, 10:36, 1] > 3 * Z[10:-10, 10:36, 0]
+    )
 
 
 def test_the_white_balance_does_not_tint_what_is_clipped(tmp_path):
@@ -83,7 +105,9 @@ def test_the_white_balance_does_not_tint_what_is_clipped(tmp_path):
 
 
 def test_colours_are_those_that_libraw_mixes(tmp_path):
-    scene = np.random.default_rng(0).integers(200, 1500, (8, 12, 3)).repeat(8, axis=0).repeat(8, axis=1)
+    scene = (
+        np.random.default_rng(0).integers(200, 1500, (8, 12, 3)).repeat(8, axis=0).repeat(8, axis=1)
+    )
     path = dng(tmp_path / "x.dng", scene, matrix=CAMERA)
     with rawpy.imread(str(path)) as file:
         theirs = file.postprocess(
@@ -103,19 +127,27 @@ def test_orientation_is_applied(tmp_path):
 
 
 def test_a_bracket_is_linear_and_has_the_times_that_the_camera_wrote(tmp_path):
-    for name, value, seconds in ("a.dng", 1600, (1, 15)), ("b.dng", 400, (1, 60)), ("c.dng", 100, (1, 240)):
+    for name, value, seconds in (
+        ("a.dng", 1600, (1, 15)),
+        ("b.dng", 400, (1, 60)),
+        ("c.dng", 100, (1, 240)),
+    ):
         dng(tmp_path / name, flat(value), seconds=seconds)
     bracket = read_bracket(tmp_path)
     assert bracket.linear and bracket.names == ("c.dng", "b.dng", "a.dng")
     assert bracket.times == pytest.approx([1 / 240, 1 / 60, 1 / 15])
-    exposure = [middle(image)[1] / t for image, t in zip(bracket.images, bracket.times, strict=True)]
+    exposure = [
+        middle(image)[1] / t for image, t in zip(bracket.images, bracket.times, strict=True)
+    ]
     assert exposure == pytest.approx([exposure[1]] * 3, rel=0.01)
 
 
 def test_raw_and_other_photographs_are_not_mixed(tmp_path):
     dng(tmp_path / "a.dng", flat(100))
     write_picture(tmp_path / "b.jpg", np.zeros((64, 96, 3), np.uint8))
-    with pytest.raises(ValueError, match="RAW photographs and others cannot be mixed: a.dng is .*, b.jpg is"):
+    with pytest.raises(
+        ValueError, match="RAW photographs and others cannot be mixed: a.dng is .*, b.jpg is"
+    ):
         read_bracket(tmp_path, [1, 2])
 
 
@@ -172,16 +204,18 @@ def test_a_linear_dng_has_no_mosaic_and_is_linear_too(tmp_path):
 def test_a_linear_dng_and_a_mosaic_of_one_scene_go_together(tmp_path):
     dng(tmp_path / "a.dng", flat(400)), linear_dng(tmp_path / "b.dng", flat(100))
     bracket = read_bracket([tmp_path / "a.dng", tmp_path / "b.dng"], {"a.dng": 1.0, "b.dng": 0.25})
-    assert bracket.linear and middle(bracket.images[1]) / middle(bracket.images[0]) == pytest.approx(
-        4, rel=0.03
-    )
+    assert bracket.linear and middle(bracket.images[1]) / middle(
+        bracket.images[0]
+    ) == pytest.approx(4, rel=0.03)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_a_dng_of_jpeg_xl_is_refused_by_name_with_what_to_do(order, tmp_path):
     if order == "<":
         path = linear_dng(tmp_path / "pro.dng", flat(400), compression=52546, tile=(32, 32))
-        assert np.allclose(tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1)  # another reader's
+        assert np.allclose(
+            tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1
+        )  # another reader's
     else:  # no writer at hand: the number of the compression alone
         path = linear_dng(tmp_path / "pro.dng", flat(400), byteorder=">")
         none, packed = (struct.pack(">HHLH", 259, 3, 1, number) for number in (1, 52546))

@@ -29,7 +29,17 @@ def tonemap(tmp_path, E, name, *options):
     radiance.write_radiance(tmp_path / "map.exr", E)
     out = tmp_path / name
     with pytest.raises(SystemExit) as ended:
-        run(["tonemap", str(tmp_path / "map.exr"), "-o", str(out), "--operator", "reinhard", *options])
+        run(
+            [
+                "tonemap",
+                str(tmp_path / "map.exr"),
+                "-o",
+                str(out),
+                "--operator",
+                "reinhard",
+                *options,
+            ]
+        )
     assert not ended.value.code
     return out
 
@@ -51,11 +61,15 @@ def test_an_avif_is_within_a_code_of_1023_of_its_light_in_the_mean(place, primar
 
 
 @pytest.mark.parametrize(("primaries", "colour", "matrix"), [("bt2020", 9, 9), ("p3", 12, 6)])
-def test_an_avif_says_its_primaries_pq_and_its_matrix_in_full_range(primaries, colour, matrix, tmp_path):
+def test_an_avif_says_its_primaries_pq_and_its_matrix_in_full_range(
+    primaries, colour, matrix, tmp_path
+):
     data = tonemap(tmp_path, scene(), "room.avif", "--primaries", primaries).read_bytes()
     at = data.index(b"nclx") + 4
     assert data[at : at + 7] == bytes((0, colour, 0, 16, 0, matrix, 0x80))
-    assert data[data.index(b"av1C") + 6] & 0x7C == 0x40  # 10 bits, colour, no channel of fewer pixels
+    assert (
+        data[data.index(b"av1C") + 6] & 0x7C == 0x40
+    )  # 10 bits, colour, no channel of fewer pixels
 
 
 @pytest.mark.parametrize(("primaries", "number"), [("bt2020", 9), ("p3", 12)])
@@ -76,11 +90,15 @@ def test_a_png_holds_every_code_of_16_bits_and_says_what_they_mean(primaries, nu
 @pytest.mark.parametrize("place", PLACES)
 def test_a_jpeg_xl_keeps_all_light_to_the_bit(place, tmp_path):
     E = scene(place)
-    came = imagecodecs.jpegxl_decode(tonemap(tmp_path, E, "room.jxl", "--headroom", "2").read_bytes())
+    came = imagecodecs.jpegxl_decode(
+        tonemap(tmp_path, E, "room.jxl", "--headroom", "2").read_bytes()
+    )
     assert came.dtype == np.float32
     assert np.array_equal(came, light(E, np.inf))
     lit = E > 0
-    assert np.ptp(came[lit] / E[lit]) < 1e-5 * (came[lit] / E[lit]).mean()  # one factor, and nothing is cut
+    assert (
+        np.ptp(came[lit] / E[lit]) < 1e-5 * (came[lit] / E[lit]).mean()
+    )  # one factor, and nothing is cut
 
 
 def test_a_jpeg_xl_says_that_its_floats_are_linear(tmp_path):
@@ -88,7 +106,9 @@ def test_a_jpeg_xl_says_that_its_floats_are_linear(tmp_path):
     data = tonemap(tmp_path, scene(shape=(96, 96)), "room.jxl").read_bytes()
     bits = "".join(f"{one:08b}"[::-1] for one in data[data.index(b"\xff\x0a") + 2 :][:16])
     assert bits[:9] == "1" + "11010" + "100"  # 12 times 8 rows, as many columns
-    metadata = "00" + "1" + "00" + "1110" + "0" + "00" + "0"  # floats, 32 bits, 8 of them an exponent
+    metadata = (
+        "00" + "1" + "00" + "1110" + "0" + "00" + "0"
+    )  # floats, 32 bits, 8 of them an exponent
     linear = "0" + "0" + "00" + "10" + "10" + "0" + "01" + "0110"  # 2 + 6 = 8
     assert bits[9:].startswith(metadata + linear)
 
@@ -127,8 +147,12 @@ def test_light_beyond_10_000_cd_m2_has_the_largest_code():
     assert screens.signal(np.full((1, 1, 3), 1e6)).max() == 1
 
 
-@pytest.mark.parametrize(("to", "name"), [("avif", "room.png"), ("png", "room.jpg"), ("jxl", "room.exr")])
-def test_a_suffix_of_another_kind_is_refused_in_one_line_and_nothing_is_written(to, name, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("to", "name"), [("avif", "room.png"), ("png", "room.jpg"), ("jxl", "room.exr")]
+)
+def test_a_suffix_of_another_kind_is_refused_in_one_line_and_nothing_is_written(
+    to, name, tmp_path, capsys
+):
     radiance.write_radiance(tmp_path / "map.exr", scene(shape=(12, 16)))
     with pytest.raises(SystemExit) as ended:
         run(["tonemap", str(tmp_path / "map.exr"), "-o", str(tmp_path / name), "--to", to])
@@ -161,7 +185,8 @@ def test_codes_of_pq_are_told_of_where_a_file_is_described_and_where_it_stands_i
     said = []
     read_bracket(folder, [1, 2], note=said.append)
     assert (
-        len(said) == 1 and "is coded for an HDR screen, by PQ or HLG, so no one curve describes it" in said[0]
+        len(said) == 1
+        and "is coded for an HDR screen, by PQ or HLG, so no one curve describes it" in said[0]
     )
     assert describe_file(path)["processing"] == "is coded for an HDR screen, by PQ or HLG"
 

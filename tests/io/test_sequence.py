@@ -30,7 +30,9 @@ def moving(count=6, shape=(48, 64)):
 def shown(animation):
     """The frames of a .gif as Pillow shows them, (count, H, W, 3) uint8."""
     with Image.open(animation) as image:
-        return np.stack([np.asarray(frame.convert("RGB")) for frame in ImageSequence.Iterator(image)])
+        return np.stack(
+            [np.asarray(frame.convert("RGB")) for frame in ImageSequence.Iterator(image)]
+        )
 
 
 @pytest.fixture
@@ -94,7 +96,9 @@ def test_a_damaged_film_is_refused(content, tmp_path):
         content = file.read_bytes()[: file.stat().st_size // 3]
     file.write_bytes(content)
     try:
-        assert 0 < len(list(sequence.read(file))) < 6  # a film that is cut short may hold whole frames
+        assert (
+            0 < len(list(sequence.read(file))) < 6
+        )  # a film that is cut short may hold whole frames
     except ValueError as error:
         assert file.name in str(error)
 
@@ -166,7 +170,9 @@ def test_the_command_makes_a_film_of_a_folder(folder, tmp_path, capsys):
 
 def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
     out = tmp_path / "maps"
-    code, said, _ = told(capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear")
+    code, said, _ = told(
+        capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear"
+    )
     assert code == 0 and "6 frames" in said
     first, second = (radiance.read_radiance(out / f"000{j}.exr") for j in (1, 2))
     light = [(frame / 255.0) ** 2 for frame in moving()[:2, :, :, 1]]
@@ -184,14 +190,19 @@ def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
         (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
         (["-o", "frames", "--times", "1,4"], "frames is read and would be lost"),
         (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a turn"),
-        (["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"], "expected a rate"),
+        (
+            ["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"],
+            "expected a rate",
+        ),
         (
             ["-o", "out.gif", "--times", "1,4", "--key", "-1", "--response", "linear"],
             "expected a positive key",
         ),
     ],
 )
-def test_the_command_says_in_one_line_what_is_wrong(arguments, says, folder, tmp_path, capsys, monkeypatch):
+def test_the_command_says_in_one_line_what_is_wrong(
+    arguments, says, folder, tmp_path, capsys, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     code, _, complaint = told(capsys, "video", "frames", *arguments)
     assert code == 2 and says in complaint and complaint.count("\n") == 1
@@ -214,7 +225,9 @@ def test_a_bar_shows_the_progress_and_ctrl_c_leaves_what_was_there(tmp_path):
         write_picture(place / f"{j:02d}.png", frame)
     out.write_bytes(b"precious")
     terminal, its_end = pty.openpty()
-    pytest.importorskip("termios").tcsetwinsize(its_end, (24, 80))  # in one without columns there is no bar
+    pytest.importorskip("termios").tcsetwinsize(
+        its_end, (24, 80)
+    )  # in one without columns there is no bar
     command = [
         sys.executable,
         "-m",

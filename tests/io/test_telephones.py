@@ -69,7 +69,9 @@ def profile(primaries, gamma=None):
         body += bytes(-len(body) % 4)
         table += name + struct.pack(">2I", at + len(data), len(body))
         data += body
-    head = struct.pack(">I4xI4s4s4s", at + len(data), 0x04200000, b"mntr", b"RGB ", b"XYZ ") + bytes(12)
+    head = struct.pack(
+        ">I4xI4s4s4s", at + len(data), 0x04200000, b"mntr", b"RGB ", b"XYZ "
+    ) + bytes(12)
     head += b"acsp" + bytes(28) + fixed(*D50) + bytes(48)
     return head + struct.pack(">I", len(bodies)) + table + data
 
@@ -87,7 +89,9 @@ def test_each_format_of_a_telephone_is_read_with_its_exposure(tmp_path, suffix):
 @pytest.mark.parametrize("orientation", range(1, 9))
 def test_exif_orientation_of_a_new_format_is_applied(tmp_path, suffix, orientation):
     path = save(tmp_path / f"x.{suffix}", orientation=orientation)
-    upright = np.asarray(cv2.imread(str(save(tmp_path / "x.jpg", orientation=orientation))))[..., ::-1]
+    upright = np.asarray(cv2.imread(str(save(tmp_path / "x.jpg", orientation=orientation))))[
+        ..., ::-1
+    ]
     read = read_photo(path)
     assert read.shape == look(path).shape == upright.shape
     assert np.abs(read.astype(int) - upright).mean() < 3
@@ -96,7 +100,9 @@ def test_exif_orientation_of_a_new_format_is_applied(tmp_path, suffix, orientati
 def test_a_heic_stands_upright_by_its_own_turn_and_not_twice(tmp_path):
     """HEIF turns by a property of its own; EXIF beside it, which iPhones write, does not count again."""
     for quarter_turns, orientation in (1, 8), (3, 6):
-        heif = pillow_heif.from_pillow(Image.fromarray(np.ascontiguousarray(np.rot90(RGB, quarter_turns))))
+        heif = pillow_heif.from_pillow(
+            Image.fromarray(np.ascontiguousarray(np.rot90(RGB, quarter_turns)))
+        )
         heif.save(tmp_path / "x.heic", exif=tags(orientation=orientation).tobytes(), quality=95)
         with Image.open(tmp_path / "x.heic") as image:
             oracle = np.asarray(image)
@@ -157,11 +163,16 @@ def test_an_alpha_channel_that_is_opaque_is_no_hindrance(tmp_path, deep):
     alpha = np.full((*RGB.shape[:2], 1), np.iinfo(image.dtype).max, image.dtype)
     cv2.imwrite(str(tmp_path / "x.png"), np.dstack([image[..., ::-1], alpha]))
     tifffile.imwrite(
-        tmp_path / "x.tif", np.dstack([image, alpha]), photometric="rgb", extrasamples=["unassalpha"]
+        tmp_path / "x.tif",
+        np.dstack([image, alpha]),
+        photometric="rgb",
+        extrasamples=["unassalpha"],
     )
     (tmp_path / "gray.png").write_bytes(imagecodecs.png_encode(np.dstack([image[..., :1], alpha])))
     for name in "x.png", "x.tif":
-        assert look(tmp_path / name).shape == RGB.shape and np.array_equal(read_photo(tmp_path / name), image)
+        assert look(tmp_path / name).shape == RGB.shape and np.array_equal(
+            read_photo(tmp_path / name), image
+        )
     assert np.array_equal(read_photo(tmp_path / "gray.png"), image[..., 0])
 
 
@@ -185,9 +196,14 @@ def test_colours_of_another_space_are_converted_in_linear_light(tmp_path, name, 
 
 def test_sixteen_bits_of_adobe_rgb_are_converted_to_a_fraction_of_a_level(tmp_path):
     image = np.uint16(RGB) * 200 + 3000
-    tifffile.imwrite(tmp_path / "x.tif", image, photometric="rgb", iccprofile=profile(ADOBE, 563 / 256))
+    tifffile.imwrite(
+        tmp_path / "x.tif", image, photometric="rgb", iccprofile=profile(ADOBE, 563 / 256)
+    )
     light = (image / 65535) ** (563 / 256) @ gamut.conversion_matrix(ADOBE).T
-    assert np.abs(read_photo(tmp_path / "x.tif") / 257 - 255 * encode_srgb(light.clip(0, 1))).max() < 0.2
+    assert (
+        np.abs(read_photo(tmp_path / "x.tif") / 257 - 255 * encode_srgb(light.clip(0, 1))).max()
+        < 0.2
+    )
 
 
 def test_a_camera_that_says_adobe_rgb_in_exif_alone_is_believed(tmp_path):
@@ -195,7 +211,10 @@ def test_a_camera_that_says_adobe_rgb_in_exif_alone_is_believed(tmp_path):
     exif.get_ifd(0x8769)[0xA005] = {1: "R03"}
     Image.fromarray(RGB).save(tmp_path / "a.png", exif=exif)
     Image.fromarray(RGB).save(tmp_path / "b.png", icc_profile=profile(ADOBE, 563 / 256))
-    assert np.abs(read_photo(tmp_path / "a.png").astype(int) - read_photo(tmp_path / "b.png")).max() <= 1
+    assert (
+        np.abs(read_photo(tmp_path / "a.png").astype(int) - read_photo(tmp_path / "b.png")).max()
+        <= 1
+    )
     assert np.abs(read_photo(tmp_path / "a.png").astype(int) - RGB).max() > 5
 
 
@@ -222,7 +241,9 @@ def test_a_bracket_in_display_p3_and_in_srgb_gives_one_radiance_map(tmp_path, dt
         for j, t in enumerate(times):
             levels = np.rint(white * encode_srgb((light * t).clip(0, 1))).astype(dtype)
             icc = profile(P3) if space == "p3" else None
-            tifffile.imwrite(tmp_path / space / f"{j}.tif", levels, photometric="rgb", iccprofile=icc)
+            tifffile.imwrite(
+                tmp_path / space / f"{j}.tif", levels, photometric="rgb", iccprofile=icc
+            )
     taken = [read_bracket(tmp_path / space, times) for space in ("srgb", "p3")]
     one, other = (merge(bracket.images, bracket.times, g) for bracket in taken)
     assert abs(np.median(other / one) - 1) < 1e-3
@@ -250,4 +271,6 @@ def test_without_pillow_heif_an_error_says_what_to_install(tmp_path, monkeypatch
 
 def test_a_picture_written_here_has_no_profile_and_stays_as_it_is(tmp_path):
     write_picture(tmp_path / "x.png", RGB)
-    assert look(tmp_path / "x.png").icc == b"" and np.array_equal(read_photo(tmp_path / "x.png"), RGB)
+    assert look(tmp_path / "x.png").icc == b"" and np.array_equal(
+        read_photo(tmp_path / "x.png"), RGB
+    )

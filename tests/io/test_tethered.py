@@ -19,7 +19,8 @@ from hdrlab.core.colour import encode_srgb
 from hdrlab.io import radiance, tethered
 
 gphoto2 = pytest.importorskip("gphoto2", reason="the extra `camera` is not installed")
-SIZE = 60_000  # bytes of each file: the virtual camera believes that the file in its folder stays as it is
+# bytes of each file: the virtual camera believes that the file in its folder stays as it is
+SIZE = 60_000
 TRUTH = np.geomspace(0.2, 2000, 96 * 64, dtype=np.float32).reshape(64, 96)
 SLOW = """
 import sys, time
@@ -92,7 +93,9 @@ def names(path):
     return sorted(one.name for one in path.iterdir())
 
 
-def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_scene(lens, tmp_path, capsys):
+def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_scene(
+    lens, tmp_path, capsys
+):
     room, E = tmp_path / "room", tmp_path / "room.hdr"
     assert shoot("-o", room, "--frames", 5, "--stops", 2.5, "--assemble", E) == 0
     assert lens == [0.0001, 0.0025, 0.01, 0.05, 1.0]
@@ -102,7 +105,9 @@ def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_sce
     off = np.log2(found / TRUTH)[held]
     assert held.mean() > 0.5 and np.percentile(abs(off - np.median(off)), 95) < 0.2
     said = capsys.readouterr()
-    assert "room.hdr: 96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
+    assert (
+        "room.hdr: 96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
+    )
 
 
 def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
@@ -115,7 +120,9 @@ def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
 
 def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
     def settings(camera):
-        return [camera._setting(one).get_value() for one in ("autofocus", "shutterspeed", "f-number")]
+        return [
+            camera._setting(one).get_value() for one in ("autofocus", "shutterspeed", "f-number")
+        ]
 
     restore, found = tethered.Camera.restore, []
 
@@ -160,7 +167,9 @@ class Automatic:
     def get_single_config(self, name):
         if name not in self.now:
             raise gphoto2.GPhoto2Error(-2)
-        metered = name == "shutterspeed" and self.now["expprogram"] == "A" and self.now["iso"] == "100"
+        metered = (
+            name == "shutterspeed" and self.now["expprogram"] == "A" and self.now["iso"] == "100"
+        )
         setting, choices = mock.Mock(), self.SETTINGS[name]
         setting.get_name.return_value, setting.count_choices.return_value = name, len(choices)
         setting.get_choice = choices.__getitem__
@@ -189,7 +198,9 @@ def place(name):
     return found
 
 
-def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(tmp_path, monkeypatch, capsys):
+def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(
+    tmp_path, monkeypatch, capsys
+):
     camera = Automatic()
     monkeypatch.setattr(gphoto2, "Camera", lambda: camera)
     assert shoot("-o", tmp_path / "room", "--frames", 3) == 0
@@ -197,10 +208,14 @@ def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(tmp
     assert {(one["expprogram"], one["iso"]) for one in camera.taken} == {("M", "100")}
     assert (camera.now["expprogram"], camera.now["iso"]) == ("A", "Auto")
     said = capsys.readouterr().err
-    assert "iso is 100 until the end, it was Auto" in said and "expprogram is M until the end" in said
+    assert (
+        "iso is 100 until the end, it was Auto" in said and "expprogram is M until the end" in said
+    )
 
 
-def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_silent(tmp_path, monkeypatch):
+def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_silent(
+    tmp_path, monkeypatch
+):
     monkeypatch.setattr(gphoto2, "Camera", Automatic)
     with tethered.connected() as camera:
         files = camera.photograph("1/4", tmp_path / "01")
@@ -212,7 +227,12 @@ def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_si
 
 def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, tmp_path):
     words = ["shoot", "-o", "room", "--frames", "4", "--assemble", "room.hdr"]
-    command = [sys.executable, "-c", PULLED, *words]  # of its own: a process keeps what a camera has shown
+    command = [
+        sys.executable,
+        "-c",
+        PULLED,
+        *words,
+    ]  # of its own: a process keeps what a camera has shown
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert run.returncode == 2
     assert names(tmp_path / "room") == ["01.jpg", "02.jpg", "exposures.csv"]
@@ -224,7 +244,12 @@ def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, tmp_path):
 
 @pytest.mark.parametrize(
     ("code", "meaning"),
-    [(-105, "connect one by USB"), (-115, "card is full"), (-53, "another program"), (-7, "asleep")],
+    [
+        (-105, "connect one by USB"),
+        (-115, "card is full"),
+        (-53, "another program"),
+        (-7, "asleep"),
+    ],
 )
 def test_an_error_of_the_camera_says_what_to_look_at(folder, tmp_path, code, meaning):
     with tethered.connected() as camera:
@@ -265,13 +290,21 @@ def test_what_cannot_be_is_refused_before_the_first_photograph(
 
 def test_a_folder_that_holds_something_is_not_written_to(folder, lens, tmp_path, capsys):
     assert shoot("-o", folder) == 2
-    assert "new or empty" in capsys.readouterr().err and lens == [] and names(folder) == ["scene.jpg"]
+    assert (
+        "new or empty" in capsys.readouterr().err and lens == [] and names(folder) == ["scene.jpg"]
+    )
 
 
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)])
-def test_a_run_that_is_stopped_keeps_whole_photographs_and_their_times(folder, tmp_path, sent, code):
+@pytest.mark.parametrize(
+    ("sent", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)]
+)
+def test_a_run_that_is_stopped_keeps_whole_photographs_and_their_times(
+    folder, tmp_path, sent, code
+):
     room = tmp_path / "room"
-    process = subprocess.Popen([sys.executable, "-c", SLOW, "shoot", "-o", str(room), "--frames", "6"])
+    process = subprocess.Popen(
+        [sys.executable, "-c", SLOW, "shoot", "-o", str(room), "--frames", "6"]
+    )
     until = time.monotonic() + 120
     while not (room / "02.jpg").exists() and time.monotonic() < until:
         time.sleep(0.02)
@@ -280,4 +313,6 @@ def test_a_run_that_is_stopped_keeps_whole_photographs_and_their_times(folder, t
     taken = [one for one in names(room) if one.endswith(".jpg") and not one.startswith(".")]
     assert 2 <= len(taken) < 6 and all((room / one).stat().st_size == SIZE for one in taken)
     listed = (room / "exposures.csv").read_text().splitlines()[1:]
-    assert [row.split(",")[0] for row in listed] == taken[: len(listed)] and len(listed) >= len(taken) - 1
+    assert [row.split(",")[0] for row in listed] == taken[: len(listed)] and len(listed) >= len(
+        taken
+    ) - 1

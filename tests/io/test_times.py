@@ -55,7 +55,9 @@ def test_an_iso_speed_beyond_16_bits_is_taken_from_the_newer_tag():
     assert exif_exposure(image).iso == 102400
 
 
-@pytest.mark.parametrize("nothing", [IFDRational(0, 1), IFDRational(1, 0), IFDRational(0, 0), "", (), b"x"])
+@pytest.mark.parametrize(
+    "nothing", [IFDRational(0, 1), IFDRational(1, 0), IFDRational(0, 0), "", (), b"x"]
+)
 def test_values_of_zero_and_infinity_say_nothing(nothing):
     said = exif_exposure(exif(TIME=nothing, NUMBER=nothing, SPEED=nothing))
     assert said == Exposure(None, None, None)
@@ -84,7 +86,9 @@ def test_what_only_some_photographs_state_is_an_error():
 
 
 def test_a_missing_time_is_named_with_the_way_out():
-    with pytest.raises(ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"):
+    with pytest.raises(
+        ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"
+    ):
         equivalent(NAMES, [Exposure(1.0), Exposure(None, 8.0, 100)])
 
 
@@ -131,7 +135,9 @@ def test_lists_are_read_as_people_write_them(tmp_path, text):
 
 def test_a_third_column_of_f_numbers_or_iso_speeds_counts(tmp_path):
     assert read_times(wrote(tmp_path, "a 1/60 8\nb 1/60 4")).seconds["b"] == pytest.approx(4 / 60)
-    assert read_times(wrote(tmp_path, "a 1/60 100\nb 1/60 400")).seconds["b"] == pytest.approx(4 / 60)
+    assert read_times(wrote(tmp_path, "a 1/60 100\nb 1/60 400")).seconds["b"] == pytest.approx(
+        4 / 60
+    )
 
 
 def test_a_list_may_leave_out_suffixes_and_folders_and_capitals(tmp_path):
@@ -140,7 +146,10 @@ def test_a_list_may_leave_out_suffixes_and_folders_and_capitals(tmp_path):
 
 def test_exif_decides_between_seconds_and_one_over_seconds(tmp_path):
     path, stated = wrote(tmp_path, "a.jpg 60\nb.jpg 15"), [Exposure(1 / 50), Exposure(1 / 13)]
-    assert bracket_times(NAMES, stated, path) == ([pytest.approx(1 / 60), pytest.approx(1 / 15)], None)
+    assert bracket_times(NAMES, stated, path) == (
+        [pytest.approx(1 / 60), pytest.approx(1 / 15)],
+        None,
+    )
     assert bracket_times(NAMES, stated[::-1], path) == ([60, 15], None)
     assert bracket_times(NAMES, [Exposure(), Exposure()], path)[1] == [1 / 60, 1 / 15]
 
@@ -160,8 +169,14 @@ def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_pa
     [
         ("", "times.txt: expected a list of exposure times, it is empty"),
         ("# only a comment\n", "it is empty"),
-        ("a.jpg 2\nb.jpg\n", "times.txt, line 2: expected a file name and its time, such as 1/60, got b.jpg"),
-        ("a.jpg 2\n\nb.jpg fast\n", "line 3: expected a positive number such as 0.5 or 1/60, got fast"),
+        (
+            "a.jpg 2\nb.jpg\n",
+            "times.txt, line 2: expected a file name and its time, such as 1/60, got b.jpg",
+        ),
+        (
+            "a.jpg 2\n\nb.jpg fast\n",
+            "line 3: expected a positive number such as 0.5 or 1/60, got fast",
+        ),
         ("a.jpg 2\nb.jpg 0\n", "line 2: expected a positive number such as 0.5 or 1/60, got 0"),
         ("a.jpg -2\n", "line 1: expected a positive number such as 0.5 or 1/60, got -2"),
         ("a.jpg nan\n", "line 1: expected a positive number such as 0.5 or 1/60, got nan"),
@@ -182,7 +197,10 @@ def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_pa
             "file,exposure_time_s,iso\na.jpg,1,0\n",
             "line 2: expected a positive number such as 0.5 or 1/60, got 0",
         ),
-        ("file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n", "times.txt: b.jpg: expected the ISO speed"),
+        (
+            "file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n",
+            "times.txt: b.jpg: expected the ISO speed",
+        ),
     ],
 )
 def test_a_list_that_is_wrong_names_file_line_and_what_was_expected(tmp_path, text, says):
@@ -219,7 +237,9 @@ def test_explicit_times_beat_exif(tmp_path):
 
 
 def test_a_photograph_that_the_list_does_not_name_is_named(tmp_path):
-    with pytest.raises(ValueError, match="times.txt: expected a time for each photograph.*none for b.jpg"):
+    with pytest.raises(
+        ValueError, match="times.txt: expected a time for each photograph.*none for b.jpg"
+    ):
         bracket_times(NAMES, [], wrote(tmp_path, "a.jpg 2\n"))
 
 
@@ -238,4 +258,8 @@ def test_the_lists_of_the_memorial_bracket_agree(shared):
     folder = shared("memorial")
     times = read_times(folder / "memorial.hdr_image_list.txt").seconds
     assert times == read_times(folder / "exposures.csv").seconds
-    assert len(times) == 16 and times["memorial0061.png"] == 32 and times["memorial0076.png"] == 1 / 1024
+    assert (
+        len(times) == 16
+        and times["memorial0061.png"] == 32
+        and times["memorial0076.png"] == 1 / 1024
+    )

@@ -60,7 +60,10 @@ def test_a_frame_that_cannot_be_aligned_goes_with_its_neighbour_and_is_named():
 
 
 def test_pairs_that_do_not_lie_on_each_other_are_one_doubt_that_says_what_to_do():
-    shots = [shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]()) for j in range(3)]
+    shots = [
+        shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]())
+        for j in range(3)
+    ]
     (doubt,) = aligned(np.concatenate(shots), "mtb").doubts
     assert "and 1 more pair" in doubt and "leave one out" in doubt
 
@@ -70,10 +73,16 @@ def test_the_range_of_the_search_grows_with_the_picture():
     rng = np.random.default_rng(0)
     views = [0.2 * t * E[y : y + 700, x : x + 900] for t, y, x in ((1, 10, 5), (4, 110, 95))]
     images = np.stack(
-        [(255 * np.clip(one + 0.002 * rng.standard_normal(one.shape), 0, 1) ** 0.45) for one in views]
+        [
+            (255 * np.clip(one + 0.002 * rng.standard_normal(one.shape), 0, 1) ** 0.45)
+            for one in views
+        ]
     )
     found = register(images.astype(np.uint8), "mtb")
-    assert np.abs(np.subtract(found.pairs[0].offset, (-100, -90))).max() <= 1 and found.pairs[0].reliable
+    assert (
+        np.abs(np.subtract(found.pairs[0].offset, (-100, -90))).max() <= 1
+        and found.pairs[0].reliable
+    )
 
 
 def test_a_verdict_is_the_same_at_every_size():
@@ -104,19 +113,24 @@ def by_percentile(monkeypatch, **validations):
     """Return which of the answers at the median and at the other two percentiles is taken."""
     answers = {
         q: alignment.judgement.uninformative(0, 1)._replace(
-            moving=q, **({"failure": "", "confidence": 0.95, "offset": (4, 0)} | validations.get(name, {}))
+            moving=q,
+            **({"failure": "", "confidence": 0.95, "offset": (4, 0)} | validations.get(name, {})),
         )
         for q, name in ((50, "median"), (83, "high"), (17, "low"))
     }
     monkeypatch.setattr(alignment.mtb, "percentile", lambda *_, near: near)
     monkeypatch.setattr(alignment.judgement, "compare_bits", lambda *_: None)
-    monkeypatch.setattr(alignment.judgement, "validate", lambda _, H, limit: answers[round(H[1, 2])])
+    monkeypatch.setattr(
+        alignment.judgement, "validate", lambda _, H, limit: answers[round(H[1, 2])]
+    )
     B = SimpleNamespace(h=[0], offset_onto=lambda A, q: (100 * q, 0))
     A = SimpleNamespace(h=[0], Y=[0], overview=0, threshold=lambda q, level: 0)
     return alignment.best_percentile(0, B, 1, A).moving
 
 
-def test_another_percentile_counts_where_the_median_fails_and_it_is_certain_and_lies_elsewhere(monkeypatch):
+def test_another_percentile_counts_where_the_median_fails_and_it_is_certain_and_lies_elsewhere(
+    monkeypatch,
+):
     lost = {"failure": "turned", "offset": (0, 0)}
     assert by_percentile(monkeypatch) == 50
     assert by_percentile(monkeypatch, median=lost) == 83
@@ -134,12 +148,16 @@ def improved(monkeypatch, side, **searches):
     for name, found in searches.items():
         states = [] if found is None else [SimpleNamespace(H=found)]
         monkeypatch.setitem(alignment.SEARCHES, name, lambda pyramid, states=states: iter(states))
-    photograph = SimpleNamespace(overview=3, Y=[np.zeros((side, 400)), np.zeros((side // 2, 200)), 0, 0])
+    photograph = SimpleNamespace(
+        overview=3, Y=[np.zeros((side, 400)), np.zeros((side // 2, 200)), 0, 0]
+    )
     best = alignment.judgement.uninformative(0, 1)._replace(apart=True)
     return alignment.improve(best, "mtb", photograph, photograph, lambda *_: [X])
 
 
-def test_the_simplest_search_that_serves_is_taken_and_none_that_leaves_little_in_common(monkeypatch):
+def test_the_simplest_search_that_serves_is_taken_and_none_that_leaves_little_in_common(
+    monkeypatch,
+):
     true, still = warp.as_homographies([(3, 5), (0, 0)])
     found, name = improved(monkeypatch, 100, cerman=true, homography=None)
     assert name == "cerman" and found.offset == pytest.approx((24, 40)) and not found.apart

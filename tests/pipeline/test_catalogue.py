@@ -52,7 +52,10 @@ def test_every_method_documents_every_knob(chapter):
         verb = getattr(import_module(f"hdrlab.{chapter}.{name}"), catalogue.VERBS[chapter])
         for knob in inspect.signature(verb).parameters.values():
             if knob.kind is knob.KEYWORD_ONLY:
-                assert f"{knob.name} :" in verb.__doc__ or f"{knob.name}," in verb.__doc__, (name, knob)
+                assert f"{knob.name} :" in verb.__doc__ or f"{knob.name}," in verb.__doc__, (
+                    name,
+                    knob,
+                )
 
 
 def test_a_knob_that_a_method_does_not_have_is_refused_with_those_it_has():

@@ -64,7 +64,9 @@ def test_a_photograph_is_not_asked_where_it_holds_no_picture(assembly):
     valid[-1, :, :60] = False
     hidden = np.where(valid[..., None], images, np.uint8(77))
     kept = [hidden.copy(), valid.copy()]
-    found = pipeline.measure_deviation(state._replace(bracket=Bracket(hidden, times, names, valid, linear)))
+    found = pipeline.measure_deviation(
+        state._replace(bracket=Bracket(hidden, times, names, valid, linear))
+    )
     plain = pipeline.measure_deviation(state)
     assert np.array_equal(kept[0], hidden) and np.array_equal(kept[1], valid)
     both = np.isfinite(found.s) & np.isfinite(plain.s)
@@ -89,7 +91,11 @@ def test_a_meter_reading_scales_both(assembly):
     assert np.allclose((scaled.s / scaled.E)[y, x], (found.s / found.E)[y, x], rtol=1e-5)
 
 
-REAL = [("frobisher", None, 0.01, 0.1), ("window", None, 0.01, 0.1), ("memorial", "0000FF", 0.01, 0.2)]
+REAL = [
+    ("frobisher", None, 0.01, 0.1),
+    ("window", None, 0.01, 0.1),
+    ("memorial", "0000FF", 0.01, 0.2),
+]
 
 
 @pytest.mark.parametrize(("folder", "mask", "least", "most"), REAL)

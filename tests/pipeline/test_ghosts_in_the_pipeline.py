@@ -38,7 +38,14 @@ def test_what_moved_stays_where_that_is_asked_and_is_doubted(plain):
 @pytest.mark.parametrize("way", ["regions", "reference"])
 def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
     states = list(pipeline.assemble_steps(moving, align="none", ghosts=way))
-    assert [state.stage for state in states] == ["align", "times", "response", "merge", "ghosts", "compare"]
+    assert [state.stage for state in states] == [
+        "align",
+        "times",
+        "response",
+        "merge",
+        "ghosts",
+        "compare",
+    ]
     found = states[-1]
     inside = found.moving > 0
     assert inside.any() and np.array_equal(found.E[~inside], plain.E[~inside])
@@ -48,7 +55,9 @@ def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
 
 
 def test_auto_removes_ghosts_where_something_moved_and_says_so(moving, plain):
-    auto, regions = (pipeline.assemble(moving, align="none", **way) for way in ({}, {"ghosts": "regions"}))
+    auto, regions = (
+        pipeline.assemble(moving, align="none", **way) for way in ({}, {"ghosts": "regions"})
+    )
     assert np.array_equal(auto.E, regions.E) and not np.array_equal(auto.E, plain.E)
     assert any("something moved in" in note for note in auto.notes) and not auto.doubts
 
@@ -56,13 +65,19 @@ def test_auto_removes_ghosts_where_something_moved_and_says_so(moving, plain):
 def test_auto_leaves_a_still_map_bit_for_bit():
     taken = camera.shoot(scenes.room(SHAPE), camera.times_around(scenes.room(SHAPE), 5), rng=1)
     auto, none = (pipeline.assemble(taken, align="none", ghosts=way) for way in ("auto", "none"))
-    assert np.array_equal(auto.E, none.E) and auto.moving is None and auto.doubts == none.doubts == ()
+    assert (
+        np.array_equal(auto.E, none.E) and auto.moving is None and auto.doubts == none.doubts == ()
+    )
 
 
-def test_auto_leaves_a_map_that_contradicts_itself_nearly_everywhere_and_doubts_it(moving, monkeypatch):
+def test_auto_leaves_a_map_that_contradicts_itself_nearly_everywhere_and_doubts_it(
+    moving, monkeypatch
+):
     monkeypatch.setattr("hdrlab.radiance.deghosting.ghosts.WIDESPREAD", 1)
     auto, none = (pipeline.assemble(moving, align="none", ghosts=way) for way in ("auto", "none"))
-    assert np.array_equal(auto.E, none.E) and any("--ghosts regions shows one" in one for one in auto.doubts)
+    assert np.array_equal(auto.E, none.E) and any(
+        "--ghosts regions shows one" in one for one in auto.doubts
+    )
 
 
 def test_flare_is_the_last_stage_before_they_are_compared():
@@ -84,7 +99,9 @@ def test_wrong_times_are_not_called_motion(moving):
 
 
 def test_ways_that_there_are_not_are_refused(moving):
-    with pytest.raises(ValueError, match="ghosts out of none, auto, regions, reference, got 'some'"):
+    with pytest.raises(
+        ValueError, match="ghosts out of none, auto, regions, reference, got 'some'"
+    ):
         pipeline.assemble(moving, ghosts="some")
     with pytest.raises(ValueError, match="flare out of none, glare, got 'sun'"):
         pipeline.assemble(moving, flare="sun")
@@ -94,7 +111,9 @@ def test_the_command_says_what_moved_and_the_report_shows_it(moving, plain, tmp_
     for name, image in zip(moving.names, moving.images, strict=True):
         Image.fromarray(image).save(tmp_path / f"{name.replace(' ', '')}.png")
     lines = ["file,exposure_time_s"]
-    lines += [f"{n.replace(' ', '')}.png,{t}" for n, t in zip(moving.names, moving.times, strict=True)]
+    lines += [
+        f"{n.replace(' ', '')}.png,{t}" for n, t in zip(moving.names, moving.times, strict=True)
+    ]
     (tmp_path / "times.csv").write_text("\n".join(lines))
     photos = sorted(map(str, tmp_path.glob("*.png")))
     out, page = tmp_path / "map.pfm", tmp_path / "page"

@@ -29,7 +29,9 @@ def E(request):
 
 def test_a_place_comes_out_neither_dark_nor_pale_and_hardly_clipped(E):
     found = statistics(develop(E))
-    assert 95 < found.mean < 140 and found.contrast > 35 and found.white < 0.02 and found.black < 0.02
+    assert (
+        95 < found.mean < 140 and found.contrast > 35 and found.white < 0.02 and found.black < 0.02
+    )
 
 
 def test_blacks_are_black_and_whites_white(E):
@@ -49,7 +51,9 @@ def test_a_smaller_copy_is_the_same_picture(E):
 
 def test_colours_beyond_the_display_keep_their_hue_where_a_clipped_channel_turns_it():
     """A sky that brightens: by clipping its blue it turns to cyan, and by the default it does not."""
-    sky = np.float32([0.25, 0.5, 1.0]) * np.geomspace(0.1, 10, 60 * 80, dtype=np.float32).reshape(60, 80, 1)
+    sky = np.float32([0.25, 0.5, 1.0]) * np.geomspace(0.1, 10, 60 * 80, dtype=np.float32).reshape(
+        60, 80, 1
+    )
     away = {}
     for way in ("ratio", "hue"):
         C = colour.decode_srgb(develop(sky, "reinhard", way=way) / 255.0)[-20:]
@@ -61,7 +65,9 @@ def test_colours_beyond_the_display_keep_their_hue_where_a_clipped_channel_turns
 def test_the_way_of_hue_is_the_ratio_of_channels_where_the_colour_fits():
     E = np.float32([[[3.0, 2.0, 1.0], [0.2, 0.2, 0.2]]])
     L = colour.luminance(E)
-    assert np.array_equal(*(colour.render(E, L, [[0.2, 0.99]], way=way) for way in ("hue", "ratio")))
+    assert np.array_equal(
+        *(colour.render(E, L, [[0.2, 0.99]], way=way) for way in ("hue", "ratio"))
+    )
 
 
 def test_more_light_of_one_colour_is_never_shown_darker():
@@ -105,7 +111,10 @@ def test_the_settings_are_told_and_can_be_replaced():
     assert "saturation" in made.settings and np.array_equal(made.picture, develop(GRAY))
     brighter = develop_and_describe(GRAY, key=0.5)
     assert "key 0.5," in brighter.settings and brighter.picture.mean() > made.picture.mean() + 10
-    assert develop_and_describe(GRAY, "durand", contrast=20).settings == "durand, contrast 20, saturation 1"
+    assert (
+        develop_and_describe(GRAY, "durand", contrast=20).settings
+        == "durand, contrast 20, saturation 1"
+    )
     assert "<lambda>" in develop_and_describe(GRAY, lambda L: np.zeros_like(L)).settings
 
 
@@ -123,7 +132,9 @@ def test_any_radiance_has_a_picture_and_black_is_black(E):
     assert picture.shape == E.shape and np.all(picture[np.asarray(E) == 0] <= 13)
 
 
-@pytest.mark.parametrize("wrong", [{"share": 0}, {"key": 0}, {"white": -1}, {"black": 1}, {"key": "auto"}])
+@pytest.mark.parametrize(
+    "wrong", [{"share": 0}, {"key": 0}, {"white": -1}, {"black": 1}, {"key": "auto"}]
+)
 def test_settings_out_of_range_are_refused(wrong):
     with pytest.raises(ValueError, match="expected share"):
         develop(GRAY, **wrong)

@@ -42,7 +42,9 @@ def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     states = list(assemble_steps(hand_held[0]))
     assert tuple(state.stage for state in states) == pipeline.STAGES
     for name, first in (("g", 2), ("E", 3), ("quality", 3), ("medians", 4)):
-        assert [getattr(state, name) is not None for state in states] == [j >= first for j in range(5)]
+        assert [getattr(state, name) is not None for state in states] == [
+            j >= first for j in range(5)
+        ]
     assert [math.isnan(state.spread) for state in states] == [True, True, True, True, False]
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
 
@@ -65,7 +67,11 @@ def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_mem
     taken = hand_held[0]._replace(images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, in_place=True, release=True)
     assert np.array_equal(found.E, expected.E) and np.array_equal(found.quality, expected.quality)
-    assert (found.notes, found.doubts, found.spread) == (expected.notes, expected.doubts, expected.spread)
+    assert (found.notes, found.doubts, found.spread) == (
+        expected.notes,
+        expected.doubts,
+        expected.spread,
+    )
     assert found.bracket.images.size == 0 and hand_held[0].images[3].mean() > 1
     assert sys.platform != "linux" or np.mean(taken.images[3] == 0) > 0.7
 
@@ -84,10 +90,14 @@ def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     h, w = found.E.shape[:2]
     truth = room[top : top + h, left : left + w]
     images = found.bracket.images
-    well = ((images > 30) & (images < 225)).all(axis=-1).any(axis=0) & (found.quality == Quality.MEASURED)
+    well = ((images > 30) & (images < 225)).all(axis=-1).any(axis=0) & (
+        found.quality == Quality.MEASURED
+    )
     ratio = found.E[well] / truth[well]
     ratio /= np.median(ratio, axis=0)
-    assert well.mean() > 0.7 and np.median(np.abs(ratio - 1)) < 0.015  # edges of half a pixel included
+    assert (
+        well.mean() > 0.7 and np.median(np.abs(ratio - 1)) < 0.015
+    )  # edges of half a pixel included
     assert found.spread < 0.05
 
 
@@ -112,16 +122,26 @@ def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response)
     E = room if colours == 3 else luminance(room)
     taken = camera.shoot(E, camera.times_around(E, 5), camera.Camera(response=response, bits=bits))
     found = assemble(taken)
-    assert found.E.shape == E.shape and found.E.dtype == np.float32 and found.quality.shape == E.shape[:2]
+    assert (
+        found.E.shape == E.shape
+        and found.E.dtype == np.float32
+        and found.quality.shape == E.shape[:2]
+    )
     well = found.quality == Quality.MEASURED
     ratio = found.E[well] / E[well]
     assert np.median(np.abs(ratio / np.median(ratio, axis=0) - 1)) < 0.02
     picture = develop(found.E)
-    assert picture.shape == E.shape and picture.dtype == np.uint8 and picture.max() > 200 > 60 > picture.min()
+    assert (
+        picture.shape == E.shape
+        and picture.dtype == np.uint8
+        and picture.max() > 200 > 60 > picture.min()
+    )
 
 
 def test_a_linear_bracket_has_no_response_to_recover(room):
-    taken = camera.shoot(room, camera.times_around(room, 3), camera.Camera(response="linear", bits=16))
+    taken = camera.shoot(
+        room, camera.times_around(room, 3), camera.Camera(response="linear", bits=16)
+    )
     assert taken.linear and assemble(taken).g.shape == (65536,)
     assert assemble(taken, response="debevec").g.shape == (256, 3)
 
@@ -137,7 +157,9 @@ def test_every_weight_and_method_can_be_named(room, knob):
 def test_functions_of_the_readers_own_take_the_place_of_methods(room):
     taken = camera.shoot(room, camera.times_around(room, 3))
     offsets, g = np.array([[0, 0], [0, 0], [1, -2]]), responses.true_g("film")
-    found = assemble(taken, align=lambda images: offsets, response=lambda images, times, *, valid: g)
+    found = assemble(
+        taken, align=lambda images: offsets, response=lambda images, times, *, valid: g
+    )
     assert np.array_equal(found.offsets, offsets) and found.g is g
     assert found.E.shape == (room.shape[0] - 1, room.shape[1] - 2, 3)
     picture = develop(found.E, lambda L: np.full(L.shape, 0.5, np.float32), saturation=0)
@@ -159,7 +181,11 @@ def test_masks_move_with_their_photographs_and_hide_what_they_hide(hand_held):
     found = assemble(bracket(images, taken.times, valid=valid))
     assert found.bracket.valid.shape == found.bracket.images.shape[:3]
     unseen = ~found.bracket.valid.any(axis=0)
-    assert unseen.any() and np.all(found.E[unseen] == 0) and np.all(found.quality[unseen] == Quality.UNSEEN)
+    assert (
+        unseen.any()
+        and np.all(found.E[unseen] == 0)
+        and np.all(found.quality[unseen] == Quality.UNSEEN)
+    )
     blue = (found.bracket.images == (0, 0, 255)).all(axis=-1)
     assert not np.any(found.bracket.valid & blue)
 
@@ -187,10 +213,18 @@ def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
 
 def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames(room):
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1))
-    wrong = taken._replace(times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e"))
+    wrong = taken._replace(
+        times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
+    )
     found = assemble(wrong, align="none", times="stated")
     assert len(found.doubts) == 1 and found.spread > pipeline.CONTRADICTION
-    for said in ("contradict their exposure times", "stops", "b by +1", "c by -0.9", "correct these times"):
+    for said in (
+        "contradict their exposure times",
+        "stops",
+        "b by +1",
+        "c by -0.9",
+        "correct these times",
+    ):
         assert said in found.doubts[0]
     assert assemble(taken, align="none").doubts == ()
 
@@ -206,11 +240,13 @@ def test_photographs_that_share_no_level_are_doubted():
 
 def test_photographs_of_two_scenes_are_a_doubt_about_their_alignment(room):
     rng = np.random.default_rng(4)
-    other = (10 ** rng.uniform(-1, 3, (32, 48, 1))).astype(np.float32).repeat(4, 0).repeat(4, 1) * np.ones(
-        3, np.float32
-    )
+    other = (10 ** rng.uniform(-1, 3, (32, 48, 1))).astype(np.float32).repeat(4, 0).repeat(
+        4, 1
+    ) * np.ones(3, np.float32)
     times = camera.times_around(room, 3)
-    images = [camera.shoot(E, [t]).images[0] for E, t in zip((room, other, room), times, strict=True)]
+    images = [
+        camera.shoot(E, [t]).images[0] for E, t in zip((room, other, room), times, strict=True)
+    ]
     doubts = assemble(bracket(np.stack(images), times, ["a.jpg", "b.jpg", "c.jpg"])).doubts
     assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in doubts)
 
@@ -237,7 +273,12 @@ STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
             {"align": lambda images: np.zeros((3, 2), int)},
             "expected offsets .2, 2. .*one per image",
         ),
-        (STACK, [1, 2], {"align": lambda images: np.zeros((2, 2))}, "offsets .2, 2. of whole pixels"),
+        (
+            STACK,
+            [1, 2],
+            {"align": lambda images: np.zeros((2, 2))},
+            "offsets .2, 2. of whole pixels",
+        ),
     ],
 )
 def test_what_makes_no_map_is_refused(images, times, knobs, said):
@@ -268,7 +309,9 @@ def assembled(photographs):
     return cache(lambda name: assemble(photographs(name)))
 
 
-@pytest.mark.parametrize(("name", "stops"), [("window", 0.03), ("stlouis_arch", 0.03), ("frobisher", 0.01)])
+@pytest.mark.parametrize(
+    ("name", "stops"), [("window", 0.03), ("stlouis_arch", 0.03), ("frobisher", 0.01)]
+)
 def test_the_map_explains_real_photographs(assembled, name, stops):
     found = assembled(name)
     assert found.spread <= stops and found.doubts == ()
@@ -305,7 +348,9 @@ def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, 
 def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assembled):
     stated = assemble(photographs("tripod_phone"), times="stated")
     assert stated.spread > 0.5
-    assert any("contradict their exposure times" in doubt and "img-" in doubt for doubt in stated.doubts)
+    assert any(
+        "contradict their exposure times" in doubt and "img-" in doubt for doubt in stated.doubts
+    )
     found = assembled("tripod_phone")
     assert found.spread < 0.1 and "stated times contradict the pixels" in found.doubts[0]
 
@@ -323,7 +368,9 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     taken = camera.shoot(room, camera.times_around(room, 6, stops=1.5), rng=1)
     images = taken.images.copy()
     images[2] = images[2, ::-1, ::-1]  # another scene, of the same brightness
-    found = assemble(taken._replace(images=images, names=tuple("abcdef")), align="none", times="stated")
+    found = assemble(
+        taken._replace(images=images, names=tuple("abcdef")), align="none", times="stated"
+    )
     assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
     assert any("left out" in note and " c;" in note for note in found.notes)
     assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6

@@ -53,7 +53,9 @@ TAKEN, TAKEN3 = bracket(Z1, TIMES, valid=VALID), bracket(Z3, TIMES)
 WRONG = bracket(shots(BLOCKS, TIMES, noise=0.002), TIMES * [1, 1.5, 1])
 FOUR = bracket(shots(BLOCKS, [0.25, 1, 4, 16], ((0, 0),) * 4), [0.25, 1, 7, 16])
 LINEAR = bracket(
-    np.rint(65535 * np.clip(np.multiply.outer(TIMES, BLOCKS), 0, 1)).astype(np.uint16), TIMES, linear=True
+    np.rint(65535 * np.clip(np.multiply.outer(TIMES, BLOCKS), 0, 1)).astype(np.uint16),
+    TIMES,
+    linear=True,
 )
 SAME = TAKEN3._replace(times=np.ones(3))
 STATE = assembly.Assembly(
@@ -70,7 +72,9 @@ TILT = warp.turn((9, 9), 1)
 GRAIN = np.random.default_rng(5).integers(0, 256, (40, 48)).astype(np.uint8)
 DUSK = np.where(GRAIN < 100, 8, np.maximum(GRAIN // 2, 20)).astype(np.uint8)  # nothing below 8
 COARSE = np.kron(GRAIN[:20, :24], np.ones((2, 2), np.uint8))
-CHESS = np.where(np.indices(COARSE.shape).sum(axis=0) % 2, COARSE, 255 - COARSE)  # gray at half the size
+CHESS = np.where(
+    np.indices(COARSE.shape).sum(axis=0) % 2, COARSE, 255 - COARSE
+)  # gray at half the size
 STEPPED = shots(SCENE, TIMES[:2], ((6, 6), (6, 7)))
 PHOTOGRAPHS = list(alignment.photograph_pairs(SHIFTED))
 
@@ -157,7 +161,9 @@ def chosen(response, taken):
 def assessed(spread=0.0, stops=(0, 0, 0), moved=0.0, bands=0.0):
     """Return what is said of a map."""
     medians = np.zeros((3, 1, 256)) + spread * np.array([0, 1, 2])[:, None, None]
-    found = contradictions.Contradictions(np.array(stops, float), np.zeros(2), np.zeros(2), np.zeros(2), 0.0)
+    found = contradictions.Contradictions(
+        np.array(stops, float), np.zeros(2), np.zeros(2), np.zeros(2), 0.0
+    )
     state = stages.assess(STATE, medians * (1 if spread is not None else NAN), found, moved, bands)
     return state.notes, state.doubts, state.fallback, state.stage
 

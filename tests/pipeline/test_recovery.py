@@ -24,7 +24,9 @@ def test_every_recovery_by_name_is_validated(name, response, law):
 
 @pytest.fixture(scope="module")
 def taken(decades):
-    return camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], camera.Camera(response="film"), rng=1)
+    return camera.shoot(
+        decades((60, 80)), [0.01, 0.04, 0.16, 0.64], camera.Camera(response="film"), rng=1
+    )
 
 
 @pytest.mark.parametrize("method", ["auto", *METHODS])
@@ -40,7 +42,9 @@ def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken,
         raise ValueError("expected the moon")
 
     monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
-    g, (doubt,), fallback = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
+    g, (doubt,), fallback = recovery.find_response(
+        "mann", recovery.choose_response("mann", taken), taken
+    )
     assert laws.curve_error(g, true_g("film")) < 0.05 and not fallback
     assert "expected the moon" in doubt
 
@@ -81,6 +85,8 @@ def test_one_curve_is_taken_where_it_explains_nearly_as_much_and_debevec_s_where
     names = [one.replace("three", "a curve for each channel") for one in ASKED]
     monkeypatch.setattr(recovery, "CANDIDATES", dict(zip(names, ASKED, strict=True)))
     monkeypatch.setattr(recovery, "find_widest_gap", lambda Z: gap)
-    monkeypatch.setattr(recovery, "measure_spread", lambda one, *_: spreads[ASKED.index(one.args[0])])
+    monkeypatch.setattr(
+        recovery, "measure_spread", lambda one, *_: spreads[ASKED.index(one.args[0])]
+    )
     found = recovery.choose_response("auto", taken)
     assert found.method.args == (name,) and found.spread == spreads[ASKED.index(name)]

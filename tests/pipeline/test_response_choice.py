@@ -73,12 +73,17 @@ def test_one_channel_of_another_response_is_enough_for_three_curves():
     film = ["srgb", "srgb", lambda X: X**0.5]
     taken = [camera.shoot(E[..., c], times, camera.Camera(response=f)) for c, f in enumerate(film)]
     mixed = bracket(np.stack([one.images for one in taken], axis=-1), times)
-    assert "a curve for each channel" in recovery.choose_response("auto", mixed).notes[0].partition(",")[0]
+    assert (
+        "a curve for each channel"
+        in recovery.choose_response("auto", mixed).notes[0].partition(",")[0]
+    )
 
 
 def test_levels_that_no_two_frames_share_are_settled_by_the_prior(three):
     far = bracket(three.images[[0, 2]], three.times[[0, 2]])
-    images = np.where((far.images > 60) & (far.images < 190), 0, far.images)  # nothing connects the middle
+    images = np.where(
+        (far.images > 60) & (far.images < 190), 0, far.images
+    )  # nothing connects the middle
     assert "debevec" not in recovery.choose_response("auto", far._replace(images=images)).notes[0]
 
 

@@ -21,7 +21,8 @@ STATE = Assembly(
 
 
 @pytest.mark.parametrize(
-    ("rivals", "relative", "doubted"), [((), False, False), ((1, 2), False, True), ((1, 2), True, False)]
+    ("rivals", "relative", "doubted"),
+    [((), False, False), ((1, 2), False, True), ((1, 2), True, False)],
 )
 def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_times_leave_it_open_which(
     rivals, relative, doubted, monkeypatch
@@ -39,7 +40,11 @@ def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_t
 
 @pytest.mark.parametrize(
     ("way", "moved", "fixed", "most"),
-    [("reference", 399, 2, np.inf), ("regions", 399, None, np.inf), ("auto", 199, None, ghosts.WIDESPREAD)],
+    [
+        ("reference", 399, 2, np.inf),
+        ("regions", 399, None, np.inf),
+        ("auto", 199, None, ghosts.WIDESPREAD),
+    ],
 )
 def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_itself_not_where_half_did(
     way, moved, fixed, most, monkeypatch
@@ -72,7 +77,9 @@ def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_t
     monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
     found = timing.refine_times(STATE, "auto", 0.7)
     assert np.array_equal(found.bracket.times, (relative if replaced else TAKEN).times)
-    assert ["contradict the pixels by 0.70 stops" in one for one in found.doubts] == [True] * replaced
+    assert ["contradict the pixels by 0.70 stops" in one for one in found.doubts] == [
+        True
+    ] * replaced
 
 
 def test_photographs_that_get_darker_while_the_times_rise_are_named():

@@ -7,7 +7,12 @@ from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 from hdrlab.pipeline import registration, stages
-from hdrlab.pipeline.timing import complete_times, estimate_relative_times, refine_times, space_by_stops
+from hdrlab.pipeline.timing import (
+    complete_times,
+    estimate_relative_times,
+    refine_times,
+    space_by_stops,
+)
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +28,9 @@ def taken(room):
 def test_photographs_so_many_stops_apart_make_the_map_of_their_times(taken):
     shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
     spaced = space_by_stops(shuffled, 2)
-    assert spaced.times.tolist() == [1, 4, 16, 64, 256] and np.array_equal(spaced.images, taken.images)
+    assert spaced.times.tolist() == [1, 4, 16, 64, 256] and np.array_equal(
+        spaced.images, taken.images
+    )
     ratio = pipeline.assemble(spaced).E / pipeline.assemble(taken).E
     assert np.allclose(ratio, np.median(ratio), rtol=1e-2)
 
@@ -36,7 +43,9 @@ def test_steps_may_differ_and_are_positive(taken):
 
 @pytest.mark.parametrize("response", ["film", "srgb", "gamma"])
 def test_relative_times_have_the_right_order_and_roughly_the_right_steps(room, response):
-    taken = camera.shoot(room, camera.times_around(room, 5, stops=2), camera.Camera(response=response), rng=1)
+    taken = camera.shoot(
+        room, camera.times_around(room, 5, stops=2), camera.Camera(response=response), rng=1
+    )
     shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
     steps = np.diff(np.log2(estimate_relative_times(shuffled).times))
     assert np.all((steps > 1) & (steps < 3.2))
@@ -51,7 +60,9 @@ def test_relative_times_of_a_linear_camera_are_right(room):
 
 def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
     found = pipeline.assemble(taken._replace(times=np.full(5, 0.01)))
-    assert found.notes[0].startswith("all stated times are the same, so: relative times, the shortest is 1")
+    assert found.notes[0].startswith(
+        "all stated times are the same, so: relative times, the shortest is 1"
+    )
     assert "--stops" in found.notes[0]
     assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
     with pytest.raises(ValueError, match="at least two different exposures"):
@@ -66,7 +77,9 @@ def test_one_exposure_many_times_is_refused(room):
 
 def test_times_in_the_wrong_order_are_refused_or_estimated_where_that_is_asked_for(taken):
     reversed_ = bracket(taken.images, taken.times[::-1])
-    with pytest.raises(ValueError, match="frame 5 .* and frame 4 .*darker photograph.*--times estimate"):
+    with pytest.raises(
+        ValueError, match="frame 5 .* and frame 4 .*darker photograph.*--times estimate"
+    ):
         complete_times(reversed_, "correct")
     found, (note,) = complete_times(reversed_, "estimate")
     assert np.array_equal(found.images, taken.images) and "relative times" in note
@@ -83,7 +96,9 @@ def test_rough_times_are_corrected_unless_they_are_to_stay():
     room = scenes.room((280, 420))
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     rough = taken._replace(times=taken.times * [1, 1, 1.1, 1, 1])
-    found, stated = (pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated"))
+    found, stated = (
+        pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated")
+    )
     assert stated.bracket.times.tobytes() == rough.times.tobytes()
     assert found.spread < stated.spread and "times estimated" in found.notes[0]
 
@@ -123,6 +138,10 @@ def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions
 
 
 def test_times_that_leave_no_two_photographs_to_compare_contradict_them_beyond_measure(mistaken):
-    (state, *_) = pipeline.assemble_steps(mistaken._replace(times=2.0 ** np.arange(5) / 64), align="none")
+    (state, *_) = pipeline.assemble_steps(
+        mistaken._replace(times=2.0 ** np.arange(5) / 64), align="none"
+    )
     (said,) = refine_times(state, "auto", np.inf).doubts
-    assert said.startswith("the stated times contradict the pixels beyond measure, so they were not used")
+    assert said.startswith(
+        "the stated times contradict the pixels beyond measure, so they were not used"
+    )

@@ -42,5 +42,7 @@ def test_the_tightest_bound_of_the_frames_that_show_a_pixel_is_taken(levels, sho
 def test_what_is_bounded_is_positive_and_flagged(levels):
     E, flag = answer(*levels)
     assert (
-        np.isfinite(E) and E > 0 and flag in (Quality.CLIPPED, Quality.DARK, Quality.CLIPPED | Quality.DARK)
+        np.isfinite(E)
+        and E > 0
+        and flag in (Quality.CLIPPED, Quality.DARK, Quality.CLIPPED | Quality.DARK)
     )

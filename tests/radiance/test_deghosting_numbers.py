@@ -26,7 +26,9 @@ def shots(scene=LIGHT, times=TIMES, moves=(None, (8, 9), (9, 20))):
         X = t * scene
         if at is not None:
             X[at[0] : at[0] + 12, at[1] : at[1] + 10] = 0.08 * t
-        M = np.clip(X, 0, 1) ** (1 / 2.2) + 0.004 * np.random.default_rng(j).standard_normal(X.shape)
+        M = np.clip(X, 0, 1) ** (1 / 2.2) + 0.004 * np.random.default_rng(j).standard_normal(
+            X.shape
+        )
         taken.append(np.rint(np.clip(M, 0, 1) * 255))
     return np.array(taken, np.uint8)
 

@@ -26,7 +26,9 @@ def test_a_point_of_light_becomes_the_point_spread():
     K = (1 + (r / 2) ** 2) ** -1.25
     assert seen[10, 12] == pytest.approx(0.9, rel=1e-5)
     ratio = seen[r > 0] / K[r > 0]
-    assert np.allclose(ratio, ratio[0], rtol=2e-3)  # one constant at all distances: nothing comes round
+    assert np.allclose(
+        ratio, ratio[0], rtol=2e-3
+    )  # one constant at all distances: nothing comes round
 
 
 def test_no_light_is_made_and_what_stays_in_the_frame_is_what_was_there():
@@ -92,7 +94,9 @@ def test_a_scene_through_a_clear_lens_is_left_as_it_is(name):
 def test_the_rounds_come_down_to_the_share(room):
     F = lens.add_glare(room, GlareSpread(0.1, 2.0))
     shares = [state.share for state in flare.glare_steps(F, 2.0)]
-    assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(0.1, rel=0.03)
+    assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(
+        0.1, rel=0.03
+    )
 
 
 def test_outside_the_region_the_map_stays_bit_for_bit(room):
@@ -119,7 +123,11 @@ def test_gray_maps_and_maps_without_light_are_maps(room):
 
 @pytest.mark.parametrize(
     ("wrong", "said"),
-    [({"F": np.full((4, 4), np.nan)}, "NaN"), ({"F": -np.ones((4, 4))}, "negative"), ({"part": 0}, "part")],
+    [
+        ({"F": np.full((4, 4), np.nan)}, "NaN"),
+        ({"F": -np.ones((4, 4))}, "negative"),
+        ({"part": 0}, "part"),
+    ],
 )
 def test_what_is_no_map_is_refused(wrong, said):
     with pytest.raises(ValueError, match=said):

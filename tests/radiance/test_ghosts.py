@@ -30,13 +30,20 @@ def moving(wall):
     ball = movers.ball(SHAPE, (45, 60), 9, [3.0, 1.0, 0.4])
     at = movers.path(5, (4, 14))
     return movers.shoot(
-        wall, ball, at, camera.times_around(wall, 5), camera.Camera(full_well=50_000, read_noise=5), rng=2
+        wall,
+        ball,
+        at,
+        camera.times_around(wall, 5),
+        camera.Camera(full_well=50_000, read_noise=5),
+        rng=2,
     )
 
 
 def found_in(taken, valid=None, merged=None, **knobs):
     """Return the map without ghosts of a bracket by the film's own response."""
-    return ghosts.remove_ghosts(taken.images, taken.times, FILM, W, valid=valid, merged=merged, **knobs)
+    return ghosts.remove_ghosts(
+        taken.images, taken.times, FILM, W, valid=valid, merged=merged, **knobs
+    )
 
 
 def rms(E, truth, where):
@@ -61,14 +68,19 @@ def test_deviation_is_the_weighted_variance_of_the_frames_estimates():
 def test_frames_that_agree_have_no_deviation_and_the_unit_of_light_does_not_matter():
     images = np.array([[[30, 60]], [[60, 120]], [[120, 240]]], np.uint8)
     for unit in (1, 1e-4, 1e5):
-        taken = frames.calibrate_frames(images, unit * np.array([1.0, 2, 4]), LINEAR, np.ones((1, 2)))
+        taken = frames.calibrate_frames(
+            images, unit * np.array([1.0, 2, 4]), LINEAR, np.ones((1, 2))
+        )
         assert np.allclose(deviation.measure_deviation(taken, np.ones(256)).v, 0, atol=1e-5)
 
 
 def test_an_edge_of_high_contrast_that_lies_a_pixel_elsewhere_is_no_ghost(wall):
     times = camera.times_around(wall, 5)
     offsets = np.array([[0, 0], [0, 1], [1, 0], [1, 1], [0, 1]])
-    images = [camera.shoot(E, [t]).images[0] for E, t in zip(camera.views(wall, offsets), times, strict=True)]
+    images = [
+        camera.shoot(E, [t]).images[0]
+        for E, t in zip(camera.views(wall, offsets), times, strict=True)
+    ]
     E = merge_with_quality(images, times, FILM, W).E
     plain = deviation.measure_deviation(frames.calibrate_frames(images, times, FILM, E), W)
     assert np.sqrt(plain.v).max() > 0.5  # the door's edge is as contradictory as any ghost
@@ -115,7 +127,12 @@ def test_a_frame_joins_its_leader_where_it_agrees_and_where_its_neighbourhood_do
     images[1, 10:20, 10:20] = 200
     taken = frames.calibrate_frames(images, [1, 2], LINEAR, np.full((30, 40), 50 / 128))
     used = reference.find_consistent_frames(taken, 0, (slice(None), slice(None)))
-    assert used[0].all() and not used[1, 8:22, 8:22].any() and used[1, :4].all() and used[1, :, 30:].all()
+    assert (
+        used[0].all()
+        and not used[1, 8:22, 8:22].any()
+        and used[1, :4].all()
+        and used[1, :, 30:].all()
+    )
 
 
 def test_where_the_leader_is_clipped_a_frame_that_breaks_its_bound_does_not_join():
@@ -154,7 +171,10 @@ def test_in_the_region_the_error_is_ten_times_smaller_and_outside_nothing_change
         assert 10 * rms(found.E, truth, where) < min(rms(plain.E, one, where) for one in candidates)
         outside = found.labels == 0
         assert np.array_equal(found.E[outside], plain.E[outside])
-        assert np.array_equal(found.quality[outside], plain.quality[outside]) and found.used[:, outside].all()
+        assert (
+            np.array_equal(found.quality[outside], plain.quality[outside])
+            and found.used[:, outside].all()
+        )
 
 
 def test_who_stands_in_the_only_frame_that_measures_a_bright_place_is_found_and_not_cut_in_two():
@@ -167,7 +187,9 @@ def test_who_stands_in_the_only_frame_that_measures_a_bright_place_is_found_and_
     found = ghosts.remove_ghosts(images, times, FILM, W)
     whole = ball.mask > 0.5
     assert found.labels.max() == 1 and np.all(found.labels[whole] == 1)
-    upper, lower = (np.median(np.log2(found.E / seen)[whole & half]) for half in (sky > 50, sky < 50))
+    upper, lower = (
+        np.median(np.log2(found.E / seen)[whole & half]) for half in (sky > 50, sky < 50)
+    )
     assert abs(upper - lower) < 0.3
     still = camera.shoot(sky, times, camera.Camera(response="film"), rng=1).images
     assert ghosts.remove_ghosts(still, times, FILM, W).labels.max() == 0
@@ -180,7 +202,9 @@ def test_a_reference_leads_in_every_region_and_the_map_shows_its_moment(moving):
         inside = found.labels > 0
         assert found.used[j, inside].all()
         Z = moving.bracket.images[j][moving.hidden[j]]
-        if np.mean(Z.max(axis=-1) < 250) > 0.5:  # the figure is no burnt-out one, which the merge leaves out
+        if (
+            np.mean(Z.max(axis=-1) < 250) > 0.5
+        ):  # the figure is no burnt-out one, which the merge leaves out
             assert inside[moving.hidden[j]].mean() > 0.9
 
 
@@ -280,7 +304,9 @@ def test_a_note_says_how_many_regions_and_who_leads(moving, wall):
 def test_a_note_doubts_motion_that_is_everywhere(moving):
     b = moving.bracket
     noise = np.random.default_rng(4).integers(1, 249, b.images.shape, np.uint8)
-    noise = np.repeat(np.repeat(noise[:, ::9, ::9], 9, axis=1), 9, axis=2)[:, : SHAPE[0], : SHAPE[1]]
+    noise = np.repeat(np.repeat(noise[:, ::9, ::9], 9, axis=1), 9, axis=2)[
+        :, : SHAPE[0], : SHAPE[1]
+    ]
     found = ghosts.remove_ghosts(noise, b.times, FILM, W)
     assert "times or of alignment" in ghosts.note(found, [f"img{j}" for j in range(5)])
 
@@ -302,8 +328,14 @@ def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clip
     g = np.log(np.maximum(np.arange(256), 0.5) / 128)
     taken = frames.calibrate_frames(images, [1, 2], g, E)
     found = reference.read_frame(taken, 1, np.s_[:, :])
-    assert found.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1])) and found.high[0, 1, 0] == np.inf
-    assert found.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top])) and found.low[0, 1, 0] == 0
+    assert (
+        found.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1]))
+        and found.high[0, 1, 0] == np.inf
+    )
+    assert (
+        found.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top]))
+        and found.low[0, 1, 0] == 0
+    )
     assert found.measured[0, :, 0].tolist() == [False, True, False]
 
 
@@ -311,7 +343,9 @@ def test_what_is_darker_than_a_clipped_frame_shows_is_found_but_for_an_edge_that
     E, near, outside = (np.zeros((9, 11, 3), kind) for kind in (np.float32, bool, bool))
     E[4, 5], near[3:6, 4:7], outside[:, -2:] = 1.0, True, True
     clipped = np.full((1, *E.shape), 255, np.uint8)
-    taken = frames.Calibrated(clipped, np.ones(1), 255, None, np.zeros((1, 3, 256)), np.ones((1, 3, 256)))
+    taken = frames.Calibrated(
+        clipped, np.ones(1), 255, None, np.zeros((1, 3, 256)), np.ones((1, 3, 256))
+    )
     assert np.array_equal(deviation.find_clipped_elsewhere(taken, E), ~near[..., 0])
     seen = taken._replace(valid=~outside[None, ..., 0])
     assert np.array_equal(deviation.find_clipped_elsewhere(seen, E), ~(near | outside)[..., 0])

@@ -65,10 +65,13 @@ def test_each_method_is_its_formula():
 @pytest.mark.parametrize("name", CURVES)
 def test_on_clean_photographs_the_methods_agree(name, decades):
     E = decades((40, 60))
-    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, bits=16))
+    taken = camera.shoot(
+        E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, bits=16)
+    )
     g = responses.true_g(name, 65536)
     maps = [
-        merge_with_quality(taken.images, taken.times, g, weights.gaussian(65536), method=m) for m in METHODS
+        merge_with_quality(taken.images, taken.times, g, weights.gaussian(65536), method=m)
+        for m in METHODS
     ]
     measured = maps[0].quality == Quality.MEASURED
     for found in maps:
@@ -101,7 +104,9 @@ def test_any_order_of_frames_gives_the_same_map_bit_for_bit(method, bits, times)
     valid, times = rng.random((3, 6, 7)) > 0.2, np.array(times)
     first = merge_with_quality(images, times, FILM, method=method, valid=valid)
     for order in map(list, permutations(range(3))):
-        other = merge_with_quality(images[order], times[order], FILM, method=method, valid=valid[order])
+        other = merge_with_quality(
+            images[order], times[order], FILM, method=method, valid=valid[order]
+        )
         assert np.array_equal(other.E, first.E) and np.array_equal(other.quality, first.quality)
 
 
@@ -119,7 +124,9 @@ def test_16_bits_give_the_map_of_the_8_they_hold(method):
 def test_a_gray_stack_gives_the_channel_of_three_equal_ones():
     images = np.random.default_rng(5).integers(0, 256, (3, 20, 30), np.uint8)
     gray = merge_with_quality(images, [1, 2, 8], FILM)
-    rgb = merge_with_quality(np.stack([images] * 3, axis=-1), [1, 2, 8], np.stack([FILM] * 3, axis=-1))
+    rgb = merge_with_quality(
+        np.stack([images] * 3, axis=-1), [1, 2, 8], np.stack([FILM] * 3, axis=-1)
+    )
     assert gray.E.shape == (20, 30) and rgb.E.shape == (20, 30, 3)
     assert np.array_equal(gray.quality, rgb.quality)
     assert all(np.array_equal(rgb.E[..., c], gray.E) for c in range(3))
@@ -130,7 +137,9 @@ def test_doubled_times_halve_the_map(method):
     images = np.random.default_rng(6).integers(0, 256, (4, 20, 30, 3), np.uint8)
     once = merge_with_quality(images, [1, 2, 8, 16], FILM, method=method)
     twice = merge_with_quality(images, [2, 4, 16, 32], FILM, method=method)
-    assert np.array_equal(once.quality, twice.quality) and np.allclose(once.E, 2 * twice.E, rtol=2e-6)
+    assert np.array_equal(once.quality, twice.quality) and np.allclose(
+        once.E, 2 * twice.E, rtol=2e-6
+    )
 
 
 def test_the_scale_of_the_weights_does_not_matter():
@@ -142,7 +151,8 @@ def test_the_scale_of_the_weights_does_not_matter():
 def test_the_number_of_threads_changes_nothing(monkeypatch):
     images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
     one, three = (
-        monkeypatch.setattr(threads, "THREADS", count) or quick.merge_with_quality(images, [1, 2, 8], FILM)
+        monkeypatch.setattr(threads, "THREADS", count)
+        or quick.merge_with_quality(images, [1, 2, 8], FILM)
         for count in (1, 3)
     )
     assert np.array_equal(one.E, three.E) and np.array_equal(one.quality, three.quality)
@@ -197,7 +207,9 @@ STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
 @given(STACKS, st.sampled_from(sorted(METHODS)), st.data())
 def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
     """All that is measured lies between what a dark pixel takes and what a clipped one takes."""
-    times = np.array(data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images))))
+    times = np.array(
+        data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images)))
+    )
     found = merge_with_quality(images, times, FILM, method=method, repair=False)
     low, high = np.exp(FILM[1]) / times.max(), np.exp(FILM[TOP]) / times.min()
     assert found.E.dtype == np.float32 and np.all(np.isfinite(found.E))
@@ -217,10 +229,14 @@ def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
     st.sampled_from(sorted(METHODS)),
     st.data(),
 )
-def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(images, method, data):
+def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(
+    images, method, data
+):
     valid = data.draw(arrays(bool, images.shape))
     times = 2.0 ** np.arange(len(images))
-    found = merge_with_quality(images, times, responses.true_g("gamma", 65536), method=method, valid=valid)
+    found = merge_with_quality(
+        images, times, responses.true_g("gamma", 65536), method=method, valid=valid
+    )
     assert np.all(np.isfinite(found.E)) and np.all(found.E >= 0)
     assert np.array_equal(
         (found.quality & Quality.UNSEEN) > 0, ~valid.any(axis=0) & (found.quality != Quality.STUCK)
@@ -243,7 +259,9 @@ def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
     )
     found = merge_with_quality(taken.images, taken.times, FILM)
     sun = np.hypot(y, x) < 5
-    assert np.all(found.quality[sun] == Quality.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
+    assert (
+        np.all(found.quality[sun] == Quality.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
+    )
 
 
 # Clipped in one channel
@@ -308,7 +326,9 @@ def test_a_stuck_pixel_takes_its_neighbours_median_and_says_so(level, where):
 
 def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
     light = np.linspace(0.2, 0.8, 60 * 80, dtype=np.float32).reshape(60, 80)
-    taken = camera.shoot(light, 4.0 ** np.arange(-3, 1), camera.Camera(hot=0.002, full_well=50_000), rng=3)
+    taken = camera.shoot(
+        light, 4.0 ** np.arange(-3, 1), camera.Camera(hot=0.002, full_well=50_000), rng=3
+    )
     found = merge_with_quality(taken.images, taken.times, FILM)
     hot = taken.images[0] == 255
     assert 3 < hot.sum() < 30 and np.array_equal(found.quality == Quality.STUCK, hot)
@@ -330,7 +350,9 @@ def test_around_a_true_highlight_that_no_frame_measures_nothing_changes():
     E[3:5, 4:6] = 1000
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
     found = merge_with_quality(taken.images, taken.times, FILM)
-    assert np.all(found.quality[E == 1000] == Quality.CLIPPED) and np.array_equal(found.E[E < 1], dark[E < 1])
+    assert np.all(found.quality[E == 1000] == Quality.CLIPPED) and np.array_equal(
+        found.E[E < 1], dark[E < 1]
+    )
 
 
 def test_without_two_exposures_nothing_counts_as_stuck():
@@ -349,8 +371,12 @@ def test_a_frame_counts_where_it_shows_something_and_nowhere_else():
     valid = np.ones(images.shape, bool)
     valid[0, :, :10], valid[2, :, 20:] = False, False
     found = merge_with_quality(images, [1, 2, 4], FILM, valid=valid, repair=False).E
-    assert np.array_equal(found[:, :10], merge_with_quality(images[1:, :, :10], [2, 4], FILM, repair=False).E)
-    assert np.array_equal(found[:, 20:], merge_with_quality(images[:2, :, 20:], [1, 2], FILM, repair=False).E)
+    assert np.array_equal(
+        found[:, :10], merge_with_quality(images[1:, :, :10], [2, 4], FILM, repair=False).E
+    )
+    assert np.array_equal(
+        found[:, 20:], merge_with_quality(images[:2, :, 20:], [1, 2], FILM, repair=False).E
+    )
     assert np.array_equal(
         found[:, 10:20], merge_with_quality(images[:, :, 10:20], [1, 2, 4], FILM, repair=False).E
     )
@@ -386,7 +412,9 @@ def test_a_masked_pixel_is_not_mistaken_for_a_stuck_one():
 def test_a_level_that_weighs_nothing_still_counts_where_there_is_no_other():
     w = weights.cut(weights.flat(), above=0.8, below=0.2)
     found = merge_with_quality(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
-    assert not found.quality.any() and np.allclose(found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4)
+    assert not found.quality.any() and np.allclose(
+        found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4
+    )
 
 
 def test_the_response_decides_each_channel():
@@ -404,7 +432,10 @@ def test_the_response_decides_each_channel():
         ({"times": [1, np.nan]}, "positive exposure times"),
         ({"g": np.full(256, np.nan)}, "finite table"),
         ({"g": np.zeros((256, 2))}, r"response \(n,\) or \(n, 3\)"),
-        ({"images": np.zeros((2, 4, 5), np.uint8), "g": np.zeros((256, 3))}, r"response \(n,\) for gray"),
+        (
+            {"images": np.zeros((2, 4, 5), np.uint8), "g": np.zeros((256, 3))},
+            r"response \(n,\) for gray",
+        ),
         ({"w": -np.ones(256)}, "not negative"),
         ({"w": np.zeros(256)}, "not all 0"),
         ({"w": np.ones((256, 3))}, r"weights \(n,\)"),

@@ -38,7 +38,8 @@ W = RNG.random((3, 9))
 X = RNG.random((3, 9)) + 0.1
 T = TIMES[:, None]
 FLARED = lens_flare.add_glare(
-    np.where(RNG.random((70, 80)) > 0.99, 3e3, RNG.lognormal(0, 0.7, (70, 80))), GlareSpread(0.05, 2.0)
+    np.where(RNG.random((70, 80)) > 0.99, 3e3, RNG.lognormal(0, 0.7, (70, 80))),
+    GlareSpread(0.05, 2.0),
 )
 FLARED3 = lens_flare.add_glare(np.kron(FLARED[:, :, None], [1, 0.7, 0.4]), GlareSpread(0.03))
 SPOTTED = np.zeros((40, 50), np.float32) + 0.1
@@ -48,7 +49,9 @@ H = transfer.histograms(shots(RNG.lognormal(-2, 1.3, (40, 50))))[0]
 H16 = np.zeros((2, 1024))
 H16[0, 100:300], H16[1, 380:1000] = 3, 1
 FOUND = ratios.collect_equations(H[0], H[1])
-READ = ratios.Equations(np.array([1.0, 2, 3, 4]), np.array([2.0, 4.2, 5.9, 30]), np.array([1.0, 1, 0.5, 0.2]))
+READ = ratios.Equations(
+    np.array([1.0, 2, 3, 4]), np.array([2.0, 4.2, 5.9, 30]), np.array([1.0, 1, 0.5, 0.2])
+)
 LINEAR = np.rint(255 * np.clip(np.multiply.outer([0.3, 0.9], E), 0, 1)).astype(np.uint8)
 NEIGHBOURS = np.array([[1.0, 2, 3], [4, 99, 6], [7, 8, 10]])
 INTERVALS = uncertainty.variance(X, X / 9, 5000, 3)
@@ -70,7 +73,8 @@ def random_histograms(k):
     """Return histograms of two photographs, with gaps."""
     rng = np.random.default_rng(k)
     return [
-        np.bincount(np.clip(rng.gamma(2, 9 * m, 400), 0, 255).astype(int), minlength=256) for m in (1, 2 + k)
+        np.bincount(np.clip(rng.gamma(2, 9 * m, 400), 0, 255).astype(int), minlength=256)
+        for m in (1, 2 + k)
     ]
 
 

@@ -100,7 +100,8 @@ def test_a_bracket_gives_its_times_however_it_was_held():
 def test_a_darker_frame_after_a_brighter_has_the_inverse_ratio(scheme):
     images = pair(log_normal(), 3)
     assert np.isclose(
-        ratios.estimate_ratio(*images[::-1], scheme=scheme), 1 / ratios.estimate_ratio(*images, scheme=scheme)
+        ratios.estimate_ratio(*images[::-1], scheme=scheme),
+        1 / ratios.estimate_ratio(*images, scheme=scheme),
     )
 
 
@@ -119,7 +120,9 @@ def test_what_the_mask_hides_does_not_count():
     images = pair(log_normal(), 4)
     spoiled, valid = images.copy(), np.ones(images.shape, bool)
     spoiled[1, :, :100], valid[1, :, :100] = 90, False
-    assert ratios.estimate_ratios(spoiled, valid=valid) == ratios.estimate_ratios(images[:, :, 100:])
+    assert ratios.estimate_ratios(spoiled, valid=valid) == ratios.estimate_ratios(
+        images[:, :, 100:]
+    )
 
 
 # What is refused
@@ -157,7 +160,9 @@ def test_a_level_without_pixels_is_no_equation():
     h = np.zeros((2, 256), int)
     h[0, 20:50], h[1, 80:200:4] = 10, 10
     found = ratios.collect_equations(*h)
-    assert found.x[:30].tolist() == list(range(20, 50)) and found.y[30:].tolist() == list(range(80, 200, 4))
+    assert found.x[:30].tolist() == list(range(20, 50)) and found.y[30:].tolist() == list(
+        range(80, 200, 4)
+    )
     assert np.allclose(found.y, 4 * found.x)
 
 

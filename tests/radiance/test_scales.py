@@ -95,7 +95,9 @@ def test_colours_share_one_weight_and_the_unit_of_exposure_is_no_matter():
     assert np.allclose(weights.snr(g + 5), weights.snr(g))
 
 
-@pytest.mark.parametrize("g", [np.zeros(256), np.full(256, np.nan), np.zeros((2, 2, 2)), -np.arange(256.0)])
+@pytest.mark.parametrize(
+    "g", [np.zeros(256), np.full(256, np.nan), np.zeros((2, 2, 2)), -np.arange(256.0)]
+)
 def test_what_is_no_response_is_refused(g):
     with pytest.raises(ValueError, match="expected a"):
         weights.snr(g)

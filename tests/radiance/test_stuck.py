@@ -39,7 +39,9 @@ def test_one_stuck_channel_makes_a_stuck_pixel():
         "one that stands out too little",
     ],
 )
-def test_a_pixel_that_follows_the_exposure_or_does_not_stand_out_is_not_stuck(short_level, long_level):
+def test_a_pixel_that_follows_the_exposure_or_does_not_stand_out_is_not_stuck(
+    short_level, long_level
+):
     short, long = pair()
     short[3, 4], long[3, 4] = short_level, long_level
     assert not find_stuck(short, long).any()

@@ -16,13 +16,18 @@ def photographed(response, bits=8, rng=0, E=LIGHT):
     g = responses.true_g(response, 2**bits)
     times = camera.times_around(E, 6, stops=2)
     taken = camera.shoot(
-        E, times, camera.Camera(response=response, bits=bits, full_well=WELL, read_noise=READ), rng=rng
+        E,
+        times,
+        camera.Camera(response=response, bits=bits, full_well=WELL, read_noise=READ),
+        rng=rng,
     )
     whole = np.exp(g[-1])  # exposure of a full well
     return taken.images, taken.times, g, WELL / whole, E * whole
 
 
-@pytest.mark.parametrize(("response", "bits"), [("linear", 16), ("linear", 8), ("gamma", 8), ("film", 8)])
+@pytest.mark.parametrize(
+    ("response", "bits"), [("linear", 16), ("linear", 8), ("gamma", 8), ("film", 8)]
+)
 def test_of_100_pixels_of_any_decade_95_lie_within_1_96_deviations(response, bits):
     images, times, g, N, true = photographed(response, bits)
     found = merge_with_deviation(images, times, g, N, READ)
@@ -90,7 +95,10 @@ def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
     images = images.reshape(*images.shape, *[1] * len(channels)) + np.zeros(channels, np.uint8)
     g = responses.true_g("linear")
     found = merge_with_deviation(images, [1, 2], g, 1000)
-    assert found.E.shape == found.s.shape == images.shape[1:] and found.E.dtype == found.s.dtype == np.float32
+    assert (
+        found.E.shape == found.s.shape == images.shape[1:]
+        and found.E.dtype == found.s.dtype == np.float32
+    )
     assert np.isfinite(found.s[0, 0]).all() and np.isinf(found.s[0, 1:]).all()
     assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
@@ -111,8 +119,12 @@ def test_black_is_a_measurement_where_the_noise_is_wider_than_its_step(R, counts
 
 
 def test_a_full_well_that_reads_a_little_less_than_the_top_measures_nothing():
-    maker = camera.Camera(response="linear", bits=16, full_well=2_500, read_noise=20)  # 0.8 % of the well
-    taken = camera.shoot(np.full((200, 300), 1.5), [0.2, 1.0, 4.0], maker, rng=3)  # the longer two are full
+    maker = camera.Camera(
+        response="linear", bits=16, full_well=2_500, read_noise=20
+    )  # 0.8 % of the well
+    taken = camera.shoot(
+        np.full((200, 300), 1.5), [0.2, 1.0, 4.0], maker, rng=3
+    )  # the longer two are full
     assert (taken.images[1:] < 0.98 * 65535).any()
     g = responses.true_g("linear", 65536)
     found = merge_with_deviation(*taken[:2], g, 2_500 / np.exp(g[-1]), 20)
@@ -144,7 +156,9 @@ def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
     ],
 )
 def test_noise_that_cannot_be_is_refused(bad):
-    with pytest.raises(ValueError, match=f"expected {next(iter(bad))} of at least .* one a channel"):
+    with pytest.raises(
+        ValueError, match=f"expected {next(iter(bad))} of at least .* one a channel"
+    ):
         merge_with_deviation(
             np.ones((2, 2, 2), np.uint8), [1, 2], responses.true_g("linear"), **{"N": 100, **bad}
         )

@@ -24,7 +24,9 @@ def samples(N=40, P=5, seed=0, **knobs):
 
 
 @given(st.integers(1, 9), st.integers(2, 6), st.sampled_from([16, 64, 256]))
-def test_the_matrix_has_a_row_for_each_datum_one_for_the_gauge_and_one_for_each_inner_level(N, P, n):
+def test_the_matrix_has_a_row_for_each_datum_one_for_the_gauge_and_one_for_each_inner_level(
+    N, P, n
+):
     Z = np.random.default_rng(N).integers(0, n, (N, P))
     A, b = debevec.system(Z, np.log(2.0 ** np.arange(P)), 10, weights.hat(n))
     assert A.shape == (N * P + 1 + n - 2, n + N) and b.shape == (N * P + n - 1,)
@@ -35,13 +37,20 @@ def test_the_systems_rows_are_those_of_the_paper():
     A, b = debevec.system(np.array([[1, 3], [2, 5]]), np.array([0.5, 0.7]), 10, w)
     x = np.arange(n + 2) ** 2.0  # g and lE that are easy to tell apart
     g, lE = x[:n], x[n:]
-    data = [w[1] * (g[1] - lE[0]), w[3] * (g[3] - lE[0]), w[2] * (g[2] - lE[1]), w[5] * (g[5] - lE[1])]
+    data = [
+        w[1] * (g[1] - lE[0]),
+        w[3] * (g[3] - lE[0]),
+        w[2] * (g[2] - lE[1]),
+        w[5] * (g[5] - lE[1]),
+    ]
     smooth = [10 * w[z] * (g[z - 1] - 2 * g[z] + g[z + 1]) for z in range(1, n - 1)]
     assert np.allclose(A @ x, [*data, g[4], *smooth])
     assert np.allclose(b, [w[1] * 0.5, w[3] * 0.7, w[2] * 0.5, w[5] * 0.7, *[0] * (n - 1)])
 
 
-@pytest.mark.parametrize(("frames", "count"), [(2, 256), (4, 86), (11, 26), (12, 24), (256, 2), (257, 1)])
+@pytest.mark.parametrize(
+    ("frames", "count"), [(2, 256), (4, 86), (11, 26), (12, 24), (256, 2), (257, 1)]
+)
 def test_samples_needed_are_the_least_that_outnumber_the_levels(frames, count):
     assert debevec.samples_needed(frames) == count
     assert count * (frames - 1) > 255 >= (count - 1) * (frames - 1)
@@ -64,13 +73,17 @@ def test_lE_is_where_the_samples_lie_on_the_curve(name, solve):
     Z, B = samples(60, response=responses.RESPONSES[name], noise=0)
     g, lE = solve(Z, B, 1, CUT)
     error = np.where(CUT[Z] > 0.5, g[Z] - lE[:, None] - B, 0)
-    assert abs(g[128]) < 1e-12 and np.abs(error).max() < 0.03  # half a level in the middle of a curve
+    assert (
+        abs(g[128]) < 1e-12 and np.abs(error).max() < 0.03
+    )  # half a level in the middle of a curve
 
 
 def test_levels_beyond_the_cut_take_the_value_of_the_last_one_that_an_equation_reaches():
     Z, B = samples()
     g = debevec.gsolve(Z, B, 30, CUT).g
-    reached = np.flatnonzero(CUT)[-1] + 1  # the last smoothness row reaches one level beyond the cut
+    reached = (
+        np.flatnonzero(CUT)[-1] + 1
+    )  # the last smoothness row reaches one level beyond the cut
     assert np.all(g[reached:] == g[reached]) and g[reached] > g[reached - 1]
 
 

@@ -38,7 +38,8 @@ def test_the_equations_hold_on_the_true_curve(seven_frames):
     found = grossberg.build_equations(transfer.histograms(taken.images)[0], taken.times, w)
     miss = np.interp(found.T, np.arange(256), g) - g[found.m] + np.log(found.R)
     assert (
-        np.count_nonzero(found.weight) > 300 and np.sqrt(np.average(miss**2, weights=found.weight**2)) < 0.02
+        np.count_nonzero(found.weight) > 300
+        and np.sqrt(np.average(miss**2, weights=found.weight**2)) < 0.02
     )
 
 
@@ -128,7 +129,9 @@ def test_the_cut_heals_debevec_and_not_the_polynomial_of_pixels(figures):
 
 def test_from_histograms_with_the_cut_no_method_fails(figures):
     for figure in figures:
-        assert figure.cut["Debevec, histograms"] <= 0.1 and figure.cut["polynomial, histograms"] <= 0.2
+        assert (
+            figure.cut["Debevec, histograms"] <= 0.1 and figure.cut["polynomial, histograms"] <= 0.2
+        )
 
 
 def test_a_polynomial_of_the_cameras_own_order_fits(figures):

@@ -49,7 +49,9 @@ def ringed(k):
         [
             a,
             np.clip(
-                a + rng.integers(-1, 2, a.shape) - (selection.radius(a.shape) > 7 + k % 4) * (1 + k % 3),
+                a
+                + rng.integers(-1, 2, a.shape)
+                - (selection.radius(a.shape) > 7 + k % 4) * (1 + k % 3),
                 0,
                 255,
             ),

@@ -70,7 +70,9 @@ def test_photographs_that_no_light_fills_serve_too(decades):
 def test_frames_need_not_be_aligned(seven_frames):
     _, taken = seven_frames("gamma")
     turned = np.stack([image[:: 1 - 2 * (j % 2)] for j, image in enumerate(taken.images)])
-    assert np.array_equal(mann.recover(turned, taken.times), mann.recover(taken.images, taken.times))
+    assert np.array_equal(
+        mann.recover(turned, taken.times), mann.recover(taken.images, taken.times)
+    )
 
 
 STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))

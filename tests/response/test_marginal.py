@@ -35,7 +35,9 @@ def test_level_probabilities_are_those_of_a_noisy_camera():
     assert np.allclose(P, likelihood.masses(m[0][:, None], SIGMA, np.arange(256))[0], atol=1e-15)
     assert np.allclose(P.sum(axis=1), 1)
     for brightness, own in zip(m[0], P, strict=True):
-        Z = np.rint(255 * np.clip(brightness + SIGMA * rng.standard_normal(1_000_000), 0, 1)).astype(int)
+        Z = np.rint(
+            255 * np.clip(brightness + SIGMA * rng.standard_normal(1_000_000), 0, 1)
+        ).astype(int)
         assert np.allclose(np.bincount(Z, minlength=256) / 1e6, own, atol=0.002)
 
 
@@ -87,7 +89,9 @@ def test_the_support_holds_nearly_all_of_the_likelihood():
     p = np.full(len(at.x), 1 / len(at.x))
     everything = np.prod([P[q][:, one.Z[:, q]] for q in range(4)], axis=0).sum(axis=0) / len(p)
     near = likelihood.support(one.Z, P)
-    assert np.allclose(np.exp(likelihood.posterior(P[near.cells], p, near)[0]), everything, rtol=1e-4)
+    assert np.allclose(
+        np.exp(likelihood.posterior(P[near.cells], p, near)[0]), everything, rtol=1e-4
+    )
 
 
 def test_every_step_raises_the_likelihood():
@@ -110,8 +114,13 @@ def test_it_beats_the_published_scheme_on_its_own_trials():
     rng = np.random.default_rng(0)
     trials = [ambiguity.draw_trial(rng) for _ in range(6)]
     states = [estimate(one) for one in trials]
-    paper = [ambiguity.mean_error(state.c[0], one.c) for one, (state, _) in zip(trials, states, strict=True)]
-    ours = [ambiguity.mean_error(state.c, one.c) for one, (_, state) in zip(trials, states, strict=True)]
+    paper = [
+        ambiguity.mean_error(state.c[0], one.c)
+        for one, (state, _) in zip(trials, states, strict=True)
+    ]
+    ours = [
+        ambiguity.mean_error(state.c, one.c) for one, (_, state) in zip(trials, states, strict=True)
+    ]
     assert np.median(ours) <= 0.2 and max(ours) <= 0.7
     assert np.median(ours) < 0.25 * np.median(paper)
     for one, (_, state) in zip(trials, states, strict=True):
@@ -126,7 +135,9 @@ def test_it_climbs_to_the_same_place_from_the_truth(seed):
     from_truth = marginal.fit(one.Z, one.c, one.R, stated=STATED, trust=0.058)
     assert abs(found.likelihood - from_truth.likelihood) < 0.1
     assert np.abs(found.R - from_truth.R).max() < 5e-4
-    assert abs(ambiguity.mean_error(found.c, one.c) - ambiguity.mean_error(from_truth.c, one.c)) < 0.02
+    assert (
+        abs(ambiguity.mean_error(found.c, one.c) - ambiguity.mean_error(from_truth.c, one.c)) < 0.02
+    )
 
 
 def test_ratios_that_are_trusted_stay_and_the_curve_gains():
@@ -147,7 +158,9 @@ def test_the_ratios_of_the_canon_camera(seed):
 
 def test_a_simulated_camera_is_recovered():
     E = 10 ** np.random.default_rng(6).uniform(-1.5, 1.5, (50, 60))
-    taken = camera.shoot(E, camera.times_around(E, 3), camera.Camera(response="cubic", gray_noise=0.7))
+    taken = camera.shoot(
+        E, camera.times_around(E, 3), camera.Camera(response="cubic", gray_noise=0.7)
+    )
     (state,) = marginal.calibrate(taken.images, taken.times, order=5)
     f, truth = np.exp(mitsunaga.curve(state.c)), np.exp(true_g("cubic"))
     assert np.sqrt(np.mean((f / f[-1] - truth / truth[-1]) ** 2)) < 0.005

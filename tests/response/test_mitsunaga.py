@@ -50,7 +50,9 @@ def test_the_basis_spans_every_polynomial_through_both_ends(order):
     M = np.linspace(0, 1, 101)
     c = np.linalg.lstsq(terms(M, order)[:, 1:], polyval(M, a) - M, rcond=None)[0]
     assert np.allclose(mitsunaga.value(M, c), polyval(M, a), atol=1e-12)
-    assert np.allclose(polynomial.slope(M, c), polyval(M, a[1:] * np.arange(1, order + 1)), atol=1e-10)
+    assert np.allclose(
+        polynomial.slope(M, c), polyval(M, a[1:] * np.arange(1, order + 1)), atol=1e-10
+    )
     assert np.allclose(mitsunaga.value([0.0, 1.0], c), [0, 1])
 
 
@@ -64,7 +66,10 @@ def test_the_basis_keeps_the_digits_that_powers_lose():
 def test_a_random_curve_rises_as_steeply_as_promised():
     rng = np.random.default_rng(0)
     for _ in range(20):
-        assert polynomial.slope(polynomial.GRID, ambiguity.draw_curve(rng, least=0.05)).min() > 0.05 - 1e-6
+        assert (
+            polynomial.slope(polynomial.GRID, ambiguity.draw_curve(rng, least=0.05)).min()
+            > 0.05 - 1e-6
+        )
 
 
 def test_a_curve_that_dips_is_drawn_to_the_line_just_so_far_that_it_rises():
@@ -126,7 +131,11 @@ def test_a_pair_without_samples_keeps_the_ratio_it_was_given():
 def test_groups_with_many_clipped_members_are_left_out():
     Z = np.repeat(np.array([[20, 40], [100, 200], [200, 255]]), 50, axis=0)
     M = average(Z, 3)
-    assert np.allclose(M[:, 0] * 255, [20, 100, 200]) and np.isnan(M[2, 1]) and np.isclose(M[1, 1], 200 / 255)
+    assert (
+        np.allclose(M[:, 0] * 255, [20, 100, 200])
+        and np.isnan(M[2, 1])
+        and np.isclose(M[1, 1], 200 / 255)
+    )
 
 
 @pytest.mark.parametrize("level", [0, 255])
@@ -149,7 +158,9 @@ def test_ratios_are_shared_by_the_channels():
 def test_the_order_is_that_of_the_camera():
     rng = np.random.default_rng(5)
     for order in (1, 2, 3):
-        M = clean(ambiguity.draw_curve(rng, order=order) if order > 1 else np.zeros(0), STATED, 10_000)[0]
+        M = clean(
+            ambiguity.draw_curve(rng, order=order) if order > 1 else np.zeros(0), STATED, 10_000
+        )[0]
         noisy = M + 0.005 * rng.standard_normal(M.shape)
         M = average(np.rint(255 * noisy.clip(0, 1)).astype(np.intp), 400)[None]
         assert choose_order([M[:, k::5] for k in range(5)], STATED) == order
@@ -178,7 +189,10 @@ def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, ph
     """Where the error of eq. 7 falls up to order 10, with maps up to a quarter of a stop off."""
     taken = photographs(name)
     step = max(1, taken.images.shape[1] // 400)
-    for images in (taken.images[:, ::step, ::step], taken.images[:, step // 2 :: step, step // 2 :: step]):
+    for images in (
+        taken.images[:, ::step, ::step],
+        taken.images[:, step // 2 :: step, step // 2 :: step],
+    ):
         order = calibrate(images, taken.times).c.shape[1] + 1
         assert low <= order <= high
 
@@ -191,7 +205,9 @@ def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(me
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         for order, found in errors.items():
             found.append(
-                response_rmse(self_calibration.find_response(taken.images, taken.times, order=order), g)[0]
+                response_rmse(
+                    self_calibration.find_response(taken.images, taken.times, order=order), g
+                )[0]
             )
     median = {order: np.median(found) for order, found in errors.items()}
     worst = {order: np.percentile(found, 95) for order, found in errors.items()}
@@ -222,7 +238,9 @@ def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
             M = average(one.Z)[None]
             for errors, knobs in ((stopped, {}), (driven, {"eps": 0, "max_iterations": 1000})):
                 errors.append(
-                    ambiguity.mean_error(last(mitsunaga.fit_steps(M, STATED, 5, **knobs)).c[0], one.c)
+                    ambiguity.mean_error(
+                        last(mitsunaga.fit_steps(M, STATED, 5, **knobs)).c[0], one.c
+                    )
                 )
     assert np.median(driven[:10]) < np.median(stopped[:10]) / 2
     assert stopped[-1] < 2.7 and driven[-1] > 3 * stopped[-1]
@@ -263,7 +281,9 @@ def bracket(response="gamma", **knobs):
     """Return five photographs of four decades of light."""
     E = 10 ** np.random.default_rng(6).uniform(-2, 2, (80, 100))
     return camera.shoot(
-        E, camera.times_around(E, 5), camera.Camera(response=response, **{"gray_noise": 0.7} | knobs)
+        E,
+        camera.times_around(E, 5),
+        camera.Camera(response=response, **{"gray_noise": 0.7} | knobs),
     )
 
 
@@ -287,7 +307,9 @@ def test_a_mask_keeps_pixels_out():
     spoilt = taken.images.copy()
     spoilt[:, :, :30] = np.random.default_rng(7).integers(0, 256, spoilt[:, :, :30].shape)
     masked = self_calibration.find_response(spoilt, taken.times, valid=valid)
-    assert np.array_equal(masked, self_calibration.find_response(taken.images, taken.times, valid=valid))
+    assert np.array_equal(
+        masked, self_calibration.find_response(taken.images, taken.times, valid=valid)
+    )
 
 
 def test_what_cannot_be_calibrated_is_refused():

@@ -28,7 +28,8 @@ ALL = FREE | FORMULAS
 
 
 @pytest.mark.parametrize(
-    ("name", "limit", "apart"), [("window", 1.5, 0.1), ("frobisher", 3, 0.1), ("stlouis_arch", 8, 0.1)]
+    ("name", "limit", "apart"),
+    [("window", 1.5, 0.1), ("frobisher", 3, 0.1), ("stlouis_arch", 8, 0.1)],
 )
 def test_on_real_brackets_curves_and_maps_agree(name, limit, apart, photographs):
     """Curves to percents of the top exposure; maps, each channel's unit taken off, to a tenth of a stop.
@@ -39,7 +40,10 @@ def test_on_real_brackets_curves_and_maps_agree(name, limit, apart, photographs)
     step = max(1, taken.images.shape[1] // 400)
     images = taken.images[:, ::step, ::step]
     g = {method: recover(images, taken.times) for method, recover in ALL.items()}
-    maps = {method: np.log2(merge(images, taken.times, one, weights.gaussian())) for method, one in g.items()}
+    maps = {
+        method: np.log2(merge(images, taken.times, one, weights.gaussian()))
+        for method, one in g.items()
+    }
     for a, b in combinations(ALL, 2):
         off = maps[a] - maps[b]
         assert np.median(np.abs(off - np.median(off, axis=(0, 1)))) < apart, (a, b)
@@ -58,7 +62,10 @@ def test_contradictions_give_a_finite_rising_curve_or_a_clear_error(method, case
         "times wrong by 100": (taken.images, taken.times * [1, 100, 1, 100]),
         "frames in the wrong order": (taken.images[::-1], taken.times),
         "frames alike": (taken.images[[1, 1, 1, 1]], taken.times),
-        "noise alone": (np.random.default_rng(0).integers(0, 256, (4, 60, 80)).astype(np.uint8), taken.times),
+        "noise alone": (
+            np.random.default_rng(0).integers(0, 256, (4, 60, 80)).astype(np.uint8),
+            taken.times,
+        ),
     }[case]
     try:
         g = ALL[method](images, times)

@@ -11,7 +11,11 @@ CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, o
     "mann": ["gamma", "linear"],
     "marginal": ["film"],
 }
-CASES = [(name, one) for name in catalogue.names("response") for one in CAMERAS.get(name, sorted(RESPONSES))]
+CASES = [
+    (name, one)
+    for name in catalogue.names("response")
+    for one in CAMERAS.get(name, sorted(RESPONSES))
+]
 
 
 @pytest.mark.parametrize("law", laws.RECOVERY, ids=lambda law: law.__name__)

@@ -8,7 +8,16 @@ import recorded
 from shots import TIMES, shots
 
 from hdrlab.core import sampling, transfer, weights
-from hdrlab.response import debevec, families, grossberg, linear, mann, mitsunaga, polynomial, robertson
+from hdrlab.response import (
+    debevec,
+    families,
+    grossberg,
+    linear,
+    mann,
+    mitsunaga,
+    polynomial,
+    robertson,
+)
 
 RNG = np.random.default_rng(11)
 NAN, INF = np.nan, np.inf
@@ -29,7 +38,9 @@ H = transfer.histograms(Z1)[0]
 EQUATIONS = grossberg.build_equations(H, TIMES, BELL)
 
 
-LOOSE = dict.fromkeys(("response.grossberg.solve_polynomial", "response.grossberg.recover_polynomial"), 1e-4)
+LOOSE = dict.fromkeys(
+    ("response.grossberg.solve_polynomial", "response.grossberg.recover_polynomial"), 1e-4
+)
 CASES = recorded.named(
     *(of(debevec.samples_needed, *a) for a in ((2,), (3,), (9, 65), (256,))),
     of(debevec.system, Z32[:4], B, 3.0, HAT32),

@@ -44,9 +44,14 @@ def test_the_iterations_end_at_the_tolerance_or_at_their_number(seven_frames):
     _, taken = seven_frames("gamma")
     Z = sampling.by_rank(taken.images, 4000)
     for tolerance in (1e-2, 1e-3):
-        changes = [s.change for s in robertson.recover_steps(Z, taken.times, WEIGHTS, tolerance=tolerance)]
+        changes = [
+            s.change for s in robertson.recover_steps(Z, taken.times, WEIGHTS, tolerance=tolerance)
+        ]
         assert changes[-1] < tolerance and all(change >= tolerance for change in changes[:-1])
-    assert len(list(robertson.recover_steps(Z, taken.times, WEIGHTS, tolerance=0, max_iterations=9))) == 10
+    assert (
+        len(list(robertson.recover_steps(Z, taken.times, WEIGHTS, tolerance=0, max_iterations=9)))
+        == 10
+    )
 
 
 def test_levels_without_a_mean_0_and_those_beyond_the_cut_are_filled():

@@ -28,7 +28,11 @@ def test_an_estimate_of_the_noise_that_is_good_needs_no_other_threshold(s, psi):
 def test_the_temporal_average_is_mean_and_unbiased_variance():
     A = noise(7, (4, 5))
     mean, variance, t = selection.temporal_average(A)
-    assert t == 7 and np.allclose(mean, A.mean(axis=0)) and np.allclose(variance, A.var(axis=0, ddof=1))
+    assert (
+        t == 7
+        and np.allclose(mean, A.mean(axis=0))
+        and np.allclose(variance, A.var(axis=0, ddof=1))
+    )
     assert np.all(selection.temporal_average(A[:1], sigma=0.02).variance == 0.02**2)
 
 
@@ -36,7 +40,9 @@ def test_the_spatial_average_is_that_of_the_patch():
     A = noise(1, (9, 9))[0] + 1000  # far from 0, where squares would drown the differences
     mean, variance = selection.spatial_average(A, size=5)
     patch = A[2:7, 1:6]
-    assert np.isclose(mean[4, 3], patch.mean()) and np.isclose(variance[4, 3], patch.var(), rtol=1e-6)
+    assert np.isclose(mean[4, 3], patch.mean()) and np.isclose(
+        variance[4, 3], patch.var(), rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize("t", [1, 2, 100])
@@ -81,7 +87,10 @@ def test_quantisation_to_256_levels_does_not_spoil_the_test():
         (lambda: selection.flat(np.zeros((1, 9, 9)), sigma=0), "noise above 0"),
         (lambda: selection.threshold(1), "s of at least 2"),
         (lambda: selection.threshold(25, psi=1), "psi"),
-        (lambda: selection.circle(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8)), "neither frame"),
+        (
+            lambda: selection.circle(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8)),
+            "neither frame",
+        ),
     ],
 )
 def test_what_means_nothing_is_refused(call, said):
@@ -98,7 +107,8 @@ def apertures(edge, shape=(240, 320), seed=0):
     E = rng.uniform(10, 240, shape)
     left = 1 - 0.4 * np.clip((selection.radius(shape) - edge) / 100, 0, 1)
     return [
-        np.round(one + rng.normal(0, 0.7, shape)).clip(0, 255).astype(np.uint8) for one in (E / 2, E * left)
+        np.round(one + rng.normal(0, 0.7, shape)).clip(0, 255).astype(np.uint8)
+        for one in (E / 2, E * left)
     ]
 
 

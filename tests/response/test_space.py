@@ -29,7 +29,10 @@ def measured(measured_curves):
 def curves(measured):
     exposure, brightness = measured
     return np.stack(
-        [np.interp(np.linspace(0, 1, 1024), x, m) for x, m in zip(exposure, brightness, strict=True)]
+        [
+            np.interp(np.linspace(0, 1, 1024), x, m)
+            for x, m in zip(exposure, brightness, strict=True)
+        ]
     )
 
 
@@ -64,7 +67,11 @@ def test_without_trust_in_the_samples_the_mean_is_the_likeliest():
 
 def test_every_formula_rises_from_zero_to_one():
     curves = families.tabulate()
-    assert np.all(np.diff(curves, axis=1) > 0) and np.allclose(curves[:, -1], 1) and np.all(curves[:, 0] > 0)
+    assert (
+        np.all(np.diff(curves, axis=1) > 0)
+        and np.allclose(curves[:, -1], 1)
+        and np.all(curves[:, 0] > 0)
+    )
 
 
 @pytest.mark.parametrize("gamma", [1.6, 2.4])
@@ -89,7 +96,9 @@ def test_the_inverse_of_a_measured_curve_is_its_g():
 
 
 def test_a_basis_of_ones_own_answers_in_its_span():
-    basis = space.fit_space(families.to_log(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2)
+    basis = space.fit_space(
+        families.to_log(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2
+    )
     E = np.geomspace(0.01, 1, 2400).reshape(40, 60)
     taken = camera.shoot(E, [0.25, 0.5, 1.0], camera.Camera(response="gamma"))
     g = space.recover(taken.images, taken.times, basis=basis)
@@ -137,7 +146,9 @@ def test_our_own_components_leave_more_than_theirs(papers, curves):
 
 
 def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, curves):
-    found = papers.five_samples(curves[::4], near=0.01)  # 51 of the 201, each by a prior of the other 50
+    found = papers.five_samples(
+        curves[::4], near=0.01
+    )  # 51 of the 201, each by a prior of the other 50
     assert found.mean() < 0.01
 
 
@@ -149,7 +160,9 @@ def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
 def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
     """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
     errors = []
-    for g, x, m in zip(families.invert_curves(*measured)[::4], *(one[::4] for one in measured), strict=True):
+    for g, x, m in zip(
+        families.invert_curves(*measured)[::4], *(one[::4] for one in measured), strict=True
+    ):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
     assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3

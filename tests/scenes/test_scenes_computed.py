@@ -80,7 +80,10 @@ def test_without_the_sun_the_floor_is_dim_and_without_the_lamp_its_corner(room):
 
 
 def test_light_adds_up():
-    lights = [view.room((40, 60), sun=s, lamp=m).astype(float) for s, m in ((0, 0), (9, 0), (0, 4), (9, 4))]
+    lights = [
+        view.room((40, 60), sun=s, lamp=m).astype(float)
+        for s, m in ((0, 0), (9, 0), (0, 4), (9, 4))
+    ]
     assert np.allclose(
         lights[3] - lights[0], lights[1] - lights[0] + lights[2] - lights[0], rtol=1e-3, atol=1e-3
     )
@@ -137,7 +140,9 @@ def test_decades_leave_out_black_and_the_odd_pixel():
     assert np.isclose(scenes.decades(E), 2, atol=0.02)
 
 
-@pytest.mark.parametrize(("E", "tail"), [([[0.0]], 0), ([[1.0]], 0.5), ([[1.0]], -0.1), ([[-1.0]], 0)])
+@pytest.mark.parametrize(
+    ("E", "tail"), [([[0.0]], 0), ([[1.0]], 0.5), ([[1.0]], -0.1), ([[-1.0]], 0)]
+)
 def test_decades_of_what_has_none_are_refused(E, tail):
     with pytest.raises(ValueError, match="expected"):
         scenes.decades(E, tail=tail)
@@ -150,7 +155,10 @@ def integrate(point, n, window, steps=400):
     """Return F of a bright rectangle by adding up its small squares."""
     (x0, y0, z), (x1, y1, _) = window
     x, y = np.meshgrid(
-        *(low + (high - low) * (np.arange(steps) + 0.5) / steps for low, high in ((x0, x1), (y0, y1)))
+        *(
+            low + (high - low) * (np.arange(steps) + 0.5) / steps
+            for low, high in ((x0, x1), (y0, y1))
+        )
     )
     v = np.stack([x, y, np.full_like(x, z)]) - np.reshape(point, (3, 1, 1))
     squared = (v**2).sum(axis=0)
@@ -169,7 +177,9 @@ def integrate(point, n, window, steps=400):
 def test_the_light_of_a_window_is_the_sum_over_its_parts(point, face, n):
     P = np.float32(point)[:, None]
     assert np.isclose(
-        illumination.from_window(P, face, interior.WINDOW)[0], integrate(point, n, interior.WINDOW), rtol=1e-3
+        illumination.from_window(P, face, interior.WINDOW)[0],
+        integrate(point, n, interior.WINDOW),
+        rtol=1e-3,
     )
 
 
@@ -180,7 +190,9 @@ def test_a_window_gives_no_light_to_its_own_wall():
 
 def test_the_light_of_a_globe_falls_with_the_square_of_its_distance():
     P = np.float32([[0, 0], [0, 0], [0, 0]])
-    near, far = (illumination.from_globe(P, interior.FLOOR, textures.rgb(0, d, 0), 0.1)[0] for d in (1, 2))
+    near, far = (
+        illumination.from_globe(P, interior.FLOOR, textures.rgb(0, d, 0), 0.1)[0] for d in (1, 2)
+    )
     assert np.isclose(near, 0.01) and np.isclose(far, 0.0025)
     assert (
         illumination.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
@@ -189,8 +201,14 @@ def test_the_light_of_a_globe_falls_with_the_square_of_its_distance():
 
 def test_a_line_of_sight_leaves_a_box_where_it_should():
     d = np.float32([[0, 0, 3], [0, -1, 0], [1, 1, 1]])
-    t, face = interior.leave(np.zeros((3, 1), np.float32), d, illumination.Box((-1, -2, -1), (1, 2, 4)))
-    assert np.allclose(t, [4, 2, 1 / 3]) and face.tolist() == [interior.BACK, interior.FLOOR, interior.RIGHT]
+    t, face = interior.leave(
+        np.zeros((3, 1), np.float32), d, illumination.Box((-1, -2, -1), (1, 2, 4))
+    )
+    assert np.allclose(t, [4, 2, 1 / 3]) and face.tolist() == [
+        interior.BACK,
+        interior.FLOOR,
+        interior.RIGHT,
+    ]
 
 
 @pytest.mark.parametrize("name", ["astronaut", "brick", "chelsea", "coffee", "grass", "gravel"])

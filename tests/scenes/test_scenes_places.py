@@ -63,7 +63,11 @@ def test_a_program_that_knows_one_part_alone_sees_the_radiance(name):
 def test_a_smaller_place_has_the_mean_of_the_larger_ones_areas(name):
     whole, small = scenes.layers(name), scenes.layers(name, (128, 192))
     for layer, less in zip(whole, small, strict=True):
-        mean = layer.reshape(128, 4, 192, 4, -1).mean(axis=(1, 3), dtype=np.float64).reshape(less.shape)
+        mean = (
+            layer.reshape(128, 4, 192, 4, -1)
+            .mean(axis=(1, 3), dtype=np.float64)
+            .reshape(less.shape)
+        )
         assert np.allclose(less, mean, rtol=1e-4, atol=1e-6)
 
 
@@ -73,7 +77,9 @@ def test_a_place_at_any_shape_keeps_its_pixels_square(shape):
     assert E.shape == (*shape, 3) and np.isfinite(E).all() and E.min() > 0
     pixel = min(512 / shape[0], 768 / shape[1])
     top, left = (512 - pixel * shape[0]) / 2, (768 - pixel * shape[1]) / 2
-    inner = scenes.street()[int(np.ceil(top)) : int(512 - top), int(np.ceil(left)) : int(768 - left)]
+    inner = scenes.street()[
+        int(np.ceil(top)) : int(512 - top), int(np.ceil(left)) : int(768 - left)
+    ]
     assert np.isclose(E.mean(dtype=np.float64), inner.mean(dtype=np.float64), rtol=0.05)
 
 
@@ -117,7 +123,11 @@ def test_a_visitor_is_seen_where_he_stands_and_nowhere_else(name):
 def test_a_visitor_is_lit_by_the_place(name):
     place = scenes.layers(name)
     body = luminance(place.mover)[place.mask > 0.99]
-    assert luminance(place.radiance).min() < np.median(body) < np.quantile(luminance(place.radiance), 0.99)
+    assert (
+        luminance(place.radiance).min()
+        < np.median(body)
+        < np.quantile(luminance(place.radiance), 0.99)
+    )
 
 
 @pytest.mark.parametrize("offset", [3, (1, 2, 3), (0.5, 0)])
@@ -135,7 +145,9 @@ def test_depth_tells_what_is_near_from_what_is_far(name):
 def test_the_street_is_darkest_in_its_alley():
     L = luminance(scenes.street())
     y, x = np.unravel_index(np.argsort(L, axis=None)[:100], L.shape)
-    assert y.min() > 230 and y.max() < 400 and x.min() > 100 and x.max() < 170  # behind the arch on the left
+    assert (
+        y.min() > 230 and y.max() < 400 and x.min() > 100 and x.max() < 170
+    )  # behind the arch on the left
     assert scenes.layers("street").depth[y, x].min() > 10
 
 
@@ -148,7 +160,9 @@ def test_layers_come_back_as_they_were_written(tmp_path):
     layers = {name: rng.random(shape).astype(np.float16) for name, shape in shapes_of.items()}
     write_layers(tmp_path / "layers.exr", layers)
     found = read_layers(tmp_path / "layers.exr")
-    assert list(found) == list(layers) and all(np.array_equal(found[name], layers[name]) for name in layers)
+    assert list(found) == list(layers) and all(
+        np.array_equal(found[name], layers[name]) for name in layers
+    )
 
 
 @pytest.mark.parametrize(
@@ -191,7 +205,9 @@ def test_a_model_is_made_of_triangles_and_materials_that_exist(name):
     for material, mesh in place.parts + place.visitor:
         assert material in place.materials
         assert np.isfinite(mesh.vertices).all() and np.isfinite(mesh.uv).all()
-        assert np.allclose(np.linalg.norm(mesh.normals, axis=1)[corners_with_area(mesh)], 1, atol=1e-6)
+        assert np.allclose(
+            np.linalg.norm(mesh.normals, axis=1)[corners_with_area(mesh)], 1, atol=1e-6
+        )
         assert mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices)
     assert emitting <= {material for material, _ in place.parts}
 
@@ -235,7 +251,9 @@ def area(mesh):
 def test_a_wall_and_its_panes_fill_the_rectangle(rise):
     holes = [openings.Opening(x, 1.0, 0.5, 1.5, rise, False) for x in (1.0, 3.0)]
     wall = openings.wall((0, 4), (0, 2.5), holes, 0.2)
-    front = wall._replace(faces=wall.faces[np.abs(wall.vertices[wall.faces][..., 2]).max(axis=1) < 1e-9])
+    front = wall._replace(
+        faces=wall.faces[np.abs(wall.vertices[wall.faces][..., 2]).max(axis=1) < 1e-9]
+    )
     assert np.isclose(area(front) + sum(area(openings.pane(hole)) for hole in holes), 10, rtol=1e-3)
 
 
@@ -260,9 +278,15 @@ def test_the_slide_of_a_projector_is_upright_and_as_large_as_its_pane():
 def test_each_spot_of_sunlight_has_a_texel_to_itself_with_its_radiance():
     rng = np.random.default_rng(3)
     P, E = rng.random((11, 3)), rng.random((11, 3))
-    mesh, data = relay.squares(P, np.tile([0.0, 0, 1], (11, 1)), np.full(11, 0.1)), relay.chart(E)["data"]
+    mesh, data = (
+        relay.squares(P, np.tile([0.0, 0, 1], (11, 1)), np.full(11, 0.1)),
+        relay.chart(E)["data"],
+    )
     middle = mesh.uv.reshape(11, 4, 2).mean(axis=1)
-    row, column = ((1 - middle[:, 1]) * len(data)).astype(int), (middle[:, 0] * len(data)).astype(int)
+    row, column = (
+        ((1 - middle[:, 1]) * len(data)).astype(int),
+        (middle[:, 0] * len(data)).astype(int),
+    )
     assert np.allclose(data[row, column], E)
     assert np.allclose(mesh.vertices.reshape(11, 4, 3).mean(axis=1), P + [0, 0, 0.002])
 
@@ -300,7 +324,9 @@ def test_averaging_alike_places_takes_out_most_of_the_noise_and_keeps_the_light(
 
 def test_averaging_does_not_cross_an_edge_between_surfaces():
     E, rho, guides, A, B = noisy(np.random.default_rng(1))
-    light = denoise.denoise(A * np.where(rho > 0.4, 5, 1), B * np.where(rho > 0.4, 5, 1), rho, guides)
+    light = denoise.denoise(
+        A * np.where(rho > 0.4, 5, 1), B * np.where(rho > 0.4, 5, 1), rho, guides
+    )
     ratio = light[:, 34:] / light[:, :34].mean(axis=1, keepdims=True)
     assert 4 < ratio[:, :8].mean() < 6
 
@@ -372,7 +398,9 @@ def test_a_place_rendered_again_is_the_one_that_is_shipped(name, corner):
     frame = render.Frame(512, 768, *part)
     E = render.radiance(mi, place, place.parts, frame, 32, 1).astype(np.float32)
     shipped = scenes.layers(name)
-    blocks = (luminance(L).reshape(6, 8, 9, 8).mean(axis=(1, 3)) for L in (E, shipped.radiance[part]))
+    blocks = (
+        luminance(L).reshape(6, 8, 9, 8).mean(axis=(1, 3)) for L in (E, shipped.radiance[part])
+    )
     stops = np.log2(np.divide(*blocks))
     assert abs(np.median(stops)) < 0.15 and np.quantile(np.abs(stops), 0.8) < 0.5
     assert np.median(np.abs(render.depth(mi, place, frame) / shipped.depth[part] - 1)) < 0.002
@@ -382,7 +410,9 @@ def test_a_place_rendered_again_is_the_one_that_is_shipped(name, corner):
 def test_light_from_a_projector_falls_through_its_pane_onto_the_floor():
     """A pane over a floor, the sun over both: a matt floor returns rho E cos / pi."""
     towards = np.array([0.3, 1, 0.2]) / np.linalg.norm([0.3, 1, 0.2])
-    beam = sun.through(np.ones((8, 8, 3)), (0, 2, 0), (1, 0, 0), (0, 0, -1), towards, (100, 100, 100))
+    beam = sun.through(
+        np.ones((8, 8, 3)), (0, 2, 0), (1, 0, 0), (0, 0, -1), towards, (100, 100, 100)
+    )
     parts = [("floor", shapes.quad((-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3)))]
     place = Place(
         parts,
@@ -391,13 +421,17 @@ def test_light_from_a_projector_falls_through_its_pane_onto_the_floor():
         Camera((0, 5, 1), (0, 0, -1), 60),
         [],
     )
-    E = render.radiance(render.mitsuba("scalar_rgb"), place, parts, render.Frame(48, 72), 16, 0)[..., 1]
+    E = render.radiance(render.mitsuba("scalar_rgb"), place, parts, render.Frame(48, 72), 16, 0)[
+        ..., 1
+    ]
     pixels = E > 50 * 0.5 / np.pi
     assert np.isclose(np.median(E[pixels]), 100 * towards[1] * 0.5 / np.pi, rtol=0.02)
     z = render.depth(render.mitsuba("scalar_rgb"), place, render.Frame(48, 72))
     slant = 5 / np.hypot(5, 2)  # cosine of the floor's normal against the camera's axis
     pixel = 2 * np.tan(np.radians(30)) / 72
-    assert np.isclose((z[pixels] ** 2 * pixel**2).sum(), slant, rtol=0.15)  # a pane of one square metre
+    assert np.isclose(
+        (z[pixels] ** 2 * pixel**2).sum(), slant, rtol=0.15
+    )  # a pane of one square metre
 
 
 def test_without_mitsuba_the_command_says_what_to_install(tmp_path):

@@ -14,7 +14,8 @@ from hdrlab.scenes import places
 
 FOLDER = places.FOLDER / "tripod"
 SHAPE = (320, 240)
-# at 500 x 375: the rubber of a foot, the device's front, the floor, a post before the windows, a window
+# at 500 x 375: the rubber of a foot, the device's front, the floor, a post before the windows, a
+# window
 PLACES = (
     np.s_[340:350, 283:293],
     np.s_[118:150, 110:200],
@@ -35,7 +36,10 @@ def test_six_photographs_of_three_megapixels_travel_with_their_licence_in_three_
     assert sum(file.stat().st_size for file in FOLDER.iterdir()) < 3e6
     assert "MIT License" in (FOLDER / "LICENSE").read_text()
     notice = (FOLDER / "README.md").read_text()
-    assert "Fran Murcia" in notice and "times that were published with the photographs are wrong" in notice
+    assert (
+        "Fran Murcia" in notice
+        and "times that were published with the photographs are wrong" in notice
+    )
 
 
 def test_they_are_the_photographs_as_published(shared):
@@ -65,7 +69,9 @@ def test_the_pipeline_finds_nothing_to_doubt_in_them(taken):
 
 def test_their_times_are_those_that_the_pixels_give_to_a_fifth_of_a_stop(taken):
     found = pipeline.assemble(taken._replace(times=np.ones(6)))
-    assert np.allclose(np.diff(np.log2(found.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2)
+    assert np.allclose(
+        np.diff(np.log2(found.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2
+    )
 
 
 # What the notebooks say of them
@@ -86,7 +92,9 @@ def test_the_hand_moved_by_up_to_eight_pixels_to_the_side_and_one_up_or_down(sho
 
 
 def test_the_map_spans_six_stops_and_the_feet_are_darker_than_the_front_and_the_floor(assembled):
-    assert 5.5 < scenes.decades(assembled.E) / np.log10(2) < 6.5 and 0.015 < assembled.spread < 0.025
+    assert (
+        5.5 < scenes.decades(assembled.E) / np.log10(2) < 6.5 and 0.015 < assembled.spread < 0.025
+    )
     L = np.log2(luminance(assembled.E))
     foot, front, floor, post, window = (np.median(L[at]) for at in PLACES)
     assert 0.8 < min(front, floor) - foot < 1.5

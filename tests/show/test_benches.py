@@ -78,7 +78,10 @@ def test_a_still_hand_needs_no_alignment_and_a_shaking_one_bends_the_curve_witho
 def test_a_calibration_is_drawn_with_the_number_that_found_their_place():
     ax = benches.draw_calibrated(benches.calibrate_shaken(scenes.workshop((80, 120)), count=3))
     assert ax.get_title() == "3 of 3 photographs aligned to the pixel"
-    assert [line.get_label() for line in ax.lines if line.get_label()[0] != "_"] == ["as shot", "aligned"]
+    assert [line.get_label() for line in ax.lines if line.get_label()[0] != "_"] == [
+        "as shot",
+        "aligned",
+    ]
 
 
 # Drawings
@@ -97,7 +100,9 @@ def test_a_window_says_how_many_pixels_are_held():
     held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     ax = sensors.window(L, held)
     said = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert said[1] == f"held: {(~held.full & ~held.noise).mean():.0%}" and "cd/m²" in ax.get_xlabel()
+    assert (
+        said[1] == f"held: {(~held.full & ~held.noise).mean():.0%}" and "cd/m²" in ax.get_xlabel()
+    )
 
 
 def test_a_staircase_has_the_levels_of_the_converter():

@@ -22,7 +22,9 @@ SCENE = np.stack([laws.scene((60, 80), seed) for seed in range(3)], axis=-1)
 
 def entry(name="reinhard", shape=(60, 80, 3), Q=0.9, seed=0):
     picture = np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
-    return Entry(name, picture, 0.0123, quality.Quality(Q, 0.8, 0.7), Statistics(0, 1, 255, 127, 7.5))
+    return Entry(
+        name, picture, 0.0123, quality.Quality(Q, 0.8, 0.7), Statistics(0, 1, 255, 127, 7.5)
+    )
 
 
 def texts(figure):
@@ -51,7 +53,9 @@ def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
 
 def test_colours_that_a_display_does_not_have_go_the_way_asked_for():
     E = SCENE * np.float32([0.02, 0.2, 5.0])  # a blue that no display has
-    hue, ratio = (next(contact.entry_steps(E, ["reinhard"], way=way)).picture for way in ("hue", "ratio"))
+    hue, ratio = (
+        next(contact.entry_steps(E, ["reinhard"], way=way)).picture for way in ("hue", "ratio")
+    )
     assert np.array_equal(hue, pipeline.develop(E, "reinhard", way="hue"))
     assert not np.array_equal(hue, ratio)
 
@@ -155,9 +159,12 @@ def test_a_sheet_that_cannot_be_drawn_or_written_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("operators", "said"), [(["reinhard", "magic"], "magic"), ([], "none"), ("reinhard", "list of operators")]
+    ("operators", "said"),
+    [(["reinhard", "magic"], "magic"), ([], "none"), ("reinhard", "list of operators")],
 )
-def test_operators_that_there_are_not_are_refused_before_the_first_has_run(operators, said, monkeypatch):
+def test_operators_that_there_are_not_are_refused_before_the_first_has_run(
+    operators, said, monkeypatch
+):
     monkeypatch.setattr(
         "hdrlab.tonemap.reinhard.tonemap", lambda L: pytest.fail("the first operator was run")
     )

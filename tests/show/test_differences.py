@@ -69,7 +69,9 @@ def test_a_large_picture_is_made_small():
 
 def test_two_curves_that_coincide_to_the_eye_are_told_apart_below_them():
     g = np.log((np.arange(256) + 1) / 128)
-    alike, apart = (differences.curve(g, g + off, what="g").frames[0] for off in (0, 0.01 * np.sin(g)))
+    alike, apart = (
+        differences.curve(g, g + off, what="g").frames[0] for off in (0, 0.01 * np.sin(g))
+    )
     alike, apart = (web.decode_picture(one).astype(int) for one in (alike, apart))
     lower = 2 * len(alike) // 3
     changed = (np.abs(alike - apart).max(axis=-1) > 60).sum(axis=1)

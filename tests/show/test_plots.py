@@ -22,7 +22,9 @@ def three(g):
 
 def small_bracket(dtype=np.uint8, channels=(3,)):
     rng = np.random.default_rng(1)
-    images = rng.integers(0, np.iinfo(dtype).max, (3, 20, 30, *channels), dtype=dtype, endpoint=True)
+    images = rng.integers(
+        0, np.iinfo(dtype).max, (3, 20, 30, *channels), dtype=dtype, endpoint=True
+    )
     return bracket(images, [1 / 60, 1 / 15, 2])
 
 
@@ -47,14 +49,18 @@ def test_a_response_has_units_and_an_own_colour_and_line_style_per_channel():
     ax = plots.response(three(LINEAR))
     assert ax.get_xlabel() == "ln exposure, ln(E t)" and ax.get_ylabel() == "pixel level Z"
     assert (
-        len({line.get_color() for line in ax.lines}) == len({line.get_linestyle() for line in ax.lines}) == 3
+        len({line.get_color() for line in ax.lines})
+        == len({line.get_linestyle() for line in ax.lines})
+        == 3
     )
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["red", "green", "blue"]
 
 
 def test_a_response_is_drawn_with_exposure_across_and_level_up():
     (line,) = plots.response(LINEAR).lines
-    assert np.array_equal(line.get_xdata(), LINEAR) and np.array_equal(line.get_ydata(), np.arange(256))
+    assert np.array_equal(line.get_xdata(), LINEAR) and np.array_equal(
+        line.get_ydata(), np.arange(256)
+    )
 
 
 def test_two_responses_share_axes_and_a_legend_that_tells_them_apart():
@@ -104,7 +110,10 @@ def test_a_radiance_map_stands_above_one_legend_in_stops_and_decades():
     shown = pictures.radiance(E, alt="A wedge")
     assert shown.alts == ("A wedge, 20.0 stops from the darkest to the brightest",)
     frame = iio.imread(io.BytesIO(shown.frames[0])).astype(int)
-    ends = [np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) for colour in ("#440154", "#fde725")]
+    ends = [
+        np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        for colour in ("#440154", "#fde725")
+    ]
     assert np.abs(frame[0, 0] - ends[0]).max() < 20 and np.abs(frame[-1, -1] - ends[1]).max() < 20
     page = shown._repr_html_()
     assert page.count("linear-gradient") == 1
@@ -113,7 +122,9 @@ def test_a_radiance_map_stands_above_one_legend_in_stops_and_decades():
 
 
 def test_a_legend_of_few_stops_tells_its_ticks_apart():
-    page = pictures.radiance(2.0 ** np.linspace(-1, 1, 400).reshape(20, 20), alt="A wedge")._repr_html_()
+    page = pictures.radiance(
+        2.0 ** np.linspace(-1, 1, 400).reshape(20, 20), alt="A wedge"
+    )._repr_html_()
     ticks = re.findall(r">([^<>]+) </span>", page)
     assert len(ticks) == len(set(ticks)) + 1 >= 8  # zero stands in both scales
 
@@ -125,7 +136,9 @@ def test_pixels_without_light_are_gray_in_a_radiance_map():
     assert np.abs(iio.imread(io.BytesIO(frame))[4, 4].astype(int) - 0x80).max() < 4
 
 
-@pytest.mark.parametrize(("E", "alt", "message"), [(0, "A wall", "some light in it"), (1, "", "an alt text")])
+@pytest.mark.parametrize(
+    ("E", "alt", "message"), [(0, "A wall", "some light in it"), (1, "", "an alt text")]
+)
 def test_a_map_without_light_or_words_is_refused(E, alt, message):
     with pytest.raises(ValueError, match=message):
         pictures.radiance(np.full((4, 4, 3), E, float), alt=alt)
@@ -164,7 +177,9 @@ def test_a_figure_of_pyplot_is_rendered_and_closed():
 
 
 def test_a_picture_carries_its_alt_text_into_the_page():
-    shown = pictures.picture(np.zeros((4, 5), np.uint8), alt='A "black" square', caption="black < gray")
+    shown = pictures.picture(
+        np.zeros((4, 5), np.uint8), alt='A "black" square', caption="black < gray"
+    )
     page = shown._repr_html_()
     assert 'alt="A &#34;black&#34; square"' in page and "black &lt; gray" in page
     assert 'src="data:image/webp;base64,' in page and repr(shown) == 'A "black" square'
@@ -187,7 +202,9 @@ def test_a_picture_without_alt_text_is_refused(alt):
     ],
 )
 def test_a_drawing_that_is_no_picture_is_refused_with_what_came(drawn, came):
-    with pytest.raises(ValueError, match=f"expected draw to return a uint8 picture .* got .*{came}"):
+    with pytest.raises(
+        ValueError, match=f"expected draw to return a uint8 picture .* got .*{came}"
+    ):
         pictures.render(drawn)
 
 
@@ -201,7 +218,11 @@ def test_a_plot_in_a_page_has_two_pixels_for_one_of_the_page():
         assert web.decode_picture(frame).shape == (720, 1080, 3)
     assert strip._repr_html_().count("max-width:640px") == 2
     ax = curve()
-    assert pictures.render(ax, 2).shape == (720, 1080, 3) and pictures.render(ax).shape == (360, 540, 3)
+    assert pictures.render(ax, 2).shape == (720, 1080, 3) and pictures.render(ax).shape == (
+        360,
+        540,
+        3,
+    )
 
 
 @pytest.mark.parametrize(

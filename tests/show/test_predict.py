@@ -20,7 +20,9 @@ def test_a_choice_carries_its_pictures_and_which_is_true():
     ("truth", "between", "scale"),
     [(3, (0, 7), [0, 7, 1]), (11.4, (0, 20), [0, 20, 0.2]), (0.02, (0, 0.1), [0, 0.1, 0.001])],
 )
-def test_a_number_is_asked_in_whole_steps_where_it_is_whole_and_else_in_a_hundred(truth, between, scale):
+def test_a_number_is_asked_in_whole_steps_where_it_is_whole_and_else_in_a_hundred(
+    truth, between, scale
+):
     assert predict.number("How many?", truth, between).scale == pytest.approx(scale)
 
 
@@ -77,7 +79,12 @@ def test_a_question_that_has_no_answer_is_refused(what):
 
 
 def test_where_no_widget_is_shown_the_answer_is_there_to_be_opened():
-    asked = predict.number("How many stops?", 11.4, (0, 20), unit="stops", because="A photograph holds <8.")
+    asked = predict.number(
+        "How many stops?", 11.4, (0, 20), unit="stops", because="A photograph holds <8."
+    )
     data, _ = asked._repr_mimebundle_()
     assert data["text/plain"] == "How many stops?"
-    assert "<summary>Answer</summary>11.4 stops. A photograph holds &lt;8.</details>" in data["text/html"]
+    assert (
+        "<summary>Answer</summary>11.4 stops. A photograph holds &lt;8.</details>"
+        in data["text/html"]
+    )

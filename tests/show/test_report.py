@@ -26,7 +26,14 @@ class Page(HTMLParser):
 
     def __init__(self, path):
         super().__init__()
-        self.images, self.text, self.tags, self.headings, self.open, self.wrong = [], "", [], [], [], []
+        self.images, self.text, self.tags, self.headings, self.open, self.wrong = (
+            [],
+            "",
+            [],
+            [],
+            [],
+            [],
+        )
         self.source = path.read_text(encoding="utf8")
         self.feed(self.source)
 
@@ -75,9 +82,13 @@ def page(room, tmp_path_factory):
 def flat(channels=(3,), dtype=np.uint8, names=None, linear=False):
     """Return the assembly of a ramp in two exposures."""
     top = np.iinfo(dtype).max
-    ramp = np.linspace(0.02, 0.45, 40 * 60).reshape(40, 60, *[1] * len(channels)) * np.ones(channels)
+    ramp = np.linspace(0.02, 0.45, 40 * 60).reshape(40, 60, *[1] * len(channels)) * np.ones(
+        channels
+    )
     images = (np.stack([ramp, 2 * ramp]) * top).astype(dtype)
-    return pipeline.assemble(bracket(images, [1, 2], names, linear=linear), align="none", response="linear")
+    return pipeline.assemble(
+        bracket(images, [1, 2], names, linear=linear), align="none", response="linear"
+    )
 
 
 def report(folder, assembly, **knobs):
@@ -92,7 +103,9 @@ def test_the_page_is_well_formed_and_says_its_language_and_title(page):
 
 
 def test_the_page_fetches_nothing_and_runs_nothing(page):
-    addresses = re.findall(r"""(?:src|href|action|data|poster)=["']?([^"'\s>]{0,20})""", page.source)
+    addresses = re.findall(
+        r"""(?:src|href|action|data|poster)=["']?([^"'\s>]{0,20})""", page.source
+    )
     assert addresses and all(address.startswith("data:") for address in addresses)
     assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", page.source)
 
@@ -100,7 +113,10 @@ def test_the_page_fetches_nothing_and_runs_nothing(page):
 def test_how_sure_each_pixel_is_stands_there_where_it_was_asked(room, tmp_path):
     found = pipeline.measure_deviation(room[0])
     page = report(tmp_path, found)
-    assert "How sure each pixel is" in page.headings and wording.certainty(found.E, found.s) in page.text
+    assert (
+        "How sure each pixel is" in page.headings
+        and wording.certainty(found.E, found.s) in page.text
+    )
     (picture,) = (one for one in page.images if one["alt"].startswith("How sure each pixel is"))
     assert re.search(r"from ± 0\.\d+ to ± 0\.\d+ stops", picture["alt"])
     assert "How sure each pixel is" not in report(tmp_path, room[0]).headings
@@ -121,7 +137,9 @@ def test_what_the_deviation_of_a_pixel_is_in_stops():
 
 
 def test_every_picture_has_alt_text_and_a_size_and_is_inside_the_page(page):
-    assert len(page.images) == 1 + 6 + 1 + 1 + 1 + 1  # picture, frames, response, radiance, known, errors
+    assert (
+        len(page.images) == 1 + 6 + 1 + 1 + 1 + 1
+    )  # picture, frames, response, radiance, known, errors
     for image in page.images:
         assert len(image["alt"]) > 10 and int(image["width"]) > 0 and int(image["height"]) > 0
         assert len(base64.b64decode(image["src"].partition("base64,")[2], validate=True)) > 100
@@ -131,7 +149,9 @@ def test_the_pictures_decode_to_the_size_that_the_page_says(page):
     for image in page.images:
         kind, _, data = image["src"].partition(";base64,")
         if kind == "data:image/webp":
-            decoded = cv2.imdecode(np.frombuffer(base64.b64decode(data), np.uint8), cv2.IMREAD_COLOR)
+            decoded = cv2.imdecode(
+                np.frombuffer(base64.b64decode(data), np.uint8), cv2.IMREAD_COLOR
+            )
             assert decoded.shape[:2] == (int(image["height"]), int(image["width"]))
 
 
@@ -161,8 +181,14 @@ def test_the_spread_stands_in_the_report(page, room):
 
 def test_the_errors_in_the_report_are_those_of_the_map(page, room):
     found, truth = room
-    rows = dict(re.findall(r'<th scope="row">(red|green|blue)</th><td class="right">([\d.]+) %', page.source))
-    assert list(rows) == ["red", "green", "blue"] and all(0 < float(one) < 1 for one in rows.values())
+    rows = dict(
+        re.findall(
+            r'<th scope="row">(red|green|blue)</th><td class="right">([\d.]+) %', page.source
+        )
+    )
+    assert list(rows) == ["red", "green", "blue"] and all(
+        0 < float(one) < 1 for one in rows.values()
+    )
     median = float(re.search(r"<dt>([\d.]+) %</dt><dd>median error of radiance", page.source)[1])
     ratio = found.E / truth.E
     assert median == pytest.approx(100 * np.median(np.abs(ratio / np.median(ratio) - 1)), abs=0.1)
@@ -191,7 +217,9 @@ def test_pixels_that_were_not_measured_are_counted_and_shown(tmp_path):
     quality[20, 20] = Quality.CLIPPED | Quality.DARK
     shown = report(tmp_path, found._replace(quality=quality))
     counts = dict(
-        re.findall(r"<b>([\w ]+)</b> <span.{0,120}?</th><td class=\"right\">([\d,]+)</td>", shown.source)
+        re.findall(
+            r"<b>([\w ]+)</b> <span.{0,120}?</th><td class=\"right\">([\d,]+)</td>", shown.source
+        )
     )
     assert counts == {
         "measured": "2,387",
@@ -210,7 +238,9 @@ def test_a_map_that_is_measured_everywhere_needs_no_picture_of_it(tmp_path):
 
 
 def test_doubts_stand_before_the_picture_and_notes_are_told(tmp_path):
-    shown = report(tmp_path, flat()._replace(doubts=("the times are wrong",), notes=("a frame is dark",)))
+    shown = report(
+        tmp_path, flat()._replace(doubts=("the times are wrong",), notes=("a frame is dark",))
+    )
     assert shown.source.index("the times are wrong") < shown.source.index("<img")
     assert "What is doubtful about this map" in shown.text and "a frame is dark" in shown.text
 
@@ -226,7 +256,9 @@ def test_names_and_notes_cannot_write_into_the_page(tmp_path):
     shown = report(tmp_path, found, recipe={"<i>": "</style>"})
     assert shown.wrong == [] and shown.open == []
     assert not {"script", "i"} & {tag for tag, attrs in shown.tags if "style" not in attrs}
-    assert all(image["src"].startswith("data:") and "onerror" not in image for image in shown.images)
+    assert all(
+        image["src"].startswith("data:") and "onerror" not in image for image in shown.images
+    )
     for name in evil:
         assert f"Photograph {name}, exposed for" in shown.images[1 + evil.index(name)]["alt"]
 
@@ -234,7 +266,9 @@ def test_names_and_notes_cannot_write_into_the_page(tmp_path):
 @pytest.mark.parametrize("channels", [(), (3,)])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("linear", [True, False])
-def test_gray_and_colour_of_8_and_16_bits_linear_or_not_are_reported(channels, dtype, linear, tmp_path):
+def test_gray_and_colour_of_8_and_16_bits_linear_or_not_are_reported(
+    channels, dtype, linear, tmp_path
+):
     shown = report(tmp_path, flat(channels, dtype, linear=linear))
     assert shown.wrong == [] and len(shown.images) == 5
     assert f"{'RGB' if channels else 'gray'}, {8 * np.dtype(dtype).itemsize} bits" in shown.text
@@ -244,7 +278,9 @@ def test_gray_and_colour_of_8_and_16_bits_linear_or_not_are_reported(channels, d
 def test_the_thumbnails_of_linear_photographs_are_encoded_for_a_screen(tmp_path):
     def brightness(linear):
         shown = report(tmp_path, flat(linear=linear)).images[1]["src"].partition("base64,")[2]
-        return cv2.imdecode(np.frombuffer(base64.b64decode(shown), np.uint8), cv2.IMREAD_COLOR).mean()
+        return cv2.imdecode(
+            np.frombuffer(base64.b64decode(shown), np.uint8), cv2.IMREAD_COLOR
+        ).mean()
 
     assert brightness(True) > 1.5 * brightness(False)
 
@@ -273,12 +309,18 @@ def test_a_report_that_fails_leaves_the_older_one(room, tmp_path):
     picture = pipeline.develop(found.E)
     with pytest.raises(ValueError, match="one shape"):
         write_report(tmp_path, found, picture, truth=truth._replace(E=truth.E[1:]))
-    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("report.html", "older")]
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [
+        ("report.html", "older")
+    ]
 
 
 def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="expected a finished assembly, got one after the stage 'merge'"):
-        write_report(tmp_path, flat()._replace(stage="merge", medians=None), np.zeros((40, 60), np.uint8))
+    with pytest.raises(
+        ValueError, match="expected a finished assembly, got one after the stage 'merge'"
+    ):
+        write_report(
+            tmp_path, flat()._replace(stage="merge", medians=None), np.zeros((40, 60), np.uint8)
+        )
 
 
 @pytest.mark.parametrize(
@@ -298,12 +340,14 @@ def test_a_large_picture_is_brought_down_by_whole_pixels_to_their_means():
 
 
 def test_false_colour_runs_from_end_to_end_and_what_is_not_known_is_gray():
-    below, low, high, above, missing = figures.false_colour(np.array([[-9.0, -2, 2, 9, np.nan]]), -2, 2)[
-        0
-    ].astype(int)
+    below, low, high, above, missing = figures.false_colour(
+        np.array([[-9.0, -2, 2, 9, np.nan]]), -2, 2
+    )[0].astype(int)
     first, last = (list(bytes.fromhex(figures.scale(-2, 2).colours[end][1:])) for end in (0, -1))
     assert np.all(abs(low - first) <= 1) and np.all(abs(high - last) <= 1)  # one code of rounding
-    assert np.array_equal(below, low) and np.array_equal(above, high) and missing.tolist() == [128] * 3
+    assert (
+        np.array_equal(below, low) and np.array_equal(above, high) and missing.tolist() == [128] * 3
+    )
 
 
 @pytest.mark.parametrize(("low", "high"), [(-10, 9), (-4, 6), (0, 1), (-0.05, 0.05)])
@@ -311,10 +355,14 @@ def test_the_ticks_of_a_scale_stand_where_their_numbers_say(low, high):
     ticks = figures.scale(low, high, digits=3).ticks
     assert 2 <= len(ticks) <= 8
     for place, label in ticks:
-        assert low + place / 100 * (high - low) == pytest.approx(float(label.replace("−", "-")), abs=1e-3)
+        assert low + place / 100 * (high - low) == pytest.approx(
+            float(label.replace("−", "-")), abs=1e-3
+        )
 
 
-@pytest.mark.parametrize(("value", "up"), [(0.003, 0.01), (0.02, 0.02), (0.034, 0.05), (0.7, 1), (1.2, 2)])
+@pytest.mark.parametrize(
+    ("value", "up"), [(0.003, 0.01), (0.02, 0.02), (0.034, 0.05), (0.7, 1), (1.2, 2)]
+)
 def test_the_error_scale_ends_on_a_round_number(value, up):
     assert figures.round_up(value) == pytest.approx(up)
 
@@ -334,13 +382,19 @@ def test_a_spread_is_judged_in_words(spread, says):
 def test_frames_that_share_no_level_are_not_said_to_agree(tmp_path):
     found = flat()
     shown = report(tmp_path, found._replace(medians=np.full_like(found.medians, np.nan)))
-    assert "not known" in shown.text and "they agree" not in shown.text and "0.000" not in shown.text
+    assert (
+        "not known" in shown.text and "they agree" not in shown.text and "0.000" not in shown.text
+    )
 
 
 def luminance_of(colour):
     """Return the relative luminance of #RRGGBB [WCAG 2.2]."""
     c = np.frombuffer(bytes.fromhex(colour[1:]), np.uint8) / 255
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4) @ [
+        0.2126,
+        0.7152,
+        0.0722,
+    ]
 
 
 def test_the_kinds_of_unmeasured_pixels_differ_in_lightness_too():

@@ -11,7 +11,9 @@ from hdrlab.show.plots.lectures import bitmaps as drawn
 RNG = np.random.default_rng(0)
 COARSE = RNG.integers(0, 256, (14, 18)).astype(np.uint8)
 WALL = np.kron(COARSE, np.ones((8, 8), np.uint8))  # (112, 144)
-PAIR = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the first moved by (-3, 4)
+PAIR = np.stack(
+    [WALL[8:104, 8:136], WALL[5:101, 12:140]]
+)  # which lies on the first moved by (-3, 4)
 STATES = list(mtb.align_steps(PAIR))
 
 
@@ -31,11 +33,15 @@ def test_what_is_not_compared_is_blue_whatever_its_bits():
 
 
 def test_the_four_colours_part_in_gray_too():
-    gray = [np.dot(colour, (0.3, 0.59, 0.11)) for colour in (*drawn.AGREE, drawn.DIFFER, drawn.OUTSIDE)]
+    gray = [
+        np.dot(colour, (0.3, 0.59, 0.11)) for colour in (*drawn.AGREE, drawn.DIFFER, drawn.OUTSIDE)
+    ]
     assert np.diff(np.sort(gray)).min() > 40
 
 
-@pytest.mark.parametrize(("b", "compared"), [(np.zeros((2, 3)), None), (np.zeros((2, 2)), np.ones((2, 3)))])
+@pytest.mark.parametrize(
+    ("b", "compared"), [(np.zeros((2, 3)), None), (np.zeros((2, 2)), np.ones((2, 3)))]
+)
 def test_bitmaps_of_two_sizes_are_refused(b, compared):
     with pytest.raises(ValueError, match="expected two bitmaps"):
         drawn.overlay(np.zeros((2, 2)), b, compared)
@@ -44,7 +50,9 @@ def test_bitmaps_of_two_sizes_are_refused(b, compared):
 def test_at_the_true_offset_nothing_is_orange_and_the_title_says_so():
     state = STATES[-1]
     ax = drawn.difference(state.fixed, state.moving, state.offset)
-    assert titles(ax) == [f"moved by ({state.offset[0]}, {state.offset[1]}): 0.00 % of the bits differ"]
+    assert titles(ax) == [
+        f"moved by ({state.offset[0]}, {state.offset[1]}): 0.00 % of the bits differ"
+    ]
     shown = ax.images[0].get_array()
     assert not np.all(shown == drawn.DIFFER, axis=-1).any()
     beside = drawn.difference(state.fixed, state.moving, (0, 0)).images[0].get_array()
@@ -83,7 +91,10 @@ def test_in_a_tie_the_centre_is_framed():
 
 def test_a_validation_stands_above_its_picture_and_all_are_of_one_height():
     state, found = STATES[-1], register(PAIR, "mtb").pairs[0]._replace(failure="")
-    good, bad = drawn.validated(state, found), drawn.validated(state, found._replace(failure="it " * 30))
+    good, bad = (
+        drawn.validated(state, found),
+        drawn.validated(state, found._replace(failure="it " * 30)),
+    )
     assert "no reason not to trust it" in titles(good)[0] and titles(bad)[0].count("it it") > 1
     assert pictures.render(good).shape == pictures.render(bad).shape
 

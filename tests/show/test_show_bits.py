@@ -15,7 +15,9 @@ def texts(ax):
 
 def drawn(ax):
     """Return the bits that stand in the boxes, line by line."""
-    placed = [(y, x, line.get_marker().strip("$")) for line in ax.lines for x, y in line.get_xydata()]
+    placed = [
+        (y, x, line.get_marker().strip("$")) for line in ax.lines for x, y in line.get_xydata()
+    ]
     return "".join(bit for _, _, bit in sorted(placed))
 
 
@@ -40,7 +42,9 @@ def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
         bits.rgbe(pixel)
 
 
-@pytest.mark.parametrize(("size", "kind", "word"), [(16, np.float16, np.uint16), (32, np.float32, np.uint32)])
+@pytest.mark.parametrize(
+    ("size", "kind", "word"), [(16, np.float16, np.uint16), (32, np.float32, np.uint32)]
+)
 @pytest.mark.parametrize("value", [0.7, -3.0, 1e-6, 0.0, 12345.0])
 def test_a_number_is_drawn_as_it_is_stored(size, kind, word, value):
     wanted = f"{int(kind(value).view(word)):0{size}b}"

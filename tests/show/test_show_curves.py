@@ -19,7 +19,9 @@ def legend(ax):
 def test_curves_keep_their_numbers_and_each_has_a_label_a_colour_and_a_style():
     given = {name: PLACES * k for k, name in enumerate("abcdef")}
     ax = curves.lines(PLACES, given, **NAMES)
-    assert legend(ax) == list("abcdef") and ax.get_xlabel() == "turn" and ax.get_ylabel() == "error, %"
+    assert (
+        legend(ax) == list("abcdef") and ax.get_xlabel() == "turn" and ax.get_ylabel() == "error, %"
+    )
     assert all(np.array_equal(line.get_ydata(), given[line.get_label()]) for line in ax.lines)
     looks = {(line.get_color(), str(line._dash_pattern)) for line in ax.lines}
     assert len(looks) == len({line.get_color() for line in ax.lines}) == 6
@@ -55,7 +57,11 @@ def test_a_deviation_of_a_stop_is_a_stop_high_and_the_truth_lies_on_zero():
     _, right, twice = ax.lines  # the first is the line of zero
     assert np.allclose(right.get_ydata(), 0) and np.allclose(twice.get_ydata(), 1)
     assert np.allclose(twice.get_xdata(), LINEAR[10:251] / np.log(2)) and ax.get_ylim() == (-2, 2)
-    assert "stops" in ax.get_xlabel() and "stops" in ax.get_ylabel() and legend(ax) == ["right", "twice"]
+    assert (
+        "stops" in ax.get_xlabel()
+        and "stops" in ax.get_ylabel()
+        and legend(ax) == ["right", "twice"]
+    )
 
 
 def test_a_bundle_holds_every_curve_and_leaves_the_colours_to_those_with_a_name():

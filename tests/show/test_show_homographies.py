@@ -40,7 +40,11 @@ def test_the_highest_correlation_is_drawn_where_it_is():
     figure = drawn.correlation(cerman.correlation(X), marks={"true": (-3, 4)})
     image, (line,) = figure.axes[0].images[0], figure.axes[0].lines
     y, x = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
-    assert (y - X.shape[1] + 1, x - X.shape[2] + 1) == (-3, 4) == (line.get_ydata()[0], line.get_xdata()[0])
+    assert (
+        (y - X.shape[1] + 1, x - X.shape[2] + 1)
+        == (-3, 4)
+        == (line.get_ydata()[0], line.get_xdata()[0])
+    )
 
 
 def test_a_level_shows_its_picture_and_every_step_of_its_error():

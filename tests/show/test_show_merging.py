@@ -45,7 +45,9 @@ def test_the_bar_of_an_answer_spans_the_light_that_is_rounded_to_its_level():
 
 
 def test_an_answer_is_the_larger_the_more_it_weighs():
-    dots = next(c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "measured")
+    dots = next(
+        c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "measured"
+    )
     assert np.all(np.diff(dots.get_sizes()) > 0)
 
 

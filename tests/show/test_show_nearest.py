@@ -1,7 +1,7 @@
 """Pictures on Axes: to the bit what matplotlib draws, wherever they lie and whatever they hold.
 
-Where the centre of a screen's pixel lies on the edge between two of the picture's, either may be taken: the
-sizes here avoid that.
+Where the centre of a screen's pixel lies on the edge between two of the picture's, either may be
+taken: the sizes here avoid that.
 """
 
 import io
@@ -60,7 +60,9 @@ def test_a_part_of_a_picture_is_shown_where_the_axes_end_within_it():
     picture = np.random.default_rng(2).integers(0, 256, (40, 60, 3), dtype=np.uint8)
     assert same(picture, limits=((5.2, 31), (33.3, 8)))
     assert same(picture, limits=((100, 200), (100, 200)))  # none of it
-    assert not np.array_equal(drawn(ours, picture), drawn(ours, picture, limits=((5.2, 31), (33.3, 8))))
+    assert not np.array_equal(
+        drawn(ours, picture), drawn(ours, picture, limits=((5.2, 31), (33.3, 8)))
+    )
 
 
 def test_a_picture_fills_the_extent_that_it_is_given():

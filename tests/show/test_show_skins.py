@@ -12,7 +12,10 @@ TRAINING = computed_skin.synthetic(3000)
 
 def test_the_ellipse_lies_at_its_reach_from_the_mean():
     known = skin.DEFAULT
-    edge = np.column_stack(skins.chrominance(TRAINING, known, reach=2.0).lines[1].get_data()) - known.mu
+    edge = (
+        np.column_stack(skins.chrominance(TRAINING, known, reach=2.0).lines[1].get_data())
+        - known.mu
+    )
     distance = np.sqrt(np.einsum("ni,ij,nj->n", edge, np.linalg.inv(known.S), edge))
     assert np.allclose(distance, 2.0)
 

@@ -47,7 +47,9 @@ def test_several_maps_share_one_scale():
 
 
 def test_the_given_span_holds_whatever_the_values_are():
-    norms = [tones.maps({"": RAMP * k}, label="x", span=(0, 2)).axes[0].images[0].norm for k in (1, 5)]
+    norms = [
+        tones.maps({"": RAMP * k}, label="x", span=(0, 2)).axes[0].images[0].norm for k in (1, 5)
+    ]
     assert all((norm.vmin, norm.vmax) == (0, 2) for norm in norms)
 
 
@@ -101,7 +103,9 @@ def test_a_curve_is_a_line_and_an_operator_a_band():
     pairs = zip(ax.lines[::2], ax.lines[1::2], strict=True)
     widths = [np.median(high.get_ydata() - low.get_ydata()) for low, high in pairs]
     assert 0 < widths[0] < 5 < 20 < widths[1]
-    assert ax.lines[0].get_xdata()[-1] == pytest.approx(5, abs=0.2)  # 10 stops in all, the median at 0
+    assert ax.lines[0].get_xdata()[-1] == pytest.approx(
+        5, abs=0.2
+    )  # 10 stops in all, the median at 0
 
 
 def test_bands_are_drawn_in_levels_as_the_display_gets_them():

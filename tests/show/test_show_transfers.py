@@ -88,9 +88,9 @@ def test_a_ladder_of_a_power_law_lies_on_a_line_with_its_exponent():
     ax = transfers.ladders({"gamma": (s, 0.5)})
     points, line = ax.lines
     assert legend(ax) == ["gamma: slope 0.45"]
-    assert np.allclose(points.get_ydata(), line.get_ydata()) and points.get_xdata().tolist() == list(
-        range(0, -8, -1)
-    )
+    assert np.allclose(
+        points.get_ydata(), line.get_ydata()
+    ) and points.get_xdata().tolist() == list(range(0, -8, -1))
 
 
 def test_equations_are_drawn_less_a_multiple_and_those_thrown_out_are_told_apart():

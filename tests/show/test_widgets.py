@@ -31,12 +31,18 @@ def same(picture):
 def unrolled(frame):
     """Return the picture that was written as runs of one colour, as a script would, run by run."""
     (width, height), rest = np.frombuffer(frame[:8], "<u4"), frame[8:]
-    rows = [pixel for at in range(0, len(rest), 4) for pixel in [tuple(rest[at : at + 3])] * rest[at + 3]]
+    rows = [
+        pixel
+        for at in range(0, len(rest), 4)
+        for pixel in [tuple(rest[at : at + 3])] * rest[at + 3]
+    ]
     return np.array(rows, np.uint8).reshape(height, width, 3)
 
 
 def level_of(frame):
-    picture = iio.imread(io.BytesIO(frame)) if frame[:2] in (b"\xff\xd8", b"RI") else unrolled(frame)
+    picture = (
+        iio.imread(io.BytesIO(frame)) if frame[:2] in (b"\xff\xd8", b"RI") else unrolled(frame)
+    )
     return int(picture.mean().round())
 
 
@@ -49,7 +55,9 @@ def test_play_draws_each_state_once_in_order():
 
     player = widgets.play(range(5), draw, alt="A square")
     assert drawn == [0, 1, 2, 3, 4]
-    assert [level_of(frame) for frame in player.frames] == pytest.approx([0, 50, 100, 150, 200], abs=2)
+    assert [level_of(frame) for frame in player.frames] == pytest.approx(
+        [0, 50, 100, 150, 200], abs=2
+    )
 
 
 def test_play_takes_any_generator():
@@ -197,7 +205,9 @@ def test_tune_stores_all_positions_for_a_page_without_a_kernel_the_start_first()
     assert sorted(tuner.stored_at) == [[level, side] for level in range(16) for side in range(3)]
     for (level, side), frame in zip(tuner.stored_at, tuner.stored, strict=True):
         picture = iio.imread(io.BytesIO(frame))
-        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(10 * level, abs=1)
+        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(
+            10 * level, abs=1
+        )
 
 
 def test_of_many_positions_tune_stores_an_even_grid_with_the_ends_and_the_start():
@@ -210,7 +220,9 @@ def test_words_are_thinned_out_last():
     def shade(colour="red", level=0):
         return square(level)
 
-    tuner = widgets.tune(shade, same, alt="Gray", stored=20, colour=["red", "green", "blue"], level=(0, 9))
+    tuner = widgets.tune(
+        shade, same, alt="Gray", stored=20, colour=["red", "green", "blue"], level=(0, 9)
+    )
     assert {position[0] for position in tuner.stored_at} == {0, 1, 2} and len(tuner.stored_at) == 18
 
 
@@ -291,7 +303,9 @@ def test_a_range_that_is_none_is_refused(given):
 def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
     with pytest.raises(ValueError, match="expected at least one range"):
         widgets.tune(square, same, alt="A square")
-    with pytest.raises(ValueError, match="expected parameters of the function, level, side; got hue"):
+    with pytest.raises(
+        ValueError, match="expected parameters of the function, level, side; got hue"
+    ):
         widgets.tune(square, same, alt="A square", hue=(0, 9))
 
 
@@ -335,7 +349,9 @@ def test_a_plot_on_axes_that_are_used_again_is_the_plot_on_new_ones():
         ax.set_title("A title")
         return ax
 
-    tuner = widgets.tune(lambda k=1: k, lambda k: crowded(k) if k == 2 else curve(k), alt="A curve", k=(1, 4))
+    tuner = widgets.tune(
+        lambda k=1: k, lambda k: crowded(k) if k == 2 else curve(k), alt="A curve", k=(1, 4)
+    )
     for k in (2, 3, 1):
         tuner.at = [k - 1]
         expected = web.encode_runs(render(crowded(k) if k == 2 else curve(k)))
@@ -370,9 +386,9 @@ def test_axes_that_were_changed_beyond_wiping_are_not_used_again(change):
 
     kept = reuse.Kept()
     reuse.draw_reusing(draw, 2, lambda drawn: web.encode_jpeg(render(drawn)), kept)
-    assert reuse.draw_reusing(draw, 1, lambda drawn: web.encode_jpeg(render(drawn)), kept) == web.encode_jpeg(
-        render(draw(1))
-    )
+    assert reuse.draw_reusing(
+        draw, 1, lambda drawn: web.encode_jpeg(render(drawn)), kept
+    ) == web.encode_jpeg(render(draw(1)))
 
 
 def test_axes_are_used_again_where_nothing_speaks_against_it():
@@ -386,7 +402,9 @@ def test_two_axes_of_one_picture_are_never_the_same():
     kept = reuse.Kept()
     reuse.draw_reusing(curve, 1, lambda drawn: b"", kept)
     pairs = []
-    reuse.draw_reusing(lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept)
+    reuse.draw_reusing(
+        lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept
+    )
     assert pairs[0] is not pairs[1]
 
 
@@ -490,7 +508,10 @@ def test_large_pictures_are_compared_by_means_of_their_pixels_and_values_too():
         ({"labels": ["a", ""]}, "expected a label for each of 2 pictures"),
         ({"values": np.ones((9, 9))}, "expected finite values"),
         ({"values": np.full((24, 36), np.nan)}, "expected finite values"),
-        ({"values": [np.ones((24, 36))] * 3}, "expected values for each of 2 pictures, or one array, got 3"),
+        (
+            {"values": [np.ones((24, 36))] * 3},
+            "expected values for each of 2 pictures, or one array, got 3",
+        ),
         ({"alt": ""}, "expected an alt text"),
         ({"a": np.zeros((24, 36))}, "expected draw to return a uint8 picture"),
     ],
@@ -581,7 +602,11 @@ def running(k):
     """Draw on axes whose ends, scales and colours change."""
     ax = plots.axes()
     ax.plot([1, 10 + 100 * k], [1, 2 + k])
-    ax.set(xscale="log" if k % 2 else "linear", xlabel=f"number {k}", facecolor="#E6E6E6" if k > 1 else "w")
+    ax.set(
+        xscale="log" if k % 2 else "linear",
+        xlabel=f"number {k}",
+        facecolor="#E6E6E6" if k > 1 else "w",
+    )
     return ax
 
 
@@ -609,7 +634,9 @@ def mapped(k):
 def named(k):
     """Draw a map of classes."""
     return tones.maps(
-        {"": np.arange(600).reshape(20, 30) % (k + 1)}, label="case", names=["one", "two", "three", "four"]
+        {"": np.arange(600).reshape(20, 30) % (k + 1)},
+        label="case",
+        names=["one", "two", "three", "four"],
     )
 
 
@@ -637,7 +664,9 @@ def crowned(k):
     return plots.with_legend(ax, "upper left")
 
 
-@pytest.mark.parametrize("draw", [fixed, running, beneath, bare, mapped, named, covering, renamed, crowned])
+@pytest.mark.parametrize(
+    "draw", [fixed, running, beneath, bare, mapped, named, covering, renamed, crowned]
+)
 def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
     kept = reuse.Kept()
     for k in (0, 1, 1, 3, 2, 0):
@@ -659,7 +688,9 @@ STILLS = {
     "tune": lambda: widgets.tune(square, same, alt="A square", level=(0, 255)),
     "wipe": lambda: widgets.wipe(square(20), square(200), alt="A square", labels=["dark", "light"]),
     "blink": lambda: widgets.blink(square(20), square(100), square(200), alt="A square"),
-    "brush": lambda: widgets.brush(np.full((32, 32), 1.0), alt="A square", picture=square(20, 32), size=64),
+    "brush": lambda: widgets.brush(
+        np.full((32, 32), 1.0), alt="A square", picture=square(20, 32), size=64
+    ),
 }
 SHOWN = {"play": [20], "tune": [100], "wipe": [20, 200], "blink": [20, 100, 200], "brush": [20]}
 
@@ -669,7 +700,9 @@ def test_a_saved_notebook_without_its_models_shows_each_widget_as_pictures_with_
     nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
     data, metadata = STILLS[name]()._repr_mimebundle_()
     output = nbformat.v4.new_output("display_data", data=data, metadata=metadata)
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("widget", outputs=[output])])
+    notebook = nbformat.v4.new_notebook(
+        cells=[nbformat.v4.new_code_cell("widget", outputs=[output])]
+    )
     page, _ = nbconvert.HTMLExporter(template_name="basic").from_notebook_node(notebook)
     frames = re.findall(r'<img alt="A square[^"]*" src="data:image/webp;base64,([^"]+)"', page)
     levels = [int(web.decode_picture(base64.b64decode(frame)).mean().round()) for frame in frames]
@@ -685,7 +718,9 @@ def test_a_widget_reads_as_its_alt_text_where_nothing_can_be_drawn(name):
 
 def test_a_saved_notebook_tells_plots_from_photographs_for_a_dark_page():
     plot, photograph = widgets.play([1], curve, alt="A"), widgets.play([1], square, alt="A")
-    assert ["data-ink" in one._repr_mimebundle_()[0]["text/html"] for one in (plot, photograph)] == [
+    assert [
+        "data-ink" in one._repr_mimebundle_()[0]["text/html"] for one in (plot, photograph)
+    ] == [
         True,
         False,
     ]

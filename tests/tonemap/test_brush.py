@@ -76,7 +76,10 @@ def test_the_window_lies_around_its_centre_and_moves_inward_at_the_edge():
 
 def test_magnification_repeats_the_pixels_of_the_window():
     L = laws.scene()
-    small, large = brush.lens(L, (40, 60), size=20), brush.lens(L, (40, 60), size=60, magnification=3)
+    small, large = (
+        brush.lens(L, (40, 60), size=20),
+        brush.lens(L, (40, 60), size=60, magnification=3),
+    )
     assert np.array_equal(large, small.repeat(3, axis=0).repeat(3, axis=1))
 
 

@@ -13,12 +13,16 @@ from hdrlab.tonemap import chiu
 
 def window(bright=1000.0):
     """Return a dim wall of 1 beside a bright window."""
-    return np.where(np.arange(160) < 80, 1.0, bright).astype(np.float32) * np.ones((100, 1), np.float32)
+    return np.where(np.arange(160) < 80, 1.0, bright).astype(np.float32) * np.ones(
+        (100, 1), np.float32
+    )
 
 
 @given(level=st.floats(1e-9, 1e9), headroom=st.floats(1, 64))
 def test_a_flat_scene_maps_to_one_over_headroom(level, headroom):
-    assert np.allclose(chiu.tonemap(np.full((9, 12), level), headroom=headroom), 1 / headroom, rtol=1e-3)
+    assert np.allclose(
+        chiu.tonemap(np.full((9, 12), level), headroom=headroom), 1 / headroom, rtol=1e-3
+    )
 
 
 def test_the_scale_is_one_over_k_times_the_blur():
@@ -38,8 +42,12 @@ def test_the_clamp_lets_nothing_above_white():
 def test_a_pass_is_the_mean_with_weights_one_two_one_clamped():
     s, L = laws.scene((30, 40)), 3 * laws.scene((30, 40), 1)
     kernel = np.outer([1, 2, 1], [1, 2, 1]) / 16
-    assert np.allclose(chiu.smooth(s, L), np.minimum(convolve(s, kernel, mode="nearest"), 1 / L), rtol=1e-5)
-    assert np.allclose(chiu.smooth(np.full((3, 4), 2.5, np.float32), np.zeros((3, 4), np.float32)), 2.5)
+    assert np.allclose(
+        chiu.smooth(s, L), np.minimum(convolve(s, kernel, mode="nearest"), 1 / L), rtol=1e-5
+    )
+    assert np.allclose(
+        chiu.smooth(np.full((3, 4), 2.5, np.float32), np.zeros((3, 4), np.float32)), 2.5
+    )
 
 
 def test_every_state_is_its_equation():

@@ -35,7 +35,11 @@ def test_the_curves_are_their_formulas():
 
 def test_every_curve_maps_the_range_onto_the_display_and_beyond_it_stays():
     L = np.float32([[0, 0.5, 1, 7, 100, 1e5]])
-    for F in (curves.linear(L, high=100), curves.gamma(L, high=100), curves.logarithmic(L, low=1, high=100)):
+    for F in (
+        curves.linear(L, high=100),
+        curves.gamma(L, high=100),
+        curves.logarithmic(L, low=1, high=100),
+    ):
         assert F[0, 0] == 0 and F[0, 4] == pytest.approx(1) and F[0, 5] == pytest.approx(1)
 
 
@@ -45,7 +49,9 @@ def test_gamma_divides_every_log_ratio():
 
 
 def test_the_logarithm_gives_every_stop_the_same_share():
-    steps = np.diff(curves.logarithmic(2.0 ** np.arange(11, dtype=np.float32)[None], low=1, high=1024))
+    steps = np.diff(
+        curves.logarithmic(2.0 ** np.arange(11, dtype=np.float32)[None], low=1, high=1024)
+    )
     assert np.allclose(steps, 0.1, atol=1e-6)
 
 
@@ -118,5 +124,9 @@ def test_extremes_of_next_to_nothing():
 
 def test_extremes_of_a_large_picture_are_those_of_all_its_pixels_nearly():
     L = np.exp(np.random.default_rng(3).standard_normal((1200, 1100))).astype(np.float32)
-    assert np.log(robust_maximum(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.99)), abs=0.03)
-    assert np.log(robust_minimum(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.01)), abs=0.03)
+    assert np.log(robust_maximum(L, cut=0.01)) == pytest.approx(
+        np.log(np.quantile(L, 0.99)), abs=0.03
+    )
+    assert np.log(robust_minimum(L, cut=0.01)) == pytest.approx(
+        np.log(np.quantile(L, 0.01)), abs=0.03
+    )

@@ -32,7 +32,9 @@ def test_a_signal_survives_the_way_to_light_and_back(v):
 
 
 def test_more_light_never_has_a_smaller_code():
-    assert np.all(np.diff(transfer.pq(LIGHT)) > 0) and np.all(np.diff(transfer.hlg(LIGHT / 10_000)) > 0)
+    assert np.all(np.diff(transfer.pq(LIGHT)) > 0) and np.all(
+        np.diff(transfer.hlg(LIGHT / 10_000)) > 0
+    )
 
 
 def test_a_step_of_12_bits_of_pq_is_below_what_an_eye_sees():
@@ -73,7 +75,9 @@ def test_all_are_those_of_colour_science():
         assert np.allclose(ours, theirs, rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("function", [transfer.pq, transfer.pq_inverse, transfer.hlg, transfer.hlg_inverse])
+@pytest.mark.parametrize(
+    "function", [transfer.pq, transfer.pq_inverse, transfer.hlg, transfer.hlg_inverse]
+)
 @pytest.mark.parametrize("value", [-0.01, 10_001, np.nan, np.inf])
 def test_light_and_signals_that_cannot_be_coded_are_refused(function, value):
     with pytest.raises(ValueError, match=r"expected values in 0 \.\.\. "):

@@ -37,9 +37,9 @@ def test_the_base_has_the_contrast_asked_for_between_its_percentiles(contrast):
     low, high = durand.base_range(base, cut=0.01)
     after = durand.compress(base, low, high, contrast=contrast)
     ends = durand.base_range(after, cut=0.01)
-    assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4) and ends[1] == pytest.approx(
-        0, abs=1e-5
-    )
+    assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4) and ends[
+        1
+    ] == pytest.approx(0, abs=1e-5)
 
 
 def test_a_scene_of_little_contrast_is_not_stretched():
@@ -58,7 +58,9 @@ def test_detail_keeps_its_ratio_on_either_side_of_a_bright_edge():
     L = np.where(np.arange(160)[:, None] < 80, 500 * bars, 0.5 * bars)
     Ld = durand.tonemap(L)
     for rows in (slice(20, 70), slice(90, 140)):
-        part = Ld[rows, 40:160] if rows.start > 80 else durand.combine(*_compressed(L))[rows, 40:160]
+        part = (
+            Ld[rows, 40:160] if rows.start > 80 else durand.combine(*_compressed(L))[rows, 40:160]
+        )
         assert np.percentile(part, 90) / np.percentile(part, 10) == pytest.approx(1.3, rel=0.03)
 
 
@@ -100,7 +102,11 @@ def test_the_weight_of_the_mean_rises_with_the_logarithm_of_k():
         weight = np.full((40, 40), 1000, np.float32)
         weight[20, 20] = k
         bases.append(durand.fix_uncertain(mean, weight, sigma_s=4.0)[20, 20])
-    assert bases[0] < 0.05 and bases[2] == 1 and bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
+    assert (
+        bases[0] < 0.05
+        and bases[2] == 1
+        and bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
+    )
 
 
 def test_more_contrast_is_a_darker_shadow():
@@ -111,7 +117,14 @@ def test_more_contrast_is_a_darker_shadow():
 
 @pytest.mark.parametrize(
     "knobs",
-    [{"contrast": 1}, {"contrast": np.nan}, {"cut": 0.5}, {"cut": -0.1}, {"sigma_s": 0}, {"sigma_r": -1}],
+    [
+        {"contrast": 1},
+        {"contrast": np.nan},
+        {"cut": 0.5},
+        {"cut": -0.1},
+        {"sigma_s": 0},
+        {"sigma_r": -1},
+    ],
 )
 def test_knobs_that_make_no_sense_are_refused(knobs):
     with pytest.raises(ValueError, match="expected"):

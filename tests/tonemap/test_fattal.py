@@ -84,7 +84,9 @@ def test_the_levels_run_from_32_pixels_to_the_picture_and_multiply():
         assert np.allclose(fine.slope, fattal.slope(fine.lL, fine.k), atol=1e-6)
         assert np.allclose(
             fine.phi,
-            fattal.attenuation(fine.slope, float(fine.slope.mean()), alpha=0.1, beta=0.9, noise=0.01),
+            fattal.attenuation(
+                fine.slope, float(fine.slope.mean()), alpha=0.1, beta=0.9, noise=0.01
+            ),
             rtol=1e-4,
         )
         assert np.allclose(fine.Phi[::2, ::2], coarse.Phi * fine.phi[::2, ::2], rtol=1e-5)
@@ -95,7 +97,9 @@ def test_the_divergence_is_that_of_the_attenuated_gradient():
     Phi = last(fattal.attenuation_steps(lL)).Phi
     G = fattal.attenuate_gradient(lL, Phi)
     assert np.allclose(G[0, :-1], (Phi[:-1] + Phi[1:]) / 2 * np.diff(lL, axis=0), atol=1e-6)
-    assert np.allclose(G[1, :, :-1], (Phi[:, :-1] + Phi[:, 1:]) / 2 * np.diff(lL, axis=1), atol=1e-6)
+    assert np.allclose(
+        G[1, :, :-1], (Phi[:, :-1] + Phi[:, 1:]) / 2 * np.diff(lL, axis=1), atol=1e-6
+    )
     assert np.allclose(fattal.divergence(lL, Phi), poisson.divergence(G), atol=1e-6)
     assert abs(fattal.divergence(lL, Phi).sum(dtype=np.float64)) < 1e-3
 
@@ -104,13 +108,19 @@ def test_the_solution_is_that_of_a_sparse_direct_solver():
     """And its residual is below 1e-5."""
     lL = fattal.log_luminance(laws.scene())
     f = fattal.divergence(lL, last(fattal.attenuation_steps(lL)).Phi).astype(np.float64)
-    D = [diags_array([-np.ones(n), np.ones(n - 1)], offsets=[0, 1], shape=(n - 1, n)) for n in lL.shape]
+    D = [
+        diags_array([-np.ones(n), np.ones(n - 1)], offsets=[0, 1], shape=(n - 1, n))
+        for n in lL.shape
+    ]
     A = -kron(D[0].T @ D[0], eye_array(lL.shape[1])) - kron(eye_array(lL.shape[0]), D[1].T @ D[1])
     direct = np.append(spsolve(A.tocsr()[:-1, :-1].tocsc(), f.ravel()[:-1]), 0).reshape(lL.shape)
     lLd = solution(laws.scene())
     assert np.abs(lLd - (direct - direct.mean())).max() < 1e-4
     assert np.abs(poisson.laplacian(lLd.astype(np.float64)) - f).max() < 1e-5
-    assert np.abs(fattal.tonemap(laws.scene()) - fattal.display(direct.astype(np.float32))).max() < 1e-4
+    assert (
+        np.abs(fattal.tonemap(laws.scene()) - fattal.display(direct.astype(np.float32))).max()
+        < 1e-4
+    )
 
 
 @pytest.mark.parametrize("beta", [0.8, 0.9])

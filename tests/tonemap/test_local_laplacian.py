@@ -42,7 +42,10 @@ def test_with_powers_and_slopes_of_1_the_picture_stays(samples):
 @given(sigma=st.floats(0.1, 5), alpha=st.floats(0.2, 3), beta=st.floats(0, 1), g=st.floats(-9, 0))
 def test_the_remapping_is_odd_about_g_and_goes_on_where_detail_ends(sigma, alpha, beta, g):
     d = np.array([0, sigma / 2, sigma, 1.001 * sigma, 3 * sigma])
-    up, down = (local_laplacian.remap(g + s * d, g, sigma=sigma, alpha=alpha, beta=beta) - g for s in (1, -1))
+    up, down = (
+        local_laplacian.remap(g + s * d, g, sigma=sigma, alpha=alpha, beta=beta) - g
+        for s in (1, -1)
+    )
     assert np.allclose(up, -down) and up[0] == 0
     assert np.allclose(up[[1, 2, 4]], [sigma / 2**alpha, sigma, sigma + 2 * beta * sigma])
     assert up[3] == pytest.approx(sigma, rel=0.0011)
@@ -59,7 +62,9 @@ def test_each_sample_is_a_step_and_a_later_one_leaves_it_as_it_was():
 
 def test_a_smaller_beta_shows_more_of_the_dark_and_a_smaller_alpha_more_detail():
     L = laws.scene((96, 128))
-    dark = [np.median(local_laplacian.tonemap(L, beta=beta)[L < np.median(L)]) for beta in (1, 0.4, 0)]
+    dark = [
+        np.median(local_laplacian.tonemap(L, beta=beta)[L < np.median(L)]) for beta in (1, 0.4, 0)
+    ]
     assert dark[0] < dark[1] < dark[2]
     lLd = [np.log(local_laplacian.tonemap(L, alpha=alpha)) for alpha in (2, 1, 0.6)]
     fine = [np.abs(pyramid.laplacian(one, 3)[0]).mean() for one in lLd]
@@ -77,7 +82,9 @@ def test_beside_a_step_the_light_never_runs_the_other_way():
 def test_more_than_the_display_shows_is_compressed_to_its_contrast():
     Ld = local_laplacian.tonemap(laws.scene(), beta=1)
     low, high = np.log(np.quantile(Ld, [local_laplacian.CUT, 1 - local_laplacian.CUT]))
-    assert high == pytest.approx(0, abs=0.01) and low == pytest.approx(-local_laplacian.CONTRAST, abs=0.05)
+    assert high == pytest.approx(0, abs=0.01) and low == pytest.approx(
+        -local_laplacian.CONTRAST, abs=0.05
+    )
 
 
 def test_an_even_scene_is_white_and_a_black_one_black():
@@ -86,7 +93,8 @@ def test_an_even_scene_is_white_and_a_black_one_black():
 
 
 @pytest.mark.parametrize(
-    "knobs", [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}]
+    "knobs",
+    [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}],
 )
 def test_knobs_out_of_range_are_refused(knobs):
     with pytest.raises(ValueError, match="expected knobs in range"):

@@ -38,7 +38,9 @@ def defined_S(x, y):
             total.append(seen * (sab + 10) / (sa * sb + 10))
         S *= np.mean(total) ** weight
         h, v = (side // 2 * 2 for side in x.shape)
-        x, y = ((z[:h:2, :v:2] + z[1:h:2, :v:2] + z[:h:2, 1:v:2] + z[1:h:2, 1:v:2]) / 4 for z in (x, y))
+        x, y = (
+            (z[:h:2, :v:2] + z[1:h:2, :v:2] + z[:h:2, 1:v:2] + z[1:h:2, 1:v:2]) / 4 for z in (x, y)
+        )
     return S
 
 
@@ -57,7 +59,10 @@ def test_naturalness_is_the_product_of_its_two_densities_over_their_peaks():
     d = np.mean([b.std() for row in np.split(y, 10) for b in np.split(row, 11, axis=1)]) / 64.29
     P_d = beta.pdf(d, 4.4, 10.1) / beta.pdf(3.4 / 12.5, 4.4, 10.1)
     P_m = norm.pdf(y.mean(), 115.94, 27.99) / norm.pdf(0, 0, 27.99)
-    assert quality.naturalness(y) == pytest.approx(P_m * P_d, rel=1e-9) and quality.naturalness(y) > 0.05
+    assert (
+        quality.naturalness(y) == pytest.approx(P_m * P_d, rel=1e-9)
+        and quality.naturalness(y) > 0.05
+    )
 
 
 @given(S=st.floats(0, 1), N=st.floats(0, 1))
@@ -144,7 +149,8 @@ def test_the_usual_mean_and_contrast_are_natural_and_a_step_off_costs_what_the_d
 
 
 @pytest.mark.parametrize(
-    ("shape", "scales"), [((176, 176), 5), ((175, 400), 4), ((21, 300), 1), ((22, 22), 2), ((3, 3), 1)]
+    ("shape", "scales"),
+    [((176, 176), 5), ((175, 400), 4), ((21, 300), 1), ((22, 22), 2), ((3, 3), 1)],
 )
 def test_a_small_picture_has_fewer_scales_and_they_share_the_weight(shape, scales):
     L = scene(shape)

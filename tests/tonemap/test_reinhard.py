@@ -23,7 +23,9 @@ KNOBS = {
     "local, white 2": {"local": True, "white": 2.0},
 }
 MODES = {name: partial(fast.tonemap, **knobs) for name, knobs in KNOBS.items()}
-MODES |= {f"{name}, the lesson": partial(reinhard.tonemap, **knobs) for name, knobs in KNOBS.items()}
+MODES |= {
+    f"{name}, the lesson": partial(reinhard.tonemap, **knobs) for name, knobs in KNOBS.items()
+}
 
 
 @pytest.mark.parametrize("law", laws.ALWAYS, ids=lambda law: law.__name__)
@@ -59,7 +61,9 @@ def test_a_flat_scene_maps_to_key_over_one_plus_key(level, key):
 
 def test_log_average_is_the_geometric_mean_and_black_pixels_count_as_delta():
     assert reinhard.log_average(np.float32([[1, 100]])) == pytest.approx(10, rel=1e-4)
-    assert reinhard.log_average(np.float32([[0, 1, 1, 1]])) == pytest.approx(10 ** (-6 / 4), rel=1e-3)
+    assert reinhard.log_average(np.float32([[0, 1, 1, 1]])) == pytest.approx(
+        10 ** (-6 / 4), rel=1e-3
+    )
     assert reinhard.log_average(np.float32([[0, 1, 1, 1]]), delta=1e-2) == pytest.approx(
         10 ** (-2 / 4), rel=2e-2
     )
@@ -74,7 +78,8 @@ def test_the_scaled_luminance_white_becomes_white_and_infinity_is_the_simple_cur
     Lm = np.float32([[0.1, 1, 4, 9]])
     assert np.allclose(reinhard.display(Lm, Lm), Lm / (1 + Lm))
     assert (
-        reinhard.display(Lm, Lm, 4.0)[0, 2] == pytest.approx(1) and reinhard.display(Lm, Lm, 4.0)[0, 3] == 1
+        reinhard.display(Lm, Lm, 4.0)[0, 2] == pytest.approx(1)
+        and reinhard.display(Lm, Lm, 4.0)[0, 3] == 1
     )
     assert np.allclose(reinhard.display(Lm[:, :2], Lm[:, :2], 1.0), Lm[:, :2]), (
         "white at 1 changes nothing below 1"
@@ -84,7 +89,9 @@ def test_the_scaled_luminance_white_becomes_white_and_infinity_is_the_simple_cur
 @pytest.mark.parametrize("local", [False, True])
 def test_white_is_respected_in_both_modes(local):
     L = laws.scene()
-    burnt = [np.mean(reinhard.tonemap(L, white=white, local=local) == 1) for white in (0.5, 2, 8, np.inf)]
+    burnt = [
+        np.mean(reinhard.tonemap(L, white=white, local=local) == 1) for white in (0.5, 2, 8, np.inf)
+    ]
     assert burnt[0] > burnt[1] > burnt[2] > burnt[3]
     assert local or burnt[3] == 0
     means = [reinhard.tonemap(L, white=white, local=local).mean() for white in (0.5, 2, 8, np.inf)]
@@ -94,13 +101,17 @@ def test_white_is_respected_in_both_modes(local):
 def test_a_higher_key_is_a_brighter_picture():
     L = laws.scene()
     for local in (False, True):
-        darker, brighter = (reinhard.tonemap(L, key=key, white=np.inf, local=local) for key in (0.09, 0.36))
+        darker, brighter = (
+            reinhard.tonemap(L, key=key, white=np.inf, local=local) for key in (0.09, 0.36)
+        )
         assert np.all(brighter > darker) or (local and np.mean(brighter > darker) > 0.98)
 
 
 def test_the_automatic_key_follows_the_histogram():
     low_key = np.geomspace(1, 1e4, 5000, dtype=np.float32)[None]
-    assert reinhard.automatic_key(low_key) == pytest.approx(0.18, rel=0.01), "even in log: middle gray"
+    assert reinhard.automatic_key(low_key) == pytest.approx(0.18, rel=0.01), (
+        "even in log: middle gray"
+    )
     mostly_bright = np.concatenate([low_key, np.full((1, 15000), 9000, np.float32)], axis=1)
     mostly_dark = np.concatenate([low_key, np.full((1, 15000), 1.1, np.float32)], axis=1)
     assert 0.3 < reinhard.automatic_key(mostly_bright) <= 0.72
@@ -110,11 +121,15 @@ def test_the_automatic_key_follows_the_histogram():
 
 def test_a_hot_pixel_does_not_move_the_automatic_key():
     L = laws.scene()
-    assert reinhard.automatic_key(laws.hot_pixel(L)) == pytest.approx(reinhard.automatic_key(L), rel=0.01)
+    assert reinhard.automatic_key(laws.hot_pixel(L)) == pytest.approx(
+        reinhard.automatic_key(L), rel=0.01
+    )
 
 
 def test_the_widths_are_the_papers():
-    assert len(reinhard.WIDTHS) == 9 and reinhard.WIDTHS[0] == 1 and round(reinhard.WIDTHS[-1]) == 43
+    assert (
+        len(reinhard.WIDTHS) == 9 and reinhard.WIDTHS[0] == 1 and round(reinhard.WIDTHS[-1]) == 43
+    )
     assert np.allclose(np.divide(reinhard.WIDTHS[1:], reinhard.WIDTHS[:-1]), 1.6)
 
 
@@ -177,7 +192,9 @@ def test_dodge_and_burn_is_within_one_percent_of_plain_gaussians_at_full_size():
     for V1, exact in zip(reinhard.blurs(Lm), plain, strict=True):
         assert np.abs(V1 / exact - 1).max() < 1e-4
     exact = last(reinhard.scale_steps(plain)).adaptation
-    difference = np.abs(reinhard.display(Lm, fast.local_adaptation(Lm)) / np.minimum(Lm / (1 + exact), 1) - 1)
+    difference = np.abs(
+        reinhard.display(Lm, fast.local_adaptation(Lm)) / np.minimum(Lm / (1 + exact), 1) - 1
+    )
     assert np.mean(difference < 0.01) > 0.9999 and difference.mean() < 1e-4
 
 

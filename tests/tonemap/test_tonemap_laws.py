@@ -1,6 +1,7 @@
 """Every tone mapping operator obeys the laws of all and those it claims; a new one is tested by existing.
 
-VARIED holds values away from the default for every knob of every operator, and the laws hold there too.
+VARIED holds values away from the default for every knob of every operator, and the laws hold there
+too.
 """
 
 import inspect
@@ -20,13 +21,22 @@ LESSONS = {name: import_module(f"hdrlab.tonemap.{name}").tonemap for name in OPE
 LESSONS = {name: lesson for name, lesson in LESSONS.items() if lesson is not OPERATORS[name]}
 VARIED = {
     "brush": [{"bins": 1}, {"bins": 64, "limit": 1}, {"limit": np.inf}],
-    "chiu": [{"headroom": 2}, {"headroom": 64, "passes": 0}, {"sigma": 3.5}, {"sigma": 30, "passes": 2}],
+    "chiu": [
+        {"headroom": 2},
+        {"headroom": 64, "passes": 0},
+        {"sigma": 3.5},
+        {"sigma": 30, "passes": 2},
+    ],
     "curves": [
         {"curve": "linear", "cut": 0},
         {"curve": "gamma", "gamma": 0.5},
         {"cut": 0.2, "encoded": False},
     ],
-    "durand": [{"contrast": 1.5, "sigma_s": 8}, {"contrast": 1e4, "cut": 0}, {"sigma_s": 40, "sigma_r": 5}],
+    "durand": [
+        {"contrast": 1.5, "sigma_s": 8},
+        {"contrast": 1e4, "cut": 0},
+        {"sigma_s": 40, "sigma_r": 5},
+    ],
     "fattal": [
         {"alpha": 0.3, "beta": 0.85},
         {"beta": 1, "noise": 1},
@@ -52,14 +62,17 @@ VARIED = {
     ],
 }
 VARIATIONS = [(name, i) for name, varied in VARIED.items() for i in range(len(varied))]
-FOR_ANY_KNOBS = (  # a neighbourhood of 3 pixels may turn light upside down, but nothing may break these
+# a neighbourhood of 3 pixels may turn light upside down, but nothing may break these
+FOR_ANY_KNOBS = (
     laws.stays_in_range,
     laws.refuses_and_counts_what_is_no_radiance,
     laws.answers_the_same_twice,
     laws.shrugs_off_a_hot_pixel,
 )
 CLAIMS = [
-    (name, law) for name in OPERATORS for law in getattr(import_module(f"hdrlab.tonemap.{name}"), "LAWS", ())
+    (name, law)
+    for name in OPERATORS
+    for law in getattr(import_module(f"hdrlab.tonemap.{name}"), "LAWS", ())
 ]
 
 
@@ -72,7 +85,10 @@ def test_every_operator(name, law):
 @pytest.mark.parametrize("law", laws.ALWAYS, ids=lambda law: law.__name__)
 @pytest.mark.parametrize("name", LESSONS)
 def test_every_lesson_that_has_a_fast_operator(name, law):
-    if (name, law) != ("reinhard", laws.refuses_and_counts_what_is_no_radiance):  # it refuses without a count
+    if (name, law) != (
+        "reinhard",
+        laws.refuses_and_counts_what_is_no_radiance,
+    ):  # it refuses without a count
         law(LESSONS[name])
 
 

@@ -1,7 +1,8 @@
 """The operators beside those of pfstools, on the same luminance, with the knobs that both have set alike.
 
-Likeness is measured on the displays' sRGB values, as the eye compares them: mean structural similarity (SSIM,
-windows of 7 x 7 pixels) and correlation. The bounds below are what must hold in every scene, next to what was
+Likeness is measured on the displays' sRGB values, as the eye compares them: mean structural
+similarity (SSIM, windows of 7 x 7 pixels) and correlation. The bounds below are what must hold in
+every scene, next to what was
 measured on the room and on the memorial church with pfstools 2.1:
 
 operator                 SSIM at least, measured     correlation at least, measured
@@ -32,7 +33,9 @@ from hdrlab import scenes
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.io.radiance import read_radiance, write_radiance
 
-WHITE = np.float32([0.9505, 1, 1.089])  # XYZ of a gray of luminance 1, so that pfstools sees no colour
+WHITE = np.float32(
+    [0.9505, 1, 1.089]
+)  # XYZ of a gray of luminance 1, so that pfstools sees no colour
 
 
 class Likeness(NamedTuple):
@@ -87,9 +90,10 @@ def L(request):
     """The luminance of a scene: the simulated room everywhere, real places where they are at hand."""
     if request.param == "room":
         return room()
-    folder, file, step = {"memorial": ("memorial", "memorial.hdr", 1), "lobby": ("hdri_cc0", "lobby.hdr", 2)}[
-        request.param
-    ]
+    folder, file, step = {
+        "memorial": ("memorial", "memorial.hdr", 1),
+        "lobby": ("hdri_cc0", "lobby.hdr", 2),
+    }[request.param]
     E = read_radiance(request.getfixturevalue("shared")(folder) / file)
     return np.ascontiguousarray(luminance(E)[::step, ::step])
 
@@ -135,12 +139,20 @@ def test_reinhards_dodge_and_burn_is_like_pfstools(L):
 def test_durands_compression_is_like_pfstools(L):
     """With one width in space, and ours in range and contrast brought from decades to nats, which are theirs.
 
-    Theirs anchors the base so that other pixels burn: gammas of 1.08 to 1.19 lie between the two. It also
-    leaves a lone pixel's base as it is, where ours follows the paper and takes that of the neighbourhood.
+    Theirs anchors the base so that other pixels burn: gammas of 1.08 to 1.19 lie between the two.
+    It also leaves a lone pixel's base as it is, where ours follows the paper and takes that of the
+    neighbourhood.
     """
     sigma_s, nats = 0.02 * max(L.shape), np.log(10)
     ours = operator("durand").tonemap(L, sigma_s=sigma_s, sigma_r=0.4, contrast=50)
-    options = ("--sigma-s", f"{sigma_s}", "--sigma-r", f"{0.4 * nats}", "--base-contrast", f"{np.log(50)}")
+    options = (
+        "--sigma-s",
+        f"{sigma_s}",
+        "--sigma-r",
+        f"{0.4 * nats}",
+        "--base-contrast",
+        f"{np.log(50)}",
+    )
     found = likeness(ours, pfstmo("pfstmo_durand02", L, *options, "--original", "--quiet"))
     assert found.ssim > 0.94 and found.correlation > 0.97, found
 
@@ -148,8 +160,9 @@ def test_durands_compression_is_like_pfstools(L):
 def test_fattals_compression_is_like_pfstools(L):
     """With the paper's alpha = 0.1, attenuation at every level (--detail-level 0), and without their gamma.
 
-    What remains is mostly a gamma, 0.93 to 1.32 by the scene: every level of the pyramid multiplies the
-    contrast, and theirs ends at a size of its own. Their noise floor is in nats, ours in mean slopes.
+    What remains is mostly a gamma, 0.93 to 1.32 by the scene: every level of the pyramid multiplies
+    the contrast, and theirs ends at a size of its own. Their noise floor is in nats, ours in mean
+    slopes.
     """
     options = ("--alpha", "0.1", "--beta", "0.9", "--detail-level", "0", "--gamma", "1")
     found = likeness(operator("fattal").tonemap(L), pfstmo("pfstmo_fattal02", L, *options))
@@ -168,11 +181,16 @@ def test_reinhards_curve_is_luminance_hdrs_own(L, tmp_path):
 def test_durands_compression_is_like_luminance_hdrs(L, tmp_path):
     """With one width in space, and ours in range and contrast in nats.
 
-    Theirs is paler: between the two lies a power of 2.2, as if it were encoded for a display already. What
-    remains is the anchor of the base, and that theirs takes a lone pixel's base as it is.
+    Theirs is paler: between the two lies a power of 2.2, as if it were encoded for a display
+    already. What remains is the anchor of the base, and that theirs takes a lone pixel's base as it
+    is.
     """
     nats = np.log(10)
-    knobs = {"--tmoDurSigmaS": 0.02 * max(L.shape), "--tmoDurSigmaR": 0.4 * nats, "--tmoDurBase": np.log(50)}
+    knobs = {
+        "--tmoDurSigmaS": 0.02 * max(L.shape),
+        "--tmoDurSigmaR": 0.4 * nats,
+        "--tmoDurBase": np.log(50),
+    }
     options = [word for knob, value in knobs.items() for word in (knob, f"{value:.6g}")]
     theirs = luminance_hdr(tmp_path, L, "--tmo", "durand", *options)
     ours = operator("durand").tonemap(L, sigma_s=0.02 * max(L.shape), sigma_r=0.4, contrast=50)
@@ -184,9 +202,21 @@ def test_durands_compression_is_like_luminance_hdrs(L, tmp_path):
 def test_fattals_compression_is_like_luminance_hdrs(L, tmp_path):
     """With the paper's alpha = 0.1. As with pfstools a gamma lies between, here 0.7 to 0.8.
 
-    In the memorial church there is a slow slope as well: upwards of its floor, which is 0.2 darker in theirs,
-    the two come together. Their solver's edges are a likely reason; their noise floor is none, as measured.
+    In the memorial church there is a slow slope as well: upwards of its floor, which is 0.2 darker
+    in theirs, the two come together. Their solver's edges are a likely reason; their noise floor is
+    none, as measured.
     """
-    knobs = ("--tmoFatAlpha", "0.1", "--tmoFatBeta", "0.9", "--tmoFatColor", "1", "--tmoFatNoise", "0")
-    found = likeness(operator("fattal").tonemap(L), luminance_hdr(tmp_path, L, "--tmo", "fattal", *knobs))
+    knobs = (
+        "--tmoFatAlpha",
+        "0.1",
+        "--tmoFatBeta",
+        "0.9",
+        "--tmoFatColor",
+        "1",
+        "--tmoFatNoise",
+        "0",
+    )
+    found = likeness(
+        operator("fattal").tonemap(L), luminance_hdr(tmp_path, L, "--tmo", "fattal", *knobs)
+    )
     assert found.ssim > 0.88 and found.correlation > 0.89, found

@@ -17,7 +17,9 @@ def uneven(seed=0, bins=100):
     """Return a histogram with two peaks, as an interior with a window has."""
     b = np.linspace(0, 1, bins)
     noise = np.random.default_rng(seed).uniform(0.5, 1.5, bins)
-    return np.round(noise * (2000 * np.exp(-80 * (b - 0.2) ** 2) + 500 * np.exp(-200 * (b - 0.85) ** 2) + 20))
+    return np.round(
+        noise * (2000 * np.exp(-80 * (b - 0.2) ** 2) + 500 * np.exp(-200 * (b - 0.85) ** 2) + 20)
+    )
 
 
 def test_the_foveal_image_is_the_mean_of_each_degree():
@@ -133,7 +135,11 @@ def test_filling_uses_the_display_from_end_to_end_and_exaggerates_nothing(white)
 def test_a_tolerance_too_small_to_stop_early_leaves_no_black_unused():
     L = laws.scene()
     ends = [np.exp(ward.curve(L, tolerance=t)[1][[0, -1]]) for t in (0.025, 1e-9)]
-    assert np.allclose(ends[1], [1, 100]) and 1 <= ends[0][0] < 1.13 and ends[0][1] == pytest.approx(100)
+    assert (
+        np.allclose(ends[1], [1, 100])
+        and 1 <= ends[0][0] < 1.13
+        and ends[0][1] == pytest.approx(100)
+    )
 
 
 def test_without_a_ceiling_every_brightness_is_as_frequent_as_any_other():
@@ -163,7 +169,9 @@ def test_only_the_ratio_of_the_display_counts_also_where_a_range_fits_it(factor)
 
 def test_only_the_ratio_of_the_display_counts():
     L = laws.scene()
-    assert np.allclose(ward.tonemap(L, black=1, white=100), ward.tonemap(L, black=0.5, white=50), atol=1e-6)
+    assert np.allclose(
+        ward.tonemap(L, black=1, white=100), ward.tonemap(L, black=0.5, white=50), atol=1e-6
+    )
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,8 @@ class Filtered(NamedTuple):
 def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     """Return mean = 1/k sum_q g w v_q, k = sum_q g w, over a square of 3 sigma_s [Battiato08 eq. 1.31].
 
-    sigma_s is in pixels, sigma_r in the unit of v; both are above 0, and v is finite, or it is a ValueError.
+    sigma_s is in pixels, sigma_r in the unit of v; both are above 0, and v is finite, or it is a
+    ValueError.
 
     Examples
     --------
@@ -50,6 +51,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
 
 def require_signal(v: F32, *, sigma_s: float, sigma_r: float) -> None:
     """Raise a ValueError unless v is (H, W) and finite, and the sigmas are positive."""
-    if v.ndim != 2 or not (v.size and np.isfinite(v).all() and 0 < sigma_s < np.inf and 0 < sigma_r < np.inf):
+    if v.ndim != 2 or not (
+        v.size and np.isfinite(v).all() and 0 < sigma_s < np.inf and 0 < sigma_r < np.inf
+    ):
         expected = "expected a finite signal (H, W) and sigmas above 0"
         raise ValueError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")

@@ -36,7 +36,9 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
     """
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
-        raise ValueError(f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}")
+        raise ValueError(
+            f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}"
+        )
     return scipy.ndimage.gaussian_filter(image, sigma)
 
 

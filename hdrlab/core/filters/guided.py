@@ -7,8 +7,9 @@ eps      what variance is an edge  in squares of the unit of I: windows that var
 a, b     line of each window       (H, W), p = a I + b as well as it goes; a = 1 keeps I, a = 0 is its mean
 q        p, smoothed               (H, W)
 
-All lines come from means, whose cost does not depend on r. The bilateral filter asks pixel by pixel who is
-alike; here one answer holds for a whole window: beside an edge fine detail stays in q, and is not smoothed.
+All lines come from means, whose cost does not depend on r. The bilateral filter asks pixel by pixel
+who is alike; here one answer holds for a whole window: beside an edge fine detail stays in q, and
+is not smoothed.
 """
 
 from typing import NamedTuple
@@ -28,7 +29,9 @@ class Lines(NamedTuple):
 
 def window_mean(v: F64, radius: int) -> F64:
     """Return the mean of v (H, W) over the window of each pixel, as far as it lies in the picture."""
-    total, count = (uniform_filter(x, 2 * radius + 1, mode="constant") for x in (v, np.ones_like(v)))
+    total, count = (
+        uniform_filter(x, 2 * radius + 1, mode="constant") for x in (v, np.ones_like(v))
+    )
     return total / count
 
 
@@ -47,8 +50,8 @@ def lines(I: F64, p: F64, *, radius: int, epsilon: float) -> Lines:  # noqa: E74
 def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: float) -> F64:  # noqa: E741
     """Return q = mean(a) I + mean(b), means over all windows that hold the pixel [He13 eq. 8].
 
-    p is I where none is given. Both are finite and of one shape (H, W), radius >= 1 and epsilon > 0, or it is
-    a ValueError.
+    p is I where none is given. Both are finite and of one shape (H, W), radius >= 1 and epsilon >
+    0, or it is a ValueError.
 
     Examples
     --------
@@ -59,7 +62,9 @@ def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: fl
     I = np.asarray(I, np.float64)  # noqa: E741
     p = I if p is None else np.asarray(p, np.float64)
     if I.ndim != 2 or p.shape != I.shape or not (np.isfinite(I).all() and np.isfinite(p).all()):
-        raise ValueError(f"expected a finite guide (H, W) and p of its shape, got {I.shape} and {p.shape}")
+        raise ValueError(
+            f"expected a finite guide (H, W) and p of its shape, got {I.shape} and {p.shape}"
+        )
     if not (radius >= 1 and 0 < epsilon < np.inf):
         raise ValueError(f"expected radius >= 1 and epsilon > 0, got {radius=}, {epsilon=}")
     a, b = lines(I, p, radius=radius, epsilon=epsilon)

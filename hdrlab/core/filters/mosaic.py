@@ -30,7 +30,9 @@ def tile(pattern: ArrayLike, shape: tuple[int, ...]) -> Array:
     p = np.asarray(pattern)
     if p.ndim != 2 or 0 in p.shape or len(shape) != 2 or min(shape) < 1:
         raise ValueError(f"expected a pattern (h, w) and a shape (H, W), got {p.shape} and {shape}")
-    return np.tile(p, [-(-n // m) for n, m in zip(shape, p.shape, strict=True)])[: shape[0], : shape[1]]
+    return np.tile(p, [-(-n // m) for n, m in zip(shape, p.shape, strict=True)])[
+        : shape[0], : shape[1]
+    ]
 
 
 def sample(E: ArrayLike, c: ArrayLike) -> Array:
@@ -45,16 +47,19 @@ def as_channels(c: ArrayLike, shape: tuple[int, ...]) -> Indices:
     """Return the channels (H, W) of a sensor's pixels, 0 to 2, or raise a ValueError."""
     channels = np.asarray(c)
     if channels.shape != tuple(shape) or not np.all(np.isin(channels, (0, 1, 2))):
-        raise ValueError(f"expected channels 0 to 2 of shape {tuple(shape)}, got {describe(channels)}")
+        raise ValueError(
+            f"expected channels 0 to 2 of shape {tuple(shape)}, got {describe(channels)}"
+        )
     return channels.astype(np.intp)
 
 
 def demosaic(X: ArrayLike, c: ArrayLike) -> NDArray[np.floating[Any]]:
     """Return E^ (H, W, 3) of a Bayer mosaic: of a channel that a pixel did not see the mean beside it.
 
-    Each channel is X where its filter is, and T (m X) / T m elsewhere, with m 1 where its filter is and T the
-    tent. Inside a Bayer picture this is bilinear interpolation, and at the picture's edge the mean of the
-    neighbours there are. Edges get coloured seams, for the channels are sampled in different places.
+    Each channel is X where its filter is, and T (m X) / T m elsewhere, with m 1 where its filter is
+    and T the tent. Inside a Bayer picture this is bilinear interpolation, and at the picture's edge
+    the mean of the neighbours there are. Edges get coloured seams, for the channels are sampled in
+    different places.
     """
     X, c = np.asarray(X), as_channels(c, np.shape(X))
     X = X.astype(np.result_type(X, np.float32), copy=False)

@@ -4,11 +4,12 @@ u     picture                    (H, W)
 G     gradient field, (Gy, Gx)   (2, H, W), of the steps down and right of each pixel
 divG  divergence of G            (H, W)
 
-No gradient need be the gradient of a picture. Of all pictures, the u with Laplacian u = div G has the
-gradients nearest to G in the sense of least squares. Nothing flows through the edges (Neumann): there is no
-step beyond the last row and column. `divergence` is minus the transpose of `gradient`, hence it sums to 0,
-and the cosines of the DCT-II, which are even about the edges of the picture, are the eigenvectors of
-`laplacian`. A u plus a constant has the same gradients; the one with the mean 0 is meant.
+No gradient need be the gradient of a picture. Of all pictures, the u with Laplacian u = div G has
+the gradients nearest to G in the sense of least squares. Nothing flows through the edges (Neumann):
+there is no step beyond the last row and column. `divergence` is minus the transpose of `gradient`,
+hence it sums to 0, and the cosines of the DCT-II, which are even about the edges of the picture,
+are the eigenvectors of `laplacian`. A u plus a constant has the same gradients; the one with the
+mean 0 is meant.
 """
 
 import numpy as np
@@ -47,8 +48,8 @@ def eigenvalues(n: int) -> Array:
 def solve(divG: Array) -> Array:
     """Return the u of mean 0 whose Laplacian is div G.
 
-    In cosines the Laplacian is a factor, so the equation is solved by a division. A mean of div G, which no
-    u can have, is left out.
+    In cosines the Laplacian is a factor, so the equation is solved by a division. A mean of div G,
+    which no u can have, is left out.
 
     Parameters
     ----------
@@ -65,7 +66,8 @@ def solve(divG: Array) -> Array:
 
     References
     ----------
-    Press et al., Numerical Recipes in C, 2nd ed., section 19.4: boundary value problems by Fourier methods.
+    Press et al., Numerical Recipes in C, 2nd ed., section 19.4: boundary value problems by Fourier
+    methods.
 
     Examples
     --------

@@ -5,8 +5,9 @@ w      weights of the kernel, (1 4 6 4 1) / 16 along either axis
 g_k    level k of the Gaussian pyramid, (..., ceil(H / 2^k), ceil(W / 2^k)); g_0 is the image
 L_k    level k of the Laplacian pyramid: what g_k holds beyond the expanded g_(k+1)
 
-Pixel i of a level lies over pixel 2 i of the next finer one. Beyond its ends a level is continued by
-reflection about its first and last pixels; only where `expand` needs one after the last, that is repeated.
+Pixel i of a level lies over pixel 2 i of the next finer one. Beyond its ends a level is continued
+by reflection about its first and last pixels; only where `expand` needs one after the last, that is
+repeated.
 """
 
 from collections.abc import Sequence

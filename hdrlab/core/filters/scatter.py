@@ -5,8 +5,9 @@ r      distance                pixels
 K      glare spread function   (H', W'), K(r) = 1 / (1 + (r / core)^2)^(power / 2), without its middle, sum 1
 share  of the light that is scattered, 0 to 1
 
-What the sensor gets is (1 - share) E + share (K * E). In a lens of dust, fingerprints and many surfaces K
-falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a window lifts the darkest corner.
+What the sensor gets is (1 - share) E + share (K * E). In a lens of dust, fingerprints and many
+surfaces K falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a window lifts
+the darkest corner.
 """
 
 from typing import NamedTuple
@@ -29,7 +30,9 @@ def validate_spread(spread: GlareSpread) -> GlareSpread:
     """Return the spread, or raise a ValueError for numbers out of range."""
     share, power, core = spread
     if not (0 <= share < 1 and 0 < power < np.inf and 0 < core < np.inf):
-        raise ValueError(f"expected a share from 0 to below 1, a power and core above 0, got {tuple(spread)}")
+        raise ValueError(
+            f"expected a share from 0 to below 1, a power and core above 0, got {tuple(spread)}"
+        )
     return spread
 
 

@@ -5,7 +5,8 @@ H        homography (3, 3): H (x, y, 1) is where pixel (x, y) of one picture lie
 offsets  (P, 2), (dy, dx) pixels, down and right: homographies that only shift
 a, b     half-planes (n, 2) and (n,): the points p with a p <= b
 
-Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV and scikit-image have it.
+Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV and scikit-image have
+it.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,8 @@ import numpy as np
 from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.optional import scipy_optimize as optimize, skimage_transform as transform
 
-# pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has sides, too
+# pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has
+# sides, too
 SLACK = 1e-3
 
 
@@ -31,7 +33,9 @@ def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
     given = np.asarray(homographies)
     numbers = given.dtype.kind in "iuf" and given.size > 0 and bool(np.isfinite(given).all())
     if not numbers or given.shape[1:] not in ((2,), (3, 3)):
-        raise ValueError(f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(given)}")
+        raise ValueError(
+            f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(given)}"
+        )
     if count is not None and len(given) != count:
         raise ValueError(f"expected {count} homographies, one per image, got {len(given)}")
     if given.ndim == 2:
@@ -39,11 +43,15 @@ def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
         shifts[:, :2, 2] = given[:, ::-1]
         return shifts
     if np.any(np.abs(np.linalg.det(given)) < 1e-12) or np.any(np.abs(given[:, 2, 2]) < 1e-12):
-        raise ValueError("expected homographies that can be undone, got a matrix without an inverse")
+        raise ValueError(
+            "expected homographies that can be undone, got a matrix without an inverse"
+        )
     return given / given[:, 2:, 2:].astype(np.float64)
 
 
-def turn(shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0) -> F64:
+def turn(
+    shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0
+) -> F64:
     """Return H of a picture (H, W) turned about its middle, clockwise as seen, enlarged, then shifted."""
     (dy, dx), phi = np.asarray(offset, float), np.deg2rad(degrees)
     cos, sin = scale * np.cos(phi), scale * np.sin(phi)
@@ -70,7 +78,8 @@ def apply(H: ArrayLike, points: ArrayLike) -> F64:
 def through(source: F64, target: F64) -> F64:
     """Return H (3, 3), H[2, 2] = 1, that takes the four points `source` (4, 2) to `target` (4, 2).
 
-    x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear in H.
+    x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear
+    in H.
     """
     (u, v), (x, y) = source.T, target.T
     zero, one = np.zeros(4), np.ones(4)
@@ -117,27 +126,38 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     """
     H, wide = as_homographies(homographies), corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
     if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
-        raise ValueError("expected homographies that keep a picture in front of the camera, got another")
+        raise ValueError(
+            "expected homographies that keep a picture in front of the camera, got another"
+        )
     quads = apply(H, wide)
     edges = np.roll(quads, -1, axis=1) - quads
     a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)  # outwards, unless a picture is mirrored
-    a *= np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None] / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
-    left, top, right, bottom = _largest(a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape)
+    a *= (
+        np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None]
+        / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
+    )
+    left, top, right, bottom = _largest(
+        a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape
+    )
     if left > right or top > bottom:
-        raise ValueError("expected images that overlap, got homographies that leave them no pixel in common")
+        raise ValueError(
+            "expected images that overlap, got homographies that leave them no pixel in common"
+        )
     return slice(top, bottom + 1), slice(left, right + 1)
 
 
 def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
     """Return the first and last pixel, x, y, x, y, of the rectangle within half-planes: a linear program.
 
-    Of all points of a rectangle a p is largest at a corner: at the high x where a_x > 0, and so on. So each
-    half-plane is a single inequality in the four sides.
+    Of all points of a rectangle a p is largest at a corner: at the high x where a_x > 0, and so on.
+    So each half-plane is a single inequality in the four sides.
     """
     A = np.hstack([np.minimum(a, 0), np.maximum(a, 0)])
     alike = np.array([[-1, 0, 1, 0, -shape[1]], [0, -1, 0, 1, -shape[0]]])  # high - low = s (W, H)
     limits = [(None, None)] * 4 + [(0, None)]
-    found = optimize.linprog([0, 0, 0, 0, -1], np.pad(A, ((0, 0), (0, 1))), b, alike, np.zeros(2), limits)
+    found = optimize.linprog(
+        [0, 0, 0, 0, -1], np.pad(A, ((0, 0), (0, 1))), b, alike, np.zeros(2), limits
+    )
     if found.x is None:
         return [0, 0, -1, -1]  # nothing
     box = np.concatenate([np.ceil(found.x[:2] - 2 * SLACK), np.floor(found.x[2:4] + 2 * SLACK)])
@@ -151,15 +171,17 @@ def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
 def sample(image: ArrayLike, H: F64, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w[, C]) whose pixel p is `image` at H p, by cubic interpolation (Catmull-Rom).
 
-    A value stays between the four pixels around its place, so that a lamp gets no dark ring. The light must
-    be linear; beyond the border the last pixels go on.
+    A value stays between the four pixels around its place, so that a lamp gets no dark ring. The
+    light must be linear; beyond the border the last pixels go on.
     """
     image = np.asarray(image, np.float32)
     knobs = {"order": 3, "mode": "edge", "clip": False, "preserve_range": True}
     found = transform.warp(image, H, output_shape=shape[:2], **knobs)
     more = np.pad(image, [(0, 1), (0, 1), (0, 0)][: image.ndim], mode="edge")
     four = more[:-1, :-1], more[:-1, 1:], more[1:, :-1], more[1:, 1:]
-    return np.clip(found, *(before(reduce(end, four), H, shape) for end in (np.minimum, np.maximum)))
+    return np.clip(
+        found, *(before(reduce(end, four), H, shape) for end in (np.minimum, np.maximum))
+    )
 
 
 def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:

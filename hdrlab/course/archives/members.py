@@ -8,7 +8,13 @@ from typing import IO, NamedTuple
 
 from hdrlab.course.wording import plain
 
-DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(1, 10))}
+DEVICES = {
+    "con",
+    "prn",
+    "aux",
+    "nul",
+    *(f"{port}{k}" for port in ("com", "lpt") for k in range(1, 10)),
+}
 PIECE = 1 << 16  # bytes read at a time
 
 
@@ -55,7 +61,9 @@ def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosix
         for part in [*list(path.parents)[:-1], path]:
             key, is_file = unicodedata.normalize("NFC", str(part)).casefold(), part == path
             if key in kinds and (is_file or kinds[key]):
-                raise Refused(f"{quote_name(str(path))} is there twice, or differs from another by case")
+                raise Refused(
+                    f"{quote_name(str(path))} is there twice, or differs from another by case"
+                )
             kinds[key] = is_file
     return paths
 
@@ -86,7 +94,9 @@ def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
     """Raise Refused where claimed sizes are too large, singly, together, or for the bytes of the archive."""
     for path, size in members:
         if size > limits.one:
-            raise Refused(f"{quote_name(str(path))} claims {size} bytes, expected at most {limits.one}")
+            raise Refused(
+                f"{quote_name(str(path))} claims {size} bytes, expected at most {limits.one}"
+            )
     total = sum(size for _, size in members)
     if total > limits.total:
         raise Refused(f"its files claim {total} bytes together, expected at most {limits.total}")
@@ -98,7 +108,13 @@ def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
 def write(source: IO[bytes], place: Path, size: int) -> None:
     """Write a member of exactly the claimed size into a new file, without its rights and times."""
     place.parent.mkdir(parents=True, exist_ok=True)
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    flags = (
+        os.O_WRONLY
+        | os.O_CREAT
+        | os.O_EXCL
+        | getattr(os, "O_NOFOLLOW", 0)
+        | getattr(os, "O_BINARY", 0)
+    )
     with os.fdopen(os.open(place, flags, 0o644), "wb") as file:
         left = size
         while piece := source.read(min(PIECE, left + 1)):

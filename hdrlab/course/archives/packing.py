@@ -6,7 +6,15 @@ from collections.abc import Collection, Mapping
 from pathlib import PurePath
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the time of every file
-PACKED = {".jpg", ".jpeg", ".png", ".zip", ".gz", ".webp", ".exr"}  # which another compression only slows
+PACKED = {
+    ".jpg",
+    ".jpeg",
+    ".png",
+    ".zip",
+    ".gz",
+    ".webp",
+    ".exr",
+}  # which another compression only slows
 
 
 def packed(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:

@@ -17,7 +17,8 @@ from hdrlab.course.archives.members import PIECE, Limits, Member, Refused, quote
 # by the first bytes of an archive
 OPENERS: dict[bytes, Any] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\0": lzma.open}
 HEADER = 1 << 16  # bytes of a header of tar: a long name, and not a bomb
-PAX = b"xgX"  # types of headers that change what follows: of a member, of all, and Solaris' of a member
+# types of headers that change what follows: of a member, of all, and Solaris' of a member
+PAX = b"xgX"
 
 
 def unpack(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
@@ -53,7 +54,9 @@ def _inflate(archive: Path, target: IO[bytes], packed: int, limits: Limits) -> N
     with opener(archive, "rb") as source:
         while piece := source.read(PIECE):
             if target.tell() + len(piece) > most:
-                raise Refused(f"it unpacks to more than {most} bytes, or {limits.ratio} times its size")
+                raise Refused(
+                    f"it unpacks to more than {most} bytes, or {limits.ratio} times its size"
+                )
             target.write(piece)
 
 
@@ -85,6 +88,8 @@ def _headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:
         if size < 0:
             raise Refused("a header of it claims a size below zero")
         if block[156:157] in PAX and b" size=" in file.read(min(size, HEADER)):
-            raise Refused("a header of it changes the size of a member")  # what follows could hide in it
+            raise Refused(
+                "a header of it changes the size of a member"
+            )  # what follows could hide in it
         yield block[156:157], size
         at += tarfile.BLOCKSIZE * (1 + -(-size // tarfile.BLOCKSIZE))

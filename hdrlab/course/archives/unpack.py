@@ -1,9 +1,10 @@
 """Archives that students send, unpacked without trust: .zip, .tar and compressed .tar.
 
-All of a list is judged before the first byte is written. What is judged: names (absolute, with .. or a
-backslash, twice, alike but for case, with control characters), kinds (links and devices are no submissions),
-sizes (claimed and real ones), counts, depths, ratios of compression, entries that share bytes, encryption.
-An archive is taken whole or refused whole, with one line that says why. An archive inside it is a file.
+All of a list is judged before the first byte is written. What is judged: names (absolute, with ..
+or a backslash, twice, alike but for case, with control characters), kinds (links and devices are no
+submissions), sizes (claimed and real ones), counts, depths, ratios of compression, entries that
+share bytes, encryption. An archive is taken whole or refused whole, with one line that says why. An
+archive inside it is a file.
 """
 
 import errno
@@ -21,8 +22,23 @@ from hdrlab.course.archives import members, tarball
 from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, quote_name
 from hdrlab.course.wording import plain
 
-DAMAGE = (OSError, EOFError, ValueError, RuntimeError, OverflowError, MemoryError, IndexError, struct.error)
-FAULTS = (*DAMAGE, tarfile.TarError, zipfile.BadZipFile, lzma.LZMAError, zlib.error)  # of the readers
+DAMAGE = (
+    OSError,
+    EOFError,
+    ValueError,
+    RuntimeError,
+    OverflowError,
+    MemoryError,
+    IndexError,
+    struct.error,
+)
+FAULTS = (
+    *DAMAGE,
+    tarfile.TarError,
+    zipfile.BadZipFile,
+    lzma.LZMAError,
+    zlib.error,
+)  # of the readers
 LOCAL = 30  # bytes of the header that stands before a member of a zip
 ENTRY = 1024  # bytes of its entry in the list, at most: 46, a name, and what some programs add
 
@@ -55,7 +71,10 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
             found = (_zip if _is_zip(archive) else tarball.unpack)(archive, fresh, limits)
         except FAULTS as error:
             # a full disk is not the archive's fault; a place before its beginning is
-            if isinstance(error, Refused) or getattr(error, "errno", None) not in (None, errno.EINVAL):
+            if isinstance(error, Refused) or getattr(error, "errno", None) not in (
+                None,
+                errno.EINVAL,
+            ):
                 raise
             why = plain(str(error) or type(error).__name__, 80)
             raise Refused(f"it is damaged, or no .zip or .tar archive ({why})") from None
@@ -101,8 +120,12 @@ def _check_entry(info: zipfile.ZipInfo) -> None:
 
 def _check_apart(infos: Sequence[zipfile.ZipInfo], end: int) -> None:
     """Raise Refused where entries share bytes: so a bomb of one kernel claims many files."""
-    starts = sorted((info.header_offset, info.compress_size + LOCAL, info.filename) for info in infos)
-    for (start, size, name), after in zip(starts, [*(at for at, *_ in starts[1:]), end], strict=True):
+    starts = sorted(
+        (info.header_offset, info.compress_size + LOCAL, info.filename) for info in infos
+    )
+    for (start, size, name), after in zip(
+        starts, [*(at for at, *_ in starts[1:]), end], strict=True
+    ):
         if start + size > after:
             raise Refused(f"{quote_name(name)} shares its bytes with another member")
 
@@ -120,4 +143,6 @@ def _check_list(archive: Path, limits: Limits) -> None:
         raise Refused("it is a zip for more than 4 GB or 65535 members")
     members.check_count(count, limits)
     if size > limits.members * ENTRY:
-        raise Refused(f"its list of members takes {size} bytes, expected at most {limits.members * ENTRY}")
+        raise Refused(
+            f"its list of members takes {size} bytes, expected at most {limits.members * ENTRY}"
+        )

@@ -3,8 +3,8 @@
 came      what a student's function answered: the plain arrays that the channel built, and nothing else
 expected  what the specification says it should be
 
-Asked in this order: answered, a kind of number, shape, finite, and at last `error <= tolerance`, which a NaN
-does not pass.
+Asked in this order: answered, a kind of number, shape, finite, and at last `error <= tolerance`,
+which a NaN does not pass.
 """
 
 from collections.abc import Iterator
@@ -23,7 +23,12 @@ class Different(AssertionError):
     """An answer that is not what was expected; `expected` and `came` are arrays of one shape, or None."""
 
     def __init__(
-        self, message: str, *, expected: Array | None = None, came: Array | None = None, kind: Kind = "values"
+        self,
+        message: str,
+        *,
+        expected: Array | None = None,
+        came: Array | None = None,
+        kind: Kind = "values",
     ) -> None:
         super().__init__(message)
         self.message, self.expected, self.came, self.kind = message, expected, came, kind
@@ -112,7 +117,11 @@ def same(
     where : mask; values elsewhere may be anything
     """
     wanted = np.asarray(expected)
-    kind = "image" if picture else kind or ("curve" if wanted.ndim == 1 and wanted.size > 8 else "values")
+    kind = (
+        "image"
+        if picture
+        else kind or ("curve" if wanted.ndim == 1 and wanted.size > 8 else "values")
+    )
     array = as_shape(numbers(came, what=what), wanted.shape, what)
     asked = np.ones(wanted.shape, bool) if where is None else np.broadcast_to(where, wanted.shape)
     values, truth = array.astype(np.float64), wanted.astype(np.float64)
@@ -120,13 +129,21 @@ def same(
     both: dict[str, Any] = {"expected": wanted, "came": array, "kind": kind}
     _require_finite(values[asked & ~unknown], what, **both)
     count = np.count_nonzero(~np.isnan(values[asked & unknown]))
-    require(not count, f"{what}: expected NaN where nothing is known, got numbers at {count} places", **both)
+    require(
+        not count,
+        f"{what}: expected NaN where nothing is known, got numbers at {count} places",
+        **both,
+    )
     error = np.where(asked & ~unknown, np.abs(values - truth), 0.0)
     if not error.max(initial=0.0) <= tolerance:
         at = np.unravel_index(int(np.argmax(error)), error.shape)
         place = f" at {tuple(int(i) for i in at)}" if error.ndim else ""
         allowed = f"; the difference may be {tolerance:.2g}" if tolerance else ""
-        off = f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off" if error.ndim else ""
+        off = (
+            f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off"
+            if error.ndim
+            else ""
+        )
         message = f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}{allowed}{off}"
         raise Different(message, **both)
     return array
@@ -142,7 +159,9 @@ def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Ar
 def _require_finite(values: Array, what: str, **remembered: Any) -> None:
     """Raise Different where a value is NaN or infinite."""
     bad = np.count_nonzero(~np.isfinite(values))
-    require(not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered)
+    require(
+        not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered
+    )
 
 
 def _named(came: Any) -> str:
@@ -151,13 +170,16 @@ def _named(came: Any) -> str:
         return "nothing (None)"
     if isinstance(came, tuple | list | bytes | str):
         return f"{type(came).__name__} of {len(came)}"
-    return "one array" if isinstance(came, np.ndarray | np.generic | int | float) else "something else"
+    return (
+        "one array" if isinstance(came, np.ndarray | np.generic | int | float) else "something else"
+    )
 
 
 def plain(answer: Any) -> Any:
     """Return an answer of trusted code as the channel brings those of students: arrays, tuples, lists.
 
-    A NamedTuple becomes a tuple, what a generator yields a list; a number becomes an array without axes.
+    A NamedTuple becomes a tuple, what a generator yields a list; a number becomes an array without
+    axes.
     """
     if answer is None or isinstance(answer, bytes | str):
         return answer

@@ -9,7 +9,8 @@ from hdrlab.course.checks.compare import plain
 class Subject:
     """What a check asks: each attribute is a task's function, whose answers come as plain arrays.
 
-    `calls` remembers them: arguments, named arguments, and the answer, None where an error was raised.
+    `calls` remembers them: arguments, named arguments, and the answer, None where an error was
+    raised.
     """
 
     def __init__(self, functions):
@@ -32,5 +33,7 @@ class Subject:
 
 def library(own=None):
     """Return the Subject whose functions are the library's, or the solutions of a plan of one's own."""
-    tasks = [task for homework in (own or plan.read()).homeworks.values() for task in homework.tasks]
+    tasks = [
+        task for homework in (own or plan.read()).homeworks.values() for task in homework.tasks
+    ]
     return Subject({task.id: plan.function(task) for task in tasks})

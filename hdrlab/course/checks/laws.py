@@ -48,7 +48,9 @@ def stays_in_range(tonemap):
             warnings.simplefilter("error")
             Ld = tonemap(L)
         assert Ld.shape == L.shape and Ld.dtype == np.float32, name
-        assert np.all((Ld >= 0) & (Ld <= 1)), f"{name}: {np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))} values"
+        assert np.all((Ld >= 0) & (Ld <= 1)), (
+            f"{name}: {np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))} values"
+        )
 
 
 def answers_the_same_twice(tonemap):
@@ -68,11 +70,15 @@ def shows_the_scene(tonemap):
     """Half the pixels are neither black nor white, and regions that differ in light differ in the picture."""
     L = scene()
     Ld = np.clip(tonemap(L), 0, 1)
-    assert np.mean((Ld > 0.01) & (Ld < 0.99)) >= 0.5, "more than half of the picture is black or white"
+    assert np.mean((Ld > 0.01) & (Ld < 0.99)) >= 0.5, (
+        "more than half of the picture is black or white"
+    )
     means = [A.reshape(6, 16, 8, 16).mean(axis=(1, 3)).ravel() for A in (np.log(L), Ld)]
     assert np.ptp(means[1]) > 0.05, "all regions of the picture are alike"
     ranks = [np.argsort(np.argsort(m)) for m in means]
-    assert abs(np.corrcoef(ranks[0], ranks[1])[0, 1]) > 0.5, "the picture has little to do with the scene"
+    assert abs(np.corrcoef(ranks[0], ranks[1])[0, 1]) > 0.5, (
+        "the picture has little to do with the scene"
+    )
 
 
 def keeps_the_light_the_right_way_up(tonemap):

@@ -1,9 +1,10 @@
 """Which well-known mistake an answer comes from: it agrees with a wrong function, and not with the library.
 
 A mistake's name begins with the id of its task. It is a place of the solution written otherwise, in
-`mistakes/changes.toml`. A task of an instructor's own has files beside it: a docstring that says to the
-student what it is, and the wrong function. All are asked what the student was asked; wrong functions are
-ours, and run here. Answers are compared in the gauge or scale that the checks leave free.
+`mistakes/changes.toml`. A task of an instructor's own has files beside it: a docstring that says to
+the student what it is, and the wrong function. All are asked what the student was asked; wrong
+functions are ours, and run here. Answers are compared in the gauge or scale that the checks leave
+free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
@@ -25,7 +26,9 @@ from hdrlab.course.code import inline
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
-NEARER = 0.1  # the wrong answer explains all but this share of the student's difference to the library
+NEARER = (
+    0.1  # the wrong answer explains all but this share of the student's difference to the library
+)
 MOST = 1e3  # a difference beyond all measure, as of another shape
 CHANGES: dict[str, dict[str, Any]] = tomllib.loads((MISTAKES / "changes.toml").read_text("utf-8"))
 
@@ -33,7 +36,8 @@ CHANGES: dict[str, dict[str, Any]] = tomllib.loads((MISTAKES / "changes.toml").r
 class Misconception(NamedTuple):
     """A mistake: its name, the task, the sentence for the student, and the wrong function.
 
-    `once` is whether it costs half of the task at most: all but those that miss what the task is about.
+    `once` is whether it costs half of the task at most: all but those that miss what the task is
+    about.
     """
 
     name: str
@@ -53,7 +57,9 @@ def known() -> tuple[Misconception, ...]:
 def _of_variant(name: str, variant: str) -> Misconception:
     task, one = task_of(name), CHANGES[name]
     says = rewording.reword(task, variant, one["says"])
-    return Misconception(name, task, says, partial(_ask_changed, name, variant), "misses" not in one)
+    return Misconception(
+        name, task, says, partial(_ask_changed, name, variant), "misses" not in one
+    )
 
 
 def of_task(task: plan.Task) -> Sequence[Misconception]:
@@ -78,7 +84,9 @@ def task_of(name: str) -> str:
     >>> task_of("scale_steps_no_threshold"), task_of("scale_too_low")
     ('scale_steps', 'scale')
     """
-    return max((one.id for tasks in _sheets() for one in tasks if name.startswith(f"{one.id}_")), key=len)
+    return max(
+        (one.id for tasks in _sheets() for one in tasks if name.startswith(f"{one.id}_")), key=len
+    )
 
 
 @cache
@@ -90,7 +98,9 @@ def _sheets() -> list[tuple[plan.Task, ...]]:
 def solutions(tasks: tuple[plan.Task, ...]) -> Mapping[str, str]:
     """Return the library's text for each task of a homework, or its variant's: a cell that stands alone."""
     blocks = inline.inlined({task.id: task.function for task in tasks})
-    return {task.id: rewording.reword(task.id, task.variant, blocks[task.id].text) for task in tasks}
+    return {
+        task.id: rewording.reword(task.id, task.variant, blocks[task.id].text) for task in tasks
+    }
 
 
 def put_in(cells: Mapping[str, str], name: str, variant: str = "") -> dict[str, str]:
@@ -128,7 +138,8 @@ def _ask_changed(name: str, variant: str, *given: Any, **named: Any) -> Any:
 def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:
     """Return the misconception whose answers are those of the student in every call, or None.
 
-    Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
+    Of several the nearest. An answer like the library's is no misconception, and neither is no
+    answer at all.
     """
     calls = [(given, named, in_gauge(asked.id, came)) for given, named, came in calls]
     if all(came is None for _, _, came in calls):
@@ -137,7 +148,9 @@ def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:
     truths = [in_gauge(asked.id, call_quietly(right, given, named)) for given, named, _ in calls]
     far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
     mistakes = of_task(asked) if max(far) > ROUNDING else ()
-    agreeing = [(score, one) for one in mistakes if (score := _distance(one, calls, far)) is not None]
+    agreeing = [
+        (score, one) for one in mistakes if (score := _distance(one, calls, far)) is not None
+    ]
     return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
 
 
@@ -159,7 +172,9 @@ GAUGES: dict[str, Callable[[Any], Any]] = {
 def in_gauge(task: str, answer: Any) -> Any:
     """Return an answer in the gauge or scale in which it is compared; one of another form as it is."""
     try:
-        return GAUGES[task](compare.as_listed(answer) if task in ("hat", "recover", "solve") else answer)
+        return GAUGES[task](
+            compare.as_listed(answer) if task in ("hat", "recover", "solve") else answer
+        )
     except Exception:  # which a student may answer in any form
         return answer
 

@@ -1,8 +1,8 @@
 """The grader's half of pytest: it gives the specification its subject, and writes down what became of it.
 
-The specification's files say `subject.gsolve(...)`. In the tests of hdrlab that is the library; here it is a
-student's code in another process. What is asked for stands in a job, a JSON file; what comes of it is written
-line by line into another, so that nothing is lost if this process is ended.
+The specification's files say `subject.gsolve(...)`. In the tests of hdrlab that is the library;
+here it is a student's code in another process. What is asked for stands in a job, a JSON file; what
+comes of it is written line by line into another, so that nothing is lost if this process is ended.
 """
 
 import base64
@@ -119,7 +119,9 @@ class Checking:
         said = ADDRESS.sub("", subject.said[:SAID])
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(task_of(item), [])
-            kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
+            kept += [
+                (one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]
+            ]
         if isinstance(raised, running.Unavailable):  # nothing can be said of the submission
             return self._write(unavailable=str(raised))
         if raised is None:
@@ -137,7 +139,9 @@ class Checking:
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
-            with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
+            with suppress(
+                Exception
+            ):  # whatever was answered costs this task its sentence, and no other
                 (asked,) = (plan.Task(*one) for one in self.job["tasks"] if one[0] == task)
                 if found := misconceptions.closest(asked, self.calls.get(task, [])):
                     self._write(recognised=task, sentence=found.sentence, once=found.once)

@@ -1,7 +1,8 @@
 """Variants of a task: the same question with other parameters, pairs of words in `parameters/<task>.toml`.
 
-A parameter has values, the library's own first, and a value says what is written otherwise. Its pairs hold
-for all that speaks of the task: sheet, stub, solution, checks with their hints, and mistakes. So all follow.
+A parameter has values, the library's own first, and a value says what is written otherwise. Its
+pairs hold for all that speaks of the task: sheet, stub, solution, checks with their hints, and
+mistakes. So all follow.
 
 variant  a value of each parameter, in the order of the file: "compared/above/four"; "" is the library's own
 """
@@ -51,7 +52,9 @@ def reword(task: str, variant: str, text: str, *, all_of_it: bool = False) -> st
         for was, now in known[value]:
             text = text.replace(was, now)
         if all_of_it and known[value] and text == before:
-            raise ValueError(f"expected the sheet of {task} in hdrlab's words, to put {value!r} there")
+            raise ValueError(
+                f"expected the sheet of {task} in hdrlab's words, to put {value!r} there"
+            )
     return text
 
 

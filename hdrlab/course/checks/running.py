@@ -17,7 +17,9 @@ TICK = 0.02  # seconds between two looks at what has come
 UNWANTED = ("PYTEST_ADDOPTS", "PYTEST_PLUGINS", "PYTHONSTARTUP", "PYTHONINSPECT")
 
 
-def run(folder: Path, job: Path, files: Sequence[Path], patience: float) -> Iterator[dict[str, Any]]:
+def run(
+    folder: Path, job: Path, files: Sequence[Path], patience: float
+) -> Iterator[dict[str, Any]]:
     """Run pytest, and yield the lines it writes as they come."""
     empty = folder / "empty"
     empty.mkdir()
@@ -38,7 +40,9 @@ def run(folder: Path, job: Path, files: Sequence[Path], patience: float) -> Iter
         raise ValueError("the checks could not be run: " + " / ".join(told[-4:]))
 
 
-def _followed(process: "subprocess.Popen[bytes]", file: Path, patience: float) -> Iterator[dict[str, Any]]:
+def _followed(
+    process: "subprocess.Popen[bytes]", file: Path, patience: float
+) -> Iterator[dict[str, Any]]:
     end, rest = time.monotonic() + patience, ""
     with file.open(encoding="utf8") as lines:
         while True:
@@ -55,7 +59,16 @@ def _command(job: Path, empty: Path, files: Sequence[Path]) -> list[str]:
     options = [
         *("-q", "-q", "--noconftest", "--import-mode=importlib"),
         *(f"--rootdir={empty}", f"--confcutdir={empty}"),
-        *("-c", os.devnull, "-p", "no:cacheprovider", "-p", "hdrlab.course.checks.plugin", "-W", "ignore"),
+        *(
+            "-c",
+            os.devnull,
+            "-p",
+            "no:cacheprovider",
+            "-p",
+            "hdrlab.course.checks.plugin",
+            "-W",
+            "ignore",
+        ),
         *("-o", f"pythonpath={SPECIFICATION}", "--tb=native", f"--job={job}"),
     ]
     return [sys.executable, "-P", "-m", "pytest", *options, *map(str, files)]
@@ -70,4 +83,6 @@ def _environment(folder: Path) -> dict[str, str]:
     """Return this process's environment but for what could change a score; its scratch is in the folder."""
     kept = {name: value for name, value in os.environ.items() if name not in UNWANTED}
     set_to_1 = ("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "PYTHONDONTWRITEBYTECODE", "OPENBLAS_NUM_THREADS")
-    return kept | dict.fromkeys(set_to_1, "1") | {"PYTHONPATH": import_path(), "TMPDIR": str(folder)}
+    return (
+        kept | dict.fromkeys(set_to_1, "1") | {"PYTHONPATH": import_path(), "TMPDIR": str(folder)}
+    )

@@ -1,8 +1,9 @@
 """The subject of a check: it looks like a module with the student's functions, which run elsewhere.
 
-`subject.gsolve(Z, B, smoothness=10.0)` sends the arguments to a process in a sandbox, which calls the
-student's function, and returns what came back: plain numbers, text, lists, tuples and arrays, built on this
-side from raw bytes. Nothing of the student's is ever an object here, so no operator of theirs is called.
+`subject.gsolve(Z, B, smoothness=10.0)` sends the arguments to a process in a sandbox, which calls
+the student's function, and returns what came back: plain numbers, text, lists, tuples and arrays,
+built on this side from raw bytes. Nothing of the student's is ever an object here, so no operator
+of theirs is called.
 """
 
 import contextlib
@@ -24,7 +25,9 @@ REMEMBERED = 1 << 23  # bytes of a check's answers that are kept in `calls`
 CHECK, WHOLE = 3, 20  # how much longer than a call one check may take, and all of a submission's
 PROCESSOR = 4.0  # the same, of a processor's time for all of a submission's calls
 SETTLE = 1.0  # seconds for a process to end that has closed its link
-KILLED = 9  # the signal that ends a process from outside; no tier for credit lets a function send it
+KILLED = (
+    9  # the signal that ends a process from outside; no tier for credit lets a function send it
+)
 
 
 class NoAnswer(AssertionError):
@@ -59,8 +62,9 @@ class Subject:
     sandbox : Sandbox
         Where they run, from `hdrlab.course.sandbox.tiers.choose`.
     timeout : float
-        Seconds that a call may take, with the first one's running of the source. All calls of a check may
-        take three times as long, and all of a submission twenty times, of a processor four times.
+        Seconds that a call may take, with the first one's running of the source. All calls of a
+        check may take three times as long, and all of a submission twenty times, of a processor
+        four times.
     modules : sequence of str
         What the sources import of numpy and scipy.
 
@@ -139,7 +143,9 @@ class Subject:
         order = {"task": task, "source": self._sources[task], "args": args, "kwargs": kwargs}
         kind, value = self._exchange(task, order)
         if kind == "answer":
-            value = compare.plain(value)  # as the library's answers are, where the specification asks it
+            value = compare.plain(
+                value
+            )  # as the library's answers are, where the specification asks it
             if self._kept + (size := _size(value)) <= REMEMBERED:
                 self._kept += size
                 self.calls[-1] = Call(task, args, kwargs, value)
@@ -243,6 +249,10 @@ def _explain(task: str, kind: str, value: Any) -> NoReturn:
     if kind == "refused":
         says = f"{task} answered with something that is no array: it contains {wording.lines(value, 300)}"
         raise NoAnswer(says, "refused")
-    error, message, text = (wording.lines(value[word], 2000) for word in ("error", "message", "text"))
+    error, message, text = (
+        wording.lines(value[word], 2000) for word in ("error", "message", "text")
+    )
     where = f" (line {value['line']}: {text})" if value["line"] is not None else ""
-    raise NoAnswer(f"{task} raised {error}{': ' if message else ''}{message}{where}", "raised") from None
+    raise NoAnswer(
+        f"{task} raised {error}{': ' if message else ''}{message}{where}", "raised"
+    ) from None

@@ -1,8 +1,9 @@
 """What a class has handed in: which files are whose, and which of a team's counts.
 
-A file or folder is a team's where its name begins with the team or one of its students, and then ends or goes
-on with a sign: b0123.ipynb, b0123_hw2.py, team7-hw2.zip. In a folder, the folder's name says whose a file is,
-and the file's own name says nothing. Of several the last that came counts.
+A file or folder is a team's where its name begins with the team or one of its students, and then
+ends or goes on with a sign: b0123.ipynb, b0123_hw2.py, team7-hw2.zip. In a folder, the folder's
+name says whose a file is, and the file's own name says nothing. Of several the last that came
+counts.
 """
 
 import hashlib
@@ -45,7 +46,9 @@ class Found(NamedTuple):
     refused: dict[str, str]
 
 
-def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | None = None) -> Found:
+def find(
+    folder: str | Path, roster: Roster, received: Mapping[str, datetime] | None = None
+) -> Found:
     """Return what a class has handed in.
 
     Parameters
@@ -82,12 +85,18 @@ def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | 
         students = tuple(one.id for one in teams[team])
         fresh = Handin(team, students, path, when, "", unknown)
         if team in handins:
-            older, fresh = sorted((handins[team], fresh), key=lambda one: (one.received, one.path.name))
+            older, fresh = sorted(
+                (handins[team], fresh), key=lambda one: (one.received, one.path.name)
+            )
             notes.append(f"{plain(older.path.name, 80)}: {team} has handed in another, later")
         handins[team] = fresh
-    notes += [f"{plain(name, 80)}: the table of times names it, there is no such file" for name in rows]
+    notes += [
+        f"{plain(name, 80)}: the table of times names it, there is no such file" for name in rows
+    ]
     handins = {team: one._replace(digest=_digest(one.path)) for team, one in handins.items()}
-    return Found(handins, tuple(notes), {team: why for team, why in refused.items() if team not in handins})
+    return Found(
+        handins, tuple(notes), {team: why for team, why in refused.items() if team not in handins}
+    )
 
 
 def _files(folder: Path) -> Iterator[tuple[Path, str]]:

@@ -1,9 +1,10 @@
 """Work that is done once, whatever happens meanwhile: a file for each piece, written whole or not at all.
 
-A piece is named by its owner and a key, which is a digest of all that its result rests on. What is there is
-done; what is not will be done by the next run. Pieces are done by an executor, on this machine (`processes`)
-or on many (`cluster`), and written here. One that ends without a result is tried again, three times in all,
-and then told of. The run may be killed at any moment, and so may those of its executor.
+A piece is named by its owner and a key, which is a digest of all that its result rests on. What is
+there is done; what is not will be done by the next run. Pieces are done by an executor, on this
+machine (`processes`) or on many (`cluster`), and written here. One that ends without a result is
+tried again, three times in all, and then told of. The run may be killed at any moment, and so may
+those of its executor.
 """
 
 import contextlib
@@ -49,7 +50,8 @@ class Ending(NamedTuple):
     piece : Piece
     result : its bytes, or None
     why : there is none
-    blamed : whether that is the piece's own doing, as far as can be told; else it is tried again alone
+    blamed : whether that is the piece's own doing, as far as can be told; else it is tried again
+        alone
     """
 
     piece: Piece
@@ -170,7 +172,9 @@ def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Ite
     for ending in _endings(pieces, executor):
         piece, result = ending.piece, ending.result
         if result is None:
-            yield Done(piece, None, plain(f"it ended {TRIES} times without a result: {ending.why}", 400))
+            yield Done(
+                piece, None, plain(f"it ended {TRIES} times without a result: {ending.why}", 400)
+            )
             continue
         write(place(folder, piece), result)
         for path in former.get(piece.owner, ()):

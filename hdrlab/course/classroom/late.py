@@ -4,9 +4,10 @@ late     days by which a project came after its time, each one begun counted who
 grace    days without penalty, for the whole term: 10, unless the course says otherwise
 points   what the project's work is worth before the penalty; the penalty takes it to zero and no further
 
-Days of grace are spent in the order in which the projects were due, as far as they last. A team's late day is
-a late day of each member, and each pays with their own days: nobody's grade hangs on what the partner has
-spent before, or will spend in another team, and nobody's days are spent for somebody else.
+Days of grace are spent in the order in which the projects were due, as far as they last. A team's
+late day is a late day of each member, and each pays with their own days: nobody's grade hangs on
+what the partner has spent before, or will spend in another team, and nobody's days are spent for
+somebody else.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -41,7 +42,8 @@ class Account(NamedTuple):
 def lateness(due: datetime, received: datetime) -> int:
     """Return late = ceil((received - due) / 1 day), or 0.
 
-    Both times name their zone: a class is spread over more than one, and the clocks change in autumn.
+    Both times name their zone: a class is spread over more than one, and the clocks change in
+    autumn.
 
     Examples
     --------
@@ -50,7 +52,9 @@ def lateness(due: datetime, received: datetime) -> int:
     [0, 1, 1, 2]
     """
     if due.tzinfo is None or received.tzinfo is None:
-        raise ValueError(f"expected times with a zone, such as 2026-03-20T23:59+08:00, got {due}, {received}")
+        raise ValueError(
+            f"expected times with a zone, such as 2026-03-20T23:59+08:00, got {due}, {received}"
+        )
     return max(0, -((due - received) // DAY))
 
 
@@ -66,7 +70,9 @@ def penalty(late: int, left: int, points: float, *, per_day: float = 1.0) -> tup
     return excused, min(max(points, 0.0), per_day * (late - excused))
 
 
-def accounts(handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1.0) -> Iterator[Account]:
+def accounts(
+    handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1.0
+) -> Iterator[Account]:
     """Yield what each project costs each of its students, with the projects in the order they were due.
 
     Parameters
@@ -78,10 +84,13 @@ def accounts(handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1
     Raises
     ------
     ValueError
-        For days below zero, a team that names a student twice, or a project handed in twice by a student.
+        For days below zero, a team that names a student twice, or a project handed in twice by a
+        student.
     """
     if grace < 0 or per_day < 0:
-        raise ValueError(f"expected grace and points a day of at least 0, got {grace} and {per_day}")
+        raise ValueError(
+            f"expected grace and points a day of at least 0, got {grace} and {per_day}"
+        )
     left: dict[str, int] = {}
     seen: set[tuple[str, str]] = set()
     for project, late, students, points in handed:

@@ -64,10 +64,15 @@ def marks(
     left = {bill.student: bill.left for bill in bills}
     mine, rows = {bill.student: bill for bill in bills if bill.project == homework.name}, []
     for id, name, team, _ in course.roster.students:
-        bill = mine.get(id, Account(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days)))
+        bill = mine.get(
+            id, Account(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days))
+        )
         received, work, notes = "", 0.0, ["not handed in"]
         if id in mine:
-            received, work = handins[team].received.isoformat(timespec="minutes"), points.get(team, 0.0)
+            received, work = (
+                handins[team].received.isoformat(timespec="minutes"),
+                points.get(team, 0.0),
+            )
             notes = ["" if team in points else NOT_GRADED, handins[team].note]
         note = "; ".join(filter(None, (*notes, remarks.get(team, ""))))
         earned = (work, homework.points, bill.penalty, bill.score, bill.left, note)
@@ -75,21 +80,32 @@ def marks(
     return rows
 
 
-def what_if(course: Course, points: Mapping[str, float]) -> tuple[list[str], list[list[sheets.Cell]]]:
+def what_if(
+    course: Course, points: Mapping[str, float]
+) -> tuple[list[str], list[list[sheets.Cell]]]:
     """Return header and rows of a table: each student's score, had the work come so many days late.
 
-    Work that has not come, or is not graded, is taken for one that earns all points. The parameters are those
-    of `marks`.
+    Work that has not come, or is not graded, is taken for one that earns all points. The parameters
+    are those of `marks`.
     """
     homework, late = course.homework, course.late
-    teams = {team: tuple(one.id for one in members) for team, members in course.roster.teams().items()}
+    teams = {
+        team: tuple(one.id for one in members) for team, members in course.roster.teams().items()
+    }
     work = {team: points.get(team, homework.points) for team in teams}
     supposed = [Handed(homework.name, 0, members, work[team]) for team, members in teams.items()]
     handed = [*course.before, *supposed]
     table = late_days(handed, homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day)
     header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
     rows: list[list[sheets.Cell]] = [
-        [one.id, one.name, one.team, homework.name, work[one.team], *(by[one.id].score for _, by in table)]
+        [
+            one.id,
+            one.name,
+            one.team,
+            homework.name,
+            work[one.team],
+            *(by[one.id].score for _, by in table),
+        ]
         for one in course.roster.students
     ]
     return header, rows
@@ -103,9 +119,13 @@ def read(paths: Sequence[Path]) -> list[Handed]:
             try:
                 if row["received"] and not row["note"].startswith(NOT_GRADED):
                     student = (row["student"].removeprefix("'"),)
-                    handed.append(Handed(row["homework"], int(row["late"]), student, float(row["work"])))
+                    handed.append(
+                        Handed(row["homework"], int(row["late"]), student, float(row["work"]))
+                    )
             except (KeyError, ValueError):
-                raise ValueError(f"{path}: expected a gradebook that `hdrlab grade` has written") from None
+                raise ValueError(
+                    f"{path}: expected a gradebook that `hdrlab grade` has written"
+                ) from None
     return handed
 
 
@@ -114,5 +134,7 @@ def canvas(rows: Sequence[Mark], homework: Homework) -> tuple[list[str], list[li
     title = f"{homework.name}: {homework.title}"
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title]
     possible: list[sheets.Cell] = ["    Points Possible", "", "", "", "", homework.points]
-    lines: list[list[sheets.Cell]] = [[one.name, "", one.student, one.student, "", one.score] for one in rows]
+    lines: list[list[sheets.Cell]] = [
+        [one.name, "", one.student, one.student, "", one.score] for one in rows
+    ]
     return header, [possible, *lines]

@@ -1,9 +1,10 @@
 """Moodle: a table for its gradebook, its own grading worksheet filled in, and an archive of the feedback.
 
-The gradebook takes any table whose columns are then mapped [Moodle Docs, Grade import]. An assignment knows
-students by numbers of its own, which stand in the worksheet that it gives out: so worksheet and archive of
-feedback files are made from that file [Moodle Docs, Using Assignment; the archive's names as in
-assignfeedback_file_zip_importer]. An import without a column of comments leaves a teacher's comments alone.
+The gradebook takes any table whose columns are then mapped [Moodle Docs, Grade import]. An
+assignment knows students by numbers of its own, which stand in the worksheet that it gives out: so
+worksheet and archive of feedback files are made from that file [Moodle Docs, Using Assignment; the
+archive's names as in assignfeedback_file_zip_importer]. An import without a column of comments
+leaves a teacher's comments alone.
 """
 
 import re
@@ -32,7 +33,9 @@ def gradebook(
     return header, [[row.student, row.student, emails[row.student], row.score] for row in rows]
 
 
-def write(out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, homework: Homework) -> list[str]:
+def write(
+    out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, homework: Homework
+) -> list[str]:
     """Write moodle_worksheet.csv and moodle_feedback.zip, and return notes on whom the roster does not know.
 
     A participant whose work has not been graded keeps the grade that the worksheet has.
@@ -40,7 +43,8 @@ def write(out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, home
     Raises
     ------
     ValueError
-        For another table, and where the assignment gives another number of points than the homework.
+        For another table, and where the assignment gives another number of points than the
+        homework.
     """
     listed, both = sheets.read_csv(worksheet, most=1 << 27), zip(rows, roster.students, strict=True)
     known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}
@@ -48,20 +52,32 @@ def write(out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, home
     files, lost = {}, []
     for line in listed:
         if missing := [name for name in NEEDED if name not in line]:
-            raise ValueError(f"{worksheet}: expected Moodle's worksheet in English, got no {missing[0]!r}")
+            raise ValueError(
+                f"{worksheet}: expected Moodle's worksheet in English, got no {missing[0]!r}"
+            )
         if line["maximum grade"] and float(line["maximum grade"]) != homework.points:
-            points = f"{homework.points:g} points as {homework.name} gives, got {line['maximum grade']}"
-            raise ValueError(f"{worksheet}: expected a maximum grade of {points}; set it in the assignment")
-        row = next((known[fold(line[name])] for name in WHO if fold(line.get(name, "")) in known), None)
+            points = (
+                f"{homework.points:g} points as {homework.name} gives, got {line['maximum grade']}"
+            )
+            raise ValueError(
+                f"{worksheet}: expected a maximum grade of {points}; set it in the assignment"
+            )
+        row = next(
+            (known[fold(line[name])] for name in WHO if fold(line.get(name, "")) in known), None
+        )
         grade: sheets.Cell = line["grade"]
         if row is None:
-            lost.append(f"{worksheet.name}: the roster knows nobody of {line.get('full name', '')!r}")
+            lost.append(
+                f"{worksheet.name}: the roster knows nobody of {line.get('full name', '')!r}"
+            )
         elif row.received and not row.note.startswith(NOT_GRADED):
             grade, page = row.score, out / "feedback" / row.team / "feedback.html"
             (number,) = re.findall(r"\d+$", line["identifier"]) or [""]
             if number and page.is_file():
                 files[FEEDBACK.format(number)] = page.read_bytes()
-        lines.append([line["identifier"], line.get("full name", ""), grade, line["last modified (grade)"]])
+        lines.append(
+            [line["identifier"], line.get("full name", ""), grade, line["last modified (grade)"]]
+        )
     sheets.write_csv(out / "moodle_worksheet.csv", COLUMNS, lines, private=True)
     journal.write(out / "moodle_feedback.zip", packed(files))
     return lost

@@ -30,7 +30,8 @@ class Tally(NamedTuple):
     Attributes
     ----------
     points : of each team's work
-    outcomes : of each promise, by task and its words: how often it holds, fails, or was not answered
+    outcomes : of each promise, by task and its words: how often it holds, fails, or was not
+        answered
     met : how often each misconception was met, by task and sentence
     refused : why nothing of a team's work could be checked, in words
     """
@@ -59,7 +60,9 @@ def marks_of(course: Course, found: Found, counted: Tally) -> list[Mark]:
     return marks.marks(course, found.handins, counted.points, {**counted.refused, **found.refused})
 
 
-def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()) -> list[Path]:
+def write(
+    out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()
+) -> list[Path]:
     """Write all that is about the whole class, and return the files; a new one has its line here.
 
     Parameters
@@ -87,9 +90,17 @@ def histogram(scores: Iterable[float], whole: float) -> list[tuple[int, int]]:
     return [(100 // BINS * k, bins[k]) for k in range(BINS)]
 
 
-def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()) -> str:
+def page(
+    homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()
+) -> str:
     """Return the class page; each row of the gradebook leads to what its student reads."""
     scores = counted.points.values()
     bins, median = histogram(scores, homework.points), statistics.median(scores) if scores else 0
-    words = {"homework": homework, "counted": counted, "bins": bins, "median": median, "notes": list(notes)}
+    words = {
+        "homework": homework,
+        "counted": counted,
+        "bins": bins,
+        "median": median,
+        "notes": list(notes),
+    }
     return render_page(Path(__file__).parent, PAGE, rows=rows, **words)

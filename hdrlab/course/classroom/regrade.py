@@ -5,7 +5,8 @@ RESULTS/
   history/        the results that counted before, a folder for each regrade
   journal.jsonl   a line for each regrade, signed with the course's secret; each holds the signature before it
 
-A run may be killed at any moment: each team has the one result or the other, and the next run does the rest.
+A run may be killed at any moment: each team has the one result or the other, and the next run does
+the rest.
 """
 
 import hmac
@@ -34,7 +35,8 @@ class Move(NamedTuple):
     Attributes
     ----------
     piece : the submission
-    before, after : points that counted so far, None where it had none, and points under the new checks
+    before, after : points that counted so far, None where it had none, and points under the new
+        checks
     counts, moves : points that are to count, and by how many it moves
     taken : whether the new result is to count
     changes : of promises: the task, the promise, and how it ended before and now
@@ -63,14 +65,20 @@ def requests(paths: Sequence[Path], roster: Roster) -> dict[str, list[str]]:
     for path in paths:
         for row in sheets.read_csv(path):
             if not {"student", "task", "words"} <= set(row):
-                raise ValueError(f"{path}: expected the columns student, task, words, got {', '.join(row)}")
+                raise ValueError(
+                    f"{path}: expected the columns student, task, words, got {', '.join(row)}"
+                )
             said = plain(f"{row['task']}: {row['words']}", 400)
             found.setdefault(roster.team_of([row["student"].removeprefix("'")]), []).append(said)
     return found
 
 
 def moves(
-    out: Path, pieces: Sequence[Piece], policy: str, listed: Collection[str], asked: Mapping[str, list[str]]
+    out: Path,
+    pieces: Sequence[Piece],
+    policy: str,
+    listed: Collection[str],
+    asked: Mapping[str, list[str]],
 ) -> list[Move]:
     """Return what new results would change, for each team whose checks have changed, or that asked.
 
@@ -78,7 +86,8 @@ def moves(
     ----------
     out : the folder of the class's results
     pieces : all submissions, with the keys that they have under the checks as they are now
-    policy : "replace", "never-lower" or "only-listed": which new results count. What was handed in anew does.
+    policy : "replace", "never-lower" or "only-listed": which new results count. What was handed in
+        anew does.
     listed, asked : the teams of "only-listed", and what teams ask for
     """
     standing, found = _standing(out), []
@@ -115,7 +124,10 @@ def _read(path: Path | None) -> results.Result | None:
 def _endings(result: results.Result) -> dict[tuple[str, str], str]:
     """Return how each promise of each task ended, and what it earned."""
     return {
-        (one.task, one.promise): f"{one.outcome}, {float(one.points):g} of {float(one.max_points):g}"
+        (
+            one.task,
+            one.promise,
+        ): f"{one.outcome}, {float(one.points):g} of {float(one.max_points):g}"
         for one in result.checks
     }
 
@@ -136,7 +148,10 @@ def text(found: Sequence[Move]) -> str:
 def write(out: Path, found: Sequence[Move], whole: float, policy: str) -> Path:
     """Write what a regrade would change as a page, and return it."""
     folder = journal.make_private(out / "regrade")
-    scores = ([one.before for one in found if one.before is not None], [one.counts for one in found])
+    scores = (
+        [one.before for one in found if one.before is not None],
+        [one.counts for one in found],
+    )
     bins = zip(*(histogram(each, whole) for each in scores), strict=True)
     promises = Counter(change for one in found for change in one.changes).most_common()
     words = {"found": found, "whole": whole, "policy": policy, "bins": bins, "promises": promises}
@@ -145,10 +160,13 @@ def write(out: Path, found: Sequence[Move], whole: float, policy: str) -> Path:
     return folder / "regrade.html"
 
 
-def apply(out: Path, found: Sequence[Move], pieces: Sequence[Piece], secret: str, **said: object) -> None:
+def apply(
+    out: Path, found: Sequence[Move], pieces: Sequence[Piece], secret: str, **said: object
+) -> None:
     """Let a regrade count: a line in the journal, who moves and what else is `said`, and then team by team.
 
-    Where it is killed in the midst, the rest is what the next regrade finds to be changed, or moved away.
+    Where it is killed in the midst, the rest is what the next regrade finds to be changed, or moved
+    away.
 
     Raises
     ------
@@ -163,7 +181,9 @@ def apply(out: Path, found: Sequence[Move], pieces: Sequence[Piece], secret: str
         lines.append(line | {"signature": _signature(line, secret)})
         journal.write(out / LOG, "".join(json.dumps(one) + "\n" for one in lines).encode())
     for one in found:
-        staged, target = (journal.place(out / part, one.piece) for part in ("regrade/results", "results"))
+        staged, target = (
+            journal.place(out / part, one.piece) for part in ("regrade/results", "results")
+        )
         source = staged if one.taken and staged.is_file() else standing[one.piece.owner]
         journal.write(target, source.read_bytes())
     there = [piece for piece in pieces if journal.place(out / "results", piece).is_file()]
@@ -174,14 +194,20 @@ def apply(out: Path, found: Sequence[Move], pieces: Sequence[Piece], secret: str
 def signed_lines(out: Path, secret: str) -> list[dict[str, Any]]:
     """Return the journal's lines, or raise a ValueError at the first that is not signed with the secret."""
     if not secret:
-        raise ValueError("expected a class that was graded with --secret-file: it signs what is changed")
+        raise ValueError(
+            "expected a class that was graded with --secret-file: it signs what is changed"
+        )
     path, before = out / LOG, ""
-    lines = [json.loads(one) for one in path.read_text("utf8").splitlines()] if path.exists() else []
+    lines = (
+        [json.loads(one) for one in path.read_text("utf8").splitlines()] if path.exists() else []
+    )
     for number, line in enumerate(lines, 1):
         rest = {name: value for name, value in line.items() if name != "signature"}
         right = (number, before, _signature(rest, secret))
         if (rest.get("number"), rest.get("before"), before := line.get("signature")) != right:
-            raise ValueError(f"{path}, line {number}: expected a line that the course's secret has signed")
+            raise ValueError(
+                f"{path}, line {number}: expected a line that the course's secret has signed"
+            )
     return lines
 
 

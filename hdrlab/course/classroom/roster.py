@@ -1,7 +1,7 @@
 """The class: who is in it, and who works with whom. Students work alone or in teams of two.
 
-The roster is a CSV file with the columns `student` (the number or name at the university) and, where wanted,
-`name`, `email` and `team`. Who has no team works alone.
+The roster is a CSV file with the columns `student` (the number or name at the university) and,
+where wanted, `name`, `email` and `team`. Who has no team works alone.
 """
 
 import unicodedata
@@ -120,7 +120,9 @@ def read(path: str | Path) -> Roster:
     students = []
     names: list[Name] = []
     for line, row in enumerate(rows, 2):
-        id, team, name = (plain(row.get(column, ""), NAME) for column in ("student", "team", "name"))
+        id, team, name = (
+            plain(row.get(column, ""), NAME) for column in ("student", "team", "name")
+        )
         owner = f"team {team}" if team else f"line {line}"
         names.append(Name(id, "student's id", line, owner))
         names += [Name(team, "team's name", line, owner)] if team else []
@@ -128,7 +130,9 @@ def read(path: str | Path) -> Roster:
     _check_names(path, names)
     large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
     if large:
-        raise ValueError(f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}")
+        raise ValueError(
+            f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}"
+        )
     return Roster(tuple(students))
 
 
@@ -139,7 +143,9 @@ def _check_names(path: str | Path, names: list[Name]) -> None:
     """
     for text, kind, line, _ in names:
         if not text or text[0] in ".-" or FORBIDDEN & set(text):
-            raise ValueError(f"{path}, line {line}: expected a {kind} that can name a file, got {text!r}")
+            raise ValueError(
+                f"{path}, line {line}: expected a {kind} that can name a file, got {text!r}"
+            )
     known: dict[str, Name] = {}
     for one in sorted(names, key=lambda one: len(fold(one.text))):
         key = fold(one.text)

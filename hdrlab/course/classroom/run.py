@@ -67,8 +67,9 @@ class Grader(NamedTuple):
     def result(self, piece: Piece) -> bytes:
         """Return the result of a submission as JSON.
 
-        A function whose process was killed is asked again: a tier for credit lets none kill itself, so it was
-        somebody else, or a system out of memory. Such a result is believed when it comes each time.
+        A function whose process was killed is asked again: a tier for credit lets none kill itself,
+        so it was somebody else, or a system out of memory. Such a result is believed when it comes
+        each time.
 
         Raises
         ------
@@ -82,7 +83,9 @@ class Grader(NamedTuple):
                 return results.to_json(each[-1])
         if each.count(each[0]) == len(each):
             return results.to_json(each[0])
-        raise ValueError("its functions' process ended without an answer, each time at another check")
+        raise ValueError(
+            "its functions' process ended without an answer, each time at another check"
+        )
 
     def _result(self, piece: Piece) -> results.Result:
         """Grade a submission."""
@@ -114,7 +117,11 @@ def hidden(folder: Path | None) -> list[tuple[str, bytes]]:
         return []
     if not folder.is_dir():
         raise ValueError(f"expected a folder with hidden checks, got {folder}")
-    files = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    files = [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts
+    ]
     if (size := sum(path.stat().st_size for path in files)) > MOST:
         raise ValueError(f"{folder}: expected hidden checks of at most {MOST} bytes, got {size}")
     return [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
@@ -128,16 +135,26 @@ def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
     return folder
 
 
-def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
+def pieces(
+    handins: Mapping[str, Handin], homework: Homework, conditions: Conditions
+) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
     words = [rewording.FOLDER / f"{task.id}.toml" for task in homework.tasks if task.parameters]
     files = grading.specification([*grading.files_of(homework, conditions.hidden), *words])
-    asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
-    return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
+    asked = repr(
+        [homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout]
+    )
+    return [
+        Piece(team, one.path, journal.key(one.digest, files, asked))
+        for team, one in handins.items()
+    ]
 
 
 def select_handins(
-    handins: Mapping[str, Handin], roster: Roster, only: Collection[str] = (), since: datetime | None = None
+    handins: Mapping[str, Handin],
+    roster: Roster,
+    only: Collection[str] = (),
+    since: datetime | None = None,
 ) -> dict[str, Handin]:
     """Return what counts of these students or teams, all unless told, and has come since a time.
 
@@ -159,7 +176,8 @@ def select_handins(
 def write_feedback(out: Path, done: Done) -> Done:
     """Write a team's feedback, unless all of it is there and of this result; return what was `done`.
 
-    It is of this result where its JSON is, which is removed first and written last. What fails is `why`.
+    It is of this result where its JSON is, which is removed first and written last. What fails is
+    `why`.
     """
     if done.result is None:
         return done

@@ -43,10 +43,14 @@ def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
     for name, one in HANDED.items():
         done = [task for task in homework.tasks if "done" not in one or task.id in one["done"]]
         cells = solutions.texts(homework._replace(tasks=tuple(done)), one.get("mistakes", ()))
-        text = solutions.script(cells) if name.endswith(".py") else solutions.notebook(homework, cells)
+        text = (
+            solutions.script(cells) if name.endswith(".py") else solutions.notebook(homework, cells)
+        )
         data = ATTACKS.read_bytes() if one.get("attacks") else text.encode()
         if beside := one.get("beside"):
-            data = packed({"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}})
+            data = packed(
+                {"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}}
+            )
         yield Handed(name, data, one["hours"], one["about"])
 
 
@@ -68,7 +72,9 @@ def write(folder: Path) -> list[Path]:
     roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]
     sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
     sheets.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
-    text = render_page(Path(__file__).parent, "toy.plain", command=COMMAND.format(folder=folder), each=each)
+    text = render_page(
+        Path(__file__).parent, "toy.plain", command=COMMAND.format(folder=folder), each=each
+    )
     (folder / "README.md").write_text(text + "\n", encoding="utf8")
     return [folder / "submissions" / one.name for one in each]
 

@@ -1,7 +1,8 @@
 """A task's function with all that it needs of a notebook's other cells, as text that runs by itself.
 
-Names are followed through the statements at the top of the cells: imports, helpers, classes and constants. So
-cells may be renamed, split or moved. Of what the handout gives, our own copy is taken.
+Names are followed through the statements at the top of the cells: imports, helpers, classes and
+constants. So cells may be renamed, split or moved. Of what the handout gives, our own copy is
+taken.
 """
 
 import ast
@@ -31,7 +32,8 @@ class Cell(NamedTuple):
 class Statement(NamedTuple):
     """A statement at the top of a cell: its place, its text, the names it binds, and those it needs.
 
-    Of a function, `head` are those needed when it is defined: in its decorators, defaults and annotations.
+    Of a function, `head` are those needed when it is defined: in its decorators, defaults and
+    annotations.
     """
 
     place: int
@@ -52,7 +54,9 @@ def closed(
         try:
             statements += _statements(cell, len(statements))
         except names.BROKEN as error:
-            line = f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
+            line = (
+                f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
+            )
             said = error.msg if isinstance(error, SyntaxError) else str(error)
             mine = f", which holds {cell.task}," if cell.task in tasks else ""
             problems.append(f"{cell.where}{mine} is no Python{line}: {said}")
@@ -64,7 +68,9 @@ def closed(
             problems.append(f"{task} was not found: no cell defines a function of this name")
             continue
         if len({one.cell for one in found}) > 1:
-            which = "that of its own cell" if len({one.cell for one in marked}) == 1 else "the last one"
+            which = (
+                "that of its own cell" if len({one.cell for one in marked}) == 1 else "the last one"
+            )
             problems.append(f"{task} is defined in several cells; {which} counts")
         last = (marked or found)[-1]
         sources[task] = "\n\n".join(one.text for one in _needed(last, task, binding)) + "\n"
@@ -80,13 +86,19 @@ def _binding(statements: Sequence[Statement]) -> dict[str, list[Statement]]:
     return binding
 
 
-def _needed(task: Statement, name: str, binding: Mapping[str, Sequence[Statement]]) -> list[Statement]:
+def _needed(
+    task: Statement, name: str, binding: Mapping[str, Sequence[Statement]]
+) -> list[Statement]:
     """Return a statement and all that it needs, each after what it needs to be run.
 
-    A name that is bound several times counts with all of its bindings by plain statements, which build on
-    each other, but of functions, classes and imports the last one alone.
+    A name that is bound several times counts with all of its bindings by plain statements, which
+    build on each other, but of functions, classes and imports the last one alone.
     """
-    every = [one for one in binding.get("*", ()) if one.text.split(maxsplit=2)[1].split(".")[0] in STARRED]
+    every = [
+        one
+        for one in binding.get("*", ())
+        if one.text.split(maxsplit=2)[1].split(".")[0] in STARRED
+    ]
     givers: dict[str, Sequence[Statement]] = {name: [task]}
     chosen, wanted = {one.place: one for one in [task, *every]}, sorted(task.needs)
     while wanted:
@@ -95,7 +107,9 @@ def _needed(task: Statement, name: str, binding: Mapping[str, Sequence[Statement
             givers[one] = _givers(task.cell, binding.get(one, ()))
             fresh = [giver for giver in givers[one] if giver.place not in chosen]
             chosen |= {giver.place: giver for giver in fresh}
-            wanted += sorted({need for giver in fresh for need in giver.needs if need not in givers})
+            wanted += sorted(
+                {need for giver in fresh for need in giver.needs if need not in givers}
+            )
     first = sorted(chosen.values(), key=lambda one: (not _is_import(one), one.place))
     return _ordered(first, givers)
 
@@ -108,10 +122,16 @@ def _givers(cell: Cell, near: Sequence[Statement]) -> Sequence[Statement]:
         return near
     if _is_import(whole[-1]):  # what is done to numpy is not part of a function
         return [whole[-1]]
-    return [one for one in near if one is whole[-1] or (one.place > whole[-1].place and not _is_whole(one))]
+    return [
+        one
+        for one in near
+        if one is whole[-1] or (one.place > whole[-1].place and not _is_whole(one))
+    ]
 
 
-def _ordered(first: Sequence[Statement], givers: Mapping[str, Sequence[Statement]]) -> list[Statement]:
+def _ordered(
+    first: Sequence[Statement], givers: Mapping[str, Sequence[Statement]]
+) -> list[Statement]:
     """Return statements in this order, but each after what it needs to be run: of a function its head alone.
 
     What runs at once, and a function that such a statement may call, needs all of its names: deep.
@@ -139,7 +159,10 @@ def _ordered(first: Sequence[Statement], givers: Mapping[str, Sequence[Statement
 
 
 def _before(
-    one: Statement, deep: bool, givers: Mapping[str, Sequence[Statement]], come: dict[tuple[str, bool], int]
+    one: Statement,
+    deep: bool,
+    givers: Mapping[str, Sequence[Statement]],
+    come: dict[tuple[str, bool], int],
 ) -> Iterator[tuple[Statement, bool]]:
     """Yield what is to be run before a statement, and was not begun for the same name."""
     for name in sorted(one.needs if deep else one.head):
@@ -231,7 +254,10 @@ def plain(text: str) -> str:
         ast.parse(text)
         return text  # such lines stand in a string
     except names.BROKEN:
-        blank = [re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one for one in lines]
+        blank = [
+            re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one
+            for one in lines
+        ]
         return "\n".join(blank)
 
 

@@ -1,8 +1,9 @@
 """A function of the library with all that it needs of it, as text that runs with numpy and scipy alone.
 
 A solution is the library's own function. In a notebook it must stand by itself, and so must what it calls:
-definitions are copied as they are written but for types, comments and all, those that are needed before those
-that need them. Two definitions of one name, from two modules, part by the module's name.
+definitions are copied as they are written but for types, comments and all, those that are needed
+before those that need them. Two definitions of one name, from two modules, part by the module's
+name.
 """
 
 import ast
@@ -24,7 +25,9 @@ class Block(NamedTuple):
     @property
     def text(self) -> str:
         """All of it, as one cell."""
-        return "\n\n".join(filter(None, ("\n".join(_grouped(self.imports)), self.needs, self.source)))
+        return "\n\n".join(
+            filter(None, ("\n".join(_grouped(self.imports)), self.needs, self.source))
+        )
 
 
 def inlined(functions: Mapping[str, str], given: Iterable[str] = ()) -> dict[str, Block]:
@@ -33,7 +36,8 @@ def inlined(functions: Mapping[str, str], given: Iterable[str] = ()) -> dict[str
     Parameters
     ----------
     functions : mapping
-        The name that each is to have, and what it is: {"gsolve": "response.debevec.gsolve"}, under hdrlab.
+        The name that each is to have, and what it is: {"gsolve": "response.debevec.gsolve"}, under
+        hdrlab.
     given : iterable of str
         Classes that stand in the notebook already, dotted likewise.
 
@@ -97,7 +101,9 @@ def _joined(texts: Iterable[str]) -> str:
     """Return definitions below each other: functions and classes a line apart, constants close."""
     text, before = "", False
     for one in texts:
-        long = one.lstrip("@#").startswith(("def ", "class ")) or "\ndef " in one or "\nclass " in one
+        long = (
+            one.lstrip("@#").startswith(("def ", "class ")) or "\ndef " in one or "\nclass " in one
+        )
         text += ("" if not text else "\n\n" if long or before else "\n") + one
         before = long
     return text
@@ -147,14 +153,21 @@ def _text(key: Key, names: dict[Key, str]) -> str:
     own = statements(key) if renamed != key.name else ()
     for inner in (within for one in own for within in ast.walk(one)):
         if isinstance(inner, ast.Name) and inner.id == key.name:
-            edits.setdefault(inner.lineno, []).append((inner.col_offset, inner.end_col_offset or 0, renamed))
+            edits.setdefault(inner.lineno, []).append(
+                (inner.col_offset, inner.end_col_offset or 0, renamed)
+            )
     texts = []
     for statement in statements(key):
-        first = min([statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))])
+        first = min(
+            [statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))]
+        )
         while first > 1 and lines[first - 2].startswith("#"):
             first -= 1
         places = range(first, (statement.end_lineno or 0) + 1)
-        written, at = [_edited(lines[n - 1], edits.get(n, [])) for n in places], statement.lineno - first
+        written, at = (
+            [_edited(lines[n - 1], edits.get(n, [])) for n in places],
+            statement.lineno - first,
+        )
         if renamed != key.name and isinstance(statement, ast.FunctionDef | ast.ClassDef):
             written[at] = written[at].replace(f" {key.name}", f" {renamed}", 1)
         texts.append("\n".join(_shortened(statement, written, first)))
@@ -183,5 +196,7 @@ def _edited(line: str, edits: Iterable[tuple[int, int, str]]) -> str:
 def _all_bound(node: ast.AST) -> set[str]:
     """Return every name that is bound anywhere within a statement."""
     inner = list(ast.walk(node))
-    stored = {one.id for one in inner if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+    stored = {
+        one.id for one in inner if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    }
     return stored | {one.arg for one in inner if isinstance(one, ast.arg)}

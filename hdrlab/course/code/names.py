@@ -78,7 +78,9 @@ def _parts(node: ast.AST, around: frozenset[str]) -> Iterator[tuple[ast.AST, fro
     if isinstance(node, Function):
         yield from ((one, around) for one in head(node))
         own = _inside(node, around)
-        yield from ((one, own) for one in (node.body if isinstance(node.body, list) else [node.body]))
+        yield from (
+            (one, own) for one in (node.body if isinstance(node.body, list) else [node.body])
+        )
         return
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
     if isinstance(node, COMPREHENSIONS):
@@ -99,7 +101,10 @@ def _inside(node: Function, around: frozenset[str]) -> frozenset[str]:
 def head(node: ast.AST) -> list[ast.AST]:
     """Return what of a function is run when it is defined: decorators, defaults and annotations."""
     parts = (getattr(node, "args", None), getattr(node, "returns", None))
-    return [*getattr(node, "decorator_list", ()), *(one for one in parts if isinstance(one, ast.AST))]
+    return [
+        *getattr(node, "decorator_list", ()),
+        *(one for one in parts if isinstance(one, ast.AST)),
+    ]
 
 
 def modules(source: str | bytes) -> set[str]:

@@ -1,7 +1,7 @@
 """The library's own source: which definition a name in it stands for. It is read, and not imported.
 
-It is read as one writes it on the board: without types, which are for checkers, and without guards, the
-statements that only raise. Both stand in the library; what is left is the equation.
+It is read as one writes it on the board: without types, which are for checkers, and without guards,
+the statements that only raise. Both stand in the library; what is left is the equation.
 """
 
 import ast
@@ -35,7 +35,9 @@ class Module(NamedTuple):
 
     lines: list[str]
     definitions: dict[str, list[ast.stmt]]
-    imported: dict[str, tuple[str, str, str]]  # name -> (module, name in it or "", the import as text)
+    imported: dict[
+        str, tuple[str, str, str]
+    ]  # name -> (module, name in it or "", the import as text)
     returns: dict[str, ast.expr]  # of each function that says it, the type of its answer
 
 
@@ -95,11 +97,15 @@ def on_the_board(text: str) -> str:
             del lines[start : node.end_lineno]
         elif isinstance(node, ast.FunctionDef):
             body = node.body[0]
-            if not lines[body.lineno - 1][: body.col_offset].strip():  # else it shares the signature's line
+            if not lines[body.lineno - 1][
+                : body.col_offset
+            ].strip():  # else it shares the signature's line
                 lines[start : body.lineno - 1] = _signature(node)
         elif isinstance(node, ast.AnnAssign):
             name, after = line[: node.target.end_col_offset], line[node.annotation.end_col_offset :]
-            lines[start] = f"{name}: {_plain(node.annotation)}{after}" if node in fields else name + after
+            lines[start] = (
+                f"{name}: {_plain(node.annotation)}{after}" if node in fields else name + after
+            )
     return "\n".join(lines) + "\n"
 
 
@@ -108,7 +114,9 @@ def _is_guard(node: ast.stmt) -> bool:
     if isinstance(node, ast.If):
         return isinstance(node.body[-1], ast.Raise) and not node.orelse
     call = node.value if isinstance(node, ast.Expr) else None
-    return isinstance(call, ast.Call) and ast.unparse(call.func).rpartition(".")[2].startswith(GUARDS)
+    return isinstance(call, ast.Call) and ast.unparse(call.func).rpartition(".")[2].startswith(
+        GUARDS
+    )
 
 
 def _signature(node: ast.FunctionDef) -> list[str]:
@@ -120,7 +128,9 @@ def _signature(node: ast.FunctionDef) -> list[str]:
     whole = f"{indent}def {node.name}({arguments}):"
     if len(whole) <= WIDTH:
         return [whole]
-    inner = textwrap.wrap(arguments, WIDTH, initial_indent=f"{indent}    ", subsequent_indent=f"{indent}    ")
+    inner = textwrap.wrap(
+        arguments, WIDTH, initial_indent=f"{indent}    ", subsequent_indent=f"{indent}    "
+    )
     return [f"{indent}def {node.name}(", *inner, f"{indent}):"]
 
 
@@ -157,7 +167,9 @@ def _resolved(at: str, use: Use) -> Found | None:
     if name not in here.imported:
         return None
     source, original, text = here.imported[name]
-    while source.split(".")[0] == HOUSE and original in module(source).imported:  # it is imported there, too
+    while (
+        source.split(".")[0] == HOUSE and original in module(source).imported
+    ):  # it is imported there, too
         source, original, text = module(source).imported[original]
     if source.split(".")[0] != HOUSE:
         return Found(text, use.node)
@@ -174,7 +186,9 @@ def statements(key: Key) -> list[ast.stmt]:
     try:
         return module(key.module).definitions[key.name]
     except KeyError:
-        raise ValueError(f"expected a function of the library, got {key.module}.{key.name}") from None
+        raise ValueError(
+            f"expected a function of the library, got {key.module}.{key.name}"
+        ) from None
 
 
 def definitions_in(at: str, node: ast.AST) -> list[Key]:

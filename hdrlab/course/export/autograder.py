@@ -1,6 +1,7 @@
 """What runs on Gradescope: grade what was handed in, and write results.json whatever happens.
 
-The container is thrown away after each run, and namespaces cannot nest in it; so the tier is `container`.
+The container is thrown away after each run, and namespaces cannot nest in it; so the tier is
+`container`.
 """
 
 import json
@@ -17,8 +18,12 @@ def main(root: Path = ROOT, tier: str = "container") -> None:
     """Grade the submission below `root`, as Gradescope lays it out, and write its results."""
     try:
         data = graded(root, tier)
-    except Exception as error:  # whatever it is: student and instructor are told, and the queue goes on
-        said = wording.plain(f"The autograder could not grade this: {type(error).__name__}: {error}", 500)
+    except (
+        Exception
+    ) as error:  # whatever it is: student and instructor are told, and the queue goes on
+        said = wording.plain(
+            f"The autograder could not grade this: {type(error).__name__}: {error}", 500
+        )
         data = (json.dumps({"score": 0, "output": said, "output_format": "text"}) + "\n").encode()
     (root / "results").mkdir(exist_ok=True)
     (root / "results" / "results.json").write_bytes(data)
@@ -49,7 +54,9 @@ def handed_in(folder: Path) -> Path:
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
-            raise ValueError(f"expected one {suffix} file, got {', '.join(one.name for one in fitting)}")
+            raise ValueError(
+                f"expected one {suffix} file, got {', '.join(one.name for one in fitting)}"
+            )
     raise ValueError("expected a notebook, .ipynb, or a Python file, .py")
 
 

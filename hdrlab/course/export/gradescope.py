@@ -1,7 +1,7 @@
 """An autograder for Gradescope: a zip with this very hdrlab, its checks, and scripts to set up and to run.
 
-The zip holds the library as it is installed here, so that what grades is what was tried. The hidden checks
-and the secret in it are for the instructor's eyes: students never see the zip.
+The zip holds the library as it is installed here, so that what grades is what was tried. The hidden
+checks and the secret in it are for the instructor's eyes: students never see the zip.
 """
 
 import json
@@ -22,7 +22,12 @@ PROGRAMS = ("setup.sh", "run_autograder")
 
 
 def export(
-    plan: Plan, folder: Path, *, hidden: Path | None = None, plan_file: Path | None = None, secret: str = ""
+    plan: Plan,
+    folder: Path,
+    *,
+    hidden: Path | None = None,
+    plan_file: Path | None = None,
+    secret: str = "",
 ) -> Iterator[Path]:
     """Write an autograder zip for each homework, and yield each when it is there.
 

@@ -1,12 +1,12 @@
 """A course for nbgrader: source notebooks that its own `generate_assignment` and `autograde` accept.
 
-The solution of a task stands inside its function, between nbgrader's marks, helpers and all, so that the
-student's version keeps signature and docstring. A test cell calls `check`, and its last line is a number: the
-points, which nbgrader takes for partial credit.
+The solution of a task stands inside its function, between nbgrader's marks, helpers and all, so
+that the student's version keeps signature and docstring. A test cell calls `check`, and its last
+line is a number: the points, which nbgrader takes for partial credit.
 
-nbgrader runs a student's cells in the very kernel that runs the test cells. Our checks call the functions in
-another process, but what stands around them in that kernel can be tampered with: where grades count among
-strangers, grade with `hdrlab grade` and its strict tier.
+nbgrader runs a student's cells in the very kernel that runs the test cells. Our checks call the
+functions in another process, but what stands around them in that kernel can be tampered with: where
+grades count among strangers, grade with `hdrlab grade` and its strict tier.
 """
 
 import ast
@@ -46,9 +46,13 @@ def source(handout: dict[str, Any], homework: Homework) -> str:
     """Return a handout as nbgrader's source notebook: with solutions, points and locks."""
     tasks = {task.id: task for task in homework.tasks}
     cells = [_cell({**cell, "source": "".join(cell["source"])}, tasks) for cell in handout["cells"]]
-    missing = set(tasks) - {one.task for one in submission.cells_of(json.dumps(handout).encode(), "")[0]}
+    missing = set(tasks) - {
+        one.task for one in submission.cells_of(json.dumps(handout).encode(), "")[0]
+    }
     if missing:
-        raise ValueError(f"the handout of {homework.name} has no {', '.join(sorted(missing))}: build it anew")
+        raise ValueError(
+            f"the handout of {homework.name} has no {', '.join(sorted(missing))}: build it anew"
+        )
     return handouts.to_text({**handout, "cells": [cell for cell in cells if cell is not None]})
 
 
@@ -75,7 +79,10 @@ def solved(task: Task) -> str:
     >>> solved(Task("count", "capture.planning.count", 10)).splitlines()[2:4]
     ['    ### BEGIN SOLUTION', '    import math']
     """
-    head, block = stubs.stub(task).rpartition("\n")[0], inline.inlined({task.id: task.function})[task.id]
+    head, block = (
+        stubs.stub(task).rpartition("\n")[0],
+        inline.inlined({task.id: task.function})[task.id],
+    )
     around = "\n\n".join(filter(None, ("\n".join(block.imports), block.needs)))
     inside = "\n".join(filter(None, (textwrap.indent(around, "    "), _body(block.source))))
     return f"{head}\n    ### BEGIN SOLUTION\n{inside}\n    ### END SOLUTION"

@@ -49,6 +49,7 @@ another's artifact     the file's name says whose it is, not what stands in it  
 votes erased           a picture that is replaced keeps its votes, uncounted       votes_erased
 =====================  ==========================================================  ======================
 
-What it does not stop: somebody who is given another's link votes with it, and who can read the network votes
-too unless a proxy adds TLS. A flood that fills the line, or the processor, is a proxy's to stop.
+What it does not stop: somebody who is given another's link votes with it, and who can read the
+network votes too unless a proxy adds TLS. A flood that fills the line, or the processor, is a
+proxy's to stop.
 """

@@ -4,9 +4,9 @@ b   ballots   a set of artifacts each: those that the voter marks, at most so ma
 v   votes     v_a = the number of ballots that mark a
 p   places    p_a = 1 + the number of artifacts with more votes than a
 
-Nobody's order of their favourites is asked. Equal votes share a place, and ties are not broken: 1, 2, 2, 4.
-With marks of one weight nobody gains by marking a favourite lower than it is liked, and who marks fewer gives
-away nothing.
+Nobody's order of their favourites is asked. Equal votes share a place, and ties are not broken: 1,
+2, 2, 4. With marks of one weight nobody gains by marking a favourite lower than it is liked, and
+who marks fewer gives away nothing.
 """
 
 import sqlite3
@@ -73,7 +73,9 @@ def read_ballot(db: sqlite3.Connection, voter: str) -> tuple[float | None, froze
 
 def every(db: sqlite3.Connection) -> dict[str, frozenset[str]]:
     """Return all ballots, by voter, with votes for what hangs no longer: for counting, and for no page."""
-    found: dict[str, set[str]] = {voter: set() for (voter,) in db.execute("SELECT voter FROM ballots")}
+    found: dict[str, set[str]] = {
+        voter: set() for (voter,) in db.execute("SELECT voter FROM ballots")
+    }
     for voter, artifact in db.execute("SELECT voter, artifact FROM votes"):
         found[voter].add(artifact)
     return {voter: frozenset(one) for voter, one in found.items()}
@@ -102,5 +104,9 @@ def gradebook(db: sqlite3.Connection) -> Iterator[tuple[str | int, ...]]:
     rows = {hung[row.artifact].team: row for row in standings(hung, cast.values())}
     for id, name, team in store.voters(db):
         voted, row = "yes" if cast.get(id) else "no", rows.get(team)
-        fared = (hung[row.artifact].title, row.votes, row.place, row.shared) if row else ("", "", "", "")
+        fared = (
+            (hung[row.artifact].title, row.votes, row.place, row.shared)
+            if row
+            else ("", "", "", "")
+        )
         yield (id, name, team, voted, *fared)

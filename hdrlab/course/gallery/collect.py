@@ -1,8 +1,8 @@
 """What is to hang: pictures named after a team or a student, and archives that `hdrlab submit` has made.
 
-Whose an artifact is, the name of its file says, or that of the folder it lies in, as with all that is handed
-in: what stands in an archive's description is the word of whoever made it. A picture `team7.jpg` may have a
-file `team7.txt` beside it: the title in its first line, then a caption.
+Whose an artifact is, the name of its file says, or that of the folder it lies in, as with all that
+is handed in: what stands in an archive's description is the word of whoever made it. A picture
+`team7.jpg` may have a file `team7.txt` beside it: the title in its first line, then a caption.
 """
 
 import hashlib
@@ -43,7 +43,9 @@ def sources(paths: Sequence[Path]) -> list[tuple[Path, str]]:
         for one in sorted(path.iterdir()) if path.is_dir() else [path]:
             inside = sorted(one.iterdir()) if one.is_dir() and not one.is_symlink() else [one]
             found += [(file, one.name) for file in inside]
-    return [one for one in found if one[0].suffix.lower() not in NOT_THESE and one[0].name[0] != "."]
+    return [
+        one for one in found if one[0].suffix.lower() not in NOT_THESE and one[0].name[0] != "."
+    ]
 
 
 @contextmanager
@@ -58,12 +60,14 @@ def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
     Raises
     ------
     ValueError
-        For a name that is nobody's, what is no plain file, and an archive with a trap, without a description
-        or an artifact.
+        For a name that is nobody's, what is no plain file, and an archive with a trap, without a
+        description or an artifact.
     """
     team = roster.owner(name or source.name)
     if team is None:
-        raise ValueError("expected a file or a folder that is named after a student or a team of the roster")
+        raise ValueError(
+            "expected a file or a folder that is named after a student or a team of the roster"
+        )
     if source.is_symlink() or not source.is_file():
         raise ValueError("expected a plain file, got a link, a pipe or a device")
     if not source.name.lower().endswith(ARCHIVES):
@@ -104,10 +108,16 @@ def _archive(folder: Path, team: str) -> Entry:
         said: Any = json.loads(manifest.read_text(encoding="utf8"))
         title, caption, artifact = (str(said[name]) for name in ("title", "caption", "artifact"))
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise ValueError(f"expected an archive of `hdrlab submit`, its {MANIFEST} is damaged") from None
-    inside = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
+        raise ValueError(
+            f"expected an archive of `hdrlab submit`, its {MANIFEST} is damaged"
+        ) from None
+    inside = {
+        path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()
+    }
     if artifact not in inside:
-        raise ValueError(f"expected an artifact in the archive, got the name {plain(artifact, 40)!r}")
+        raise ValueError(
+            f"expected an artifact in the archive, got the name {plain(artifact, 40)!r}"
+        )
     return _described(team, title, caption, inside[artifact])
 
 

@@ -1,7 +1,7 @@
 """Pictures of students, made anew: decoded to pixels, brought to two sizes, and encoded again.
 
-So whatever else a file holds (scripts, another format behind the first, where it was taken) stays behind.
-Its header is judged before anything of the size that it claims is allocated.
+So whatever else a file holds (scripts, another format behind the first, where it was taken) stays
+behind. Its header is judged before anything of the size that it claims is allocated.
 """
 
 from pathlib import Path
@@ -41,11 +41,15 @@ def prepare(path: str | Path) -> Prepared:
     if header.kind not in ("JPEG", "PNG", "TIFF"):
         raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:
-        raise ValueError(f"{path.name}: expected at most {MOST_PIXELS} pixels, the header has {header.shape}")
+        raise ValueError(
+            f"{path.name}: expected at most {MOST_PIXELS} pixels, the header has {header.shape}"
+        )
     image = to_256(photos.read_photo(path))
     brought = {name: fit(image, side) for name, side in SIZES.items()}
     height, width = brought["large"].shape[:2]
-    return Prepared({name: web.encode_webp(one, quality=88) for name, one in brought.items()}, width, height)
+    return Prepared(
+        {name: web.encode_webp(one, quality=88) for name, one in brought.items()}, width, height
+    )
 
 
 def keep(folder: Path, id: str, prepared: Prepared) -> None:

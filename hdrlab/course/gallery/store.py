@@ -1,9 +1,11 @@
 """The gallery on disk: one folder with its pictures and a database, in which a voter has one ballot.
 
-What must never happen is forbidden by the database itself, whatever the program above it does: a second
-ballot (its key is the voter), a vote for one's own team and a vote too many (triggers), a vote for what is
+What must never happen is forbidden by the database itself, whatever the program above it does: a
+second ballot (its key is the voter), a vote for one's own team and a vote too many (triggers), a
+vote for what is
 not there (a foreign key) or hangs no longer (a trigger). A ballot is acknowledged after it is on the disk:
-WAL with full synchronisation. An artifact that another replaces stays with its votes, which do not count.
+WAL with full synchronisation. An artifact that another replaces stays with its votes, which do not
+count.
 """
 
 import sqlite3
@@ -62,7 +64,9 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
     """
     folder = Path(folder)
     if closes.tzinfo is None:
-        raise ValueError(f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}")
+        raise ValueError(
+            f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}"
+        )
     if marks < 1:
         raise ValueError(f"expected at least 1 vote on a ballot, got {marks}")
     if (folder / DATABASE).exists():
@@ -82,16 +86,21 @@ def connect(folder: str | Path) -> sqlite3.Connection:
     Raises
     ------
     ValueError
-        Where there is none, a damaged one, or one that another hdrlab has made, whose tables are others.
+        Where there is none, a damaged one, or one that another hdrlab has made, whose tables are
+        others.
     """
     path = Path(folder) / DATABASE
     if not path.is_file():
-        raise ValueError(f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one")
+        raise ValueError(
+            f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one"
+        )
     try:
         db = _opened(path)
         (version,) = db.execute("PRAGMA user_version").fetchone()
     except sqlite3.DatabaseError as error:
-        raise ValueError(f"{path}: expected a gallery's database, it cannot be read: {error}") from None
+        raise ValueError(
+            f"{path}: expected a gallery's database, it cannot be read: {error}"
+        ) from None
     if version != VERSION:
         db.close()
         raise ValueError(
@@ -103,7 +112,12 @@ def connect(folder: str | Path) -> sqlite3.Connection:
 
 def _opened(path: Path) -> sqlite3.Connection:
     db = sqlite3.connect(path, timeout=10, isolation_level=None, check_same_thread=False)
-    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
+    for pragma in (
+        "journal_mode = WAL",
+        "synchronous = FULL",
+        "foreign_keys = ON",
+        "trusted_schema = OFF",
+    ):
         db.execute(f"PRAGMA {pragma}")
     return db
 
@@ -125,7 +139,9 @@ def transaction(db: sqlite3.Connection) -> Iterator[None]:
 
 def settings(db: sqlite3.Connection) -> Settings:
     """Return the Settings as they are now."""
-    title, closes, marks, secret = db.execute("SELECT title, closes, marks, secret FROM gallery").fetchone()
+    title, closes, marks, secret = db.execute(
+        "SELECT title, closes, marks, secret FROM gallery"
+    ).fetchone()
     return Settings(title, datetime.fromisoformat(closes), marks, secret)
 
 
@@ -136,21 +152,28 @@ def close(db: sqlite3.Connection, now: datetime) -> None:
 
 def artifacts(db: sqlite3.Connection) -> dict[str, Artifact]:
     """Return the artifacts that hang, by id."""
-    rows = db.execute("SELECT id, team, title, caption, width, height FROM artifacts WHERE hangs ORDER BY id")
+    rows = db.execute(
+        "SELECT id, team, title, caption, width, height FROM artifacts WHERE hangs ORDER BY id"
+    )
     return {row[0]: Artifact(*row) for row in rows}
 
 
 def hangs(db: sqlite3.Connection, id: str) -> bool:
     """Return whether there is such an artifact."""
-    return db.execute("SELECT 1 FROM artifacts WHERE hangs AND id = ?", (id,)).fetchone() is not None
+    return (
+        db.execute("SELECT 1 FROM artifacts WHERE hangs AND id = ?", (id,)).fetchone() is not None
+    )
 
 
 def hang(db: sqlite3.Connection, artifact: Artifact, source: str = "") -> int:
     """Hang an artifact in the place of the team's earlier one, and return how many votes that one had.
 
-    The earlier one keeps its votes, which count again if it is hung again; the change is written down.
+    The earlier one keeps its votes, which count again if it is hung again; the change is written
+    down.
     """
-    before = db.execute("SELECT id FROM artifacts WHERE hangs AND team = ?", (artifact.team,)).fetchone()
+    before = db.execute(
+        "SELECT id FROM artifacts WHERE hangs AND team = ?", (artifact.team,)
+    ).fetchone()
     db.execute("UPDATE artifacts SET hangs = 0 WHERE team = ?", (artifact.team,))
     update = "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption, hangs = 1"
     db.execute(f"INSERT INTO artifacts VALUES (?, ?, ?, ?, ?, ?, 1) {update}", artifact)

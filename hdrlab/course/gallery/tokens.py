@@ -1,6 +1,7 @@
 """Links and sessions: what their bearer shows, and what the gallery keeps of it.
 
-A token is 12 characters by which it is found, and 43 that prove it: 256 random bits. Of those the gallery
+A token is 12 characters by which it is found, and 43 that prove it: 256 random bits. Of those the
+gallery
 keeps a digest alone, so that whoever reads its database can neither vote nor enter. A plain SHA-256 does:
 there is no list of likely secrets to try. A personal link opens a session once.
 """
@@ -85,7 +86,9 @@ def shuffled(ids: list[str], secret: bytes, voter: str) -> list[str]:
     >>> shuffled(ids, b"s", "anna") == shuffled(ids[::-1], b"s", "anna") != shuffled(ids, b"s", "ben")
     True
     """
-    return sorted(ids, key=lambda id: hmac.new(secret, f"{voter}\0{id}".encode(), hashlib.sha256).digest())
+    return sorted(
+        ids, key=lambda id: hmac.new(secret, f"{voter}\0{id}".encode(), hashlib.sha256).digest()
+    )
 
 
 def new_link(db: sqlite3.Connection, voter: str) -> str:
@@ -114,7 +117,8 @@ def whose(db: sqlite3.Connection, text: str, kind: Kind = "session") -> store.Vo
     shown = read(text)
     if shown is None:
         return None
-    query = f"SELECT id, name, team, {kind}_digest FROM voters WHERE {kind} = ?"  # a column, nobody's text
+    # a column, nobody's text
+    query = f"SELECT id, name, team, {kind}_digest FROM voters WHERE {kind} = ?"
     row = db.execute(query, (shown.handle,)).fetchone()
     proven = proves(shown, row[3] if row else None)
     return store.Voter(*row[:3]) if row and proven else None
@@ -123,13 +127,22 @@ def whose(db: sqlite3.Connection, text: str, kind: Kind = "session") -> store.Vo
 def spent_by(db: sqlite3.Connection, text: str) -> str | None:
     """Return the id of the voter whose link this was: it leads a browser on, and proves nothing."""
     shown = read(text)
-    row = db.execute("SELECT id FROM voters WHERE link = ?", (shown.handle,)).fetchone() if shown else None
+    row = (
+        db.execute("SELECT id FROM voters WHERE link = ?", (shown.handle,)).fetchone()
+        if shown
+        else None
+    )
     return row[0] if row else None
 
 
-def links(db: sqlite3.Connection, address: str, ids: Sequence[str], emails: dict[str, str]) -> list[Row]:
+def links(
+    db: sqlite3.Connection, address: str, ids: Sequence[str], emails: dict[str, str]
+) -> list[Row]:
     """Return new personal links of these voters; their older ones end."""
     names = {id: name for id, name, _ in store.voters(db)}
     with store.transaction(db):
         fresh = [(id, new_link(db, id)) for id in ids]
-    return [(id, names[id], emails.get(id, ""), f"{address.rstrip('/')}/enter/{text}") for id, text in fresh]
+    return [
+        (id, names[id], emails.get(id, ""), f"{address.rstrip('/')}/enter/{text}")
+        for id, text in fresh
+    ]

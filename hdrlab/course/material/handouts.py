@@ -3,8 +3,9 @@
 A source is a Python file in the percent form. Its cells say by their metadata what they are:
 
 task="gsolve"   becomes the function's signature and docstring over a stub, or, in the solution, the library's
-                own source; comment lines in the cell take the place of the docstring's beginning. What the
-                function yields or returns by name is given before it, and `check("gsolve")` follows.
+                own source; comment lines in the cell take the place of the docstring's beginning.
+                What the function yields or returns by name is given before it, and
+                `check("gsolve")` follows.
 about="gsolve hat"  is left out where the plan leaves one of these tasks out; a picture shows what they do
 {points}, {due}, {total}, {choice}, {late}, {hand}   in the prose stand for what the plan says
 use_plan("hw2")   gets the points of each task, so that `check` knows them wherever the sheet goes
@@ -60,7 +61,9 @@ def handout(source: str, homework: Homework, late: str = "") -> Handout:
     blocks = inline.inlined({task.id: task.function for task in homework.tasks}, given)
     both: tuple[list[dict[str, Any]], list[dict[str, Any]]] = ([], [])
     for one in homework.tasks:
-        prose = (cell.source for cell in read if cell.cell_type == "markdown" and one.id in _about(cell))
+        prose = (
+            cell.source for cell in read if cell.cell_type == "markdown" and one.id in _about(cell)
+        )
         rewording.reword(one.id, one.variant, "\n".join(prose), all_of_it=True)
     for cell in read:
         about = _about(cell)
@@ -112,7 +115,10 @@ def _planned(text: str, homework: Homework) -> str:
     if any(task.own for task in homework.tasks):
         points = f'plan="{CHECKS.format(homework.name)}/plan.toml", {points}'
     said = textwrap.fill(
-        f'use_plan("{homework.name}", {points})', 96, subsequent_indent=9 * " ", break_on_hyphens=False
+        f'use_plan("{homework.name}", {points})',
+        96,
+        subsequent_indent=9 * " ",
+        break_on_hyphens=False,
     )
     return text.replace(f'use_plan("{homework.name}")', said)
 
@@ -151,7 +157,12 @@ def _markdown(text: str) -> dict[str, Any]:
 
 def _code(text: str, *, id: str = "", tags: Sequence[str] = (), **marks: Any) -> dict[str, Any]:
     metadata = {**({"hdrlab": marks} if marks else {}), **({"tags": list(tags)} if tags else {})}
-    cell: dict[str, Any] = {"cell_type": "code", "execution_count": None, "outputs": [], "metadata": metadata}
+    cell: dict[str, Any] = {
+        "cell_type": "code",
+        "execution_count": None,
+        "outputs": [],
+        "metadata": metadata,
+    }
     return {**cell, "source": text, **({"id": id} if id else {})}
 
 
@@ -162,8 +173,13 @@ def _notebook(cells: Sequence[dict[str, Any]], name: str) -> dict[str, Any]:
 
 def to_text(notebook: dict[str, Any]) -> str:
     """Return a notebook as its file holds it: source in lines, so that a difference can be read."""
-    split = [{**cell, "source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]]
-    return json.dumps({**notebook, "cells": split}, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+    split = [
+        {**cell, "source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
+    ]
+    return (
+        json.dumps({**notebook, "cells": split}, indent=1, ensure_ascii=False, sort_keys=True)
+        + "\n"
+    )
 
 
 def build_steps(
@@ -208,20 +224,28 @@ def _own_checks(homework: Homework, folder: Path) -> Iterator[Path]:
         yield write_text(copy, file.read_text(encoding="utf8"))
 
 
-def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: int) -> Iterator[Path]:
+def _solved(
+    made: Sequence[Handout], assignments: Path, solutions: Path, jobs: int
+) -> Iterator[Path]:
     """Run the solutions, and yield each file when it is written."""
     near = {one.homework: f"{CHECKS.format(one.homework)}/plan.toml" for one in made}
-    far = {name: (assignments / plan).resolve().as_posix() for name, plan in near.items()}  # run elsewhere
+    far = {
+        name: (assignments / plan).resolve().as_posix() for name, plan in near.items()
+    }  # run elsewhere
     from hdrlab.course.site import execute
 
     texts = {one.homework: to_text(one.solution) for one in made}
     texts = {name: text.replace(near[name], far[name]) for name, text in texts.items()}
-    with tempfile.TemporaryDirectory(prefix="hdrlab-solutions-", ignore_cleanup_errors=True) as folder:
+    with tempfile.TemporaryDirectory(
+        prefix="hdrlab-solutions-", ignore_cleanup_errors=True
+    ) as folder:
         scratch = Path(folder)
         sources = [write_text(scratch / f"{name}.ipynb", text) for name, text in texts.items()]
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
             ran, name = json.loads(done.executed.read_text(encoding="utf8")), done.source.stem
-            yield write_text(solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name]))
+            yield write_text(
+                solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name])
+            )
 
 
 def _tidy(ran: dict[str, Any]) -> dict[str, Any]:

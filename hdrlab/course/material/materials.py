@@ -4,7 +4,9 @@ import shutil
 from pathlib import Path
 
 COURSE = Path(__file__).parents[1]
-JUPYTER = Path(__file__).parent / "jupyter"  # settings of JupyterLab: widgets are saved, news stay away
+JUPYTER = (
+    Path(__file__).parent / "jupyter"
+)  # settings of JupyterLab: widgets are saved, news stay away
 
 
 def folder(name: str) -> Path:
@@ -19,7 +21,9 @@ def folder(name: str) -> Path:
     for place in (inside, beside):
         if place.is_dir():
             return place
-    raise FileNotFoundError(f"expected the folder {name!r} in {inside} or {beside}; install hdrlab again")
+    raise FileNotFoundError(
+        f"expected the folder {name!r} in {inside} or {beside}; install hdrlab again"
+    )
 
 
 def copy_course(target: Path) -> list[Path]:

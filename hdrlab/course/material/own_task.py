@@ -1,7 +1,7 @@
 """A task of an instructor's own: a folder beside the package, with an example in it that works.
 
-The function need not be the library's. The example is complete, and is changed file by file: the function,
-its sheet, its checks with hints, two mistakes, hidden checks, and tests of all of these.
+The function need not be the library's. The example is complete, and is changed file by file: the
+function, its sheet, its checks with hints, two mistakes, hidden checks, and tests of all of these.
 """
 
 import keyword
@@ -34,10 +34,14 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
         if not (name.isidentifier() and name.islower()) or keyword.iskeyword(name):
             raise ValueError(f"expected a name of small letters, digits and _, got {name!r}")
     if (folder / f"{task}.py").exists() or task == homework:
-        raise ValueError(f"expected a new task, got {task!r}: change {folder / task}.py, or choose another")
+        raise ValueError(
+            f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"
+        )
     for template in sorted(TEMPLATES.rglob("*.txt")):
         name, text = template.relative_to(TEMPLATES).as_posix(), template.read_text(encoding="utf8")
-        name, text = (one.replace("TASK", task).replace("HOMEWORK", homework) for one in (name, text))
+        name, text = (
+            one.replace("TASK", task).replace("HOMEWORK", homework) for one in (name, text)
+        )
         file = folder / name.removesuffix(".txt")
         there = file.read_text(encoding="utf8") if file.exists() else ""
         if not there or file.name == "plan.toml" or file.parent.name == "sheets":

@@ -1,7 +1,7 @@
 """Handouts filled in, rightly or with a well-known mistake; the pack of solutions; a sheet for each team.
 
-What is right is the library's own function, that of the library that is installed, and a mistake changes it.
-Neither the wheel nor the source distribution holds the pack.
+What is right is the library's own function, that of the library that is installed, and a mistake
+changes it. Neither the wheel nor the source distribution holds the pack.
 """
 
 import json
@@ -35,7 +35,10 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    variant, cells = {task.id: task.variant for task in homework.tasks}, dict(solutions(homework.tasks))
+    variant, cells = (
+        {task.id: task.variant for task in homework.tasks},
+        dict(solutions(homework.tasks)),
+    )
     return reduce(lambda cells, name: put_in(cells, name, variant[task_of(name)]), mistakes, cells)
 
 
@@ -70,24 +73,33 @@ def write(plan: Plan, folder: Path) -> Iterator[Path]:
 
 
 def build_for_teams_steps(
-    plan: Plan, sources: Path, teams: Iterable[str], secret: str, assignments: Path, solutions: Path | None
+    plan: Plan,
+    sources: Path,
+    teams: Iterable[str],
+    secret: str,
+    assignments: Path,
+    solutions: Path | None,
 ) -> Iterator[Path]:
     """Write the homeworks of which parameters vary for each team, in folders of their names; yield each file.
 
     Parameters
     ----------
-    plan, sources, assignments, solutions : as `handouts.build_steps` takes them; solutions are not run
+    plan, sources, assignments, solutions : as `handouts.build_steps` takes them; solutions are not
+        run
     teams : who work together, and get one sheet
     secret : the course's, which draws the variants
 
     Raises
     ------
     ValueError
-        Where no task of the plan has parameters, and for a source that does not ask what a variant rewords.
+        Where no task of the plan has parameters, and for a source that does not ask what a variant
+        rewords.
     """
     varied = [one for one in plan.homeworks.values() if any(task.parameters for task in one.tasks)]
     if not varied:
-        raise ValueError("expected a plan that gives parameters to a task, got one that asks all the same")
+        raise ValueError(
+            "expected a plan that gives parameters to a task, got one that asks all the same"
+        )
     for team, homework in product(teams, varied):
         made = handouts.made_of(plan, variants.draw(homework, team, secret), sources)
         for folder, sheet in ((assignments, made.assignment), (solutions, made.solution)):

@@ -31,7 +31,9 @@ WORTH = 0.3  # share of a task, from which its passages are shown
 TEXT = 8_000  # characters of a task that are shown
 COLUMNS = ("one", "other", "share", "one in other", "other in one", "tasks on the other's sheet")
 Piece = tuple[str, bool]  # of a text, and whether the other has it
-Asked = tuple[dict[str, str], dict[str, str]]  # variants by task: a team's, and others of the sheet it has
+Asked = tuple[
+    dict[str, str], dict[str, str]
+]  # variants by task: a team's, and others of the sheet it has
 
 
 class Row(NamedTuple):
@@ -61,7 +63,9 @@ def write_steps(
         yield one.work.team
     found = similarity.compare(each, authored.handout_code(homework.name), library(homework))
     asked = {one.work.team: asked_of(homework, one.work, secret) for one in each}
-    pairs = [((each[a].work.team, each[b].work.team), shares) for a, b, *shares in found.pairs[:ROWS]]
+    pairs = [
+        ((each[a].work.team, each[b].work.team), shares) for a, b, *shares in found.pairs[:ROWS]
+    ]
     table = [
         (*both, *map("{:.3f}".format, shares), str(exchanged(*(asked[team] for team in both))))
         for both, shares in pairs
@@ -74,7 +78,9 @@ def asked_of(homework: plan.Homework, work: authored.Work, secret: str) -> Asked
     """Return of which tasks a team is asked which variant, and its sheet another."""
     tasks = variants.draw(homework, work.team, secret, work.variants).tasks
     own, said = {task.id: task.variant for task in tasks}, work.variants
-    return own, {} if said is None else dict({id: said.get(id, "") for id in own}.items() - own.items())
+    return own, {} if said is None else dict(
+        {id: said.get(id, "") for id in own}.items() - own.items()
+    )
 
 
 def exchanged(one: Asked, other: Asked) -> int:
@@ -90,7 +96,9 @@ def exchanged(one: Asked, other: Asked) -> int:
 
 def library(homework: plan.Homework) -> str:
     """Return the library's functions of a homework as `authored` reads those of a team."""
-    alone = {task.id: inline.inlined({task.id: task.function})[task.id].text for task in homework.tasks}
+    alone = {
+        task.id: inline.inlined({task.id: task.function})[task.id].text for task in homework.tasks
+    }
     texts = [
         (task.id, rewording.reword(task.id, variant, alone[task.id]))
         for task in homework.tasks
@@ -114,7 +122,9 @@ def page(
 ) -> str:
     """Return the page; whatever students wrote is text on it."""
     library = {
-        task: sorted((each[n].work.team, share) for n, share in all.items() if share >= similarity.THRESHOLD)
+        task: sorted(
+            (each[n].work.team, share) for n, share in all.items() if share >= similarity.THRESHOLD
+        )
         for task, all in found.library.items()
     }
     environment = templates(Path(__file__).parent)
@@ -142,11 +152,15 @@ def rows(found: similarity.Likeness, pair: similarity.Pair) -> list[Row]:
             _, (forth, back), places = compare_files(one, other)
             row = Row(task, float(forth), float(back))
             if max(forth, back) >= WORTH:
-                texts = (pieces(text.raw_code, at) for text, at in zip((one, other), places, strict=True))
+                texts = (
+                    pieces(text.raw_code, at) for text, at in zip((one, other), places, strict=True)
+                )
                 row = Row(*row[:3], *texts)
             each.append(row)
             signs.append((one.token_coverage, other.token_coverage))
-    both = np.sum([np.multiply(row[1:3], size) for row, size in zip(each, signs, strict=True)], axis=0)
+    both = np.sum(
+        [np.multiply(row[1:3], size) for row, size in zip(each, signs, strict=True)], axis=0
+    )
     return [Row("", *(both / np.sum(signs, axis=0)).tolist()), *each]
 
 
@@ -165,7 +179,10 @@ def pieces(text: str, places: np.ndarray) -> tuple[Piece, ...]:
         part = text[start : min(end, last)]
         ends += [start, start + len(part.rstrip())] if part.strip() else []
     ends.append(last)
-    parts = [(_visible(text[a:b]), k % 2 == 1) for k, (a, b) in enumerate(zip(ends, ends[1:], strict=False))]
+    parts = [
+        (_visible(text[a:b]), k % 2 == 1)
+        for k, (a, b) in enumerate(zip(ends, ends[1:], strict=False))
+    ]
     return tuple(part for part in parts if part[0])
 
 

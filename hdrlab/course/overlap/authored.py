@@ -1,7 +1,7 @@
 """What of a homework a team wrote itself: each task's function with its helpers, without what all were given.
 
-It is read and never run, and within bounds, since it is read where the whole class is at hand: what is longer
-than any homework, or nested too deep, is left out, and it is said.
+It is read and never run, and within bounds, since it is read where the whole class is at hand: what
+is longer than any homework, or nested too deep, is left out, and it is said.
 """
 
 import ast
@@ -70,10 +70,12 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
 def own(text: str, homework: str, others: Collection[str]) -> str:
     """Return the statements of a task that are neither imports, nor given, nor other tasks, by their shape.
 
-    So two texts that hold the same statements are one text, in whatever order, under whatever names. It has
-    no empty lines: copydetect takes a time that is quadratic in them.
+    So two texts that hold the same statements are one text, in whatever order, under whatever
+    names. It has no empty lines: copydetect takes a time that is quadratic in them.
     """
-    with warnings.catch_warnings(action="ignore"):  # of the parser, which every odd number has one of
+    with warnings.catch_warnings(
+        action="ignore"
+    ):  # of the parser, which every odd number has one of
         parts = sorted(_own(text, _given(homework), others), key=_shape)
     return "\n".join(line for part in parts for line in part.split("\n") if line.strip())
 
@@ -104,7 +106,9 @@ def _statements(text: str) -> Iterator[tuple[ast.stmt, str]]:
 @cache
 def _given(homework: str) -> frozenset[str]:
     """Return the statements that a homework's handout gives."""
-    return frozenset(part for cell in handouts.given_cells(homework) for _, part in _statements(cell.text))
+    return frozenset(
+        part for cell in handouts.given_cells(homework) for _, part in _statements(cell.text)
+    )
 
 
 def handout_code(homework: str) -> tuple[str, ...]:

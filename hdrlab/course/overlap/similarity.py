@@ -1,6 +1,7 @@
 """How alike the works of a class are: what of one stands in another (Schleimer, Wilkerson and Aiken, 2003).
 
-copydetect reads Python as signs: every name is V, every string S, comments and spaces are nothing. It takes a
+copydetect reads Python as signs: every name is V, every string S, comments and spaces are nothing.
+It takes a
 fingerprint of each run of `RUN` signs. A passage is alike where these are the same. All fingerprints count:
 winnowing would choose some of them by Python's hash, which is another one in each process.
 
@@ -52,7 +53,8 @@ class Likeness(NamedTuple):
     ----------
     pairs : at or above the threshold, the most alike first
     counts : (BINS,) how many pairs have such a share
-    own : of each task, the fingerprints of those works that have enough of their own, by their places
+    own : of each task, the fingerprints of those works that have enough of their own, by their
+        places
     short : of each task, how many works have less
     library : of each task, the works by their places, and what of each stands in the library
     """
@@ -125,12 +127,18 @@ def compare(each: Sequence[Printed], given: Sequence[str] = (), library: str = "
     own: dict[str, dict[int, CodeFingerprint]] = {}
     short, copied = {}, {}
     for task in dict.fromkeys(task for printed in each for task in printed.tasks):
-        has = {n: printed.tasks[task].raw_code for n, printed in enumerate(each) if task in printed.tasks}
+        has = {
+            n: printed.tasks[task].raw_code
+            for n, printed in enumerate(each)
+            if task in printed.tasks
+        }
         copied[task] = {n: in_library[text] for n, text in has.items() if text in long}
         enough = {n: mine[text] for n, text in has.items() if text in long}
         own[task] = {n: one for n, one in enough.items() if one.token_coverage >= SHORT}
         short[task] = len(has) - len(own[task])
-    return Likeness(*_pairs([one.work.team for one in each], shares(len(each), own)), own, short, copied)
+    return Likeness(
+        *_pairs([one.work.team for one in each], shares(len(each), own)), own, short, copied
+    )
 
 
 def shares(n: int, own: Mapping[str, Mapping[int, CodeFingerprint]]) -> np.ndarray:
@@ -154,7 +162,9 @@ def covered(prints: Sequence[CodeFingerprint]) -> np.ndarray:
     It is what `compare_files` counts, of one and all others at once.
     """
     places = [np.array([at for all in one.hash_idx.values() for at in all], int) for one in prints]
-    marks = [np.array([each for each, all in one.hash_idx.items() for _ in all], int) for one in prints]
+    marks = [
+        np.array([each for each, all in one.hash_idx.items() for _ in all], int) for one in prints
+    ]
     known, column = np.unique(np.concatenate(marks), return_inverse=True)
     sizes = [len(one) for one in marks]
     holder = np.repeat(np.arange(len(prints)), sizes)

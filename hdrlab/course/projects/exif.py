@@ -1,8 +1,9 @@
 """What a photograph says of its exposure, kept; where it was taken and by which very camera, left out.
 
-EXIF is a small TIFF file: directories of entries (tag, type, count, value), of which the first names the one
-of the camera's settings. It is written anew from the entries on a list, so that what nobody thought of is
-left out as well: positions, serial numbers, owners, notes that only the maker can read, a small picture.
+EXIF is a small TIFF file: directories of entries (tag, type, count, value), of which the first
+names the one of the camera's settings. It is written anew from the entries on a list, so that what
+nobody thought of is left out as well: positions, serial numbers, owners, notes that only the maker
+can read, a small picture.
 """
 
 import struct

@@ -1,8 +1,9 @@
 """Photographs without where they were taken and which camera took them, their pixels untouched to the bit.
 
-The coded pixels of JPEG and PNG are copied; EXIF is written anew (see `exif`), a colour profile stays, and
-everything else that programs add is left out. In TIFF and in RAW files, whose parts point at each other, what
-tells is blanked where it stands. A RAW file needs its maker's notes, in which a serial number may stand.
+The coded pixels of JPEG and PNG are copied; EXIF is written anew (see `exif`), a colour profile
+stays, and everything else that programs add is left out. In TIFF and in RAW files, whose parts
+point at each other, what tells is blanked where it stands. A RAW file needs its maker's notes, in
+which a serial number may stand.
 """
 
 import struct
@@ -14,7 +15,9 @@ from hdrlab.course.projects import exif
 from hdrlab.course.projects.project import FILES
 from hdrlab.io.codecs import jpeg_parts
 
-PICTURES, TIFF_LIKE, PLAIN_CHUNKS = ({*FILES["cleaned"][one]} for one in ("pictures", "raw", "chunks"))
+PICTURES, TIFF_LIKE, PLAIN_CHUNKS = (
+    {*FILES["cleaned"][one]} for one in ("pictures", "raw", "chunks")
+)
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
@@ -43,8 +46,12 @@ def clean(name: str | Path, data: bytes) -> Cleaned:
         if data[:4] in (b"II*\0", b"MM\0*") and suffix in PICTURES | TIFF_LIKE:
             return _tiff(data, raw=suffix in TIFF_LIKE)
     except (struct.error, IndexError, ValueError) as error:
-        raise ValueError(f"{name}: expected a picture, it is cut short or damaged ({error})") from None
-    raise ValueError(f"{name}: expected JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF, others cannot be cleaned")
+        raise ValueError(
+            f"{name}: expected a picture, it is cut short or damaged ({error})"
+        ) from None
+    raise ValueError(
+        f"{name}: expected JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF, others cannot be cleaned"
+    )
 
 
 def _exif(block: bytes) -> tuple[bytes, set[str]]:
@@ -67,7 +74,9 @@ def _jpeg(data: bytes) -> Cleaned:
         elif not marker and before != 0xDA and body.strip(b"\xff"):
             raise ValueError("expected a marker of JPEG, the file is damaged")
         if marker:
-            out += bytes((0xFF, marker)) + (b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2))
+            out += bytes((0xFF, marker)) + (
+                b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2)
+            )
         out += body
     if end < len(data):
         removed.add("what follows the picture")
@@ -80,7 +89,9 @@ def _application(marker: int, body: bytes) -> tuple[bytes, set[str]]:
         kept, told = _exif(body[6:])
         return (b"Exif\0\0" + kept if kept else b""), told
     if (marker, body[:5]) == (0xE0, b"JFIF\0"):
-        return body[:14] if len(body) < 14 else body[:12] + bytes(2), set()  # without its small picture
+        return body[:14] if len(body) < 14 else body[:12] + bytes(
+            2
+        ), set()  # without its small picture
     if (marker, body[:5]) == (0xEE, b"Adobe") or (marker, body[:12]) == (0xE2, b"ICC_PROFILE\0"):
         return body, set()
     if b"GPS" in body:
@@ -102,7 +113,12 @@ def _png(data: bytes) -> Cleaned:
             removed.add("location" if b"GPS" in body else "what programs added")
             body = b""
         if body or kind == b"IEND":
-            out += struct.pack(">L", len(body)) + kind + body + struct.pack(">L", zlib.crc32(kind + body))
+            out += (
+                struct.pack(">L", len(body))
+                + kind
+                + body
+                + struct.pack(">L", zlib.crc32(kind + body))
+            )
         at += 12 + length
     if at < len(data):
         removed.add("what follows the picture")
@@ -128,7 +144,9 @@ def _tiff(data: bytes, *, raw: bool) -> Cleaned:
                 place = struct.unpack(f"{sign}L", entry.value[:4])[0]
                 _blank(out, place, exif.directory(data, place, sign)[0], gone, sign)
         at = following
-    return Cleaned(bytes(out), frozenset(removed), "a serial number in its maker's notes" if raw else "")
+    return Cleaned(
+        bytes(out), frozenset(removed), "a serial number in its maker's notes" if raw else ""
+    )
 
 
 def _blank(out: bytearray, at: int, entries: list[exif.Entry], gone: set[int], sign: str) -> None:

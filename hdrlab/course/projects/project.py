@@ -89,7 +89,12 @@ def _files(folder: Path) -> Iterator[Path]:
         folders[:] = [one for one in folders if one not in FILES["left_out"] and one[0] != "."]
         for name in names:
             path = Path(home, name)
-            if name[0] != "." and not path.is_symlink() and path.is_file() and not name.endswith(".pyc"):
+            if (
+                name[0] != "."
+                and not path.is_symlink()
+                and path.is_file()
+                and not name.endswith(".pyc")
+            ):
                 yield path
 
 
@@ -117,5 +122,7 @@ def _about(path: Path) -> About:
         students = (students,)
     if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
         raise ValueError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
-    title, caption = (plain(str(said.get(key, "")), most) for key, most in (("title", 60), ("caption", 280)))
+    title, caption = (
+        plain(str(said.get(key, "")), most) for key, most in (("title", 60), ("caption", 280))
+    )
     return About(tuple(plain(one, 80) for one in students), title, caption)

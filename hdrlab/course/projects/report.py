@@ -1,8 +1,8 @@
 """The report on a student's project: their words, and bracket, curves, map and artifact where they belong.
 
-The artifact opens the page. The bracket follows the description, the curves the algorithm, the map the
-results; where such a section is missing the figure gets one of its own. Nothing on the page is fetched, and
-nothing on it runs.
+The artifact opens the page. The bracket follows the description, the curves the algorithm, the map
+the results; where such a section is missing the figure gets one of its own. Nothing on the page is
+fetched, and nothing on it runs.
 """
 
 from collections.abc import Callable, Iterator
@@ -54,7 +54,9 @@ def write_report(project: Project) -> Written:
         Where there are no words to make a page of.
     """
     if project.words is None:
-        raise ValueError(f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}")
+        raise ValueError(
+            f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}"
+        )
     said = words.read(project.words)
     notes = list(said.notes)
     found = dict(_figures(project, notes))
@@ -69,7 +71,12 @@ def write_report(project: Project) -> Written:
 def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
     """Yield what can be shown, by name; what cannot is noted."""
     makers: tuple[tuple[str, Any, Callable[[Any], Any], str], ...] = (
-        ("artifact", project.artifact, _artifact, "artifact.jpg, the picture that you made of the map"),
+        (
+            "artifact",
+            project.artifact,
+            _artifact,
+            "artifact.jpg, the picture that you made of the map",
+        ),
         ("bracket", project.photographs, _bracket, f"photographs in the folder {ALBUMS[0]}"),
         ("curves", project.curve, _curves, "response.csv, the curve that you found"),
         ("map", project.map, _map, "map.hdr, your radiance map"),
@@ -85,7 +92,9 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
 
 
 def _artifact(path: Path) -> figures.Illustration:
-    return figures.photograph(to_256(photos.read_photo(path)), 1600, "The artifact: the map as a picture")
+    return figures.photograph(
+        to_256(photos.read_photo(path)), 1600, "The artifact: the map as a picture"
+    )
 
 
 def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:

@@ -1,6 +1,7 @@
 """What the assignment asks of a project, and what of it is missing, as a person would say it.
 
-What is asked for: complete source, a report, the photographs with their EXIF, the radiance map, the artifact.
+What is asked for: complete source, a report, the photographs with their EXIF, the radiance map, the
+artifact.
 """
 
 import ast
@@ -22,7 +23,9 @@ from hdrlab.course.projects.words import ASKED
 from hdrlab.io import decode, radiance
 
 TEAM = 2  # students at most
-FETCHED = re.compile(r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""")
+FETCHED = re.compile(
+    r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)"""
+)
 
 
 class Finding(NamedTuple):
@@ -91,7 +94,9 @@ def _foreign(project: Project) -> list[str]:
     here = {path.stem for path in project.sources} | {path.parent.name for path in project.sources}
     missing: dict[str, str] = {}
     for path in (one for one in project.sources if one.suffix == ".py"):
-        for top in dict.fromkeys(one.split(".")[0] for one in sorted(names.modules(path.read_bytes()))):
+        for top in dict.fromkeys(
+            one.split(".")[0] for one in sorted(names.modules(path.read_bytes()))
+        ):
             if top not in here and top not in sys.stdlib_module_names and find_spec(top) is None:
                 missing.setdefault(top, project.name(path))
     why = "which is neither in the folder nor installed"
@@ -106,7 +111,9 @@ def _report(project: Project) -> str:
         wrong = [f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again."]
     text = project.page.read_text(encoding="utf8", errors="replace")
     heads = " ".join(re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.DOTALL | re.IGNORECASE))
-    if missing := [name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)]:
+    if missing := [
+        name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)
+    ]:
         wrong.append(f"{PAGE} has no heading about: {', '.join(missing)}.")
     if fetched := FETCHED.search(text):
         wrong.append(f"{PAGE} fetches {fetched[1][:80]}, which may be gone when it is read.")
@@ -154,7 +161,9 @@ def _artifact(project: Project) -> str:
 
 def _archive(project: Project, limits: Limits = LIMITS) -> str:
     """Return "", unless the course would refuse the archive."""
-    members = [Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files]
+    members = [
+        Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files
+    ]
     try:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.total, limits)

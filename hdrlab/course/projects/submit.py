@@ -43,7 +43,9 @@ def pack(project: Project, *, keep: bool = False) -> Iterator[Packed]:
             yield Packed(name, *privacy.clean(name, data))
 
 
-def write(project: Project, archive: Path, files: list[Packed], *, now: datetime | None = None) -> str:
+def write(
+    project: Project, archive: Path, files: list[Packed], *, now: datetime | None = None
+) -> str:
     """Write the archive of a project, with a description of it, and return its digest.
 
     Parameters

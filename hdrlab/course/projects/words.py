@@ -1,7 +1,7 @@
 """A student's words, in Markdown or in a short notebook, as the sections of a page.
 
-Headings part them. HTML in the words is shown as it is written, links lead to the web alone, and pictures
-come out of the project's folder, decoded and encoded again.
+Headings part them. HTML in the words is shown as it is written, links lead to the web alone, and
+pictures come out of the project's folder, decoded and encoded again.
 """
 
 import base64
@@ -96,7 +96,9 @@ def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words
     """Return Markdown as Words; pictures are looked up by name, and then in the folder."""
     notes: list[str] = []
     parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable("strikethrough")
-    if max(line.count("|") for line in text.split("\n")) <= COLUMNS:  # else its time grows with their square
+    if (
+        max(line.count("|") for line in text.split("\n")) <= COLUMNS
+    ):  # else its time grows with their square
         parser.enable("table")
     parser.add_render_rule("image", _drawing(folder, pictures or {}, notes))
     tokens = parser.parse(text)

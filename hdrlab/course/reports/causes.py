@@ -1,11 +1,13 @@
 """One mistake costs once: a task's points among its promises, and the failures that follow from another.
 
 root     the failure that the others of its task follow from: the first where a well-known mistake is named,
-         the promise that another one `needs`, or the first call that was too late, or ended in the same words
+         the promise that another one `needs`, or the first call that was too late, or ended in the
+         same words
 once     whether one well-known mistake explains all that was answered, and is not what the task is about: it
          costs half of the task's points at most
 
-There is one rule of rounding: a promise is worth whole or half points, and so is what a mistake costs.
+There is one rule of rounding: a promise is worth whole or half points, and so is what a mistake
+costs.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,8 +20,8 @@ from hdrlab.course.reports.results import Check
 def in_halves(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
     """Return points shared out by weights, in whole and half points that sum to them.
 
-    The halves that are left over go to the largest remainders, and what is less than a half to the largest
-    share.
+    The halves that are left over go to the largest remainders, and what is less than a half to the
+    largest share.
 
     Examples
     --------
@@ -74,4 +76,8 @@ def _root(check: Check, broken: Mapping[str, Check], needs: Mapping[str, str]) -
 
 def _ends_alike(one: Check, other: Check) -> bool:
     """Return whether two checks had no answer for the same reason."""
-    return bool(one.kind) and one.kind == other.kind and (one.kind == "late" or one.message == other.message)
+    return (
+        bool(one.kind)
+        and one.kind == other.kind
+        and (one.kind == "late" or one.message == other.message)
+    )

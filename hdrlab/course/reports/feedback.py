@@ -1,7 +1,7 @@
 """What a student reads of a Result: in a notebook, on a page that travels alone, or at a terminal.
 
-Everything that a student wrote, or that their function said, is text here: it is escaped where it is put in,
-and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
+Everything that a student wrote, or that their function said, is text here: it is escaped where it
+is put in, and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
 """
 
 import re
@@ -14,7 +14,9 @@ from hdrlab.course.reports import results
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 
-FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
+FORBIDDEN = re.compile(
+    "[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
+)  # what XML 1.0 cannot hold
 
 
 def fragment(result: results.Result, *, private: bool = False) -> str:
@@ -35,7 +37,12 @@ def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
 
 def page(result: results.Result, *, private: bool = False) -> str:
     """Return a Result as a page, complete in itself: it fetches nothing and runs nothing."""
-    return environment().get_template("feedback_page.html").render(result=result, private=private).lstrip()
+    return (
+        environment()
+        .get_template("feedback_page.html")
+        .render(result=result, private=private)
+        .lstrip()
+    )
 
 
 def text(result: results.Result, *, hints: int = 0, private: bool = False) -> str:

@@ -1,6 +1,7 @@
 """A Result in the forms that others read: Gradescope's results.json, JUnit's XML, a table for a spreadsheet.
 
-Whatever a student wrote stays text in them: XML without control characters, cells that are no formula.
+Whatever a student wrote stays text in them: XML without control characters, cells that are no
+formula.
 """
 
 from pathlib import Path
@@ -35,8 +36,8 @@ def table(result: results.Result) -> str:
 def write_results(folder: Path, result: results.Result, shown: bytes | None = None) -> list[Path]:
     """Write a Result in all forms into a folder, which is made where it is missing; return the files.
 
-    The JSON is written last: where it is, all of it is. It is `shown` where a team is to read it, and the
-    whole Result unless told. The files are for their owner's eyes.
+    The JSON is written last: where it is, all of it is. It is `shown` where a team is to read it,
+    and the whole Result unless told. The files are for their owner's eyes.
     """
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     contents = {

@@ -1,6 +1,7 @@
 """What checking a submission comes to: promise by promise, and as JSON, which is the source of all reports.
 
-The JSON of one submission under the same checks is the same to the byte: no times of day, no durations.
+The JSON of one submission under the same checks is the same to the byte: no times of day, no
+durations.
 """
 
 import base64
@@ -13,7 +14,17 @@ CREDIT = ("strict", "container")  # tiers that count
 DERIVED = ("for_credit", "score", "max_score")  # what the JSON says beside a Result's fields
 # what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
 TEAM_SEES = (
-    *("version", "student", "homework", "title", "tier", "for_credit", "score", "max_score", "problems"),
+    *(
+        "version",
+        "student",
+        "homework",
+        "title",
+        "tier",
+        "for_credit",
+        "score",
+        "max_score",
+        "problems",
+    ),
     *("misconceptions", "checks", "submission", "specification", "seed", "versions"),
 )
 OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
@@ -38,13 +49,15 @@ class Check(NamedTuple):
     name : of the test function
     promise : the same in words
     points, max_points : earned, and to be earned
-    outcome : "holds", "fails", or "no answer" where the function raised, took too long or is missing
+    outcome : "holds", "fails", or "no answer" where the function raised, took too long or is
+        missing
     message : why not, in words
     hints : from vague to plain
     drawing : expected, came, difference
     said : what the function printed meanwhile
     hidden : whether it is one of the instructor's own, of which a student sees the outcome alone
-    kind : of no answer: "missing", "raised", "late", "died", "refused", "damaged", or "killed" from outside
+    kind : of no answer: "missing", "raised", "late", "died", "refused", "damaged", or "killed" from
+        outside
     follows : of a failure that follows from another one of its task: the promise that failed there
     """
 
@@ -135,7 +148,11 @@ def to_json(result: Result) -> bytes:
     >>> from_json(to_json(result)) == result
     True
     """
-    whole = {"version": VERSION, **result._asdict(), **{name: getattr(result, name) for name in DERIVED}}
+    whole = {
+        "version": VERSION,
+        **result._asdict(),
+        **{name: getattr(result, name) for name in DERIVED},
+    }
     whole["checks"] = [_check_to_json(one) for one in result.checks]
     return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
 
@@ -145,7 +162,8 @@ def for_team(data: bytes) -> bytes:
     whole = json.loads(data)
     shown = {name: whole[name] for name in TEAM_SEES}
     shown["checks"] = [
-        {name: one[name] for name in (OF_HIDDEN if one["hidden"] else OF_OWN)} for one in whole["checks"]
+        {name: one[name] for name in (OF_HIDDEN if one["hidden"] else OF_OWN)}
+        for one in whole["checks"]
     ]
     return (json.dumps(shown, indent=1, ensure_ascii=True) + "\n").encode()
 
@@ -194,11 +212,15 @@ def from_json(data: bytes) -> Result:
         rest |= {"checks": checks, "problems": tuple(read["problems"])}
         return Result(**rest)
     except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
-        raise ValueError(f"expected a result written by hdrlab grade, {error!r:.200} is wrong") from None
+        raise ValueError(
+            f"expected a result written by hdrlab grade, {error!r:.200} is wrong"
+        ) from None
 
 
 def _check_from_json(read: dict[str, Any]) -> Check:
     early = {"kind": "", "follows": ""}  # which a result of an early version lacks
     own = early | {name: read[name] for name in Check._fields if name not in early or name in read}
     own |= {name: Fraction(read["exact"][name]) for name in ("points", "max_points")}
-    return Check(**{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])})
+    return Check(
+        **{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])}
+    )

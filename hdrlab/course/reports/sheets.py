@@ -1,8 +1,8 @@
 """Tables for a spreadsheet: CSV whose cells are text, whatever a student put into a name or a title.
 
-A spreadsheet takes a cell that begins with =, +, - or @ for a formula and runs it when the file is opened.
-Such a cell is written with an apostrophe before it, which spreadsheets show as the text that follows.
-Numbers, negative ones too, stay numbers.
+A spreadsheet takes a cell that begins with =, +, - or @ for a formula and runs it when the file is
+opened. Such a cell is written with an apostrophe before it, which spreadsheets show as the text
+that follows. Numbers, negative ones too, stay numbers.
 """
 
 import csv
@@ -15,7 +15,9 @@ from pathlib import Path
 from hdrlab.io.files import write
 
 Cell = str | int | float | None
-FORMULA = re.compile(r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]")  # the wide forms are taken for the narrow ones
+FORMULA = re.compile(
+    r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]"
+)  # the wide forms are taken for the narrow ones
 NUMBER = re.compile(r"^[+-]?\d+(\.\d+)?([eE][+-]?\d+)?$", re.ASCII)
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 
@@ -44,7 +46,11 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def write_csv(
-    path: str | Path, header: Sequence[str], rows: Iterable[Sequence[Cell]], *, private: bool = False
+    path: str | Path,
+    header: Sequence[str],
+    rows: Iterable[Sequence[Cell]],
+    *,
+    private: bool = False,
 ) -> Path:
     """Write a table whole or not at all, in UTF-8 with the mark that spreadsheets ask for.
 
@@ -59,19 +65,26 @@ def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]
     Raises
     ------
     ValueError
-        For a file that is larger than `most` bytes, is not UTF-8, or has a row longer than its header.
+        For a file that is larger than `most` bytes, is not UTF-8, or has a row longer than its
+        header.
     """
     path = Path(path)
     if path.stat().st_size > most:
-        raise ValueError(f"{path}: expected a table of at most {most} bytes, got {path.stat().st_size}")
+        raise ValueError(
+            f"{path}: expected a table of at most {most} bytes, got {path.stat().st_size}"
+        )
     try:
         text = path.read_text(encoding="utf-8-sig")
-        lines = [line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)]
+        lines = [
+            line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)
+        ]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"{path}: expected a table in UTF-8 ({error})") from None
     if not lines:
         raise ValueError(f"{path}: expected a header and rows, it is empty")
     header = [name.strip().lower() for name in lines[0]]
     if (longest := max(map(len, lines))) > len(header):
-        raise ValueError(f"{path}: expected {len(header)} cells a row, as in its header, got {longest}")
+        raise ValueError(
+            f"{path}: expected {len(header)} cells a row, as in its header, got {longest}"
+        )
     return [dict(zip_longest(header, map(str.strip, line), fillvalue="")) for line in lines[1:]]

@@ -1,8 +1,8 @@
 """The container tier, for machines where namespaces cannot nest: a user of its own, a fence, limits, filters.
 
-The container around it keeps the machine and the network away: its owner says so. Here a spare user,
-Landlock, the limits and the filter of system calls keep submissions from the grader and from each other. What
-a file holds is kept from them; that there is a file of a certain name is not.
+The container around it keeps the machine and the network away: its owner says so. Here a spare
+user, Landlock, the limits and the filter of system calls keep submissions from the grader and from
+each other. What a file holds is kept from them; that there is a file of a certain name is not.
 """
 
 import os
@@ -25,9 +25,13 @@ def sandbox() -> running.Sandbox:
     if sys.platform != "linux":
         raise running.Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
     if os.geteuid() != 0:
-        raise running.Unavailable("the container tier needs root, which alone can become another user")
+        raise running.Unavailable(
+            "the container tier needs root, which alone can become another user"
+        )
     if descent.landlock() == 0:
-        raise running.Unavailable("the container tier needs Landlock, which this kernel or container lacks")
+        raise running.Unavailable(
+            "the container tier needs Landlock, which this kernel or container lacks"
+        )
     return running.Sandbox("container", True, launch, program=filters.program("check"))
 
 
@@ -47,7 +51,9 @@ def launch(control: socket) -> running.Launched:
             user=user,
             homes=homes,
             fence={"read": read, "walk": walk, "write": [os.devnull]},
-            command=running.command(python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders),
+            command=running.command(
+                python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders
+            ),
             environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
         )
         return running.Launched(running.start(words, {}, control.fileno()), held.pop_all().close)

@@ -1,7 +1,7 @@
 """What a sandbox holds: the interpreter, the libraries it needs, numpy, scipy, and four files of ours.
 
-An interpreter keeps other packages beside its own modules. They are left out: `Contents.hidden` names those
-folders.
+An interpreter keeps other packages beside its own modules. They are left out: `Contents.hidden`
+names those folders.
 """
 
 import os
@@ -84,7 +84,10 @@ def _libraries() -> dict[str, str]:
     triplet = sysconfig.get_config_var("MULTIARCH") or f"{platform.machine()}-linux-gnu"
     many = [f"{root}/{triplet}" for root in ("/lib", "/usr/lib")]
     few = ["/lib64", "/usr/lib64", *([] if any(map(os.path.isdir, many)) else ["/lib", "/usr/lib"])]
-    links = ["/etc/ld.so.cache", "/etc/alternatives"]  # a system's own numpy finds its BLAS through them
+    links = [
+        "/etc/ld.so.cache",
+        "/etc/alternatives",
+    ]  # a system's own numpy finds its BLAS through them
     return {name: os.path.realpath(name) for name in many + few + links if os.path.exists(name)}
 
 

@@ -1,10 +1,11 @@
 """Run as root: arrange what another user is to see, become that user for good, and start a program.
 
-An interpreter under a home folder cannot be read by that user, whom its owner keeps out. Two ways lead there
-all the same.
+An interpreter under a home folder cannot be read by that user, whom its owner keeps out. Two ways
+lead there all the same.
 
 stage  for the strict tier: a file system of this process's own is put over STAGE, and the paths are bound to
-       STAGE/0, STAGE/1, ... for bubblewrap to take; nobody else sees it, and it ends with the process
+       STAGE/0, STAGE/1, ... for bubblewrap to take; nobody else sees it, and it ends with the
+       process
 homes  for the container tier: root opens the folders, and the user reaches them as /proc/self/fd/3, 4, ...
 fence  for the container tier: Landlock lets what comes of this process read what is listed, and write nothing
 
@@ -18,11 +19,17 @@ import stat
 import struct
 import sys
 
-STAGE = "/tmp"  # it is everywhere, and what lies in it is reached by descriptors that were opened before
+# it is everywhere, and what lies in it is reached by descriptors that were opened before
+STAGE = "/tmp"
 NEW_MOUNTS, BIND, RECURSIVE, PRIVATE = 0x20000, 4096, 16384, 1 << 18  # of unshare and mount
 CREATE, ADD, RESTRICT = 444, 445, 446  # Landlock's system calls, the same on every processor
 EXECUTE, WRITE_FILE, READ_FILE, READ_DIR = 1, 2, 4, 8  # its rights
-RIGHTS = ((1, 13), (2, 14), (3, 15), (5, 16))  # since which of its versions there are how many of them
+RIGHTS = (
+    (1, 13),
+    (2, 14),
+    (3, 15),
+    (5, 16),
+)  # since which of its versions there are how many of them
 DIE_WITH_PARENT, NO_NEW_PRIVILEGES, KILL = 1, 38, 9  # of prctl
 _libc = ctypes.CDLL(None, use_errno=True)
 
@@ -65,16 +72,25 @@ def fence(read: list[str], walk: list[str], write: list[str]) -> None:
     """Let this process read what is in `read`, list the folders of `walk`, write to `write`, and no more."""
     known = landlock()
     rights = (1 << max(count for since, count in RIGHTS if since <= known)) - 1
-    nets, scopes = (3 if known >= 4 else 0), (3 if known >= 6 else 0)  # ports; signals and names of sockets
+    nets, scopes = (
+        (3 if known >= 4 else 0),
+        (3 if known >= 6 else 0),
+    )  # ports; signals and names of sockets
     size = 24 if known >= 6 else 16 if known >= 4 else 8
-    rules = check_answer(_libc.syscall(CREATE, struct.pack("=QQQ", rights, nets, scopes), size, 0), "a fence")
+    rules = check_answer(
+        _libc.syscall(CREATE, struct.pack("=QQQ", rights, nets, scopes), size, 0), "a fence"
+    )
     wanted = [(path, READ_FILE | READ_DIR | EXECUTE) for path in read]
-    wanted += [(path, READ_DIR) for path in walk] + [(path, READ_FILE | WRITE_FILE) for path in write]
+    wanted += [(path, READ_DIR) for path in walk] + [
+        (path, READ_FILE | WRITE_FILE) for path in write
+    ]
     for path, right in wanted:
         place = os.open(path, os.O_PATH)
         if not stat.S_ISDIR(os.fstat(place).st_mode):
             right &= ~READ_DIR
-        check_answer(_libc.syscall(ADD, rules, 1, struct.pack("=Qi", right, place), 0), f"a rule for {path}")
+        check_answer(
+            _libc.syscall(ADD, rules, 1, struct.pack("=Qi", right, place), 0), f"a rule for {path}"
+        )
         os.close(place)
     check_answer(_libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0), "giving up privileges")
     check_answer(_libc.syscall(RESTRICT, rules, 0), "the fence")

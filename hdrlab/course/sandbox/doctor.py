@@ -1,8 +1,8 @@
 """What this machine can give: each tier is tried, and what is missing is said, with what would help.
 
-A trial starts the sandbox and asks a function in it to break out, harmlessly, past Python's own refusals: to
-read a file of hdrlab, to start a process, to make a socket and a file. A tier for credit works if all of it
-fails.
+A trial starts the sandbox and asks a function in it to break out, harmlessly, past Python's own
+refusals: to read a file of hdrlab, to start a process, to make a socket and a file. A tier for
+credit works if all of it fails.
 """
 
 import time
@@ -16,7 +16,9 @@ from hdrlab.course.sandbox import practice, running, tiers
 
 TRIES = 3  # of a tier that does not start: somebody may have ended it
 BREAK_OUT = Path(__file__).with_name("break_out.txt").read_text("utf8")  # a function that tries
-REMEDIES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("remedies.toml").read_text("utf8"))
+REMEDIES: dict[str, Any] = tomllib.loads(
+    Path(__file__).with_name("remedies.toml").read_text("utf8")
+)
 
 
 class Finding(NamedTuple):
@@ -58,10 +60,14 @@ def examine(tier: str) -> Finding:
         return Finding(tier, False, credit, str(error), remedy(str(error)))
     if not credit:
         stops = "; ".join(practice.DOES_NOT_STOP)
-        return Finding(tier, True, False, f"started in {start:.2f} s. It does not stop: {stops}", "")
+        return Finding(
+            tier, True, False, f"started in {start:.2f} s. It does not stop: {stops}", ""
+        )
     if broken:
         says = f"it started, but {' and '.join(broken)}"
-        return Finding(tier, False, True, says, "do not grade on this machine, and please report this")
+        return Finding(
+            tier, False, True, says, "do not grade on this machine, and please report this"
+        )
     return Finding(tier, True, True, f"started in {start:.2f} s, and nothing got out", "")
 
 
@@ -91,7 +97,9 @@ def remedy(reason: str) -> str:
     >>> remedy("the strict tier needs bubblewrap, and there is no bwrap on the path").partition(" (")[0]
     'install bubblewrap 0.8 or later'
     """
-    known = [help for word, help in REMEDIES["install"].items() if word in reason.partition("\n")[0]]
+    known = [
+        help for word, help in REMEDIES["install"].items() if word in reason.partition("\n")[0]
+    ]
     if known and "did not start" not in reason:
         return known[0]
     if "strict" not in reason:  # the others need no namespaces

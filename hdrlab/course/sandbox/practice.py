@@ -1,7 +1,8 @@
 """The practice tier: a process of its own and limits. It keeps mistakes apart from the grader, and no attack.
 
-It serves a student's own computer, where a function that loops, crashes or fills the memory must not take the
-notebook with it. What it finds is never for credit, for it does not stop what DOES_NOT_STOP tells.
+It serves a student's own computer, where a function that loops, crashes or fills the memory must
+not take the notebook with it. What it finds is never for credit, for it does not stop what
+DOES_NOT_STOP tells.
 """
 
 import os
@@ -27,14 +28,20 @@ def sandbox() -> running.Sandbox:
 def launch(control: socket) -> running.Launched:
     """Start the supervisor with this interpreter, in an empty folder, without this process's environment."""
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
-    python = getattr(sys, "_base_executable", sys.executable)  # not the environment's, with all its packages
+    python = getattr(
+        sys, "_base_executable", sys.executable
+    )  # not the environment's, with all its packages
     words = running.command(python, str(running.PROGRAM), control.fileno(), running.packages())
     environment = running.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
-    environment |= {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}  # for Windows
+    environment |= {
+        name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ
+    }  # for Windows
     with ExitStack() as held:
         held.callback(shutil.rmtree, scratch, ignore_errors=True)
         if hasattr(control, "share"):  # on Windows
-            return running.Launched(_shared(words, environment, control, scratch), held.pop_all().close)
+            return running.Launched(
+                _shared(words, environment, control, scratch), held.pop_all().close
+            )
         process = running.start(words, environment, control.fileno(), folder=scratch)
         return running.Launched(process, held.pop_all().close, scratch)
 

@@ -3,9 +3,9 @@
 control  the socket on which the parent orders checks, and hears that they are begun and cleared away
 link     the socket of one check, on which its calls go out and its answers come back
 
-A submission has a sandbox to itself. Between its checks nothing is kept: the process is forked anew, what it
-started is ended, and there is no place for a file. Where a check does not end, the whole sandbox is ended and
-started anew.
+A submission has a sandbox to itself. Between its checks nothing is kept: the process is forked
+anew, what it started is ended, and there is no place for a file. Where a check does not end, the
+whole sandbox is ended and started anew.
 """
 
 import contextlib
@@ -21,12 +21,20 @@ from typing import Any, NamedTuple
 from hdrlab.course.sandbox.inside import channel
 
 START = 60.0  # seconds in which a sandbox must have started, on a machine however busy
-CLEAR = 10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
+CLEAR = (
+    10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
+)
 SETTLE = 1.0  # seconds for a process to end that has closed its control
 SIGNALLED = 128  # and a signal's number: what a launcher ends with when a signal has ended its own
 RULES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("rules.toml").read_text("utf8"))
 LIMITS, ENVIRONMENT = RULES["limits"], RULES["environment"]
-ORDERED = ("credit", "program", "alone", "forks", "limits")  # what the supervisor is told of its sandbox
+ORDERED = (
+    "credit",
+    "program",
+    "alone",
+    "forks",
+    "limits",
+)  # what the supervisor is told of its sandbox
 # no site-packages, no .pth, nothing from the folder it stands in
 FLAGS = ("-s", "-P", "-S", "-B", "-X", "utf8")
 PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside the others that it needs
@@ -54,7 +62,8 @@ class Sandbox(NamedTuple):
     launch : starts the supervisor, given its end of the control
     program : a seccomp filter for the checks, or nothing
     alone : whether the supervisor is the first process of a namespace of its own
-    forks : whether the supervisor can fork a process for a check; else it is that process, one for each
+    forks : whether the supervisor can fork a process for a check; else it is that process, one for
+        each
     limits : of the process of a check, as in the module resource
     """
 
@@ -78,7 +87,10 @@ class Running:
     """
 
     def __init__(
-        self, sandbox: Sandbox, modules: Sequence[str] = (), seconds: tuple[float, float] = (60.0, math.inf)
+        self,
+        sandbox: Sandbox,
+        modules: Sequence[str] = (),
+        seconds: tuple[float, float] = (60.0, math.inf),
     ) -> None:
         self.sandbox, self.modules = sandbox, list(modules)
         self._each, self.left = seconds  # of a processor
@@ -199,13 +211,23 @@ def start(
     stdin: int = subprocess.DEVNULL,
 ) -> subprocess.Popen[bytes]:
     """Return the process of a command: what it says is kept in case it fails."""
-    streams: dict[str, Any] = {"stdin": stdin, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    streams: dict[str, Any] = {
+        "stdin": stdin,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.PIPE,
+    }
     return subprocess.Popen(words, cwd=folder, env=environment, pass_fds=inherited, **streams)
 
 
 def command(python: str, program: str, control: int, packages: Mapping[str, str]) -> list[str]:
     """Return the command that starts the supervisor, which knows these packages by their folders."""
-    return [python, *FLAGS, program, str(control), *(f"{name}={at}" for name, at in packages.items())]
+    return [
+        python,
+        *FLAGS,
+        program,
+        str(control),
+        *(f"{name}={at}" for name, at in packages.items()),
+    ]
 
 
 def packages() -> dict[str, str]:

@@ -1,8 +1,8 @@
 """The strict tier: bubblewrap, a user of its own, limits, and a filter of system calls.
 
-Inside there is the interpreter, numpy and scipy, all to be read only; no network, no other process, no /proc,
-no place for a file, no environment, no privilege, and no way to get one. The process of a check is filtered
-once more: see filters.py.
+Inside there is the interpreter, numpy and scipy, all to be read only; no network, no other process,
+no /proc, no place for a file, no environment, no privilege, and no way to get one. The process of a
+check is filtered once more: see filters.py.
 """
 
 import contextlib
@@ -16,7 +16,15 @@ from typing import BinaryIO
 
 from hdrlab.course.sandbox import descent, filters, users
 from hdrlab.course.sandbox.contents import PYTHON, Contents, contents
-from hdrlab.course.sandbox.running import ENVIRONMENT, RULES, Launched, Sandbox, Unavailable, command, start
+from hdrlab.course.sandbox.running import (
+    ENVIRONMENT,
+    RULES,
+    Launched,
+    Sandbox,
+    Unavailable,
+    command,
+    start,
+)
 
 WALLS, NEEDED = RULES["strict"]["walls"], RULES["strict"]["needed"]
 
@@ -41,17 +49,22 @@ def bubblewrap() -> str:
     path = shutil.which("bwrap")
     if path is None:
         raise Unavailable("the strict tier needs bubblewrap, and there is no bwrap on the path")
-    told = subprocess.run([path, "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    told = subprocess.run(
+        [path, "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL
+    )
     missing = [option for option in NEEDED if option not in told.stdout + told.stderr]
     if missing:
-        raise Unavailable(f"the strict tier needs bubblewrap 0.8 or later; {path} does not know {missing[0]}")
+        raise Unavailable(
+            f"the strict tier needs bubblewrap 0.8 or later; {path} does not know {missing[0]}"
+        )
     return path
 
 
 def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
     """Return bubblewrap's options.
 
-    `sources` says where the places of the inside are outside, and `rules` is the filter's descriptor.
+    `sources` says where the places of the inside are outside, and `rules` is the filter's
+    descriptor.
     """
     options = list(WALLS)
     for name, value in (ENVIRONMENT | {"LD_LIBRARY_PATH": f"{PYTHON}/lib"}).items():

@@ -25,7 +25,9 @@ def lease() -> tuple[int, socket.socket]:
         if any(user in numbers for numbers in mapped):
             held = socket.socket(socket.AF_UNIX)
             with contextlib.suppress(OSError):
-                held.bind(f"\0hdrlab-user-{user}")  # a name without a file, which nobody else can have
+                held.bind(
+                    f"\0hdrlab-user-{user}"
+                )  # a name without a file, which nobody else can have
                 return user, held
             held.close()
     raise running.Unavailable(f"no user number of {SPARE.start} to {SPARE.stop - 1} is free here")

@@ -12,5 +12,6 @@ What is written by hand lies beside: `pages`, the guides in Markdown, and `theme
 
 import sys
 
-# With it nbformat knows addresses of all alphabets, which no notebook has: a grammar that takes two seconds.
+# With it nbformat knows addresses of all alphabets, which no notebook has: a grammar that takes two
+# seconds.
 sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]

@@ -1,6 +1,7 @@
 """Notebooks are run, a few at a time, and kept: the next build runs only what has changed.
 
-What a notebook shows rests on its own cells and on the library, so both are in the key of what is kept.
+What a notebook shows rests on its own cells and on the library, so both are in the key of what is
+kept.
 """
 
 import asyncio
@@ -20,7 +21,8 @@ from hdrlab.course.checks.running import LIBRARY, import_path
 from hdrlab.io.files import replacing
 
 PATIENCE = 600  # seconds for a cell
-# of errors alone a kernel tells, not of its own connections; and what was typed is kept in no history
+# of errors alone a kernel tells, not of its own connections; and what was typed is kept in no
+# history
 QUIET = ["--IPKernelApp.log_level=40", "--HistoryManager.enabled=False"]
 
 
@@ -79,8 +81,12 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
         return Done(source, kept, True)
 
     free = asyncio.Semaphore(jobs)
-    with asyncio.Runner() as runner:  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
-        runner.get_loop().set_exception_handler(lambda *_: None)  # what was ended so has no more to tell
+    with (
+        asyncio.Runner() as runner
+    ):  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
+        runner.get_loop().set_exception_handler(
+            lambda *_: None
+        )  # what was ended so has no more to tell
         tasks = {runner.get_loop().create_task(one(*each)) for each in waiting}
         while tasks:
             done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
@@ -99,23 +105,34 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
     folder.mkdir(parents=True)
     kept.parent.mkdir(parents=True, exist_ok=True)
-    client: Any = NotebookClient(notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET)
+    client: Any = NotebookClient(
+        notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET
+    )
     client.create_kernel_manager()
     sockets = tempfile.mkdtemp(prefix="hdrlab-")
     client.km.connection_file = f"{sockets}/kernel.json"
-    # of ports two kernels may choose the same, of files not; but a socket's path has room for 100 bytes alone
+    # of ports two kernels may choose the same, of files not; but a socket's path has room for 100
+    # bytes alone
     client.km.transport = "ipc" if os.name == "posix" and len(os.fsencode(sockets)) < 80 else "tcp"
     try:
-        # the kernel imports this very hdrlab, writes nothing at home, and stores 400 pictures of a slider:
-        # no Python answers on a page
-        own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": "400"}
+        # the kernel imports this very hdrlab, writes nothing at home, and stores 400 pictures of a
+        # slider: no Python answers on a page
+        own = {
+            "PYTHONPATH": import_path(),
+            "IPYTHONDIR": str(folder / "ipython"),
+            "HDRLAB_STORED": "400",
+        }
         await client.async_start_new_kernel(cwd=str(folder), env={**os.environ, **own})
         await client.async_start_new_kernel_client()
         for index, cell in enumerate(notebook.cells):
             where = _named(cell, index)
             await client.async_execute_cell(cell, index)
         client.set_widgets_metadata()
-    except (CellExecutionError, CellTimeoutError, RuntimeError) as error:  # the last where a kernel dies
+    except (
+        CellExecutionError,
+        CellTimeoutError,
+        RuntimeError,
+    ) as error:  # the last where a kernel dies
         raise NotebookError(f"{source.name}, {where}: {_said(error)}") from None
     finally:
         await _end(client, folder, sockets)
@@ -127,7 +144,9 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
 
 async def _end(client: Any, *folders: Path | str) -> None:
     try:
-        if client.km is not None and client.km.has_kernel:  # none is left of one that never answered
+        if (
+            client.km is not None and client.km.has_kernel
+        ):  # none is left of one that never answered
             await client.km.shutdown_kernel(now=True)
     finally:
         if client.kc is not None:

@@ -1,6 +1,7 @@
 """Formulas as a page shows them: drawn as SVG when the site is built, so that it needs no script and no font.
 
-Beside the drawing stands MathML that is not seen, which a screen reader speaks and a reader can copy.
+Beside the drawing stands MathML that is not seen, which a screen reader speaks and a reader can
+copy.
 """
 
 import warnings
@@ -9,10 +10,19 @@ from functools import cache
 from typing import Any
 
 SIZE = 20.0  # of a letter, in the drawing's own unit
-EM = 1.15 / SIZE  # the letters of formulas are small for their height: this makes them as large as the text's
+EM = (
+    1.15 / SIZE
+)  # the letters of formulas are small for their height: this makes them as large as the text's
 PLAIN = {  # commands that the parser leaves as they are, after \big for one
     **{r"\{": "{", r"\}": "}", r"\lbrace": "{", r"\rbrace": "}", r"\lbrack": "[", r"\rbrack": "]"},
-    **{r"\lceil": "⌈", r"\rceil": "⌉", r"\lfloor": "⌊", r"\rfloor": "⌋", r"\langle": "⟨", r"\rangle": "⟩"},
+    **{
+        r"\lceil": "⌈",
+        r"\rceil": "⌉",
+        r"\lfloor": "⌊",
+        r"\rfloor": "⌋",
+        r"\langle": "⟨",
+        r"\rangle": "⟩",
+    },
     **{r"\lvert": "|", r"\rvert": "|", r"\lVert": "‖", r"\rVert": "‖", r"\arg": "arg"},
 }
 
@@ -32,7 +42,9 @@ def formula(tex: str, *, inline: bool = True) -> str:
     >>> html.count("<svg"), html.count("<math")
     (1, 1)
     """
-    with warnings.catch_warnings():  # it looks for its font in a way that Python 3.11 and 3.12 warn of
+    with (
+        warnings.catch_warnings()
+    ):  # it looks for its font in a way that Python 3.11 and 3.12 warn of
         warnings.simplefilter("ignore", DeprecationWarning)
         import ziamath
 
@@ -45,7 +57,9 @@ def formula(tex: str, *, inline: bool = True) -> str:
     svg.extend(drawn)
     for part in svg.iter():
         part.tag = part.tag.rpartition("}")[2]
-    text = ET.tostring(svg, "unicode").replace(' fill="black"', "").replace("STIXTwoMath", "")  # as all are
+    text = (
+        ET.tostring(svg, "unicode").replace(' fill="black"', "").replace("STIXTwoMath", "")
+    )  # as all are
     return f'{text}<span class="spoken">{ET.tostring(math, "unicode")}</span>'
 
 
@@ -58,15 +72,21 @@ def tree(tex: str, *, inline: bool) -> ET.Element:
         part.tag = part.tag.rpartition("}")[2]
         if (part.text or "").startswith("\\"):
             if part.text not in PLAIN:
-                raise ValueError(f"expected a formula that can be drawn, got {part.text} in {tex!r}")
+                raise ValueError(
+                    f"expected a formula that can be drawn, got {part.text} in {tex!r}"
+                )
             part.text = PLAIN[part.text]
     for row in math.iter("mrow"):
         before: Any = None
         for part in row:
-            opens = before is None or (before.tag == "mo" and before.text not in (")", "]", "}", "|", "!"))
+            opens = before is None or (
+                before.tag == "mo" and before.text not in (")", "]", "}", "|", "!")
+            )
             if part.tag == "mo" and part.text in ("\u2212", "+", "±") and opens:
                 part.set("form", "prefix")
             if part.tag == "mo" and part.text in ("|", "‖", "∥") and part.get("fence") is None:
-                part.set("stretchy", "false")  # only those of left and right are as tall as what they enclose
+                part.set(
+                    "stretchy", "false"
+                )  # only those of left and right are as tall as what they enclose
             before = part
     return math

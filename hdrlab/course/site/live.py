@@ -2,9 +2,10 @@
 
 Widgets of one kind share their script, a file of its own, too.
 
-The page carries a picture in the widget's place, so that it is whole before its script has run, and on paper.
-The file is a script and not JSON, since a page that was opened from a folder may read no other file. Its
-bytes are text, fifteen bits a letter: in UTF-16 that is a fifteenth more than they are; base64 is a third.
+The page carries a picture in the widget's place, so that it is whole before its script has run, and
+on paper. The file is a script and not JSON, since a page that was opened from a folder may read no
+other file. Its bytes are text, fifteen bits a letter: in UTF-16 that is a fifteenth more than they
+are; base64 is a third.
 """
 
 import base64
@@ -24,9 +25,17 @@ from hdrlab.show.pictures import encode_change, is_ink
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
-NOT_OWN = ("layout", "tabbable", "tooltip", "frame")  # traits of every widget, and what a slider stores again
+NOT_OWN = (
+    "layout",
+    "tabbable",
+    "tooltip",
+    "frame",
+)  # traits of every widget, and what a slider stores again
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
-LETTER, FIRST = 15, 0x3000  # bits of a letter, and the letter of 0: none of them means anything in a script
+LETTER, FIRST = (
+    15,
+    0x3000,
+)  # bits of a letter, and the letter of 0: none of them means anything in a script
 BYTES = re.compile(r'{"base64": "([^"]*)"}')
 EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)?')
 
@@ -34,7 +43,8 @@ EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)
 class Live(NamedTuple):
     """A widget as its page needs it: name of its files, script, style, state, and its picture.
 
-    In the state bytes are {"base64": text}; the first of many pictures is {"shown": true}: the page has it.
+    In the state bytes are {"base64": text}; the first of many pictures is {"shown": true}: the page
+    has it.
     """
 
     name: str
@@ -79,8 +89,12 @@ def live(model: Any, name: str) -> Live:
         for step in path:
             place = place[step]
         place[last] = {"base64": buffer["data"]}
-    own = {key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)}
-    shown = next((own[key] for key in PICTURES if own.get(key)), {"base64": ""})  # a question has none
+    own = {
+        key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)
+    }
+    shown = next(
+        (own[key] for key in PICTURES if own.get(key)), {"base64": ""}
+    )  # a question has none
     shown = shown[0] if isinstance(shown, list) else shown
     alt = own.get("question") or (own["alts"][0] if "alts" in own else own["alt"])
     picture = base64.b64decode(shown["base64"])
@@ -118,7 +132,9 @@ def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
         write_changed(folder / file, picture)
         return f'src="{address}/{file}" {_look(picture)} loading="lazy"'
 
-    for data in [output["data"] for output in _outputs(notebook) if "text/html" in output.get("data", {})]:
+    for data in [
+        output["data"] for output in _outputs(notebook) if "text/html" in output.get("data", {})
+    ]:
         data["text/html"] = EMBEDDED.sub(moved, "".join(data["text/html"]))
 
 
@@ -127,7 +143,9 @@ def write(one: Live, folder: Path) -> None:
     code = json.dumps({"script": one.script, "style": one.style})
     write_changed(folder / f"{one.code}.js", f'hdrlab.take("{one.code}", {code});\n'.encode())
     own = BYTES.sub(_packed, json.dumps({"code": one.code, "state": one.state}))
-    write_changed(folder / f"{one.name}.js", f'hdrlab.take("{one.name}", {own});\n'.encode("utf-16"))
+    write_changed(
+        folder / f"{one.name}.js", f'hdrlab.take("{one.name}", {own});\n'.encode("utf-16")
+    )
     if one.picture:
         write_changed(folder / f"{one.name}.webp", one.picture)
 
@@ -135,7 +153,9 @@ def write(one: Live, folder: Path) -> None:
 def _packed(found: re.Match[str]) -> str:
     data = base64.b64decode(found[1])
     bits = np.unpackbits(np.frombuffer(data, np.uint8))
-    words = np.pad(bits, (0, -len(bits) % LETTER)).reshape(-1, LETTER) @ (1 << np.arange(LETTER)[::-1])
+    words = np.pad(bits, (0, -len(bits) % LETTER)).reshape(-1, LETTER) @ (
+        1 << np.arange(LETTER)[::-1]
+    )
     letters = (words + FIRST).astype("<u2").tobytes().decode("utf-16-le")
     return f'{{"letters": "{letters}", "length": {len(data)}}}'
 

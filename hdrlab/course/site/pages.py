@@ -25,7 +25,8 @@ from hdrlab.show.pages.templates import render_page
 
 PAGES = Path(__file__).parent / "pages"
 FRONT = PAGES / "front.ipynb"  # the picture of the first page
-MARK = ".nojekyll"  # keeps GitHub's pages from leaving out what begins with _; its text tells a site of ours
+# keeps GitHub's pages from leaving out what begins with _; its text tells a site of ours
+MARK = ".nojekyll"
 MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
 WIDGETS = "_widgets"  # where the pages find them
 # folders whose files are all ours
@@ -64,7 +65,9 @@ def claim(out: Path) -> Path:
     if out.exists() and not out.is_dir():
         raise ValueError(f"expected a folder to write the site to, {out} is a file")
     if out.exists() and any(out.iterdir()) and not (mark.exists() and mark.read_bytes() == MADE):
-        raise ValueError(f"expected an empty folder or a site of before, {out} holds something else")
+        raise ValueError(
+            f"expected an empty folder or a site of before, {out} holds something else"
+        )
     live.write_changed(mark, MADE)
     cache = cache_of(out)
     live.write_changed(cache / ".gitignore", b"*\n")
@@ -72,12 +75,17 @@ def claim(out: Path) -> Path:
 
 
 def build(
-    out: Path, done: Sequence[Done], handouts: Sequence[Path], more: Mapping[str, str], *, address: str = ""
+    out: Path,
+    done: Sequence[Done],
+    handouts: Sequence[Path],
+    more: Mapping[str, str],
+    *,
+    address: str = "",
 ) -> Site:
     """Make the site of executed notebooks, FRONT among them, of handouts, and of more pages by name.
 
-    A handout is shown as it is, since its tasks are still to be done. Where nothing has changed since the
-    site was made, it is left as it is. `address` is where it will stand.
+    A handout is shown as it is, since its tasks are still to be done. Where nothing has changed
+    since the site was made, it is left as it is. `address` is where it will stand.
     """
     record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
@@ -99,17 +107,23 @@ def _build(
 ) -> Site:
     source, html = cache_of(out) / "source", cache_of(out) / "html"
     front = next(one for one in done if one.source == FRONT)
-    notebooks = {one.source.stem: nbformat.read(one.executed, 4) for one in done if one.source != FRONT}
+    notebooks = {
+        one.source.stem: nbformat.read(one.executed, 4) for one in done if one.source != FRONT
+    }
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
     modules, known = reference.modules(), {*notebooks, *sheets}
-    uses = {name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()}
+    uses = {
+        name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()
+    }
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
     headings, widgets = {name: _title(notebook) for name, notebook in handouts.items()}, 0
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # of notebooks that may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
-            texts[f"{folder}/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
+            texts[f"{folder}/{name}.ipynb"], count = _prepared(
+                notebook, name, known, html / WIDGETS
+            )
             widgets += count
     hero = next(one for _, one in live.widgets(nbformat.read(front.executed, 4), "front"))
     live.write(hero, html / WIDGETS)
@@ -155,7 +169,10 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
         if cell.cell_type == "markdown":
             cell.source = OF_RUNNING.sub("", _linked(cell.source, known))
         if cell.metadata.get("jupyter", {}).get("source_hidden"):  # as JupyterLab has it
-            cell.metadata["tags"] = [*cell.metadata.get("tags", ()), "hide-input"]  # as Sphinx has it
+            cell.metadata["tags"] = [
+                *cell.metadata.get("tags", ()),
+                "hide-input",
+            ]  # as Sphinx has it
     return nbformat.writes(notebook), len(found)
 
 
@@ -170,7 +187,9 @@ def _linked(text: str, known: set[str]) -> str:
 
 def _preview(hero: live.Live) -> bytes:
     """Return what a link to the site shows elsewhere: the first page's two pictures, half of each."""
-    one, other = [web.decode_picture(base64.b64decode(each["base64"])) for each in hero.state["pictures"]]
+    one, other = [
+        web.decode_picture(base64.b64decode(each["base64"])) for each in hero.state["pictures"]
+    ]
     middle = one.shape[1] // 2
     return web.encode_jpeg(np.hstack([one[:, :middle], other[:, middle:]]))
 
@@ -184,7 +203,9 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
     complaints, notes = io.StringIO(), html.parent / "doctrees"
     settings = SETTINGS | {"html_baseurl": address and address.rstrip("/") + "/"}
     Sphinx(source, None, html, notes, "html", settings, status=None, warning=complaints).build()
-    return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]
+    return [
+        line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()
+    ]
 
 
 def _keep(folder: Path, names: set[str], part: str = "") -> None:

@@ -1,7 +1,7 @@
 """The reference: a page for each module, from its docstrings, and the map from the lecture to modules.
 
-A module's docstring is read beside its code, so it is laid out for the eye: legends of letters in columns,
-formulas with * and |. Here it becomes what Sphinx reads.
+A module's docstring is read beside its code, so it is laid out for the eye: legends of letters in
+columns, formulas with * and |. Here it becomes what Sphinx reads.
 """
 
 import inspect
@@ -18,7 +18,9 @@ from hdrlab.show.pages.templates import templates
 
 NOT_LIBRARY = ("hdrlab.cli", "hdrlab.course", "hdrlab.__main__", "hdrlab.demo", "hdrlab.scenes.")
 RST = Path(__file__).parent / "rst"  # templates of the pages
-ENTRY = re.compile(r"(\S+(?: \S+)*?) {2,}(\S.*)")  # of a legend: a letter, two spaces or more, what it is
+ENTRY = re.compile(
+    r"(\S+(?: \S+)*?) {2,}(\S.*)"
+)  # of a legend: a letter, two spaces or more, what it is
 NAME = re.compile(r"\b[a-z_]+(?:\.[a-z_0-9]+)+\b|^pipeline\b")
 DOCTEST = ">>> "
 Row = tuple[str, str, list[str]]
@@ -51,7 +53,10 @@ def pages(titles: dict[str, str], uses: dict[str, set[str]]) -> Iterator[tuple[s
     known, env = modules(), templates(RST)
     env.filters |= {"short": short, "summary": summary, "escaped": escaped}
     index, page, lecture_map = map(env.get_template, ("chapters.rst", "module.rst", "map.rst"))
-    yield "reference/index.rst", index.render(chapters=[name for name in known if name.count(".") == 1])
+    yield (
+        "reference/index.rst",
+        index.render(chapters=[name for name in known if name.count(".") == 1]),
+    )
     for name in known:
         played = [notebook for notebook in titles if name in uses[notebook]]
         parts = [each for each in known if each.startswith(f"{name}.")]
@@ -75,15 +80,23 @@ def rows() -> list[tuple[str, str]]:
     lines = (hdrlab.__doc__ or "").splitlines()
     ruler = next(index for index, line in enumerate(lines) if line.startswith("---"))
     column = lines[ruler].index(" -") + 1
-    table = takewhile(bool, lines[ruler + 1 :])  # below another ruler stands what goes beyond the course
-    return [(line[:column].strip(), line[column:].strip()) for line in table if not line.startswith("---")]
+    table = takewhile(
+        bool, lines[ruler + 1 :]
+    )  # below another ruler stands what goes beyond the course
+    return [
+        (line[:column].strip(), line[column:].strip())
+        for line in table
+        if not line.startswith("---")
+    ]
 
 
 def _row(lecture: str, where: str, known: Sequence[str], uses: dict[str, set[str]]) -> Row:
     """Return a row of the map: the lecture's name, links to the functions, the notebooks that play them."""
     linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
     words = [f"hdrlab.{word}" for word in NAME.findall(where)]
-    told = {word if word in known else word.rpartition(".")[0] for word in words}  # a function's module
+    told = {
+        word if word in known else word.rpartition(".")[0] for word in words
+    }  # a function's module
     return lecture, linked, [notebook for notebook in uses if told & uses[notebook]]
 
 
@@ -112,13 +125,18 @@ def escaped(line: str) -> str:
 def laid_out(lines: Sequence[str], *, module: bool) -> list[str]:
     """Return a docstring as Sphinx is to read it; a module's legends become lists."""
     text: list[str] = []
-    for block in [list(block) for full, block in groupby(lines, lambda line: bool(line.strip())) if full]:
+    for block in [
+        list(block) for full, block in groupby(lines, lambda line: bool(line.strip())) if full
+    ]:
         if any(line.lstrip().startswith(DOCTEST) for line in block):
             text += block
         elif module and _is_legend(block):
             text += _legend(block)
         else:
-            text += [line if re.fullmatch(r"\s*[-=]+|\*+\w+.*", line) else escaped(line) for line in block]
+            text += [
+                line if re.fullmatch(r"\s*[-=]+|\*+\w+.*", line) else escaped(line)
+                for line in block
+            ]
         text.append("")
     return text
 
@@ -133,7 +151,10 @@ def _legend(block: Sequence[str]) -> list[str]:
     for line in block:
         entry = None if line.startswith(" ") else ENTRY.fullmatch(line)
         if entry:
-            text += [f"``{entry[1].strip('`')}``", f"   {escaped(re.sub(' {2,}', ' · ', entry[2]))}"]
+            text += [
+                f"``{entry[1].strip('`')}``",
+                f"   {escaped(re.sub(' {2,}', ' · ', entry[2]))}",
+            ]
         else:
             text += [f"   {escaped(line.strip())}"]
     return text

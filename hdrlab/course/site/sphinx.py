@@ -16,8 +16,11 @@ TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
 SAYING, SUMMARY = 40, 200  # letters that a page's description has at least, and at most
 GLYPH = re.compile(r"<symbol .*?</symbol>", re.DOTALL)
-# From a source to its place in the reference: viewcode names the module from which it came there first
-BACK = re.compile(r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*')
+# From a source to its place in the reference: viewcode names the module from which it came there
+# first
+BACK = re.compile(
+    r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*'
+)
 SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
 SETTINGS |= {"version": __version__, "release": __version__, "html_theme_path": [str(HERE)]}
 SETTINGS["extensions"].append(__name__)
@@ -65,7 +68,9 @@ def _docstring(app: Any, what: str, name: str, obj: Any, options: Any, lines: li
 
 def _skip(app: Any, what: str, name: str, obj: Any, skip: bool, options: Any) -> bool | None:
     """Leave out fields of NamedTuples, and what a module has from elsewhere."""
-    elsewhere = what == "module" and not str(getattr(obj, "__module__", "hdrlab")).startswith("hdrlab")
+    elsewhere = what == "module" and not str(getattr(obj, "__module__", "hdrlab")).startswith(
+        "hdrlab"
+    )
     # a field's only words are "Alias for field number 0"
     return True if elsewhere or type(obj).__name__ == "_tuplegetter" else None
 
@@ -80,7 +85,9 @@ def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
         if found:
             copy = node.copy()
             copy["reftarget"] = found[0][0]
-            return python.resolve_xref(env, node["refdoc"], app.builder, "obj", found[0][0], copy, content)
+            return python.resolve_xref(
+                env, node["refdoc"], app.builder, "obj", found[0][0], copy, content
+            )
     return None
 
 

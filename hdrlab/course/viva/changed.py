@@ -1,7 +1,7 @@
 """A function in another version: one token of it is another, or a line of it is left without use.
 
-What is changed is the student's own text, so that its names, comments and lines stay. It is read and never
-run here; what does not compile is no version.
+What is changed is the student's own text, so that its names, comments and lines stay. It is read
+and never run here; what does not compile is no version.
 
 source    text of a task with all that it needs, see `code.closure`
 """
@@ -19,7 +19,9 @@ from typing import NamedTuple
 
 from hdrlab.course.code import names
 
-INSTEAD: dict[str, list[str]] = tomllib.loads(Path(__file__).with_name("tokens.toml").read_text("utf8"))
+INSTEAD: dict[str, list[str]] = tomllib.loads(
+    Path(__file__).with_name("tokens.toml").read_text("utf8")
+)
 LONGEST = 20_000  # characters of a source that is asked about
 SHOWN = 80  # lines of a function that is shown
 USES = 3  # of a name whose value is written out instead
@@ -74,7 +76,10 @@ def functions(source: str) -> Iterator[tuple[int, str]]:
     for node in ast.parse(source).body:
         last = node.end_lineno or 0
         if isinstance(node, ast.FunctionDef) and last - node.lineno < SHOWN:
-            yield starts[node.lineno - 1], source[starts[node.lineno - 1] : starts[last]].rstrip("\n")
+            yield (
+                starts[node.lineno - 1],
+                source[starts[node.lineno - 1] : starts[last]].rstrip("\n"),
+            )
 
 
 def parameters(source: str, task: str) -> list[str]:
@@ -85,7 +90,9 @@ def parameters(source: str, task: str) -> list[str]:
     >>> parameters("def scale(x, by=2, *, offset=0):\n    return by * x + offset\n", "scale")
     ['x', 'by']
     """
-    functions = {one.name: one.args for one in ast.parse(source).body if isinstance(one, ast.FunctionDef)}
+    functions = {
+        one.name: one.args for one in ast.parse(source).body if isinstance(one, ast.FunctionDef)
+    }
     return [one.arg for one in functions[task].posonlyargs + functions[task].args]
 
 
@@ -102,7 +109,8 @@ def instead(token: tokenize.TokenInfo) -> list[str]:
 def unused(text: str) -> dict[int, str]:
     r"""Return, by the number of each line that names a value, the text in which nothing needs this line.
 
-    The value is written out where the name stood. Whether that changes an answer is for a run to say.
+    The value is written out where the name stood. Whether that changes an answer is for a run to
+    say.
 
     Examples
     --------
@@ -113,14 +121,18 @@ def unused(text: str) -> dict[int, str]:
     functions = [one for one in ast.parse(text).body if isinstance(one, ast.FunctionDef)]
     for function in functions if len(lines) <= SHOWN else ():
         parts = list(ast.walk(function))
-        loads = [one for one in parts if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load)]
+        loads = [
+            one for one in parts if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load)
+        ]
         loads.sort(key=lambda one: (one.lineno, one.col_offset), reverse=True)
         for node in parts:
             match node:
                 case ast.Assign([ast.Name(name)], value) if node.lineno == node.end_lineno:
                     uses = [one for one in loads if one.id == name and one.lineno > node.lineno]
                     if 0 < len(uses) <= USES and ";" not in lines[node.lineno - 1]:
-                        found[node.lineno] = _written_out(lines, uses, ast.get_source_segment(text, value))
+                        found[node.lineno] = _written_out(
+                            lines, uses, ast.get_source_segment(text, value)
+                        )
     return dict(sorted(found.items()))
 
 
@@ -129,7 +141,9 @@ def _written_out(lines: list[str], uses: list[ast.Name], value: str | None) -> s
     written = [line.encode() for line in lines]
     for use in uses:
         row = written[use.lineno - 1]
-        written[use.lineno - 1] = row[: use.col_offset] + f"({value})".encode() + row[use.end_col_offset :]
+        written[use.lineno - 1] = (
+            row[: use.col_offset] + f"({value})".encode() + row[use.end_col_offset :]
+        )
     return b"\n".join(written).decode()
 
 

@@ -1,8 +1,8 @@
 """The examiner's half of pytest: when the checks have run, questions are made of functions that pass them.
 
-A question has four options, and each of them is the right one for some change of the student's function.
-First four such changes are found, then one of the four is drawn and asked for: so the options alone do not
-show which one is right. All answers come of two runs in the sandbox.
+A question has four options, and each of them is the right one for some change of the student's
+function. First four such changes are found, then one of the four is drawn and asked for: so the
+options alone do not show which one is right. All answers come of two runs in the sandbox.
 
 call    (arguments, named arguments, answer) of the student's own function, as a check has called it
 value   of a version: what the options tell apart
@@ -23,11 +23,21 @@ from hdrlab.course.viva import changed, inputs
 
 KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS, TASKS = 5, 4, 5  # from so many tasks on, five are found if they can be
-VERSIONS, CALLS, DRAWS = (20, 80), 2, 20  # that are tried at first, and again where questions are few
-FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
+VERSIONS, CALLS, DRAWS = (
+    (20, 80),
+    2,
+    20,
+)  # that are tried at first, and again where questions are few
+FEW, COMPARED = (
+    2,
+    8,
+)  # versions that break a promise, if promises are to be told apart; calls compared
 SAME = 1e-6  # relative: answers that are one
 GIVEN, ANSWERED = 16, 6  # numbers of a call by hand, at most
-SHARE, WORN = 0.3, 0.6  # of a check's seconds: what a call gets, and below what a sandbox is used up
+SHARE, WORN = (
+    0.3,
+    0.6,
+)  # of a check's seconds: what a call gets, and below what a sandbox is used up
 
 
 class Found(NamedTuple):
@@ -49,14 +59,18 @@ class Examining(plugin.Checking):
         """Write down questions: of different kinds, and of different tasks while there are any."""
         self.asking, rng = True, np.random.default_rng(int(self.job["seed"]))
         self._begin()
-        passed = [task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed]
+        passed = [
+            task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed
+        ]
         self._write(passed=passed)
         asked = {task: Asked(self, task, session.items, rng) for task in passed}
         pairs = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
         left = [(most, *pair) for most in VERSIONS[: 1 + (len(passed) >= TASKS)] for pair in pairs]
         kinds, tasks = [""], [""]
         while left and len(tasks) <= QUESTIONS:
-            most, kind, task = min(left, key=lambda one: (one[0], tasks.count(one[2]), kinds.count(one[1])))
+            most, kind, task = min(
+                left, key=lambda one: (one[0], tasks.count(one[2]), kinds.count(one[1]))
+            )
             left.remove((most, kind, task))
             asked[task].most = most
             if self.submission.left < WORN * self.job["timeout"]:
@@ -84,7 +98,9 @@ class Examining(plugin.Checking):
 class Asked:
     """A task that is asked about, in a sandbox of its own; KINDS are methods."""
 
-    def __init__(self, run: Examining, task: str, items: list[pytest.Item], rng: np.random.Generator) -> None:
+    def __init__(
+        self, run: Examining, task: str, items: list[pytest.Item], rng: np.random.Generator
+    ) -> None:
         self.run, self.task, self.rng, self.most = run, task, rng, VERSIONS[0]  # versions to try
         self.items = [one for one in items if plugin.task_of(one) == task]
         self.source = run.job["sources"][task]
@@ -97,14 +113,22 @@ class Asked:
         if found is None or not self.holds(found):
             return None
         versions = [one._asdict() for one in found.versions]
-        return {"kind": kind, "task": self.task, "right": right, "versions": versions, **found.shown}
+        return {
+            "kind": kind,
+            "task": self.task,
+            "right": right,
+            "versions": versions,
+            **found.shown,
+        }
 
     def holds(self, found: Found) -> bool:
         """Return whether each version has its value again, and none of the others, in a process of its own.
 
         What `numpy.empty` gives holds other numbers there: a version that shows them has no answer.
         """
-        again = [found.view(one._replace(source=one.source + changed.FILLED)) for one in found.versions]
+        again = [
+            found.view(one._replace(source=one.source + changed.FILLED)) for one in found.versions
+        ]
         same = [[a is not None and not found.differ(a, b) for b in found.values] for a in again]
         return bool(np.array_equal(same, np.eye(OPTIONS)))
 
@@ -117,7 +141,9 @@ class Asked:
                 continue
             versions.append(version)
             broken.append(failed)
-            every = sorted(set().union(*broken), key=lambda one: (sum(one in each for each in broken), one))
+            every = sorted(
+                set().union(*broken), key=lambda one: (sum(one in each for each in broken), one)
+            )
             first = [next((one for one in every if one in each), "") for each in broken]
             known = [one for one in [*every, ""] if one in first]
             if len(known) >= OPTIONS or len(versions) > FEW * len(known) + 1:
@@ -139,7 +165,9 @@ class Asked:
         idle = changed.unused(self.source)
         for _ in range(DRAWS * (len(idle) >= OPTIONS - 1)):
             lines = sorted(self.rng.choice(list(idle), OPTIONS - 1, replace=False).tolist())
-            versions = [changed.Version(text, text) for text in (*(idle[k] for k in lines), self.source)]
+            versions = [
+                changed.Version(text, text) for text in (*(idle[k] for k in lines), self.source)
+            ]
             texts = [[one.source.split("\n")[k - 1].strip() for k in lines] for one in versions]
             if texts.count(texts[0]) == OPTIONS:  # else what is written out shows in an option
                 break
@@ -164,7 +192,9 @@ class Asked:
 
     def value(self) -> Found | None:
         """Ask what a call returns."""
-        for call in [one for one in self.calls if inputs.count(inputs.small(one[:2])) <= GIVEN][:CALLS]:
+        for call in [one for one in self.calls if inputs.count(inputs.small(one[:2])) <= GIVEN][
+            :CALLS
+        ]:
             args, kwargs = inputs.small(call[:2])
 
             def view(version: changed.Version, given: Any = (args, kwargs)) -> Any:
@@ -177,11 +207,15 @@ class Asked:
                 return found._replace(shown={"call": self._told((args, kwargs)), "texts": texts})
         return None
 
-    def _drawn(self, named: str, see: Callable[[Any, Any], Any], differ: Any, tell: Any) -> Found | None:
+    def _drawn(
+        self, named: str, see: Callable[[Any, Any], Any], differ: Any, tell: Any
+    ) -> Found | None:
         """Return four versions whose drawn answers differ; a photograph takes the place of images."""
         photos = self.run.job["photographs"]
         for call in [one for one in self.calls if inputs.shown(one[2]) is not None][:CALLS]:
-            given = inputs.photographed(call[:2], np.array(photos[self.rng.integers(len(photos))], np.uint8))
+            given = inputs.photographed(
+                call[:2], np.array(photos[self.rng.integers(len(photos))], np.uint8)
+            )
             own = inputs.shown(self._answer(self.source, given))
             if own is None or own.min() == own.max():
                 continue
@@ -192,15 +226,24 @@ class Asked:
 
             if found := self._four(view, differ):
                 image = inputs.shown(given[0])
-                figures = {"own": own} if image is None or image.ndim == 1 else {"given": image, "own": own}
-                shown = {name: inputs.figure(inputs.levels(one, one)) for name, one in figures.items()}
+                figures = (
+                    {"own": own}
+                    if image is None or image.ndim == 1
+                    else {"given": image, "own": own}
+                )
+                shown = {
+                    name: inputs.figure(inputs.levels(one, one)) for name, one in figures.items()
+                }
                 more = {"call": self._told(given), "scale": inputs.scale(own)}
                 return found._replace(shown=shown | more | {named: [*map(tell, found.values)]})
         return None
 
     def _four(self, view: Any, differ: Any) -> Found | None:
         """Return the first four versions, as they are drawn, whose values differ, also from the own."""
-        found, own = Found([], [], view, differ, {}), view(changed.Version(self.source, self.source))
+        found, own = (
+            Found([], [], view, differ, {}),
+            view(changed.Version(self.source, self.source)),
+        )
         for version in self._versions():
             value = view(version)
             if value is not None and all(
@@ -213,7 +256,9 @@ class Asked:
         return None
 
     def _told(self, call: Any) -> str:
-        return inputs.called(self.task, changed.parameters(self.source, self.task), call[0], call[1], GIVEN)
+        return inputs.called(
+            self.task, changed.parameters(self.source, self.task), call[0], call[1], GIVEN
+        )
 
     def _versions(self) -> list[changed.Version]:
         return [self.every[k] for k in self.rng.permutation(len(self.every))[: self.most]]
@@ -236,7 +281,9 @@ class Asked:
 
     def _is_same(self, source: str) -> bool:
         """Return whether a version answers what the student's own function has answered to the checks."""
-        calls = sorted(self.run.calls[self.task], key=lambda call: inputs.count(call[:2]))[:COMPARED]
+        calls = sorted(self.run.calls[self.task], key=lambda call: inputs.count(call[:2]))[
+            :COMPARED
+        ]
         self.run.submission.fresh(**{self.task: source})
         return all(misconceptions.difference(self._asked(call), call[2]) <= SAME for call in calls)
 

@@ -29,7 +29,11 @@ def arrays(change: Callable[[np.ndarray], Any], value: Any) -> Any:
         return (tuple if isinstance(value, tuple) else list)(arrays(change, one) for one in value)
     if isinstance(value, dict):
         return {name: arrays(change, one) for name, one in value.items()}
-    return value if value is None or isinstance(value, bool | str | bytes) else change(np.asarray(value))
+    return (
+        value
+        if value is None or isinstance(value, bool | str | bytes)
+        else change(np.asarray(value))
+    )
 
 
 def arrays_in(value: Any) -> list[np.ndarray]:
@@ -102,7 +106,10 @@ def small(value: Any, side: int = 2) -> Any:
     """
 
     def cut(array: np.ndarray) -> Any:
-        middle = [slice((n - side) // 2, (n + side) // 2) if n > side + 1 else slice(n) for n in array.shape]
+        middle = [
+            slice((n - side) // 2, (n + side) // 2) if n > side + 1 else slice(n)
+            for n in array.shape
+        ]
         part = digits(array[tuple(middle)], 2).astype(array.dtype)
         return part if part.ndim else part.item()
 
@@ -119,17 +126,24 @@ def photographed(value: Any, photo: np.ndarray) -> Any:
         planes = np.moveaxis(image, axes, (-2, -1))
         k = max(1, LARGE // max(planes.shape[-2:]))
         h, w = (k * n for n in planes.shape[-2:])
-        few = photo[np.ix_(*(np.arange(n) * m // n for n, m in zip((h, w), photo.shape, strict=True)))]
+        few = photo[
+            np.ix_(*(np.arange(n) * m // n for n, m in zip((h, w), photo.shape, strict=True)))
+        ]
         rank = np.argsort(np.argsort(few, axis=None, kind="stable")) // (k * k)
         levels = np.sort(planes.reshape(*planes.shape[:-2], -1))[..., rank]
-        return np.ascontiguousarray(np.moveaxis(levels.reshape(*planes.shape[:-2], h, w), (-2, -1), axes))
+        return np.ascontiguousarray(
+            np.moveaxis(levels.reshape(*planes.shape[:-2], h, w), (-2, -1), axes)
+        )
 
     return arrays(put, value)
 
 
 def shown(answer: Any) -> np.ndarray | None:
     """Return what of an answer is an image or a curve, the largest array of the last state; None without."""
-    while isinstance(answer := as_listed(answer) if isinstance(answer, list) else answer, list) and answer:
+    while (
+        isinstance(answer := as_listed(answer) if isinstance(answer, list) else answer, list)
+        and answer
+    ):
         answer = answer[-1]
     every = answer if isinstance(answer, tuple) else (answer,)
     kept = [one for one in every if isinstance(one, np.ndarray)]
@@ -184,5 +198,7 @@ def figure(drawn_levels: np.ndarray) -> dict[str, Any]:
         uri = web.data_uri(web.encode_webp(drawn_levels, lossless=True))
         return {"image": uri, "size": drawn_levels.shape[1::-1], "parts": about}
     some = drawn_levels[:: len(drawn_levels) // 256 + 1]
-    points = [f"{200 * k / (len(some) - 1):.1f},{(255 - one) / 2:.1f}" for k, one in enumerate(some)]
+    points = [
+        f"{200 * k / (len(some) - 1):.1f},{(255 - one) / 2:.1f}" for k, one in enumerate(some)
+    ]
     return {"points": " ".join(points), "size": (200, 128), "parts": about}

@@ -21,18 +21,26 @@ def photographs(files: Sequence[Path]) -> list[list[list[int]]]:
     """Return gray levels of photographs, small; of an embedded scene where there are none."""
     shown = [photos.read_photo(file) for file in files] or [np.log(scenes.room() + 1e-6)]
     grays = [one.reshape(*one.shape[:2], -1).mean(axis=-1) for one in shown]
-    few = [one[:: max(1, max(one.shape) // SIDE), :: max(1, max(one.shape) // SIDE)] for one in grays]
+    few = [
+        one[:: max(1, max(one.shape) // SIDE), :: max(1, max(one.shape) // SIDE)] for one in grays
+    ]
     return [(255 * (one - one.min()) / (np.ptp(one) or 1)).astype(int).tolist() for one in few]
 
 
 def pages(found: Sequence[dict[str, Any]], **words: Any) -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each file, made of what the examiner has written down."""
     questions = [one["question"] for one in found if "question" in one]
-    words |= {"questions": questions, "passed": next(one["passed"] for one in found if "passed" in one)}
+    words |= {
+        "questions": questions,
+        "passed": next(one["passed"] for one in found if "passed" in one),
+    }
     made = templates(Path(__file__).parent)
     made.filters["tidy"] = partial(lines, most=20_000)
     made.filters["base64"] = lambda text: base64.b64encode(str(text).encode()).decode()
     made.filters["digest"] = lambda text: sha256(text.encode()).hexdigest()
     for sheet in ("viva", "quiz", "oral", "examiner"):
-        yield f"{sheet}.html", made.get_template("viva.html").render(words, sheet=sheet, attached=False)
+        yield (
+            f"{sheet}.html",
+            made.get_template("viva.html").render(words, sheet=sheet, attached=False),
+        )
     yield "viva.ipynb", made.get_template("notebook.plain").render(words, attached=True)

@@ -1,8 +1,9 @@
 """OpenEXR files, .exr, through the official OpenEXR module.
 
-Half, float and unsigned channels become float32; R, G and B make a colour, Y or a channel alone a luminance.
-An alpha channel is left out: it says how much a pixel covers, and its radiance stands in R, G and B.
-The picture is the display window: where the data window is smaller, the rest is 0; where larger, it is cut.
+Half, float and unsigned channels become float32; R, G and B make a colour, Y or a channel alone a
+luminance. An alpha channel is left out: it says how much a pixel covers, and its radiance stands in
+R, G and B. The picture is the display window: where the data window is smaller, the rest is 0;
+where larger, it is cut.
 """
 
 import errno
@@ -23,7 +24,8 @@ from hdrlab.io.files import check_size, replacing
 LARGEST_HALF = 65504.0
 # bytes of a picture in one of the file: more than any of the methods reaches
 BEST_COMPRESSION_RATIO = 1 << 16
-# pixels of a window that holds more than so many times the data's: more is no frame around a picture
+# pixels of a window that holds more than so many times the data's: more is no frame around a
+# picture
 LARGEST_FRAME, FRAME_RATIO = 1 << 22, 64
 PRINTING = Lock()  # OpenEXR prints what is wrong, and the stream that catches it is everybody's
 Part = tuple[dict[str, Any], dict[str, Array]]
@@ -64,7 +66,9 @@ def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
         raise ValueError(f"{path}: expected a flat image, got {attributes['type'].name}")
     channels, across, down = zip(*attributes["channels"], strict=True)
     if {*across, *down} != {1}:
-        raise ValueError(f"{path}: expected channels of full size, got subsampled {', '.join(channels)}")
+        raise ValueError(
+            f"{path}: expected channels of full size, got subsampled {', '.join(channels)}"
+        )
     windows = (attributes["dataWindow"], attributes["displayWindow"])
     data, display = (_window(path, window, len(channels)) for window in windows)
     if display.height * display.width > max(LARGEST_FRAME, FRAME_RATIO * data.height * data.width):
@@ -99,7 +103,9 @@ def read(path: str | Path) -> F32:
     header = read_header(path)
     names = set(header.channels)
     if names not in COLOURS and names - {"A"} != {"Y"} and len(names) != 1:
-        raise ValueError(f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}")
+        raise ValueError(
+            f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
+        )
     ((_, planes),) = parts(path, 1, separate_channels=names not in COLOURS)
     if names in COLOURS:
         E = next(iter(planes.values()))[..., :3]
@@ -111,8 +117,8 @@ def read(path: str | Path) -> F32:
 def decode_half(bits: Array) -> F32:
     """Return the values (float32) of half floats, given as bits (uint16) of any shape.
 
-    A sign s, an exponent e of 5 bits and a mantissa m of 10 are (-1)^s 2^(e - 15) (1 + m / 1024). Where e = 0
-    they are (-1)^s 2^-14 m / 1024; where e = 31 infinite, or NaN with a mantissa.
+    A sign s, an exponent e of 5 bits and a mantissa m of 10 are (-1)^s 2^(e - 15) (1 + m / 1024).
+    Where e = 0 they are (-1)^s 2^-14 m / 1024; where e = 31 infinite, or NaN with a mantissa.
 
     Examples
     --------
@@ -133,7 +139,9 @@ def read_dtypes(path: str | Path) -> tuple[str, ...]:
     return tuple(planes[name].dtype.name for name in header.channels)
 
 
-def write(path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()) -> None:
+def write(
+    path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
+) -> None:
     """Write radiance as an OpenEXR file of float32, without loss, whole or not at all.
 
     Parameters
@@ -158,7 +166,9 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False, comments: Seque
     """
     E = as_radiance(E)
     if half and E.max() > LARGEST_HALF:
-        raise ValueError(f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}")
+        raise ValueError(
+            f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}"
+        )
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     if comments:
@@ -176,7 +186,11 @@ def save(path: str | Path, *content: Any) -> None:
 
 
 def parts(
-    path: str | Path, count: int | None = None, *, header_only: bool = False, separate_channels: bool = False
+    path: str | Path,
+    count: int | None = None,
+    *,
+    header_only: bool = False,
+    separate_channels: bool = False,
 ) -> list[Part]:
     """Return the header, and the pixels by channel, of the first `count` parts of the file at `path`."""
     with open(path, "rb") as start:  # the module takes a missing file for one that is not OpenEXR
@@ -184,20 +198,34 @@ def parts(
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
     # the module prints what is wrong with a part, and leaves the part out
-    opened, which = OpenEXR.File, (str(path), separate_channels, header_only)  # that it lacks is no damage
+    opened, which = (
+        OpenEXR.File,
+        (str(path), separate_channels, header_only),
+    )  # that it lacks is no damage
     try:
-        with PRINTING, silence(2), redirect_stdout(printed := io.StringIO()), opened(*which) as file:
+        with (
+            PRINTING,
+            silence(2),
+            redirect_stdout(printed := io.StringIO()),
+            opened(*which) as file,
+        ):
             found = []
             for part in file.parts[:count]:
-                channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]
+                channels = [
+                    (one.name, one.xSampling, one.ySampling) for one in part.header["channels"]
+                ]
                 planes = {name: channel.pixels for name, channel in part.channels.items()}
                 found.append(({**part.header, "channels": channels}, planes))
             if printed.getvalue() or not found:  # it tells of parts that it leaves out
                 raise ValueError("a part cannot be read")
             return found
-    except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
+    except (
+        Exception
+    ) as error:  # damaged files make it raise what they like, UnicodeDecodeError included
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
-        raise ValueError(f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})") from None
+        raise ValueError(
+            f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})"
+        ) from None
 
 
 def _window(path: str | Path, window: tuple[Labels, Labels], channels: int) -> Window:
@@ -212,14 +240,20 @@ def _place(path: str | Path, E: F32, header: Header) -> F32:
     """Return E, which fills the data window, on the display window."""
     data, display = header.data, header.display
     if E.shape[:2] != (data.height, data.width):
-        raise ValueError(f"{path}: expected {data.height} x {data.width} pixels of data, got {E.shape[:2]}")
+        raise ValueError(
+            f"{path}: expected {data.height} x {data.width} pixels of data, got {E.shape[:2]}"
+        )
     if data == display:
         return np.ascontiguousarray(E)
     top, left = data.top - display.top, data.left - display.left
     rows = slice(max(top, 0), min(top + data.height, display.height))
     columns = slice(max(left, 0), min(left + data.width, display.width))
     if rows.start >= rows.stop or columns.start >= columns.stop:
-        raise ValueError(f"{path}: expected pixels in its display window {display}, they are all in {data}")
+        raise ValueError(
+            f"{path}: expected pixels in its display window {display}, they are all in {data}"
+        )
     placed = np.zeros((display.height, display.width, *E.shape[2:]), np.float32)
-    placed[rows, columns] = E[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+    placed[rows, columns] = E[
+        rows.start - top : rows.stop - top, columns.start - left : columns.stop - left
+    ]
     return placed

@@ -44,7 +44,9 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     for number, (header, planes) in enumerate(exr.parts(path)):
         name, channels = header.get("name", f"part {number}"), next(iter(planes))
         if len(planes) != 1 or channels not in CHANNELS.values():
-            raise ValueError(f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}")
+            raise ValueError(
+                f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}"
+            )
         layers[name] = planes[channels].astype(np.float32)
     sizes = {layer.shape[:2] for layer in layers.values()}
     if len(sizes) > 1:
@@ -52,13 +54,16 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     return layers
 
 
-def write_layers(path: str | Path, layers: Mapping[str, ArrayLike], *, comments: Sequence[str] = ()) -> None:
+def write_layers(
+    path: str | Path, layers: Mapping[str, ArrayLike], *, comments: Sequence[str] = ()
+) -> None:
     """Write pictures of one size as the parts of an OpenEXR file of float32, whole or not at all.
 
     Parameters
     ----------
     path : the file; what it held is replaced
-    layers : of each part, under its name, (H, W) as Z, (H, W, 3) or (H, W, 4); infinite values are kept
+    layers : of each part, under its name, (H, W) as Z, (H, W, 3) or (H, W, 4); infinite values are
+        kept
     comments : sentences for the attribute `comments` of the first
 
     Raises
@@ -80,9 +85,13 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike], *, comments:
         pixels = np.ascontiguousarray(layer, np.float32)
         channels = CHANNELS.get(1 if pixels.ndim == 2 else pixels.shape[-1])
         if pixels.ndim not in (2, 3) or not pixels.size or channels is None:
-            raise ValueError(f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}")
+            raise ValueError(
+                f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}"
+            )
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-        parts.append(OpenEXR.Part({**header, **(said if not parts else {})}, {channels: pixels}, name))
+        parts.append(
+            OpenEXR.Part({**header, **(said if not parts else {})}, {channels: pixels}, name)
+        )
     sizes = {np.shape(layer)[:2] for layer in layers.values()}
     if len(sizes) != 1:
         raise ValueError(f"{path}: expected layers of one size, got {sorted(sizes)}")

@@ -1,7 +1,8 @@
 """Portable float maps, .pfm: a line of text for the kind, the size and the scale, then float32 values.
 
 PF is RGB and Pf is gray; a negative scale says little endian; rows run from the bottom to the top.
-The scale's magnitude is not applied: the format never settled whether to multiply or to divide by it.
+The scale's magnitude is not applied: the format never settled whether to multiply or to divide by
+it.
 """
 
 import os
@@ -16,7 +17,8 @@ import numpy as np
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_radiance
 from hdrlab.io.files import check_size, replacing, reserve
 
-# one white space, and not more, stands between the scale and the values, whose first byte may look like one
+# one white space, and not more, stands between the scale and the values, whose first byte may look
+# like one
 HEADER = re.compile(rb"(PF|Pf)\s+(\d{1,10})\s+(\d{1,10})\s+([-+]?\d*\.?\d*(?:[eE][-+]?\d{1,3})?)\s")
 # rows: a band that stays in the cache, and is written four times as fast as the whole
 BAND_ROWS = 16
@@ -68,7 +70,9 @@ def read_header(path: str | Path) -> Header:
     match = HEADER.match(head)
     scale = float(match[4]) if match and match[4].strip(b"+-.eE") else 0.0
     if not match or scale == 0 or not np.isfinite(scale):
-        raise ValueError(f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}")
+        raise ValueError(
+            f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}"
+        )
     header = Header(int(match[3]), int(match[2]), match[1] == b"PF", scale, match.end())
     size = header.height * header.width * (12 if header.colour else 4)
     check_size(path, header.height, header.width, size + header.start)
@@ -105,9 +109,13 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
     rows = list(E[::-1] if flip else E)
     with open(path, "rb", buffering=0) as file:
         file.seek(header.start)
-        each = getattr(os, "readv", lambda _, some: sum(map(file.readinto, some)))  # each to its place
+        each = getattr(
+            os, "readv", lambda _, some: sum(map(file.readinto, some))
+        )  # each to its place
         if sum(each(file.fileno(), rows[y : y + 512]) for y in range(0, len(rows), 512)) < E.nbytes:
-            raise ValueError(f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile")
+            raise ValueError(
+                f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile"
+            )
     return E if (header.scale < 0) == (sys.byteorder == "little") else E.byteswap(inplace=True)
 
 

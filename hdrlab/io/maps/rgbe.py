@@ -4,9 +4,10 @@ m   mantissas of red, green and blue   (H, W, 3), 0 to 255
 e   the exponent that the three share   (H, W), 0 to 255
 E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 128), and 0 where e = 0
 
-Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio and most
-others decode m / 256, the lower end, and so does hdrlab: a file read and written again is then unchanged.
-Run-length scanlines go through imagecodecs; the equations below serve the other files, and say what it does.
+Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio
+and most others decode m / 256, the lower end, and so does hdrlab: a file read and written again is
+then unchanged. Run-length scanlines go through imagecodecs; the equations below serve the other
+files, and say what it does.
 """
 
 import re
@@ -42,8 +43,10 @@ class Header(NamedTuple):
     Attributes
     ----------
     height, width : of the picture, upright
-    axes : the resolution line's order and signs, such as "-Y+X": rows from the top, each from the left
-    exposure : (3,) what the pixels were multiplied by: the product of all EXPOSURE and COLORCORR lines
+    axes : the resolution line's order and signs, such as "-Y+X": rows from the top, each from the
+        left
+    exposure : (3,) what the pixels were multiplied by: the product of all EXPOSURE and COLORCORR
+        lines
     lines : the header's lines
     start : where the pixels begin, in bytes
     """
@@ -106,13 +109,15 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     Parameters
     ----------
     path : the file; what it held is replaced
-    E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as three equal ones
+    E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as three equal
+        ones
     comments : sentences for the header, in lines that begin with #
 
     Raises
     ------
     ValueError
-        For NaN, infinite or negative values, and for values of 2^127 or more, which RGBE cannot hold.
+        For NaN, infinite or negative values, and for values of 2^127 or more, which RGBE cannot
+        hold.
 
     Examples
     --------
@@ -127,7 +132,9 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     if E.max() >= 2.0**127:
         raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
     E = np.broadcast_to(E if E.ndim == 3 else E[..., None], (height, width, 3))
-    room = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
+    room = bytearray(
+        BAND_ROWS * (4 + 4 * (width + width // 128 + 1))
+    )  # for a band in which nothing repeats
     with files.replacing(path) as name, open(name, "wb") as file:
         said = "".join(f"# {line}\n" for one in comments for line in wrap(one, COMMENT))
         head = f"#?RADIANCE\n{said}FORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
@@ -167,13 +174,16 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
     except (imagecodecs.RgbeError, ValueError):
-        raise ValueError(f"{path}: expected {scanlines} scanlines, they are damaged or cut short") from None
+        raise ValueError(
+            f"{path}: expected {scanlines} scanlines, they are damaged or cut short"
+        ) from None
 
 
 def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.uint8]:
     """Return the pixels (H, W, 4) of flat scanlines, among which (1, 1, 1, n) repeats the pixel before it.
 
-    Such marks in a row are the digits of one count in base 256, the lowest first: the oldest run lengths.
+    Such marks in a row are the digits of one count in base 256, the lowest first: the oldest run
+    lengths.
     """
     count = scanlines * length
     words = np.frombuffer(data, "<u4", min(len(data) // 4, count))
@@ -209,9 +219,13 @@ def parse(path: str | Path, head: bytes) -> Header:
         match = None
     # the mark need not come first: tools of Radiance put lines of their own before it
     if match is None or not any(line.startswith("#?") for line in lines):
-        raise ValueError(f"{path}: expected a Radiance file (#?RADIANCE, -Y 768 +X 512), got {head[:16]!r}")
+        raise ValueError(
+            f"{path}: expected a Radiance file (#?RADIANCE, -Y 768 +X 512), got {head[:16]!r}"
+        )
     if line.endswith("\r"):
-        raise ValueError(f"{path}: expected a binary file, its line ends became CR LF: copied as text")
+        raise ValueError(
+            f"{path}: expected a binary file, its line ends became CR LF: copied as text"
+        )
     values = dict(part.split("=", 1) for part in lines if "=" in part)
     if (form := values.get("FORMAT", "32-bit_rle_rgbe").strip()) != "32-bit_rle_rgbe":
         raise ValueError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form[:60]!r}")
@@ -220,7 +234,9 @@ def parse(path: str | Path, head: bytes) -> Header:
         raise ValueError(f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}")
     height, width = (int(first), int(second))[:: 1 if axis == "Y" else -1]
     files.check_size(path, height, width)
-    return Header(height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start)
+    return Header(
+        height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start
+    )
 
 
 def _exposure(path: str | Path, lines: list[str]) -> F64:
@@ -232,7 +248,11 @@ def _exposure(path: str | Path, lines: list[str]) -> F64:
             try:
                 product = product * np.array(value.split(), dtype=np.float64)
             except ValueError:
-                raise ValueError(f"{path}: expected numbers in its header, got {line[:60]!r}") from None
+                raise ValueError(
+                    f"{path}: expected numbers in its header, got {line[:60]!r}"
+                ) from None
     if not np.all((product > 1e-30) & (product < 1e30)):
-        raise ValueError(f"{path}: expected positive exposures in its header, got {product.tolist()}")
+        raise ValueError(
+            f"{path}: expected positive exposures in its header, got {product.tolist()}"
+        )
     return product

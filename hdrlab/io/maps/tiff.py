@@ -1,7 +1,7 @@
 """TIFF files of floating-point samples, .tif and .tiff, through tifffile; JPEG XL of such is read as well.
 
-16, 32 or 64 bits, gray or RGB; an alpha channel is left out. A file of whole numbers holds the levels of a
-photograph, and is read by `io.photos`.
+16, 32 or 64 bits, gray or RGB; an alpha channel is left out. A file of whole numbers holds the
+levels of a photograph, and is read by `io.photos`.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,9 @@ def read(path: str | Path) -> arrays.F32:
     header = decode.look(path, light=True)
     E = np.empty(header.shape, header.dtype)
     decode.decode(header, E)
-    with np.errstate(over="ignore"):  # what is too large for 32 bits becomes infinite, and is told as such
+    with np.errstate(
+        over="ignore"
+    ):  # what is too large for 32 bits becomes infinite, and is told as such
         return E.astype(np.float32, copy=False)
 
 
@@ -69,4 +71,6 @@ def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()
     E, text = arrays.as_radiance(E), "\n".join(comments).encode()
     with files.replacing(path) as name:
         kind = decode.KINDS[E.shape[2] if E.ndim == 3 else 1].lower()
-        optional.tifffile.imwrite(name, E, photometric=kind, metadata=None, description=text or None)
+        optional.tifffile.imwrite(
+            name, E, photometric=kind, metadata=None, description=text or None
+        )

@@ -1,9 +1,10 @@
 """Ultra HDR: a JPEG for any screen, with a gain map from which a bright screen makes more of it.
 
-The file is two JPEGs, one behind the other. The first is the picture that every program shows, the second the
-gain map of `core.gainmap`, gray or RGB, often smaller. An index in the first says where the second is (MPF,
-CIPA DC-007). What the gains mean stands in the second: in binary, as ISO 21496-1 has it, and in XMP, as
-telephones had it before. Apple's own gain maps are others, and are not read.
+The file is two JPEGs, one behind the other. The first is the picture that every program shows, the
+second the gain map of `core.gainmap`, gray or RGB, often smaller. An index in the first says where
+the second is (MPF, CIPA DC-007). What the gains mean stands in the second: in binary, as ISO
+21496-1 has it, and in XMP, as telephones had it before. Apple's own gain maps are others, and are
+not read.
 """
 
 import io
@@ -23,14 +24,20 @@ from hdrlab.io.codecs import DECODERS, jpeg_end
 from hdrlab.io.photos import PICTURES, read_photo
 
 ISO, ADOBE, INDEX = b"urn:iso:std:iso:ts:21496:-1\0", b"http://ns.adobe.com/xap/1.0/\0", b"MPF\0"
-# of XMP, in the order of ISO, and what they are where nothing is said: headrooms, then of each channel
+# of XMP, in the order of ISO, and what they are where nothing is said: headrooms, then of each
+# channel
 NAMES = {"HDRCapacityMin": 0.0, "HDRCapacityMax": np.nan, "GainMapMin": 0.0, "GainMapMax": np.nan}
 NAMES |= {"Gamma": 1.0, "OffsetSDR": 1 / 64, "OffsetHDR": 1 / 64}
-# flags: three channels, gains of the picture's own primaries, and one denominator as libultrahdr writes it
+# flags: three channels, gains of the picture's own primaries, and one denominator as libultrahdr
+# writes it
 THREE, OWN, ONE = 0x80, 0x40, 0x08
 UNIT = 1 << 20  # of the fractions that are written
 STOPS = 64.0  # the largest gain
-FINEST = {"quality": 100, "subsampling": 0, "keep_rgb": True}  # as YCbCr gains would be rounded once more
+FINEST = {
+    "quality": 100,
+    "subsampling": 0,
+    "keep_rgb": True,
+}  # as YCbCr gains would be rounded once more
 
 
 def read(path: str | Path) -> F32:
@@ -62,10 +69,14 @@ def read(path: str | Path) -> F32:
         part = _find(Path(path).read_bytes())
         return np.maximum(gainmap.apply_gain(sdr, _decode(header, part), **_meaning(part)), 0)
     except Exception as error:  # on damaged files the codecs raise what they like
-        raise ValueError(f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})") from None
+        raise ValueError(
+            f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})"
+        ) from None
 
 
-def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroom: float = 8.0) -> None:
+def write_picture(
+    path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroom: float = 8.0
+) -> None:
     """Write a picture as JPEG with the gains that lead from it to the scene, whole or not at all.
 
     Parameters
@@ -74,7 +85,8 @@ def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroo
     picture : (H, W) or (H, W, 3) uint8, by any operator: what is shown where gains are not known;
         gray becomes RGB, for other decoders refuse gray
     E : same shape, the radiance of which the picture was made
-    headroom : the brightest light that is kept, over white; a screen that has less shows a part of the gains
+    headroom : the brightest light that is kept, over white; a screen that has less shows a part of
+        the gains
 
     Raises
     ------
@@ -93,14 +105,18 @@ def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroo
     picture, E = web.as_rgb(as_picture(picture)), web.as_rgb(as_radiance(E))
     if picture.shape != E.shape or not 1 < headroom <= 2**16:
         got = f"{describe(picture)}, {describe(E)} and {headroom}"
-        raise ValueError(f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}")
+        raise ValueError(
+            f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}"
+        )
     sdr = colour.decode_srgb(DECODERS["JPEG"](_jpeg(picture, how), None) / np.float32(255))
     hdr = gainmap.expose(E, sdr, headroom)
     low, high = gainmap.find_range(gainmap.log_gain(sdr, hdr))
     g = np.rint(255 * gainmap.gain_map(sdr, hdr, low, high)).astype(np.uint8)
     channels = np.vstack(np.broadcast_arrays(low, high, 1, *gainmap.OFFSETS))
     gains = _jpeg(g, FINEST, _tell(np.log2(headroom), channels))
-    said = _segment(b"\xe1", ADOBE + _xmp("picture", length=len(gains))) + _segment(b"\xe2", ISO + bytes(4))
+    said = _segment(b"\xe1", ADOBE + _xmp("picture", length=len(gains))) + _segment(
+        b"\xe2", ISO + bytes(4)
+    )
     first = _jpeg(picture, how, said + _segment(b"\xe2", INDEX + _index(0, 0, 0)))
     at = first.index(INDEX) + len(INDEX)
     files.write(path, first.replace(_index(0, 0, 0), _index(len(first), len(gains), at)) + gains)
@@ -117,13 +133,17 @@ def _segment(marker: bytes, body: bytes) -> bytes:
 
 
 def _xmp(what: str, **values: object) -> bytes:
-    return Path(__file__).with_name(f"ultrahdr_{what}.xmp").read_text("utf8").format(**values).encode()
+    return (
+        Path(__file__).with_name(f"ultrahdr_{what}.xmp").read_text("utf8").format(**values).encode()
+    )
 
 
 def _tell(headroom: float, channels: Array) -> bytes:
     """Return the segments that say what gains mean: headroom in stops; low, high, gamma and k, (5, 3)."""
     numbers = np.concatenate([[0, headroom], channels.T.ravel()])
-    fractions = np.stack([np.rint(numbers * UNIT), np.full(len(numbers), UNIT)], axis=-1).astype(">i4")
+    fractions = np.stack([np.rint(numbers * UNIT), np.full(len(numbers), UNIT)], axis=-1).astype(
+        ">i4"
+    )
     seqs = ["".join(f"<rdf:li>{one:.6f}</rdf:li>" for one in row) for row in channels]
     text = _xmp("gains", headroom=f"{headroom:.6f}", **dict(zip([*NAMES][2:], seqs, strict=True)))
     binary = struct.pack(">2HB", 0, 0, OWN | THREE) + fractions.tobytes()
@@ -144,17 +164,24 @@ def _find(data: bytes) -> bytes:
         at = jpeg_end(data, start)
         if ISO in data[start:at] or b"hdrgm:GainMapMax" in data[start:at]:
             return data[start:at]
-    raise ValueError("no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW")
+    raise ValueError(
+        "no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW"
+    )
 
 
 def _meaning(part: bytes) -> dict[str, Any]:
     """Return the knobs of `gainmap.apply_gain`, each for one channel or for three."""
     at = part.find(ISO)
     values = _from_xmp(part) if at < 0 else _from_binary(part[at + len(ISO) :])
-    (least, most), (low, high, gamma, *k) = values[:2], values[2:].reshape(-1, 5).T.astype(np.float32)
+    (least, most), (low, high, gamma, *k) = (
+        values[:2],
+        values[2:].reshape(-1, 5).T.astype(np.float32),
+    )
     within = np.all(np.abs(values) <= STOPS) and np.all(low <= high) and np.all(gamma > 1 / STOPS)
     if not (within and least < most):
-        raise ValueError(f"expected gains within {STOPS:.0f} stops, toward more light, got {values.tolist()}")
+        raise ValueError(
+            f"expected gains within {STOPS:.0f} stops, toward more light, got {values.tolist()}"
+        )
     return {"low": low, "high": high, "gamma": gamma, "k": k}
 
 
@@ -168,7 +195,9 @@ def _from_binary(body: bytes) -> Array:
 def _from_xmp(part: bytes) -> Array:
     said = []
     for name, usual in NAMES.items():
-        found = re.search(rf'hdrgm:{name}(?:="([^"]*)"|>(.*?)</hdrgm:{name}>)'.encode(), part, re.DOTALL)
+        found = re.search(
+            rf'hdrgm:{name}(?:="([^"]*)"|>(.*?)</hdrgm:{name}>)'.encode(), part, re.DOTALL
+        )
         text = re.sub(rb"<[^>]*>", b" ", found[1] or found[2]) if found else b""
         said.append([float(one) for one in text.split()] or [usual])
     return np.concatenate([*said[:2], np.transpose(np.broadcast_arrays(*said[2:])).ravel()])
@@ -178,7 +207,10 @@ def _decode(header: decode.Header, part: bytes) -> F32:
     """Return the gain map, upright and of the picture's size and channels."""
     height, width = header.shape[:2] if header.orientation < 5 else header.shape[1::-1]
     # of what Pillow thinks odd in a gain map's own EXIF nobody is to be told
-    with warnings.catch_warnings(action="ignore"), Image.open(io.BytesIO(part), formats=("JPEG",)) as image:
+    with (
+        warnings.catch_warnings(action="ignore"),
+        Image.open(io.BytesIO(part), formats=("JPEG",)) as image,
+    ):
         least = image.height * image.width // decode.BEST_COMPRESSION_RATIO
         files.check_size(header.path, *image.size[::-1], least, available=len(part))
         g = image.convert("L" if len(header.shape) == 2 else "RGB").resize((width, height))

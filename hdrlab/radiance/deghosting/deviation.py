@@ -7,9 +7,9 @@ v   weighted variance    (H, W), sum w (x - mean x)^2 / sum w; of logarithms, so
 s2  noise                (H, W), sum w s2(Z) / sum w
 r   range                (H, W), of x over 3 x 3 pixels of a frame, sum w r / sum w
 
-Where an edge lies a little elsewhere in each frame, v is large too: under a shift of up to a pixel a frame's
-ln E changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left: sqrt(v) over
-what is tolerated, tau + 2 s + edge r.
+Where an edge lies a little elsewhere in each frame, v is large too: under a shift of up to a pixel
+a frame's ln E changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left:
+sqrt(v) over what is tolerated, tau + 2 s + edge r.
 """
 
 from typing import NamedTuple
@@ -49,8 +49,8 @@ def weighted_variance(x: Array, w: Array) -> F64:
 def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
     """Return the weighted variance, and what noise and edges have to do with it.
 
-    A frame that clips one channel of a pixel is left out, as in the merge; where one frame alone measures a
-    pixel, v is 0.
+    A frame that clips one channel of a pixel is left out, as in the merge; where one frame alone
+    measures a pixel, v is 0.
 
     Parameters
     ----------
@@ -86,18 +86,23 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
                 first = tables[0, j, c].take(Z) * counts
                 sums[0, ..., c] += first
                 sums[1, ..., c] += tables[1, j, c].take(Z) * counts
-                spans[..., c] += first.real * (x[j, c].take(high[..., c]) - x[j, c].take(low[..., c]))
+                spans[..., c] += first.real * (
+                    x[j, c].take(high[..., c]) - x[j, c].take(low[..., c])
+                )
         total = np.maximum(sums[0].real, 1e-9)
         mean, square, s2 = sums[0].imag / total, sums[1].real / total, sums[1].imag / total
-        out[:, rows] = [one.mean(axis=-1) for one in (np.maximum(square - mean**2, 0), s2, spans / total)]
+        out[:, rows] = [
+            one.mean(axis=-1) for one in (np.maximum(square - mean**2, 0), s2, spans / total)
+        ]
     return Deviation(*out)
 
 
 def find_clipped_elsewhere(taken: Calibrated, E: F32) -> Mask:
     """Return where the plain map E (H, W, C) is far darker than a frame that clips shows it to be, (H, W).
 
-    So it is where somebody dark stood before a bright place in the only frame that measures it, and v is 0.
-    An edge that is off by a pixel does not count, and neither does the light around a lamp: see FAR.
+    So it is where somebody dark stood before a bright place in the only frame that measures it, and
+    v is 0. An edge that is off by a pixel does not count, and neither does the light around a lamp:
+    see FAR.
     """
     brightest, out = maximum_filter(E, (3, 3, 1)), np.zeros(E.shape[:2], bool)
     for j, Z in enumerate(taken.images):
@@ -116,17 +121,23 @@ def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:
     z = np.arange(n)
     trust = np.where((z > 0) & (z < taken.top), trust / trust.max(), 0)
     x = taken.x - np.median(taken.x[..., n // 2])  # about 0, where float32 is finest
-    return np.stack([trust + 1j * trust * x, trust * x**2 + 1j * trust * taken.s2]).astype(np.complex64)
+    return np.stack([trust + 1j * trust * x, trust * x**2 + 1j * trust * taken.s2]).astype(
+        np.complex64
+    )
 
 
 def local_extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
     """Return the lowest and the highest level in the 3 x 3 pixels around each of some rows."""
     last = len(frame) - 1
     above, below = max(rows.start - 1, 0), min(rows.stop, last) + 1
-    slab = np.pad(frame[above:below], [(rows.start == 0, rows.stop > last), (1, 1), (0, 0)], mode="edge")
+    slab = np.pad(
+        frame[above:below], [(rows.start == 0, rows.stop > last), (1, 1), (0, 0)], mode="edge"
+    )
     low, high = slab, slab
     for axis in (0, 1):
-        low, high = (_three(one, axis, best) for one, best in ((low, np.minimum), (high, np.maximum)))
+        low, high = (
+            _three(one, axis, best) for one, best in ((low, np.minimum), (high, np.maximum))
+        )
     return low, high
 
 

@@ -7,9 +7,10 @@ delta  bias              (P, C, n), median of rho over pixels of like levels: a 
 kappa  spread            (P, C, n), 1.48 times the median deviation of rho, in units of s
 s      noise             (C, n), what an error of one level of 256 makes of ln E
 
-Real brackets contradict themselves everywhere: times are rounded, phones tone-map, glare grows with light.
-The bias of most pixels of a level is no motion, so it is taken off before motion is looked for, as far as
-LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to stand still.
+Real brackets contradict themselves everywhere: times are rounded, phones tone-map, glare grows with
+light. The bias of most pixels of a level is no motion, so it is taken off before motion is looked
+for, as far as LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to stand
+still.
 """
 
 from typing import NamedTuple
@@ -53,7 +54,12 @@ def level_noise(curve: F64) -> F64:
 
 
 def calibrate_frames(
-    images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLike, *, valid: ArrayLike | None = None
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    E: ArrayLike,
+    *,
+    valid: ArrayLike | None = None,
 ) -> Calibrated:
     """Return the bracket with each frame's bias and noise, from its still pixels.
 

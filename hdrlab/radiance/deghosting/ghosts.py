@@ -6,13 +6,14 @@ labels      regions           (H, W) int32, 1 ... R, 0 elsewhere
 references  best exposures    (R,), the reference frame of each region
 used        (P, H, W) bool    which frames make a pixel's radiance
 
-The plain way: weighted variance, threshold, dilation, regions, and in each region the best exposure. Two
-things are added. Edges of high contrast have variance as well; what they explain does not count. And in a
-region the best exposure is the reference, but other frames join it where they are consistent with it: see
-`reference`. So its clipped and its dark pixels are not lost, nor is its noise all there is.
+The plain way: weighted variance, threshold, dilation, regions, and in each region the best
+exposure. Two things are added. Edges of high contrast have variance as well; what they explain does
+not count. And in a region the best exposure is the reference, but other frames join it where they
+are consistent with it: see `reference`. So its clipped and its dark pixels are not lost, nor is its
+noise all there is.
 
-One frame per region means one moment per region: who walks through the picture in great steps may appear
-twice, or never. With one reference for all regions, the map shows its moment.
+One frame per region means one moment per region: who walks through the picture in great steps may
+appear twice, or never. With one reference for all regions, the map shows its moment.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,7 +23,17 @@ import numpy as np
 from scipy import ndimage
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import F32, ArrayLike, Flags, Indices, Labels, Mask, as_mask, as_stack, levels
+from hdrlab.core.arrays import (
+    F32,
+    ArrayLike,
+    Flags,
+    Indices,
+    Labels,
+    Mask,
+    as_mask,
+    as_stack,
+    levels,
+)
 from hdrlab.radiance.deghosting import deviation, reference, regions
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
@@ -35,8 +46,8 @@ WIDESPREAD = 50
 ROUNDS = 4
 # contradiction, in ln E, that is tolerated everywhere, noise and edges aside
 TAU = 0.1
-# share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides: at 0.5 no edge counts that is
-# shifted by up to a pixel
+# share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides: at 0.5 no edge
+# counts that is shifted by up to a pixel
 EDGE = 0.35
 
 
@@ -68,11 +79,13 @@ class Ghosts(NamedTuple):
     score: F32
 
 
-def detect_motion(found: deviation.Deviation, *, tau: float, edge: float, margin: int) -> tuple[F32, Mask]:
+def detect_motion(
+    found: deviation.Deviation, *, tau: float, edge: float, margin: int
+) -> tuple[F32, Mask]:
     """Return the score (H, W) and the mask (H, W) of what moved: see TAU and EDGE.
 
-    Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
-    little, and then by the margin.
+    Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges
+    counted for little, and then by the margin.
     """
     score = deviation.score_contradiction(found, tau=tau, edge=edge)
     seed = regions.find_seeds(score)
@@ -86,7 +99,9 @@ def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> 
     """Return where a photograph is not consistent with the map E (h, w, C) of a box."""
     nothing = np.zeros_like(E)
     plain = reference.Estimate(E, nothing, np.ones(E.shape, bool), nothing, np.full_like(E, np.inf))
-    return ~reference.find_consistent(reference.read_frame(taken, j, box), plain, tau=2 * reference.TAU)
+    return ~reference.find_consistent(
+        reference.read_frame(taken, j, box), plain, tau=2 * reference.TAU
+    )
 
 
 def region_steps(
@@ -94,8 +109,9 @@ def region_steps(
 ) -> Iterator[Regions]:
     """Yield the regions and their reference frames, until no region cuts off a figure of its reference.
 
-    A region must hold the whole figure as it stands in its reference frame, which `choose` gives. Where that
-    photograph contradicts the plain map E (H, W, C) beside the region, that grows, and may meet another.
+    A region must hold the whole figure as it stands in its reference frame, which `choose` gives.
+    Where that photograph contradicts the plain map E (H, W, C) beside the region, that grows, and
+    may meet another.
     """
     for _ in range(ROUNDS):
         labels = regions.label(moved)
@@ -160,8 +176,8 @@ def remove_ghosts(
 
     References
     ----------
-    Chuang, High dynamic range imaging (slides), "Automatic ghost removal"; Reinhard, Ward, Pattanaik and
-    Debevec, High Dynamic Range Imaging, 2005, on ghosts.
+    Chuang, High dynamic range imaging (slides), "Automatic ghost removal"; Reinhard, Ward,
+    Pattanaik and Debevec, High Dynamic Range Imaging, 2005, on ghosts.
 
     Examples
     --------
@@ -176,13 +192,17 @@ def remove_ghosts(
     stack = as_stack(images)
     mask, margin = as_mask(valid, stack), max(4, round(stack.shape[2] / 150))
     if fixed is not None and fixed not in range(len(stack)):
-        raise ValueError(f"expected the number of a frame, 0 to {len(stack) - 1}, as fixed, got {fixed}")
+        raise ValueError(
+            f"expected the number of a frame, 0 to {len(stack) - 1}, as fixed, got {fixed}"
+        )
     w = weights.hat(levels(stack)) if w is None else w
     merged = merged or merge(stack, times, g, w, valid=mask)
     E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
     plain, found = merged.E.reshape(taken.images.shape[1:]), deviation.measure_deviation(taken, w)
-    found.v[deviation.find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
+    found.v[deviation.find_clipped_elsewhere(taken, plain)] = (
+        np.inf
+    )  # no edge and no noise explains that
     score, moved = detect_motion(found, tau=TAU, edge=EDGE, margin=margin)
 
     def choose(labels: Labels) -> Indices:
@@ -195,7 +215,10 @@ def remove_ghosts(
     alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
-        here, frames = labels[wide] == r + 1, select_frames(taken, wide, int(chosen[r]), alone=alone)
+        here, frames = (
+            labels[wide] == r + 1,
+            select_frames(taken, wide, int(chosen[r]), alone=alone),
+        )
         still = merge(stack[:, y, x], times, g, w, valid=frames)
         E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
         quality[wide][here] = still.quality[here]
@@ -208,8 +231,14 @@ def note(found: Ghosts, names: Sequence[str]) -> str:
     if not len(found.references):
         return "nothing moved: no region contradicts itself by more than noise and edges explain"
     numbers, counts = np.unique(found.references, return_counts=True)
-    per_frame = ", ".join(f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True))
+    per_frame = ", ".join(
+        f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True)
+    )
     count, share = len(found.references), 100 * np.mean(found.labels > 0)
     number = "one region" if count == 1 else f"{count} regions"
     text = f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
-    return text if share < WIDESPREAD else f"{text}; so much is rather a matter of times or of alignment"
+    return (
+        text
+        if share < WIDESPREAD
+        else f"{text}; so much is rather a matter of times or of alignment"
+    )

@@ -6,10 +6,10 @@ V      its variance    (H, W, C), inf where a level is nothing but a bound
 low    lower bound     (H, W, C), of frames that clip a pixel; `high` the upper one, of those that are dark
 D      difference      a frame's radiance less the estimate, a mean over 5 x 5 pixels where both measure
 
-The reference frame alone would leave its clipped and its dark pixels open, and the noise of one frame in the
-others. Frame after frame, the nearest exposures first, the next is compared with the estimate of all that
-joined before. It is consistent where |D| <= 3 sigma + tau E, where no bound is violated, and where its
-neighbourhood is consistent, too.
+The reference frame alone would leave its clipped and its dark pixels open, and the noise of one
+frame in the others. Frame after frame, the nearest exposures first, the next is compared with the
+estimate of all that joined before. It is consistent where |D| <= 3 sigma + tau E, where no bound is
+violated, and where its neighbourhood is consistent, too.
 """
 
 from collections.abc import Iterator
@@ -36,8 +36,8 @@ TAU = 0.05
 class Estimate(NamedTuple):
     """The pixels' radiance from some frames, (H, W, C) each.
 
-    E and V; whether that is a measurement to the merge, which takes none of a pixel with a clipped channel;
-    and bounds.
+    E and V; whether that is a measurement to the merge, which takes none of a pixel with a clipped
+    channel; and bounds.
     """
 
     E: F32
@@ -51,8 +51,13 @@ def read_frame(taken: Calibrated, j: int, box: Box) -> Estimate:
     """Return the estimate of one frame in a box: E = exp x(Z), V = E^2 s2(Z), or a bound."""
     Z, x = taken.images[j][box], taken.x[j]
     E = np.stack([np.exp(x[c]).astype(np.float32)[Z[..., c]] for c in range(len(x))], axis=-1)
-    V = np.stack([taken.s2[j, c].astype(np.float32)[Z[..., c]] for c in range(len(x))], axis=-1) * E**2
-    shown = np.ones((*Z.shape[:2], 1), bool) if taken.valid is None else taken.valid[j][box][..., None]
+    V = (
+        np.stack([taken.s2[j, c].astype(np.float32)[Z[..., c]] for c in range(len(x))], axis=-1)
+        * E**2
+    )
+    shown = (
+        np.ones((*Z.shape[:2], 1), bool) if taken.valid is None else taken.valid[j][box][..., None]
+    )
     clipped, dark = (Z >= taken.top) & shown, (Z == 0) & shown
     V[clipped | dark | ~shown] = np.inf
     low = np.where(clipped, np.exp(x[:, taken.top]).astype(np.float32), np.float32(0))
@@ -66,7 +71,10 @@ def find_consistent(known: Estimate, other: Estimate, *, tau: float) -> Mask:
     share, E = np.maximum(_box_mean(both), np.float32(1e-6)), np.where(both, known.E, 0)
     mean, D = _box_mean(E) / share, np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
     # a running mean rounds below 0, too
-    sigma = np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT) / share
+    sigma = (
+        np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT)
+        / share
+    )
     filled, size = np.where(both, E, mean), (BOX, BOX, 1)
     reach = (maximum_filter(filled, size) - minimum_filter(filled, size)) * np.float32(SHIFT / BOX)
     differ = np.any(D > SIGMAS * sigma + tau * mean + reach, axis=-1)
@@ -113,7 +121,9 @@ def order_by_exposure(reference: int, times: F64) -> list[int]:
     return [reference, *(j for _, j in rest)]
 
 
-def consistent_steps(taken: Calibrated, reference: int, box: Box) -> Iterator[tuple[int, Mask, Estimate]]:
+def consistent_steps(
+    taken: Calibrated, reference: int, box: Box
+) -> Iterator[tuple[int, Mask, Estimate]]:
     """Yield each frame's number, where it is consistent (h, w), and the estimate with it; reference first."""
     known = read_frame(taken, reference, box)
     yield reference, np.ones(known.E.shape[:2], bool), known

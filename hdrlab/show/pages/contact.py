@@ -3,8 +3,8 @@
 E        radiance            (H, W[, 3]), any linear unit
 L, Ld    luminance, display luminance     (H, W)
 
-The time is that of the operator alone: its choice of settings, and luminance in, display luminance out.
-`sheet` draws what is found here.
+The time is that of the operator alone: its choice of settings, and luminance in, display luminance
+out. `sheet` draws what is found here.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,8 +30,8 @@ def entry_steps(
     E : (H, W) or (H, W, 3)
         Radiance, any linear unit.
     operators : names, or labels with an operator each; optional
-        Which, and in which order: those of `tonemap`, sorted, unless told; "photograph" is another. A label's
-        operator is a name or your own function `tonemap(L) -> Ld` in [0, 1].
+        Which, and in which order: those of `tonemap`, sorted, unless told; "photograph" is another.
+        A label's operator is a name or your own function `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio"}
         What becomes of colours that a display does not have: see `core.colour.render`.
 
@@ -54,7 +54,9 @@ def entry_steps(
     """
     E = as_radiance(E)
     L = colour.luminance(E)
-    for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
+    for name, tonemap in _methods(
+        operators
+    ).items():  # imported by now: that is no part of the time
         begun = perf_counter()
         settings, saturation = pipeline.settle(tonemap, E)
         Ld, seconds = tonemap(L, **settings), perf_counter() - begun
@@ -62,7 +64,9 @@ def entry_steps(
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
-def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., ArrayLike]]:
+def _methods(
+    operators: Sequence[str] | Mapping[str, Method] | None,
+) -> dict[str, Callable[..., ArrayLike]]:
     """Return label -> function, or raise a ValueError, before the first operator has run."""
     if operators is None:
         operators = catalogue.names("tonemap")
@@ -70,5 +74,7 @@ def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str
         raise ValueError(f"expected a list of operators, got the text {operators!r}")
     named = operators if isinstance(operators, Mapping) else {name: name for name in operators}
     if not named:
-        raise ValueError(f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none")
+        raise ValueError(
+            f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none"
+        )
     return {label: pipeline.find_operator(method) for label, method in named.items()}

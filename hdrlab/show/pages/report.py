@@ -50,7 +50,8 @@ def write_report(
     Raises
     ------
     ValueError
-        For an assembly that is not finished or without light, a picture or a truth that does not fit it.
+        For an assembly that is not finished or without light, a picture or a truth that does not
+        fit it.
 
     Examples
     --------
@@ -64,15 +65,30 @@ def write_report(
     """
     picture, quality = np.asarray(picture), assembly.quality
     if quality is None or assembly.medians is None:
-        raise ValueError(f"expected a finished assembly, got one after the stage {assembly.stage!r}")
-    if picture.dtype != np.uint8 or picture.shape[:2] != quality.shape or picture.shape[2:] not in ((), (3,)):
-        raise ValueError(f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}")
+        raise ValueError(
+            f"expected a finished assembly, got one after the stage {assembly.stage!r}"
+        )
+    if (
+        picture.dtype != np.uint8
+        or picture.shape[:2] != quality.shape
+        or picture.shape[2:] not in ((), (3,))
+    ):
+        raise ValueError(
+            f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}"
+        )
     seen = "fused without a map" if assembly.fallback else "tone-mapped for a display"
     seen = f"The picture: the {'photographs' if assembly.fallback else 'radiance map'}, {seen}"
     words: dict[str, Any] = {"assembly": assembly, "picture": picture, "truth": truth}
-    words |= {"shown": figures.photograph(picture, 1600, seen), "sections": sections, "wording": wording}
+    words |= {
+        "shown": figures.photograph(picture, 1600, seen),
+        "sections": sections,
+        "wording": wording,
+    }
     words |= {"recipe": {"how": recipe} if recipe and isinstance(recipe, str) else recipe}
-    words |= {"modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)}, "Quality": Quality}
+    words |= {
+        "modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)},
+        "Quality": Quality,
+    }
     text, page = templates.render_page(Path(__file__).parent, PAGE, **words), Path(folder) / PAGE
     page.parent.mkdir(parents=True, exist_ok=True)
     return write(page, text)

@@ -22,12 +22,16 @@ def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
     """Return each photograph as a thumbnail with its name, its time and where it was moved."""
     images, times, names, *_ = photographs
     frames = []
-    for image, time, name, moved in zip(images, map(plots.seconds, times), names, offsets, strict=True):
+    for image, time, name, moved in zip(
+        images, map(plots.seconds, times), names, offsets, strict=True
+    ):
         small = to_256(figures.fit(image, 400))
         if photographs.linear:  # its numbers are light, and a screen wants them encoded
             small = colour.to_8bit(small / np.float32(255))
         shown = figures.photograph(small, 400, f"Photograph {name}, exposed for {time}")
-        frames.append({"name": name, "time": time, "offset": wording.offset(moved), "picture": shown})
+        frames.append(
+            {"name": name, "time": time, "offset": wording.offset(moved), "picture": shown}
+        )
     return frames
 
 
@@ -38,7 +42,9 @@ def response(g: F64, truth: metrics.Truth | None) -> dict[str, Any]:
         plots.response(truth.g, label="true", ax=ax)
     plots.response(g, label="found" if truth is not None else "", ax=ax)
     curves = g.reshape(len(g), -1)
-    low, high = (curves[round(z / 255 * (len(g) - 1))] for z in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL))
+    low, high = (
+        curves[round(z / 255 * (len(g) - 1))] for z in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL)
+    )
     reach = ", ".join(f"{one:.1f}" for one in (high - low) / np.log(2))
     alt = f"Response, pixel level over ln exposure: from level 10 to level 250 it rises over {reach} stops"
     return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}
@@ -82,7 +88,9 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
     low, high = np.nanpercentile(stops, [1, 99]).tolist()
     low = min(low, 0.9 * high)  # lest what is even looks uneven
     ends = f"from ± {low:.2g} to ± {high:.2g} stops; gray where it is not known"
-    shown = _coloured(stops, low, high, f"How sure each pixel is, in false colour, {ends}", digits=3)
+    shown = _coloured(
+        stops, low, high, f"How sure each pixel is, in false colour, {ends}", digits=3
+    )
     ticks = [(at, label.removeprefix("+")) for at, label in shown["scale"].ticks]
     return {**shown, "said": said, "scale": shown["scale"]._replace(ticks=ticks)}
 
@@ -104,13 +112,18 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     shared &= shared.sum(axis=0) >= 2
     spread, found = consistency.measure_spread(medians), consistency.measure_deviations(medians)
     counts = shared.any(axis=1).sum(axis=1).tolist()
-    known, bars = np.isfinite(found), np.nan_to_num(found)  # none, for a frame of which nothing is known
+    known, bars = (
+        np.isfinite(found),
+        np.nan_to_num(found),
+    )  # none, for a frame of which nothing is known
     columns = (photographs.names, map(plots.seconds, photographs.times), counts, known, bars)
     widest = max(np.abs(bars).max(), wording.CLOSE)
     return {"spread": spread, "widest": widest, "rows": list(zip(*columns, strict=True))}
 
 
-def against(truth: metrics.Truth, photographs: Bracket, offsets: Array, g: F64, E: Array) -> dict[str, Any]:
+def against(
+    truth: metrics.Truth, photographs: Bracket, offsets: Array, g: F64, E: Array
+) -> dict[str, Any]:
     """Return how far radiance, response and offsets lie from the truth."""
     well = metrics.well_exposed(photographs.images, photographs.valid)
     apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
@@ -134,4 +147,6 @@ def error_map(truth: metrics.Truth, E: Array, well: Mask) -> dict[str, Any]:
     stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)
     reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
     ends = f"from {wording.signed(-reach, 2)} to {wording.signed(reach, 2)} stops"
-    return _coloured(stops, -reach, reach, f"Errors of luminance in false colour, {ends}", "PuOr_r", 2)
+    return _coloured(
+        stops, -reach, reach, f"Errors of luminance in false colour, {ends}", "PuOr_r", 2
+    )

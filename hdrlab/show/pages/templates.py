@@ -1,6 +1,7 @@
 """Templates of pages. What they show comes from file names and from readers, so all of it is escaped.
 
-A page that stands by itself, with all it needs, extends `page.html`: it fetches nothing and runs nothing.
+A page that stands by itself, with all it needs, extends `page.html`: it fetches nothing and runs
+nothing.
 """
 
 from pathlib import Path

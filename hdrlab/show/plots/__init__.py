@@ -5,8 +5,8 @@ Z    pixel levels    (N, P): sample i in frame j
 lE   ln irradiance   (N,)
 B    ln exposure times (P,)
 
-Every function draws on a new figure of its own, or on `ax` where it takes one, and returns the Axes; nothing
-is shown or written here.
+Every function draws on a new figure of its own, or on `ax` where it takes one, and returns the
+Axes; nothing is shown or written here.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,12 @@ SAMPLES = tuple(zip(COLOURS, "os^Dv*", strict=True))
 Dashes = str | tuple[int, tuple[float, ...]]
 STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
 LINES = tuple(zip(("#1A1A1A", *COLOURS[:5]), STYLES, strict=True))
-NARROW: dict[str, Any] = {"handlelength": 1.2, "columnspacing": 1.0, "borderaxespad": 0.2, "frameon": False}
+NARROW: dict[str, Any] = {
+    "handlelength": 1.2,
+    "columnspacing": 1.0,
+    "borderaxespad": 0.2,
+    "frameon": False,
+}
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
@@ -42,7 +47,12 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     def made() -> list[Axes]:
         figure = Figure(figsize=(width, height), dpi=100)
         left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
-        place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
+        place = (
+            left / width,
+            bottom / height,
+            1 - (left + right) / width,
+            1 - (bottom + top) / height,
+        )
         ax = figure.add_axes(place)
         ax.grid(color="#D9D9D9", linewidth=0.6)
         ax.set_axisbelow(True)
@@ -54,7 +64,9 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
 def picture_axes(width: float, height: float, place: Place) -> Axes:
     """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
     size = (width, height)
-    return reuse.take((*size, *place), lambda: [bare(Figure(figsize=size, dpi=100).add_axes(place))])[0]
+    return reuse.take(
+        (*size, *place), lambda: [bare(Figure(figsize=size, dpi=100).add_axes(place))]
+    )[0]
 
 
 def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
@@ -120,7 +132,9 @@ def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | Non
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
     channels, levels = CHANNELS if curves.ndim == 2 else GRAY, np.arange(len(curves))
-    for (name, colour, style), curve in zip(channels, curves.reshape(len(curves), -1).T, strict=True):
+    for (name, colour, style), curve in zip(
+        channels, curves.reshape(len(curves), -1).T, strict=True
+    ):
         ax.plot(curve, levels, style, color=colour, linewidth=1.8, label=f"{label} {name}".strip())
     return with_legend(ax, "upper left") if label or curves.ndim == 2 else ax
 
@@ -130,17 +144,24 @@ def samples(
 ) -> Axes:
     """Draw each sample i as its points (lE_i + B_j, Z_ij): with the right lE they all lie on one curve, g.
 
-    Up to six samples have a colour and a marker each; more are drawn alike. `span` fixes the exposure axis.
+    Up to six samples have a colour and a marker each; more are drawn alike. `span` fixes the
+    exposure axis.
     """
     Z, lE, B = np.asarray(Z), np.asarray(lE, dtype=np.float64), np.asarray(B, dtype=np.float64)
     if Z.ndim != 2 or Z.shape != lE.shape + B.shape:
-        raise ValueError(f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}")
+        raise ValueError(
+            f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}"
+        )
     ax, x = _exposure_axes(axes(), span, 256), lE[:, None] + B
     if g is not None:  # above the points, which would hide it
-        ax.plot(g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g")
+        ax.plot(
+            g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g"
+        )
     if len(Z) <= len(SAMPLES):
         for i, (colour, marker) in enumerate(SAMPLES[: len(Z)]):
-            ax.plot(x[i], Z[i], "-", marker=marker, color=colour, linewidth=0.8, label=f"pixel {i + 1}")
+            ax.plot(
+                x[i], Z[i], "-", marker=marker, color=colour, linewidth=0.8, label=f"pixel {i + 1}"
+            )
     else:
         ax.plot(x.ravel(), Z.ravel(), ".", color="#56B4E9", markersize=5, label=f"{len(Z)} pixels")
     return with_legend(ax, "upper left")
@@ -163,7 +184,12 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
     figure = Figure(figsize=(columns * width, rows * height), dpi=100)
     for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
         row, column = divmod(j, columns)
-        place = (column / columns, 1 - (row + 1) / rows, 0.97 / columns, (1 - title / height) / rows)
+        place = (
+            column / columns,
+            1 - (row + 1) / rows,
+            0.97 / columns,
+            (1 - title / height) / rows,
+        )
         ax, step = figure.add_axes(place), max(1, w // 350)
         ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])

@@ -34,7 +34,9 @@ def doublings(g: ArrayLike) -> dict[int, float]:
     """
     curve = np.maximum.accumulate(np.asarray(g, np.float64)) / np.log(2)
     last = int(np.argmax(curve == curve[-1]))  # a flat end of a curve is not determined
-    whole = range(int(np.ceil(curve[LOW_LEVEL * len(curve) // 256])), int(np.floor(curve[last])) + 1)
+    whole = range(
+        int(np.ceil(curve[LOW_LEVEL * len(curve) // 256])), int(np.floor(curve[last])) + 1
+    )
     return {k: float(np.interp(k, curve[: last + 1], np.arange(last + 1))) for k in whole}
 
 
@@ -50,8 +52,18 @@ def summary(g: F64, medians: F64, names: Sequence[str]) -> str:
     rows = dict(zip(channels, map(doublings, np.atleast_2d(g.T)), strict=True))
     off = np.nan_to_num(consistency.measure_deviations(medians))
     worst = int(np.argmax(np.abs(off)))
-    words = {"worst": names[worst], "off": off[worst], "low": LOW_LEVEL, "high": HIGH_LEVEL, "rows": rows}
-    words |= {"stops": sorted(set().union(*rows.values())), "reach": reach(g), "signed": wording.signed}
+    words = {
+        "worst": names[worst],
+        "off": off[worst],
+        "low": LOW_LEVEL,
+        "high": HIGH_LEVEL,
+        "rows": rows,
+    }
+    words |= {
+        "stops": sorted(set().union(*rows.values())),
+        "reach": reach(g),
+        "signed": wording.signed,
+    }
     words |= {"spread": consistency.measure_spread(medians)}
     words |= {"rms": _rms(consistency.measure_residuals(medians, g))}
     return templates.render_page(Path(__file__).parent, "calibration.plain", **words).rstrip()
@@ -89,9 +101,16 @@ def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
         ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
     sizes = np.ma.compressed(np.abs(lines[:, RELIABLE_LEVELS]))
-    most = max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1  # but for rare levels
+    most = (
+        max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1
+    )  # but for rare levels
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
-    ax.set(xlabel="pixel level Z", ylabel="g(Z) − ln E − ln t, stops", xlim=(0, 255), ylim=(-most, most))
+    ax.set(
+        xlabel="pixel level Z",
+        ylabel="g(Z) − ln E − ln t, stops",
+        xlim=(0, 255),
+        ylim=(-most, most),
+    )
     for low, high in ((0, LOW_LEVEL), (HIGH_LEVEL, 255)):
         ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
     ax.legend(fontsize=7, ncols=3, loc="lower center", framealpha=0.9)
@@ -107,7 +126,10 @@ def write_plot(path: str | Path, figure: Figure) -> None:
         For another suffix, or a figure without alt text.
     """
     suffix = check_suffix(path)
-    said = {"Title": "Camera response", "Description": pictures.require_alt(str(figure.get_label()))}
+    said = {
+        "Title": "Camera response",
+        "Description": pictures.require_alt(str(figure.get_label())),
+    }
     undated = said | ({"Date": None} if suffix == ".svg" else {})
     with replacing(path) as name, matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(name, format=suffix[1:], metadata=undated)

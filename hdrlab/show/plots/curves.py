@@ -6,7 +6,8 @@ g        response       (256,), ln exposure of each level;  truth, the camera's 
 M        brightness     (N, P), 0 ... 1: sample p in frame q, frames from short to long;  f(M), its exposure
 R        ratios         (P - 1,), exposure of a frame over that of the next longer one
 
-Colours and line styles differ together, so that a reader who sees no colours can follow a curve too.
+Colours and line styles differ together, so that a reader who sees no colours can follow a curve
+too.
 """
 
 from collections.abc import Mapping
@@ -18,7 +19,16 @@ from matplotlib.collections import LineCollection
 
 from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.show.plots import LINES, NARROW, SAMPLES, Ends, axes, fix_limits, logarithmic, with_legend
+from hdrlab.show.plots import (
+    LINES,
+    NARROW,
+    SAMPLES,
+    Ends,
+    axes,
+    fix_limits,
+    logarithmic,
+    with_legend,
+)
 
 
 def lines(
@@ -34,13 +44,15 @@ def lines(
 ) -> Axes:
     """Draw up to six curves over x, each with its label: the first is black, what the others are held to.
 
-    `limits` fix the ends of y, so that a slider moves the curves and nothing else; on an `ax` that has curves
-    the colours go on from there.
+    `limits` fix the ends of y, so that a slider moves the curves and nothing else; on an `ax` that
+    has curves the colours go on from there.
     """
     x, ax = np.asarray(x, np.float64), ax or axes()
     begun = len(ax.lines)
     if begun + len(curves) > len(LINES):
-        raise ValueError(f"expected at most {len(LINES)} curves in one picture, got {begun + len(curves)}")
+        raise ValueError(
+            f"expected at most {len(LINES)} curves in one picture, got {begun + len(curves)}"
+        )
     for (colour, style), (label, y) in zip(LINES[begun:], curves.items(), strict=False):
         if np.shape(y) != x.shape:
             raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
@@ -79,7 +91,9 @@ def bundle(x: ArrayLike, many: ArrayLike, *, label: str, across: str, up: str) -
     """Draw many curves (C, K) thin and alike, as a ground for a few with a name."""
     many, ax = np.atleast_2d(many), axes()
     paths = [np.column_stack([x, y]) for y in many]
-    ax.add_collection(LineCollection(paths, colors="#56B4E9", linewidths=0.5, alpha=0.7, label=label))
+    ax.add_collection(
+        LineCollection(paths, colors="#56B4E9", linewidths=0.5, alpha=0.7, label=label)
+    )
     ax.autoscale_view()
     ax.set(xlabel=across, ylabel=up)
     return with_legend(ax, "upper left")
@@ -98,8 +112,16 @@ def quotients(M: ArrayLike, fM: ArrayLike, R: ArrayLike) -> Axes:
     for q, (colour, marker) in zip(range(len(R)), SAMPLES, strict=False):
         held = fM[:, q + 1] > 0
         ax.plot(M[held, q + 1], fM[held, q] / fM[held, q + 1], marker, color=colour, markersize=3)
-        ax.plot([0, 1], [R[q], R[q]], color=colour, linewidth=1.4, label=f"R{chr(0x2081 + q)} = {R[q]:.3f}")
-    ax.set(xlabel="brightness of the longer exposure, M", ylabel="quotient of exposures, f(M) / f(M)")
+        ax.plot(
+            [0, 1],
+            [R[q], R[q]],
+            color=colour,
+            linewidth=1.4,
+            label=f"R{chr(0x2081 + q)} = {R[q]:.3f}",
+        )
+    ax.set(
+        xlabel="brightness of the longer exposure, M", ylabel="quotient of exposures, f(M) / f(M)"
+    )
     ax.set(xlim=(0, 1), ylim=(0, 1))
     size = min(10, 42 / len(R))
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=len(R), fontsize=size, **NARROW)

@@ -32,12 +32,23 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         raise ValueError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
     place, error = _worst(off)
-    shown, label = [drawn(one, truth) for one in (truth, answer)], "by logarithms" if _wide(truth) else ""
+    shown, label = (
+        [drawn(one, truth) for one in (truth, answer)],
+        "by logarithms" if _wide(truth) else "",
+    )
     reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
-    colours = figures.false_colour(np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r")
-    frames = [pictures.encode(_large(one)) for one in shown] + [pictures.encode(_ringed(colours, place))]
+    colours = figures.false_colour(
+        np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r"
+    )
+    frames = [pictures.encode(_large(one)) for one in shown] + [
+        pictures.encode(_ringed(colours, place))
+    ]
     span = f"from {-reach:.2g} (purple) to {reach:.2g} (orange)"
-    captions = ("expected", "yours", f"difference {span}: worst at row {place[0]}, column {place[1]}")
+    captions = (
+        "expected",
+        "yours",
+        f"difference {span}: worst at row {place[0]}, column {place[1]}",
+    )
     alts = (
         ", ".join(filter(None, (f"{what}, expected", label, _range(truth)))),
         ", ".join(filter(None, (f"{what}, yours", label, _range(answer)))),
@@ -57,12 +68,22 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     (k, _), error = _worst((answer - truth)[:, None])
     seen = np.where(np.isfinite(answer), answer, np.nan)
     reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)
-    seen = np.clip(seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach)  # else one spike hides all else
+    seen = np.clip(
+        seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach
+    )  # else one spike hides all else
     figure, x = Figure(figsize=(5.4, 4.6), dpi=100, layout="constrained"), np.arange(len(truth))
     ax, below = figure.subplots(2, sharex=True, height_ratios=(5, 2))
     ax.plot(x, truth, "-", color="#B0B0B0", linewidth=5, label="expected")
     ax.plot(x, seen, "-", color="#0072B2", linewidth=1.6, label="yours")
-    ax.plot(k, seen[k], "o", color="#D55E00", markersize=9, markerfacecolor="none", label="furthest apart")
+    ax.plot(
+        k,
+        seen[k],
+        "o",
+        color="#D55E00",
+        markersize=9,
+        markerfacecolor="none",
+        label="furthest apart",
+    )
     plots.with_legend(ax, "best").set(ylabel=what if len(what) < LONGEST else "value")
     below.axhline(0, color="#B0B0B0", linewidth=1)
     below.plot(x, seen - truth, "-", color="#D55E00", linewidth=1.6)

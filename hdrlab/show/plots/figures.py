@@ -3,8 +3,8 @@
 ev    radiance in stops   (H, W), log2 of luminance over its median; NaN without light
 quality  (H, W) uint8     how each pixel is known, flags of `radiance.merge.Quality`
 
-The plots of `show.plots` carry their scale inside the picture. On a page the scale is text beside it, which
-stays legible on a telephone and which a screen reader can read.
+The plots of `show.plots` carry their scale inside the picture. On a page the scale is text beside
+it, which stays legible on a telephone and which a screen reader can read.
 """
 
 import io

@@ -1,7 +1,8 @@
 """Pictures on matplotlib Axes: each pixel of the screen takes the colour of the pixel in which it lies.
 
-This is imshow(interpolation="nearest", aspect="auto") on linear Axes, and looks the same. matplotlib brings
-every picture to the screen's size in floating point, which for a small one takes most of a plot's time.
+This is imshow(interpolation="nearest", aspect="auto") on linear Axes, and looks the same.
+matplotlib brings every picture to the screen's size in floating point, which for a small one takes
+most of a plot's time.
 """
 
 from typing import Any
@@ -38,15 +39,26 @@ class _Nearest(AxesImage):
         rows = np.clip((y - top) / (bottom - top) * h, 0, h - 1).astype(int)
         words = pixels.view(np.uint32)[..., 0]  # one for each pixel
         shown = words[rows[:, None], columns[None]]
-        return shown.view(np.uint8).reshape(*shown.shape, 4), float(across[0]), float(up[0]), Affine2D()
+        return (
+            shown.view(np.uint8).reshape(*shown.shape, 4),
+            float(across[0]),
+            float(up[0]),
+            Affine2D(),
+        )
 
 
 def show(
-    ax: Axes, picture: ArrayLike, *, colours: Any = None, norm: Any = None, extent: Extent | None = None
+    ax: Axes,
+    picture: ArrayLike,
+    *,
+    colours: Any = None,
+    norm: Any = None,
+    extent: Extent | None = None,
 ) -> AxesImage:
     """Draw a picture, its first row on top; values (H, W) have `colours`, whose ends the `norm` says.
 
-    The limits of the Axes follow the picture, whose pixels have a side of 1 unless an `extent` is given.
+    The limits of the Axes follow the picture, whose pixels have a side of 1 unless an `extent` is
+    given.
     """
     image = _Nearest(ax, cmap=colours, norm=norm, origin="upper", extent=extent, zorder=0)
     image.set_data(picture)

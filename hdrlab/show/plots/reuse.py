@@ -1,9 +1,11 @@
 """Reuse of Axes and blitting: most of a line plot's time goes into making its axes and their ticks.
 
-`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `draw_reusing`, `plots.axes` and
-the like return the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would
+`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `draw_reusing`,
+`plots.axes` and the like return the Axes of the picture before, wiped, where `keep` found nothing
+on them that wiping would
 leave behind. `paint` keeps the pixels of their background, which is the patch with ticks, numbers and grid:
-where these are the same as in the picture before, they are blitted, and only the artists upon them are drawn.
+where these are the same as in the picture before, they are blitted, and only the artists upon them
+are drawn.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -20,7 +22,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 State = TypeVar("State")
 Picture = TypeVar("Picture")
-Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie if not in the usual place
+Size = tuple[
+    float, ...
+]  # of the figure, inches, and where in it its Axes lie if not in the usual place
 
 
 class Kept:
@@ -78,10 +82,20 @@ def look(ax: Axes) -> object:
     """Return what a drawing may change and `wipe` does not bring back."""
     both = (ax.xaxis, ax.yaxis)
     ticked = [each.get_tick_params(which) for each in both for which in ("major", "minor")]
-    axis = [(each.get_visible(), each.label.get_color(), each.label.get_fontsize()) for each in both]
+    axis = [
+        (each.get_visible(), each.label.get_color(), each.label.get_fontsize()) for each in both
+    ]
     frame = [(spine.get_visible(), spine.get_edgecolor()) for spine in ax.spines.values()]
     background = (ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
-    return (ticked, axis, frame, background, ax.title.get_color(), ax.get_position().bounds, ax.margins())
+    return (
+        ticked,
+        axis,
+        frame,
+        background,
+        ax.title.get_color(),
+        ax.get_position().bounds,
+        ax.margins(),
+    )
 
 
 def wipe(ax: Axes) -> Axes:
@@ -104,7 +118,11 @@ def wipe(ax: Axes) -> Axes:
 def paint(canvas: FigureCanvasAgg) -> None:
     """Draw the canvas's figure; where its background is as before, only what stands upon it."""
     kept, figure = _kept.get(), canvas.figure
-    mine = [(size, *out) for size, out in kept.out.items() if out[0][0].figure is figure] if kept else []
+    mine = (
+        [(size, *out) for size, out in kept.out.items() if out[0][0].figure is figure]
+        if kept
+        else []
+    )
     if kept is None or not mine or not separable(*mine[0][1:]):
         canvas.draw()
         return
@@ -138,7 +156,9 @@ def ticks(axis: Axis) -> object:
     """Return all that makes an axis look as it does, beside `look`: its ends, its ticks and their numbers."""
     numbers = (axis.get_major_formatter(), axis.get_minor_formatter())
     places = (axis.get_majorticklocs().tolist(), axis.get_minorticklocs().tolist())
-    said = [(at, to.format_ticks(at), to.get_offset()) for to, at in zip(numbers, places, strict=True)]
+    said = [
+        (at, to.format_ticks(at), to.get_offset()) for to, at in zip(numbers, places, strict=True)
+    ]
     return tuple(axis.get_view_interval()), axis.get_scale(), axis.get_label_text(), said
 
 

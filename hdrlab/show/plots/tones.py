@@ -5,8 +5,8 @@ b, f      histogram             edges of the bins (bins + 1,), ln luminance; pix
 ceiling   most a bin may hold
 L, Ld     luminance and display luminance
 
-A map is drawn on a scale from yellow (much) to dark blue (little). Where the sign matters it is orange above
-zero, violet below, and white at zero.
+A map is drawn on a scale from yellow (much) to dark blue (little). Where the sign matters it is
+orange above zero, violet below, and white at zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -43,7 +43,8 @@ def maps(
     ----------
     each : name -> v (H, W), all of one shape; NaN is gray
     label : what the scale counts, with its unit
-    span : ends of the scale; by default all but 1 % of the pixels fit, and for a signed map the middle is 0
+    span : ends of the scale; by default all but 1 % of the pixels fit, and for a signed map the
+        middle is 0
     signed : whether zero is white, and the two signs differ in colour
     names : of the classes, where v is an index into them
 
@@ -66,9 +67,13 @@ def maps(
 
 def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object]) -> None:
     """Draw the colours of a scale, with its numbers or the names of its classes below."""
-    low, high = (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
+    low, high = (
+        (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
+    )
     each = np.arange(len(names)) if names else np.linspace(low, high, 256)
-    nearest.show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1)).set_zorder(1)
+    nearest.show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1)).set_zorder(
+        1
+    )
     if names:
         bar.set_xticks(range(len(names)), [str(name) for name in names])
     else:
@@ -76,7 +81,12 @@ def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object
 
 
 def trims(
-    b: ArrayLike, whole: ArrayLike, f: ArrayLike, *, ceiling: float = np.inf, top: float | None = None
+    b: ArrayLike,
+    whole: ArrayLike,
+    f: ArrayLike,
+    *,
+    ceiling: float = np.inf,
+    top: float | None = None,
 ) -> Axes:
     """Draw a histogram as it was, pale, what the trims left of it, and the ceiling of the last trim.
 
@@ -84,11 +94,15 @@ def trims(
     """
     b, whole, f, ax = np.asarray(b), np.asarray(whole), np.asarray(f), axes()
     if not (len(b) - 1 == len(whole) == len(f)):
-        raise ValueError(f"expected bins with one edge more, got {len(f)} and {len(whole)}, {len(b)} edges")
+        raise ValueError(
+            f"expected bins with one edge more, got {len(f)} and {len(whole)}, {len(b)} edges"
+        )
     ax.stairs(whole, b, fill=True, color="#D0D0D0", label="as it was")
     ax.stairs(f, b, fill=True, color="#0072B2", label="what is left")
     if np.isfinite(ceiling):
-        ax.axhline(ceiling, color="#D55E00", linestyle="--", linewidth=1.6, label="ceiling of this trim")
+        ax.axhline(
+            ceiling, color="#D55E00", linestyle="--", linewidth=1.6, label="ceiling of this trim"
+        )
     ax.set(xlabel="brightness b = ln L", ylabel="foveal pixels f(b)", xlim=(b[0], b[-1]))
     ax.set_ylim(0, top or 1.02 * whole.max(initial=1))
     return with_legend(ax, "upper right")
@@ -99,13 +113,17 @@ def bands(
 ) -> Axes:
     """Draw what becomes of each luminance, from least to greatest: a curve is a line, an operator a band.
 
-    Each of `spreads` is (L, least Ld, greatest Ld), as of `tonemap.curves.spread`; `middle` is the luminance
-    at 0 stops, by default the median of the first L.
+    Each of `spreads` is (L, least Ld, greatest Ld), as of `tonemap.curves.spread`; `middle` is the
+    luminance at 0 stops, by default the median of the first L.
     """
     ax = axes()
     if not 0 < len(spreads) < len(LINES):
-        raise ValueError(f"expected 1 to {len(LINES) - 1} operators in one picture, got {len(spreads)}")
-    for (colour, style), (name, (L, least, greatest)) in zip(LINES[1:], spreads.items(), strict=False):
+        raise ValueError(
+            f"expected 1 to {len(LINES) - 1} operators in one picture, got {len(spreads)}"
+        )
+    for (colour, style), (name, (L, least, greatest)) in zip(
+        LINES[1:], spreads.items(), strict=False
+    ):
         L = np.asarray(L, np.float64)
         lit = L > 0
         middle = middle or float(np.median(L[lit]))

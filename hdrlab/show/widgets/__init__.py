@@ -7,8 +7,9 @@ blink  pictures in one place, one after the other: `show.widgets.compared`
 predict  a question that takes the answer before the picture comes: `show.widgets.predict`
 brush  the Detail Brush over a radiance map: `show.widgets.lens`
 
-The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of
-yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
+The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a
+generator of yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an
+Axes or a Figure.
 """
 
 import gc
@@ -23,7 +24,15 @@ import traitlets
 from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
-from hdrlab.show.pictures import Picture, encode, encode_change, pictured, render, require_alt, short
+from hdrlab.show.pictures import (
+    Picture,
+    encode,
+    encode_change,
+    pictured,
+    render,
+    require_alt,
+    short,
+)
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
@@ -81,8 +90,8 @@ def play(
     states : iterable
         The states of an algorithm, 1 to 200 of them.
     draw : function
-        Takes a state, and returns a uint8 picture, an Axes or a Figure. The Axes of `plots` are drawn on
-        again for the next picture, so it must not keep them.
+        Takes a state, and returns a uint8 picture, an Axes or a Figure. The Axes of `plots` are
+        drawn on again for the next picture, so it must not keep them.
     alt : str, or function of a state
         What the picture shows. To a str the step's number is added.
     name : str
@@ -102,11 +111,17 @@ def play(
     """
     frames, alts, kept, areas = [], [], reuse.Kept(), list[list[float]]()
     for k, state in enumerate(islice(states, MOST + 1)):
-        frame, areas = reuse.draw_reusing(draw, state, lambda drawn: (encode(drawn), pictured(drawn)), kept)
+        frame, areas = reuse.draw_reusing(
+            draw, state, lambda drawn: (encode(drawn), pictured(drawn)), kept
+        )
         frames.append(frame)
-        alts.append(require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}")
+        alts.append(
+            require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}"
+        )
     if not 0 < len(frames) <= MOST:
-        raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
+        raise ValueError(
+            f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}"
+        )
     return Player(frames=frames, alts=alts, name=name, areas=areas)
 
 
@@ -115,7 +130,9 @@ class Tuner(Widget):
 
     _esm = script("tune.js")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
-    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
+    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(
+        sync=True
+    )  # each position's text
     # The browser moves this, and knows.
     at = traitlets.List(traitlets.Int()).tag(sync=True, echo_update=False)
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
@@ -124,11 +141,15 @@ class Tuner(Widget):
     problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
-    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP; each is painted over the first
+    stored = traitlets.List(traitlets.Bytes()).tag(
+        sync=True
+    )  # WebP; each is painted over the first
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
     areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
 
-    def __init__(self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any):
+    def __init__(
+        self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any
+    ):
         self._picture, self._grids = picture, grids
         texts = [[short(value) for value in grid] for grid in grids.values()]
         super().__init__(names=list(grids), values=texts, **traits)
@@ -149,10 +170,17 @@ class Tuner(Widget):
         with undisturbed():
             try:
                 frame = web.encode_frame(self._picture(at))
-            except Exception as error:  # it may be a student's function: its words belong beside the slider
+            except (
+                Exception
+            ) as error:  # it may be a student's function: its words belong beside the slider
                 problem = f"{type(error).__name__}: {error}"
             with self.hold_sync():
-                self.frame, self.shown, self.problem, self.answers = frame, at, problem, self.answers + 1
+                self.frame, self.shown, self.problem, self.answers = (
+                    frame,
+                    at,
+                    problem,
+                    self.answers + 1,
+                )
 
 
 def tune(
@@ -170,25 +198,29 @@ def tune(
     Parameters
     ----------
     f : function
-        Its parameters named in `ranges` get sliders, which start at its defaults, or else in the middle.
+        Its parameters named in `ranges` get sliders, which start at its defaults, or else in the
+        middle.
     draw : function
         Takes what `f` returns; else as for `play`.
     alt : str
         What the picture shows; the parameters' values are added.
     stored : int
-        The most pictures that are computed now, for a page without a kernel: all positions, or else a grid of
-        them, of at most 0.5 MB. Lower it where `f` takes long. The environment variable HDRLAB_STORED
-        overrules it, as for the site, where nobody waits. A position at which `f` fails has none.
+        The most pictures that are computed now, for a page without a kernel: all positions, or else
+        a grid of them, of at most 0.5 MB. Lower it where `f` takes long. The environment variable
+        HDRLAB_STORED overrules it, as for the site, where nobody waits. A position at which `f`
+        fails has none.
     point : (down, right), optional
-        Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.
+        Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets,
+        too.
     **ranges : (low, high), (low, high, step), or a list of values
-        A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the very values.
+        A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the
+        very values.
 
     Raises
     ------
     ValueError
-        For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty alt text,
-        or a `draw` that returns something else.
+        For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty
+        alt text, or a `draw` that returns something else.
 
     Examples
     --------
@@ -204,12 +236,16 @@ def tune(
     if not grids:
         raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
-        raise ValueError(f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}")
+        raise ValueError(
+            f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}"
+        )
 
     kept = reuse.Kept()
 
     def picture(at: list[int], finish: Callable[[object], Any] = render) -> Any:
-        with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
+        with THREADS.limit(
+            limits=1
+        ):  # its systems are small: threads would only wait for each other
             return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
     at, most = positions.start(f, grids), int(os.environ.get("HDRLAB_STORED", stored))
@@ -220,4 +256,6 @@ def tune(
             frames.append(encode_change(picture(position), first))
             stored_at.append(position)
     told = {"point": list(point or ()), "areas": areas, "frame": web.encode_frame(first)}
-    return Tuner(picture, grids, at=at, shown=at, alt=alt, stored_at=stored_at, stored=frames, **told)
+    return Tuner(
+        picture, grids, at=at, shown=at, alt=alt, stored_at=stored_at, stored=frames, **told
+    )

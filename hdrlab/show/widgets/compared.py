@@ -3,8 +3,8 @@
 picture  (H, W) or (H, W, 3) uint8, or an Axes or a Figure; all of one size
 values   (H, W) or (H, W, 3), any linear unit: what a pixel stands for, read out beside its levels
 
-Both zoom to single pixels and read out the one under the pointer or under the cross that the arrow keys move.
-All of it happens in the browser, on a page without a kernel too.
+Both zoom to single pixels and read out the one under the pointer or under the cross that the arrow
+keys move. All of it happens in the browser, on a page without a kernel too.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,8 @@ from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.widgets.scripts import Widget, script
 
-SIDE = 2000  # pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open
+# pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open
+SIDE = 2000
 SHORTEST = 0.2  # seconds: more than three flashes in a second can harm a reader [WCAG 2.3.1]
 
 
@@ -29,7 +30,9 @@ class Comparison(Widget):
     pictures = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP, without loss
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     alt = traitlets.Unicode().tag(sync=True)
-    values = traitlets.List(traitlets.Bytes()).tag(sync=True)  # half floats: for each picture, or one for all
+    values = traitlets.List(traitlets.Bytes()).tag(
+        sync=True
+    )  # half floats: for each picture, or one for all
     scales = traitlets.List(traitlets.Float()).tag(sync=True)
     channels = traitlets.List(traitlets.Int()).tag(sync=True)
     unit = traitlets.Unicode().tag(sync=True)
@@ -74,14 +77,16 @@ def wipe(
     labels : two str
         What each picture is.
     values : array (H, W[, 3]), or a list of two such arrays
-        What the pixels stand for, such as the radiance map both pictures were made from, or each one's own.
+        What the pixels stand for, such as the radiance map both pictures were made from, or each
+        one's own.
     unit : str
         What `values` are.
 
     Raises
     ------
     ValueError
-        For pictures or values that do not fit together, an empty alt text, or labels that are not two.
+        For pictures or values that do not fit together, an empty alt text, or labels that are not
+        two.
 
     Examples
     --------
@@ -114,15 +119,16 @@ def blink(
     period : float
         Seconds that each picture stands while they blink, 0.2 or more.
     values : array (H, W[, 3]), or a list of such arrays, one for each picture
-        What the pixels stand for, such as the radiance map all pictures were made from, or each one's own.
+        What the pixels stand for, such as the radiance map all pictures were made from, or each
+        one's own.
     unit : str
         What `values` are.
 
     Raises
     ------
     ValueError
-        For pictures or values that do not fit together, an empty alt text, labels that are not one for each
-        picture, or a period so short that the flashes can harm.
+        For pictures or values that do not fit together, an empty alt text, labels that are not one
+        for each picture, or a period so short that the flashes can harm.
 
     Examples
     --------
@@ -131,12 +137,16 @@ def blink(
     ['A', 'B']
     """
     if not SHORTEST <= period < np.inf:
-        raise ValueError(f"expected a period of {SHORTEST} s or more: faster flashes can harm, got {period}")
+        raise ValueError(
+            f"expected a period of {SHORTEST} s or more: faster flashes can harm, got {period}"
+        )
     labels = [chr(ord("A") + k) for k in range(2 + len(more))] if labels is None else labels
     return Blinker(period=period, **_traits([a, b, *more], alt, labels, values, unit))
 
 
-def _traits(drawn: list[object], alt: str, labels: Sequence[str], values: Any, unit: str) -> dict[str, Any]:
+def _traits(
+    drawn: list[object], alt: str, labels: Sequence[str], values: Any, unit: str
+) -> dict[str, Any]:
     pictures = [render(one) for one in drawn]
     sizes = [picture.shape[:2] for picture in pictures]
     if len(set(sizes)) > 1:
@@ -158,12 +168,16 @@ def _each(values: Any, count: int) -> list[Array]:
         return []
     each = list(values) if isinstance(values, list | tuple) else [values]
     if len(each) not in (1, count):
-        raise ValueError(f"expected values for each of {count} pictures, or one array, got {len(each)}")
+        raise ValueError(
+            f"expected values for each of {count} pictures, or one array, got {len(each)}"
+        )
     return [np.asarray(one) for one in each]
 
 
 def _readout(values: Array, size: tuple[int, ...]) -> dict[str, Any]:
-    fits = values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
+    fits = (
+        values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
+    )
     if not fits or not np.isfinite(values).all():
         raise ValueError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
     data, scale = web.encode_halves(fit(values.astype(np.float32), SIDE))

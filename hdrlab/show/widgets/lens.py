@@ -2,8 +2,8 @@
 
 E  radiance  (H, W) or (H, W, 3), any linear unit; it travels as half floats, scaled to use their range
 
-The script computes what `tonemap.brush` does, by the same formulas, for each frame of the display: the test
-compares them pixel by pixel.
+The script computes what `tonemap.brush` does, by the same formulas, for each frame of the display:
+the test compares them pixel by pixel.
 """
 
 from typing import Any
@@ -71,8 +71,8 @@ def brush(
     Raises
     ------
     ValueError
-        For radiance that is not finite or negative, an empty alt text, a picture of another size, or knobs
-        out of range.
+        For radiance that is not finite or negative, an empty alt text, a picture of another size,
+        or knobs out of range.
 
     Examples
     --------
@@ -81,13 +81,18 @@ def brush(
     >>> brush(E, alt="A wedge, ever brighter").centre
     [120, 160]
     """
-    E, knobs = as_radiance(E), {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)}
+    E, knobs = (
+        as_radiance(E),
+        {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)},
+    )
     for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16)}).items():
         if not low <= value <= high:
             raise ValueError(f"expected {name} from {low} to {high}, got {value}")
     around, E = fit(pipeline.develop(E) if picture is None else render(picture), SIDE), fit(E, SIDE)
     if around.shape[:2] != E.shape[:2]:
-        raise ValueError(f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}")
+        raise ValueError(
+            f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}"
+        )
     data, scale = web.encode_halves(E)
     traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit}
     traits |= {"shape": [*E.shape[:2], 3 if E.ndim == 3 else 1], "radiance": data, "scale": scale}

@@ -25,13 +25,19 @@ def grid(name: str, given: Any) -> list[Any]:
     if not isinstance(given, tuple):
         each = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
         if len(each) < 2:
-            raise ValueError(f"expected {name} as (low, high[, step]) or a list of values, got {given!r}")
+            raise ValueError(
+                f"expected {name} as (low, high[, step]) or a list of values, got {given!r}"
+            )
         return each
-    low, high, step = given if len(given) == 3 else (*given, None) if len(given) == 2 else (0, 0, None)
+    low, high, step = (
+        given if len(given) == 3 else (*given, None) if len(given) == 2 else (0, 0, None)
+    )
     whole = all(isinstance(end, int | np.integer) for end in (low, high))
     step = step if step is not None else 1 if whole else (high - low) / 100
     if not (np.isfinite([low, high, step]).all() and low < high and 0 < step <= high - low):
-        raise ValueError(f"expected {name} as a range (low, high[, step]) with low < high, got {given!r}")
+        raise ValueError(
+            f"expected {name} as a range (low, high[, step]) with low < high, got {given!r}"
+        )
     count = int(np.floor((high - low) / step + 1e-9)) + 1
     return [low + k * step for k in range(count)]
 
@@ -44,7 +50,10 @@ def start(f: Callable[..., Any], grids: Grids) -> list[int]:
     if unknown:
         known = ", ".join(parameters)
         raise ValueError(f"expected parameters of the function, {known}; got {', '.join(unknown)}")
-    return [_nearest(grid, getattr(parameters.get(name), "default", None)) for name, grid in grids.items()]
+    return [
+        _nearest(grid, getattr(parameters.get(name), "default", None))
+        for name, grid in grids.items()
+    ]
 
 
 def _nearest(grid: list[Any], value: Any) -> int:
@@ -57,12 +66,21 @@ def _nearest(grid: list[Any], value: Any) -> int:
 def beforehand(grids: Grids, at: list[int], most: int) -> list[list[int]]:
     """Return the start, then every other position, or those of an even grid where they are more than `most`.
 
-    A grid has the ends of each range; of the sliders the longest is thinned out first, and words last.
+    A grid has the ends of each range; of the sliders the longest is thinned out first, and words
+    last.
     """
-    counts, words = list(map(len, grids.values())), [isinstance(each[0], str) for each in grids.values()]
+    counts, words = (
+        list(map(len, grids.values())),
+        [isinstance(each[0], str) for each in grids.values()],
+    )
     while math.prod(counts) > max(most, 1):
-        counts[max(range(len(counts)), key=lambda k: (min(counts[k], 3), not words[k], counts[k]))] -= 1
-    axes = [_even(len(each), count, k) for each, count, k in zip(grids.values(), counts, at, strict=True)]
+        counts[
+            max(range(len(counts)), key=lambda k: (min(counts[k], 3), not words[k], counts[k]))
+        ] -= 1
+    axes = [
+        _even(len(each), count, k)
+        for each, count, k in zip(grids.values(), counts, at, strict=True)
+    ]
     return sorted(map(list, itertools.product(*axes)), key=lambda position: position != at)
 
 

@@ -1,9 +1,10 @@
 """Questions that take the answer before the picture comes, and then lay the truth over it.
 
-    predict.number("How many stops lie between the window and the bench?", 11.4, (0, 20), unit="stops")
+    predict.number("How many stops lie between the window and the bench?", 11.4, (0, 20),
+    unit="stops")
 
-The answer is given by pointer, finger or keys, and skipped by one click; a page without a kernel will do.
-What was answered stays in the notebook's own state, and goes nowhere else.
+The answer is given by pointer, finger or keys, and skipped by one click; a page without a kernel
+will do. What was answered stays in the notebook's own state, and goes nowhere else.
 """
 
 from collections.abc import Sequence
@@ -48,7 +49,12 @@ class Prediction(Widget):
 
 
 def choice(
-    question: str, truth: int, labels: Sequence[str], *, pictures: Sequence[object] = (), because: str = ""
+    question: str,
+    truth: int,
+    labels: Sequence[str],
+    *,
+    pictures: Sequence[object] = (),
+    because: str = "",
 ) -> Prediction:
     """Return a question that is answered by one of several labels, with a picture each, or without.
 
@@ -74,7 +80,9 @@ def choice(
     """
     if len(labels) < 2 or truth not in range(len(labels)) or len(pictures) not in (0, len(labels)):
         wanted = "two or more labels, one of them true, and no pictures or one each"
-        raise ValueError(f"expected {wanted}, got {len(labels)} labels, {len(pictures)} pictures, {truth=}")
+        raise ValueError(
+            f"expected {wanted}, got {len(labels)} labels, {len(pictures)} pictures, {truth=}"
+        )
     shown = [web.encode_webp(fit(render(one), SIDE // 2), lossless=True) for one in pictures]
     parts = {"labels": list(labels), "alts": list(labels), "pictures": shown}
     return ask("choice", question, int(truth), f"{labels[truth]}.", because, **parts)
@@ -138,9 +146,20 @@ def curve(
     [0.0, 1.0, -0.2, 2.2]
     """
     x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    if x.shape != y.shape or x.ndim != 1 or len(x) < 2 or np.any(np.diff(x) <= 0) or not np.isfinite(y).all():
-        raise ValueError(f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}")
-    few, room = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int)), 0.1 * (np.ptp(y) or 1.0)
+    if (
+        x.shape != y.shape
+        or x.ndim != 1
+        or len(x) < 2
+        or np.any(np.diff(x) <= 0)
+        or not np.isfinite(y).all()
+    ):
+        raise ValueError(
+            f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}"
+        )
+    few, room = (
+        np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int)),
+        0.1 * (np.ptp(y) or 1.0),
+    )
     step = 2 * 10.0 ** np.floor(np.log10(room))
     low, high = step * np.floor((y.min() - room) / step), step * np.ceil((y.max() + room) / step)
     scale = [float(x[0]), float(x[-1]), float(low), float(high)]
@@ -148,7 +167,9 @@ def curve(
     return ask("curve", question, [x[few].tolist(), y[few].tolist()], "", because, **parts)
 
 
-def place(question: str, mask: ArrayLike, picture: object, *, alt: str, because: str = "") -> Prediction:
+def place(
+    question: str, mask: ArrayLike, picture: object, *, alt: str, because: str = ""
+) -> Prediction:
     """Return a question that is answered by marking a pixel: the right ones are those of the mask.
 
     Parameters
@@ -175,11 +196,16 @@ def place(question: str, mask: ArrayLike, picture: object, *, alt: str, because:
     """
     right, drawn = np.asarray(mask), render(picture)
     if right.dtype != bool or right.shape != drawn.shape[:2] or not right.any():
-        raise ValueError(f"expected a mask {drawn.shape[:2]} with some pixels, got {describe(mask)}")
+        raise ValueError(
+            f"expected a mask {drawn.shape[:2]} with some pixels, got {describe(mask)}"
+        )
     small, k = fit(drawn, SIDE), -(-max(right.shape) // SIDE)
     rows, columns = (k * side for side in small.shape[:2])
     held = right[:rows, :columns].reshape(-1, k, columns // k, k).any(axis=(1, 3))
-    shown = [web.encode_webp(small), web.encode_webp(np.where(held, 255, 0).astype(np.uint8), lossless=True)]
+    shown = [
+        web.encode_webp(small),
+        web.encode_webp(np.where(held, 255, 0).astype(np.uint8), lossless=True),
+    ]
     return ask("place", question, 0, "", because, pictures=shown, alts=[require_alt(alt)])
 
 
@@ -187,4 +213,6 @@ def ask(kind: str, question: str, truth: Any, told: str, because: str, **parts: 
     """Return the widget of a kind."""
     if not question.strip():
         raise ValueError("expected a question, got an empty one")
-    return Prediction(kind=kind, question=question, truth=truth, told=told, because=because, **parts)
+    return Prediction(
+        kind=kind, question=question, truth=truth, told=told, because=because, **parts
+    )

@@ -36,7 +36,9 @@ def test_the_divergence_of_one_step_is_a_source_and_a_sink():
 @pytest.mark.parametrize("shape", SHAPES)
 def test_divergence_is_minus_the_transpose_of_gradient(shape):
     u, G = np.random.default_rng(1).standard_normal(shape), field(shape)
-    assert np.vdot(poisson.gradient(u), G) == pytest.approx(-np.vdot(u, poisson.divergence(G)), abs=1e-9)
+    assert np.vdot(poisson.gradient(u), G) == pytest.approx(
+        -np.vdot(u, poisson.divergence(G)), abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -19,7 +19,9 @@ def noise(shape, seed=0):
 def test_a_level_is_the_plain_sum_over_the_kernel():
     image, w = noise((9, 12)), np.array([1, 4, 6, 4, 1]) / 16
     around = np.pad(image, 2, mode="reflect")
-    plain = [[w @ around[2 * i : 2 * i + 5, 2 * j : 2 * j + 5] @ w for j in range(6)] for i in range(5)]
+    plain = [
+        [w @ around[2 * i : 2 * i + 5, 2 * j : 2 * j + 5] @ w for j in range(6)] for i in range(5)
+    ]
     assert np.allclose(pyramid.reduce(image), plain, atol=1e-6)
 
 
@@ -37,7 +39,9 @@ def test_both_operators_are_opencvs(shape):
     image = noise(shape)
     coarse = pyramid.reduce(image)
     assert np.allclose(coarse, cv2.pyrDown(image), atol=1e-6)
-    assert np.allclose(pyramid.expand(coarse, shape), cv2.pyrUp(coarse, dstsize=shape[::-1]), atol=1e-6)
+    assert np.allclose(
+        pyramid.expand(coarse, shape), cv2.pyrUp(coarse, dstsize=shape[::-1]), atol=1e-6
+    )
 
 
 @given(height=st.integers(1, 70), width=st.integers(1, 70), levels=st.integers(1, 8))

@@ -15,5 +15,7 @@ def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_wh
     K /= K.sum()
     expected = np.zeros_like(E)
     for y, x in np.ndindex(height, width):
-        expected += E[y, x] * K[height - 1 - y : 2 * height - 1 - y, width - 1 - x : 2 * width - 1 - x]
+        expected += (
+            E[y, x] * K[height - 1 - y : 2 * height - 1 - y, width - 1 - x : 2 * width - 1 - x]
+        )
     assert np.allclose(scatter(E, spread_transform(E.shape, power, core)), expected, rtol=1e-4)

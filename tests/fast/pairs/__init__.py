@@ -1,9 +1,10 @@
 """Input for the pairs of lesson and fast function; a file for each module of `fast`, which is found here.
 
-Each file has PAIRS, {"function": (make, tolerance)}. make(kind, rng) returns (arguments, named arguments)
-for a kind of input, or None where such input has no meaning for this function. The tolerance is the largest
-allowed difference, absolute, or relative to the largest finite value of the lesson's answer, whichever is
-larger; exact is 0. A tuple of tolerances is one for each part of the answer.
+Each file has PAIRS, {"function": (make, tolerance)}. make(kind, rng) returns (arguments, named
+arguments) for a kind of input, or None where such input has no meaning for this function. The
+tolerance is the largest allowed difference, absolute, or relative to the largest finite value of
+the lesson's answer, whichever is larger; exact is 0. A tuple of tolerances is one for each part of
+the answer.
 """
 
 import pkgutil

@@ -12,7 +12,9 @@ def wide(kind):
 
 def scene(kind, rng):
     """Luminance in medians, with a narrow blur for some kinds and a wide one for others."""
-    return None if kind == "colour" else ((chiu.divide_by_median(luminance(kind, rng)),), wide(kind))
+    return (
+        None if kind == "colour" else ((chiu.divide_by_median(luminance(kind, rng)),), wide(kind))
+    )
 
 
 def scaled(kind, rng):

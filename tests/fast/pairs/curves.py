@@ -7,7 +7,9 @@ CURVES = {"gray": "linear", "flat": "gamma"}
 
 def shown(kind, rng):
     """Luminance, and each of the curves."""
-    return None if kind == "colour" else ((luminance(kind, rng),), {"curve": CURVES.get(kind, "log")})
+    return (
+        None if kind == "colour" else ((luminance(kind, rng),), {"curve": CURVES.get(kind, "log")})
+    )
 
 
 PAIRS = {"tonemap": (shown, 1e-6)}

@@ -9,7 +9,9 @@ from pairs import photographs
 def samples(kind, rng):
     """Return Z, B, lambda and w; `deep` has many samples, `clipped` a cut, `colour` few levels."""
     n = 32 if kind == "colour" else 256
-    Z = sampling.by_grid(photographs("gray" if kind == "colour" else kind, rng), 90 if kind == "deep" else 30)
+    Z = sampling.by_grid(
+        photographs("gray" if kind == "colour" else kind, rng), 90 if kind == "deep" else 30
+    )
     w = weights.cut(weights.hat(n)) if kind == "clipped" else weights.gaussian(n)
     return (Z * n // 256, np.log([0.25, 1, 4]), 30.0, w), {}
 

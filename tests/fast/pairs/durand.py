@@ -26,7 +26,9 @@ def filtered(kind, rng):
     """A filtered picture, and the k of its base."""
     if kind == "colour":
         return None
-    return tuple(bilateral(np.log10(luminance(kind, rng)), sigma_s=3.0, sigma_r=0.4)), {"sigma_s": 3.0}
+    return tuple(bilateral(np.log10(luminance(kind, rng)), sigma_s=3.0, sigma_r=0.4)), {
+        "sigma_s": 3.0
+    }
 
 
 def both(kind, rng):

@@ -16,7 +16,10 @@ def remapped(kind, rng):
     if kind == "colour":
         return None
     lL = np.log(luminance(kind, rng))
-    return (lL, float(np.median(lL))), {"sigma": 0.7, **KNOBS.get(kind, {"alpha": 1.0, "beta": 0.0})}
+    return (lL, float(np.median(lL))), {
+        "sigma": 0.7,
+        **KNOBS.get(kind, {"alpha": 1.0, "beta": 0.0}),
+    }
 
 
 def logarithms(kind, rng):
@@ -29,7 +32,11 @@ def logarithms(kind, rng):
 
 def shown(kind, rng):
     """Luminance, and other knobs for some kinds."""
-    return None if kind == "colour" else ((luminance(kind, rng),), {"samples": 9, **KNOBS.get(kind, {})})
+    return (
+        None
+        if kind == "colour"
+        else ((luminance(kind, rng),), {"samples": 9, **KNOBS.get(kind, {})})
+    )
 
 
 PAIRS = {"remap": (remapped, 1e-6), "filtered": (logarithms, 1e-5), "tonemap": (shown, 1e-4)}

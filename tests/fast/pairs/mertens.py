@@ -10,11 +10,17 @@ def weighed(kind, rng):
 
 
 def fused(kind, rng):
-    return (photographs(kind, rng, frames=4),), {"contrast": 0.5, "saturation": 2.0} if kind == "deep" else {}
+    return (photographs(kind, rng, frames=4),), {
+        "contrast": 0.5,
+        "saturation": 2.0,
+    } if kind == "deep" else {}
 
 
 def added(kind, rng):
-    W, detail = photographs(kind, rng)[0], np.moveaxis(np.atleast_3d(photographs(kind, rng)[1]), -1, 0)
+    W, detail = (
+        photographs(kind, rng)[0],
+        np.moveaxis(np.atleast_3d(photographs(kind, rng)[1]), -1, 0),
+    )
     W = np.float32(np.atleast_3d(W)[..., 0] / 255)
     return (np.ones(detail.shape, np.float32), W, np.float32(detail)), {}
 

@@ -24,7 +24,11 @@ def held_back(kind, rng):
 
 def shown(kind, rng):
     """Luminance, and the modes of the operator."""
-    knobs = {"gray": {"key": "auto"}, "clipped": {"local": True}, "tiny": {"local": True, "white": 2.0}}
+    knobs = {
+        "gray": {"key": "auto"},
+        "clipped": {"local": True},
+        "tiny": {"local": True, "white": 2.0},
+    }
     return None if kind == "colour" else ((luminance(kind, rng),), knobs.get(kind, {}))
 
 

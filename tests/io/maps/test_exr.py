@@ -44,7 +44,9 @@ def test_half_float_and_unsigned_channels_become_float32(tmp_path, dtype, name):
 def test_alpha_is_left_out(tmp_path):
     RGBA = np.concatenate([RGB, np.full_like(RGB[..., :1], 0.5)], axis=-1)
     assert np.array_equal(exr.read(wrote(tmp_path / "a.exr", {"RGBA": RGBA})), RGB)
-    assert np.array_equal(exr.read(wrote(tmp_path / "b.exr", {"Y": GRAY, "A": RGBA[..., 3].copy()})), GRAY)
+    assert np.array_equal(
+        exr.read(wrote(tmp_path / "b.exr", {"Y": GRAY, "A": RGBA[..., 3].copy()})), GRAY
+    )
 
 
 COMPRESSIONS = ["NO", "RLE", "ZIPS", "ZIP", "PIZ"]
@@ -54,7 +56,9 @@ COMPRESSIONS = ["NO", "RLE", "ZIPS", "ZIP", "PIZ"]
 @pytest.mark.parametrize("separate", [True, False])
 def test_every_lossless_compression_reads(tmp_path, compression, separate):
     channels = {c: RGB[..., k].copy() for k, c in enumerate("RGB")} if separate else {"RGB": RGB}
-    path = wrote(tmp_path / "x.exr", channels, compression=getattr(OpenEXR, f"{compression}_COMPRESSION"))
+    path = wrote(
+        tmp_path / "x.exr", channels, compression=getattr(OpenEXR, f"{compression}_COMPRESSION")
+    )
     assert np.array_equal(exr.read(path), RGB)
 
 
@@ -89,7 +93,9 @@ def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
     exr.write(path, RGB, half=True)
     assert np.array_equal(exr.read(path), RGB.astype(np.float16))
     exr.write(path, [[65504.0]], half=True)
-    with pytest.raises(ValueError, match="expected radiance up to 65504 for half floats, got 65505"):
+    with pytest.raises(
+        ValueError, match="expected radiance up to 65504 for half floats, got 65505"
+    ):
         exr.write(path, [[1.0, 65505.0]], half=True)
     assert exr.read(path) == 65504
 
@@ -135,7 +141,9 @@ def test_a_file_that_is_cut_short_is_refused_and_nothing_is_printed(tmp_path, ca
     data = (tmp_path / "x.exr").read_bytes()
     for length in range(len(data) - 1, 8, -397):
         (tmp_path / "x.exr").write_bytes(data[:length])
-        with pytest.raises(ValueError, match="x.exr: expected an OpenEXR file, it is cut short or damaged"):
+        with pytest.raises(
+            ValueError, match="x.exr: expected an OpenEXR file, it is cut short or damaged"
+        ):
             exr.read(tmp_path / "x.exr")
     assert capsys.readouterr().out == ""
 

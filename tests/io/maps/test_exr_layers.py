@@ -17,7 +17,9 @@ def test_layers_read_back_bit_for_bit_infinity_too(tmp_path):
     given = {"radiance": RGB, "standard deviation": s, "cover": RGBA}
     write_layers(tmp_path / "a.exr", given, comments=["one", "two"])
     found = read_layers(tmp_path / "a.exr")
-    assert list(found) == list(given) and all(np.array_equal(found[name], given[name]) for name in given)
+    assert list(found) == list(given) and all(
+        np.array_equal(found[name], given[name]) for name in given
+    )
     assert exr.read_header(tmp_path / "a.exr").attributes["comments"] == "one\ntwo"
 
 

@@ -15,7 +15,9 @@ GRAY = RGB[..., 0].copy()
 @pytest.mark.parametrize("E", [RGB, GRAY])
 def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
     pfm.write(tmp_path / "ours.pfm", E)
-    cv2.imwrite(str(tmp_path / "theirs.pfm"), np.ascontiguousarray(E[..., ::-1]) if E.ndim == 3 else E)
+    cv2.imwrite(
+        str(tmp_path / "theirs.pfm"), np.ascontiguousarray(E[..., ::-1]) if E.ndim == 3 else E
+    )
     theirs = cv2.imread(str(tmp_path / "ours.pfm"), cv2.IMREAD_UNCHANGED)
     assert np.array_equal(theirs[..., ::-1] if E.ndim == 3 else theirs, E)
     assert np.array_equal(pfm.read(tmp_path / "ours.pfm"), E)
@@ -37,7 +39,9 @@ def test_flip_takes_and_writes_rows_from_the_top_to_the_bottom(tmp_path):
 @pytest.mark.parametrize(
     ("scale", "dtype"), [("-1", "<f4"), ("-2.5e0", "<f4"), ("1.0", ">f4"), ("+0.5", ">f4")]
 )
-def test_the_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_left_alone(tmp_path, scale, dtype):
+def test_the_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_left_alone(
+    tmp_path, scale, dtype
+):
     data = np.arange(6, dtype=dtype)
     (tmp_path / "x.pfm").write_bytes(f"PF\n2 1\n{scale}\n".encode() + data.tobytes())
     E = pfm.read(tmp_path / "x.pfm")

@@ -29,7 +29,9 @@ def file(path, pixels, *, header="", resolution=None, first="#?RADIANCE"):
     """Write pixels (H, W, 4) flat, under any header."""
     height, width = pixels.shape[:2]
     resolution = resolution or f"-Y {height} +X {width}"
-    path.write_bytes(f"{first}\n{header}\n{resolution}\n".encode() + pixels.astype(np.uint8).tobytes())
+    path.write_bytes(
+        f"{first}\n{header}\n{resolution}\n".encode() + pixels.astype(np.uint8).tobytes()
+    )
     return path
 
 
@@ -112,12 +114,19 @@ def test_one_channel_is_written_as_three_equal_ones(tmp_path):
 def test_values_near_both_ends_are_kept_or_become_black(tmp_path):
     E = np.array([[1.5 * 2.0**126, 1e-31, 1e-33, 1e-45]], np.float32)
     rgbe.write(tmp_path / "x.hdr", E)
-    assert rgbe.read(tmp_path / "x.hdr")[0, :, 0] == pytest.approx([E[0, 0], 1e-31, 0, 0], rel=1 / 128)
+    assert rgbe.read(tmp_path / "x.hdr")[0, :, 0] == pytest.approx(
+        [E[0, 0], 1e-31, 0, 0], rel=1 / 128
+    )
 
 
 @pytest.mark.parametrize(
     ("value", "says"),
-    [(np.nan, "1 NaN"), (np.inf, "1 infinite"), (-1.0, "1 negative"), (1.8e38, r"below 2\^127 for RGBE")],
+    [
+        (np.nan, "1 NaN"),
+        (np.inf, "1 infinite"),
+        (-1.0, "1 negative"),
+        (1.8e38, r"below 2\^127 for RGBE"),
+    ],
 )
 def test_what_rgbe_cannot_hold_is_refused_and_what_was_there_stays(tmp_path, value, says):
     path = tmp_path / "x.hdr"
@@ -193,27 +202,36 @@ def test_exposures_that_are_none_are_refused(tmp_path, line):
         rgbe.read(file(tmp_path / "x.hdr", rgbe.to_pixels(scene(4, 5)), header=line + "\n"))
 
 
-@pytest.mark.parametrize("first", ["#?RGBE", "VIEW= -vtv\n#?RADIANCE", "#?RADIANCE\n# made by hand"])
+@pytest.mark.parametrize(
+    "first", ["#?RGBE", "VIEW= -vtv\n#?RADIANCE", "#?RADIANCE\n# made by hand"]
+)
 def test_the_mark_may_differ_and_need_not_come_first(tmp_path, first):
     pixels = rgbe.to_pixels(scene(4, 5))
-    assert np.array_equal(rgbe.read(file(tmp_path / "x.hdr", pixels, first=first)), rgbe.to_radiance(pixels))
+    assert np.array_equal(
+        rgbe.read(file(tmp_path / "x.hdr", pixels, first=first)), rgbe.to_radiance(pixels)
+    )
 
 
 def test_xyze_colours_are_refused_by_name(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)), header="FORMAT=32-bit_rle_xyze\n")
-    with pytest.raises(ValueError, match="x.hdr: expected FORMAT=32-bit_rle_rgbe, got .32-bit_rle_xyze"):
+    with pytest.raises(
+        ValueError, match="x.hdr: expected FORMAT=32-bit_rle_rgbe, got .32-bit_rle_xyze"
+    ):
         rgbe.read(path)
 
 
 def test_a_file_that_was_copied_as_text_is_told_so(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)))
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    with pytest.raises(ValueError, match="x.hdr: expected a binary file, its line ends became CR LF"):
+    with pytest.raises(
+        ValueError, match="x.hdr: expected a binary file, its line ends became CR LF"
+    ):
         rgbe.read(path)
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"\x89PNG\r\n\x1a\n", b"#?RADIANCE\n", b"#?RADIANCE\n\n-Y 3 +Y 4\n", b"-Y 1 +X 1\n1234"]
+    "data",
+    [b"", b"\x89PNG\r\n\x1a\n", b"#?RADIANCE\n", b"#?RADIANCE\n\n-Y 3 +Y 4\n", b"-Y 1 +X 1\n1234"],
 )
 def test_what_is_no_radiance_file_is_refused_by_name(tmp_path, data):
     (tmp_path / "x.hdr").write_bytes(data)
@@ -240,7 +258,9 @@ def test_a_file_that_is_cut_short_is_refused(tmp_path, coded):
 )
 @pytest.mark.parametrize("begin", [b"\2\2\x80\0", b"\2\2\x27\x0f", b"abcd"])
 def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, resolution, begin):
-    (tmp_path / "x.hdr").write_bytes(b"#?RADIANCE\n\n" + resolution.encode() + b"\n" + begin + bytes(1000))
+    (tmp_path / "x.hdr").write_bytes(
+        b"#?RADIANCE\n\n" + resolution.encode() + b"\n" + begin + bytes(1000)
+    )
     with pytest.raises(ValueError, match="x.hdr: its header claims"):
         rgbe.read(tmp_path / "x.hdr")
 

@@ -21,7 +21,9 @@ def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
     ours, theirs = tmp_path / "ours.tif", tmp_path / "theirs.tiff"
     write_radiance(ours, E)
     found = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
-    assert found.dtype == np.float32 and np.array_equal(found if E.ndim == 2 else found[..., ::-1], E)
+    assert found.dtype == np.float32 and np.array_equal(
+        found if E.ndim == 2 else found[..., ::-1], E
+    )
     bgr = E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1])
     # uncompressed: by itself, OpenCV before 4.11 writes colours as LogLuv, which loses
     assert cv2.imwrite(str(theirs), bgr, [cv2.IMWRITE_TIFF_COMPRESSION, 1])
@@ -39,7 +41,9 @@ def test_halves_doubles_other_byte_orders_tiles_and_compression_are_read(tmp_pat
     kind = "rgb" if E.ndim == 3 else "minisblack"
     order = ">" if dtype[0] == ">" else "<"
     tifffile.imwrite(tmp_path / "a.tif", E.astype(dtype), photometric=kind, byteorder=order, **form)
-    assert np.allclose(tiff.read(tmp_path / "a.tif"), E, rtol=1e-3 if dtype == "<f2" else 1e-7, atol=1e-7)
+    assert np.allclose(
+        tiff.read(tmp_path / "a.tif"), E, rtol=1e-3 if dtype == "<f2" else 1e-7, atol=1e-7
+    )
 
 
 @pytest.mark.parametrize("planar", ["contig", "separate"])
@@ -47,7 +51,11 @@ def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
     pixels = np.dstack([RGB, np.full(GRAY.shape, 0.5, np.float32)])
     pixels = pixels if planar == "contig" else np.moveaxis(pixels, -1, 0)
     tifffile.imwrite(
-        tmp_path / "a.tif", pixels, photometric="rgb", planarconfig=planar, extrasamples=["unassalpha"]
+        tmp_path / "a.tif",
+        pixels,
+        photometric="rgb",
+        planarconfig=planar,
+        extrasamples=["unassalpha"],
     )
     assert np.array_equal(tiff.read(tmp_path / "a.tif"), RGB)
 
@@ -55,12 +63,17 @@ def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
 def test_levels_of_a_photograph_are_no_radiance_and_info_knows_both(tmp_path):
     photo, radiance = tmp_path / "photo.tif", tmp_path / "map.tif"
     write_picture(photo, np.zeros((4, 5, 3), np.uint8))
-    with pytest.raises(ValueError, match=r"photo.tif: expected .*floating-point samples, got 3 x uint8"):
+    with pytest.raises(
+        ValueError, match=r"photo.tif: expected .*floating-point samples, got 3 x uint8"
+    ):
         read_radiance(photo)
     write_radiance(radiance, RGB, comments=["two frames of seven", "unit: cd/m²"])
     assert describe_file(photo)["values"] == "uint8"
     about = describe_file(radiance)
-    assert about["values"] == "float32" and about["comments"] == ["two frames of seven", "unit: cd/m²"]
+    assert about["values"] == "float32" and about["comments"] == [
+        "two frames of seven",
+        "unit: cd/m²",
+    ]
 
 
 @pytest.mark.parametrize("kept", [0.3, 0.9])

@@ -68,7 +68,9 @@ def test_another_decoder_restores_the_radiance_of_any_operators_picture(operator
     L = colour.luminance(hdr)[kept]
     found = colour.luminance(seen_by_libultrahdr(path))[kept]
     assert np.percentile(found, PERCENT) == pytest.approx(np.percentile(L, PERCENT), rel=0.03)
-    low, middle, high = np.percentile(found / L, PERCENT)  # it does not round to levels, few in the dark
+    low, middle, high = np.percentile(
+        found / L, PERCENT
+    )  # it does not round to levels, few in the dark
     assert low > 0.93 and high < 1.08 and middle == pytest.approx(1, abs=0.005)
     low, middle, high = np.percentile(colour.luminance(ultrahdr.read(path))[kept] / L, PERCENT)
     assert low > 0.97 and high < 1.03 and middle == pytest.approx(1, abs=0.005)
@@ -88,7 +90,9 @@ def test_a_picture_by_a_function_of_ones_own_is_the_half_for_any_screen(tmp_path
     picture = pipeline.develop(E, lambda L: L / (1 + L))
     ultrahdr.write_picture(tmp_path / "own.jpg", picture, E, headroom=4)
     hdr, kept = truth(picture, E, tmp_path / "own.jpg", 4)
-    assert np.median(ultrahdr.read(tmp_path / "own.jpg")[kept] / hdr[kept]) == pytest.approx(1, abs=0.01)
+    assert np.median(ultrahdr.read(tmp_path / "own.jpg")[kept] / hdr[kept]) == pytest.approx(
+        1, abs=0.01
+    )
     assert ultrahdr.read(tmp_path / "own.jpg").max() < 4.2
 
 
@@ -110,8 +114,13 @@ def test_what_libultrahdr_writes_is_read_as_it_reads_it_itself(tmp_path):
     light = np.concatenate([E, np.ones_like(E[..., :1])], axis=-1).astype(np.float16)
     data = imagecodecs.ultrahdr_encode(light, transfer=0, gamut=0, crange=1, nits=1600)
     (tmp_path / "theirs.jpg").write_bytes(data)
-    theirs, ours = seen_by_libultrahdr(tmp_path / "theirs.jpg"), ultrahdr.read(tmp_path / "theirs.jpg")
-    ratio = colour.luminance(ours)[4:-4, 4:-4] / np.maximum(colour.luminance(theirs)[4:-4, 4:-4], 1e-3)
+    theirs, ours = (
+        seen_by_libultrahdr(tmp_path / "theirs.jpg"),
+        ultrahdr.read(tmp_path / "theirs.jpg"),
+    )
+    ratio = colour.luminance(ours)[4:-4, 4:-4] / np.maximum(
+        colour.luminance(theirs)[4:-4, 4:-4], 1e-3
+    )
     low, middle, high = np.percentile(ratio, [5, 50, 95])
     assert 0.9 < low and high < 1.1 and middle == pytest.approx(1, abs=0.02)
 
@@ -136,7 +145,9 @@ def test_attributes_of_xmp_are_read_as_well_as_lists(lamp):
     at = part.index(ultrahdr.ADOBE)
     size = int.from_bytes(part[at - 2 : at])
     body = ultrahdr.ADOBE + f'<rdf:Description hdrgm:Version="1.0" {names}/>'.encode()
-    path.write_bytes(first + part[: at - 2] + struct.pack(">H", len(body) + 2) + body + part[at - 2 + size :])
+    path.write_bytes(
+        first + part[: at - 2] + struct.pack(">H", len(body) + 2) + body + part[at - 2 + size :]
+    )
     E = ultrahdr.read(path)
     assert E.shape == before.shape and E.max() <= 8 * (1 + 1 / 64) and not np.allclose(E, before)
 
@@ -182,17 +193,27 @@ def test_the_command_writes_such_a_picture_and_takes_it_as_a_map(tmp_path, capsy
             run(list(map(str, arguments)))
         return end.value.code or 0, capsys.readouterr().err
 
-    assert told("tonemap", tmp_path / "map.exr", "-o", out, "--to", "ultrahdr", "--headroom", 4) == (0, "")
+    assert told(
+        "tonemap", tmp_path / "map.exr", "-o", out, "--to", "ultrahdr", "--headroom", 4
+    ) == (0, "")
     assert told("tonemap", out, "-o", tmp_path / "again.png") == (0, "")
     assert told("convert", out, tmp_path / "back.exr") == (0, "")
-    assert np.array_equal(radiance.read_radiance(tmp_path / "back.exr"), radiance.read_radiance(out))
-    code, said = told("tonemap", tmp_path / "map.exr", "-o", tmp_path / "no.png", "--to", "ultrahdr")
-    assert code == 2 and "expected an Ultra HDR picture" in said and not (tmp_path / "no.png").exists()
+    assert np.array_equal(
+        radiance.read_radiance(tmp_path / "back.exr"), radiance.read_radiance(out)
+    )
+    code, said = told(
+        "tonemap", tmp_path / "map.exr", "-o", tmp_path / "no.png", "--to", "ultrahdr"
+    )
+    assert (
+        code == 2 and "expected an Ultra HDR picture" in said and not (tmp_path / "no.png").exists()
+    )
     code, said = told("convert", tmp_path / "map.exr", tmp_path / "no.jpg")
     assert code == 2 and "expected a radiance file" in said
     write_picture(tmp_path / "plain.jpg", np.zeros((8, 8, 3), np.uint8))
     code, said = told("tonemap", tmp_path / "plain.jpg", "-o", tmp_path / "no.png")
-    assert code == 2 and "plain.jpg: expected a JPEG with a gain map" in said and said.count("\n") == 1
+    assert (
+        code == 2 and "plain.jpg: expected a JPEG with a gain map" in said and said.count("\n") == 1
+    )
 
 
 @pytest.mark.parametrize("headroom", [1.0, 0.5, np.nan, 1e9])
@@ -220,7 +241,9 @@ def claims(**changed):
     return struct.pack(">2HB14i", 0, 0, 0x40, *numbers)
 
 
-@pytest.mark.parametrize("wrong", [{"n3": 0}, {"n6": -5}, {"n8": 0}, {"n2": 0}, {"n4": 1 << 30}, {"n11": 0}])
+@pytest.mark.parametrize(
+    "wrong", [{"n3": 0}, {"n6": -5}, {"n8": 0}, {"n2": 0}, {"n4": 1 << 30}, {"n11": 0}]
+)
 def test_gains_that_mean_nothing_are_refused(wrong):
     with pytest.raises(ValueError, match="expected gains"):
         ultrahdr._meaning(ultrahdr.ISO + claims(**wrong))
@@ -243,7 +266,9 @@ def test_what_is_odd_in_the_gain_maps_own_header_is_not_told_and_changes_nothing
     path, *_ = lamp
     before, data = ultrahdr.read(path), path.read_bytes()
     at = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
-    path.write_bytes(data[:at] + ultrahdr._segment(b"\xe2" if odd[:1] == b"M" else b"\xe1", odd) + data[at:])
+    path.write_bytes(
+        data[:at] + ultrahdr._segment(b"\xe2" if odd[:1] == b"M" else b"\xe1", odd) + data[at:]
+    )
     assert np.array_equal(ultrahdr.read(path), before)  # and no warning, which is an error here
 
 

@@ -7,7 +7,9 @@ NEAR = [(0, 0)] + [(dy, dx) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dy or d
 
 def halve(Y):
     Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(float)
-    return np.floor((Y[::2, ::2] + Y[1::2, ::2] + Y[::2, 1::2] + Y[1::2, 1::2]) / 4 + 0.5).astype(int)
+    return np.floor((Y[::2, ::2] + Y[1::2, ::2] + Y[::2, 1::2] + Y[1::2, 1::2]) / 4 + 0.5).astype(
+        int
+    )
 
 
 def overlap(A, B, y, x):
@@ -24,7 +26,8 @@ def pair(A, B, bits):
     at = (0, 0)
     for a, b in pyramid[::-1]:
         ta, tb = (
-            np.searchsorted(np.cumsum(np.bincount(Y.ravel(), minlength=256)), Y.size / 2) for Y in (a, b)
+            np.searchsorted(np.cumsum(np.bincount(Y.ravel(), minlength=256)), Y.size / 2)
+            for Y in (a, b)
         )
         best, at = None, (2 * at[0], 2 * at[1])
         start = at

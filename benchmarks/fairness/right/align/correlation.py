@@ -25,7 +25,9 @@ def exclusion(Y, t):
 
 def shrink(Y):
     Y = Y[: Y.shape[0] // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.int32)
-    return ((Y[0::2, 0::2] + Y[1::2, 0::2] + Y[0::2, 1::2] + Y[1::2, 1::2] + 2) >> 2).astype(np.uint8)
+    return ((Y[0::2, 0::2] + Y[1::2, 0::2] + Y[0::2, 1::2] + Y[1::2, 1::2] + 2) >> 2).astype(
+        np.uint8
+    )
 
 
 def _share(a, b):
@@ -54,7 +56,9 @@ def _pair(a, b, bits):
     while len(levels) < bits and min(levels[-1][0].shape) >= 14:
         levels.append(tuple(shrink(Y) for Y in levels[-1]))
     place = np.zeros(2, dtype=np.int64)
-    around = np.array([(0, 0), (-1, 0), (0, -1), (0, 1), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)])
+    around = np.array(
+        [(0, 0), (-1, 0), (0, -1), (0, 1), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)]
+    )
     for A, B in reversed(levels):
         H, W = A.shape
         ta, tb = (int(threshold(np.bincount(Y.ravel(), minlength=256), q)) for Y in (A, B))

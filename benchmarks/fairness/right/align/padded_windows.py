@@ -5,7 +5,9 @@ import numpy as np
 
 def shrink(Y):
     H, W = (s // 2 for s in Y.shape)
-    return np.floor(Y[: 2 * H, : 2 * W].reshape(H, 2, W, 2).mean(axis=(1, 3)) + 0.5).astype(np.uint8)
+    return np.floor(Y[: 2 * H, : 2 * W].reshape(H, 2, W, 2).mean(axis=(1, 3)) + 0.5).astype(
+        np.uint8
+    )
 
 
 def exclusion(Y, t):

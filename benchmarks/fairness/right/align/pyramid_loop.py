@@ -72,7 +72,11 @@ def grays(images, luma):
         raise ValueError("photographs are uint8 or uint16")
     if images.ndim == 4 and images.shape[-1] == 3:
         wide = images.astype(np.int64)
-        wide = (54 * wide[..., 0] + 183 * wide[..., 1] + 19 * wide[..., 2]) // 256 if luma else wide[..., 1]
+        wide = (
+            (54 * wide[..., 0] + 183 * wide[..., 1] + 19 * wide[..., 2]) // 256
+            if luma
+            else wide[..., 1]
+        )
     elif images.ndim == 3:
         wide = images.astype(np.int64)
     else:

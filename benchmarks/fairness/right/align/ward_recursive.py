@@ -69,9 +69,9 @@ def align(images, *, bits=6, luma=False):
         images = (images >> 8).astype(np.uint8)
     if images.ndim == 4:
         if luma:
-            images = ((images.astype(np.uint32) @ np.array([54, 183, 19], dtype=np.uint32)) >> 8).astype(
-                np.uint8
-            )
+            images = (
+                (images.astype(np.uint32) @ np.array([54, 183, 19], dtype=np.uint32)) >> 8
+            ).astype(np.uint8)
         else:
             images = images[..., 1]
     order = np.argsort(images.mean(axis=(1, 2)), kind="stable")

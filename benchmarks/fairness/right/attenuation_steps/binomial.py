@@ -5,9 +5,9 @@ from scipy.ndimage import correlate1d, map_coordinates
 
 
 def halve(l):
-    return correlate1d(correlate1d(l, np.array([1, 4, 6, 4, 1]) / 16, 0), np.array([1, 4, 6, 4, 1]) / 16, 1)[
-        ::2, ::2
-    ]
+    return correlate1d(
+        correlate1d(l, np.array([1, 4, 6, 4, 1]) / 16, 0), np.array([1, 4, 6, 4, 1]) / 16, 1
+    )[::2, ::2]
 
 
 def enlarge(P, shape):

@@ -29,7 +29,9 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
         p = np.pad(l, 1, mode="symmetric")
         slope = np.hypot(p[2:, 1:-1] - p[:-2, 1:-1], p[1:-1, 2:] - p[1:-1, :-2]) / 2 ** (k + 1)
         mean = slope.mean()
-        relative = np.maximum(slope, noise * mean) / mean if mean > 0 else np.full_like(slope, noise)
+        relative = (
+            np.maximum(slope, noise * mean) / mean if mean > 0 else np.full_like(slope, noise)
+        )
         phi = (relative / alpha) ** (beta - 1)
         if k < len(levels) - 1:
             Phi = double(double(Phi, l.shape[0]).T, l.shape[1]).T * phi

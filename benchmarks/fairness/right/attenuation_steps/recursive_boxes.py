@@ -14,7 +14,9 @@ def slopes(l, k):
 
 def enlarged(small, shape):
     grid = [np.arange(n) * 2.0 for n in small.shape]
-    places = np.meshgrid(*(np.minimum(np.arange(n), g[-1]) for n, g in zip(shape, grid)), indexing="ij")
+    places = np.meshgrid(
+        *(np.minimum(np.arange(n), g[-1]) for n, g in zip(shape, grid)), indexing="ij"
+    )
     return RegularGridInterpolator(grid, small, method="linear")(np.stack(places, axis=-1))
 
 

@@ -15,6 +15,8 @@ def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
         w = np.exp(-d2 / (2 * np.exp(2 * log_sigma)))
         return (w[core].sum() / w.sum() - inside) ** 2
 
-    best = minimize_scalar(off, bounds=(np.log(0.05), np.log(3)), method="bounded", options={"xatol": 1e-8})
+    best = minimize_scalar(
+        off, bounds=(np.log(0.05), np.log(3)), method="bounded", options={"xatol": 1e-8}
+    )
     w = np.exp(-d2 / (2 * np.exp(2 * best.x)))
     return (w / w.sum()).reshape(shape).astype(np.float32)

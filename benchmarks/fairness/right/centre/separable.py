@@ -9,7 +9,10 @@ def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     x = np.linspace(0.5 / W, 1 - 0.5 / W, W) - at[1]
     far = np.hypot(*np.meshgrid(y * H, x * W, indexing="ij"))
     disc = (
-        far <= np.partition(far.ravel(), max(1, round(share * H * W)) - 1)[max(1, round(share * H * W)) - 1]
+        far
+        <= np.partition(far.ravel(), max(1, round(share * H * W)) - 1)[
+            max(1, round(share * H * W)) - 1
+        ]
     )
     sigmas = np.geomspace(0.05, 5, 4000)
     found = []

@@ -5,7 +5,9 @@ import numpy as np
 
 def slope(low, high, contrast):
     with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.fmin(np.divide(np.log10(contrast), np.subtract(high, low, dtype=float)), 1.0))
+        return float(
+            np.fmin(np.divide(np.log10(contrast), np.subtract(high, low, dtype=float)), 1.0)
+        )
 
 
 def compress(base, low, high, *, contrast=50.0):

@@ -28,7 +28,9 @@ def flat(A, *, size=5, psi=0.05, sigma=0.01):
     else:
         st = convolve2d(A.var(0, ddof=1), box, "valid")
         top, bottom = s * ss / (s - 1), st / t
-        q = np.where(bottom > 0, top / np.where(bottom > 0, bottom, 1), np.where(top > 0, np.inf, 0))
+        q = np.where(
+            bottom > 0, top / np.where(bottom > 0, bottom, 1), np.where(top > 0, np.inf, 0)
+        )
         p = stats.f.sf(q, s - 1, s * (t - 1))
     out[r : H - r, r : W - r] = p >= psi
     return out

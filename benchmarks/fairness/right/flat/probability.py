@@ -13,5 +13,7 @@ def flat(A, *, size=5, psi=0.05, sigma=0.01):
     else:
         noise = uniform_filter(((A - A.mean(0)) ** 2).sum(0) / (t - 1), size)
         tail = f.sf(s * spread * t / noise / (s - 1), s - 1, s * (t - 1))
-    inside = np.pad(np.ones((spread.shape[0] - size + 1, spread.shape[1] - size + 1), bool), size // 2)
+    inside = np.pad(
+        np.ones((spread.shape[0] - size + 1, spread.shape[1] - size + 1), bool), size // 2
+    )
     return (tail >= psi) & inside

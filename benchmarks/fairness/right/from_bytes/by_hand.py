@@ -15,5 +15,7 @@ def from_bytes(data):
     W, H = int(words[1]), int(words[2])
     C = 3 if words[0] == b"PF" else 1
     order = "<" if words[3].startswith(b"-") else ">"
-    E = np.flip(np.frombuffer(data, order + "f4", H * W * C, at).reshape(H, W, C), axis=0).astype(float)
+    E = np.flip(np.frombuffer(data, order + "f4", H * W * C, at).reshape(H, W, C), axis=0).astype(
+        float
+    )
     return E if C == 3 else E[..., 0]

@@ -19,6 +19,8 @@ def from_bytes(data):
     kind, width, height, number = part(), int(part()), int(part()), float(part())
     channels = {"PF": 3, "Pf": 1}[kind]
     order = np.dtype("f4").newbyteorder("<" if number < 0 else ">")
-    values = np.frombuffer(bytes(stream), dtype=order, count=width * height * channels).astype(float)
+    values = np.frombuffer(bytes(stream), dtype=order, count=width * height * channels).astype(
+        float
+    )
     picture = np.flipud(values.reshape(height, width, channels))
     return picture if channels == 3 else picture[:, :, 0]

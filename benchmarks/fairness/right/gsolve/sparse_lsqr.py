@@ -23,7 +23,9 @@ def gsolve(Z, B, smoothness, w):
     i = np.repeat(np.arange(N), P)
     data = sparse.hstack(
         [
-            sparse.coo_array((trust.ravel(), (np.arange(N * P), Z.ravel().astype(int))), shape=(N * P, n)),
+            sparse.coo_array(
+                (trust.ravel(), (np.arange(N * P), Z.ravel().astype(int))), shape=(N * P, n)
+            ),
             sparse.coo_array((-trust.ravel(), (np.arange(N * P), i)), shape=(N * P, N)),
         ]
     )

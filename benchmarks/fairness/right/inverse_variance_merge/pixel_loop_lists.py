@@ -13,7 +13,8 @@ def inverse_variance_merge(X, D, measured, t, N, R):
             light = [x for x, _, _ in seen]
             for _ in range(3):
                 V = [
-                    (n / N + R**2 / N**2 + d**2 / 12) / u**2 for n, (_, d, u) in zip(light, seen, strict=True)
+                    (n / N + R**2 / N**2 + d**2 / 12) / u**2
+                    for n, (_, d, u) in zip(light, seen, strict=True)
                 ]
                 total = sum(1 / v for v in V)
                 mean = sum(x / u / v for (x, _, u), v in zip(seen, V, strict=True)) / total

@@ -9,4 +9,6 @@ def irradiance(Z, t, f_inv, w):
     weighted = w * np.asarray(f_inv, dtype=np.float64)
     numerator = np.take(weighted, Z) @ t
     denominator = np.take(w, Z) @ (t * t)
-    return np.divide(numerator, denominator, out=np.full(len(numerator), np.nan), where=denominator != 0)
+    return np.divide(
+        numerator, denominator, out=np.full(len(numerator), np.nan), where=denominator != 0
+    )

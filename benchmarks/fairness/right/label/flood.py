@@ -12,7 +12,12 @@ def label(mask):
         waiting = [tuple(start)]
         while waiting:
             y, x = waiting.pop()
-            if 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1] and mask[y, x] and not labels[y, x]:
+            if (
+                0 <= y < mask.shape[0]
+                and 0 <= x < mask.shape[1]
+                and mask[y, x]
+                and not labels[y, x]
+            ):
                 labels[y, x] = count
                 waiting += [(y + a, x + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
     return labels

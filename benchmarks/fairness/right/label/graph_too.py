@@ -22,6 +22,9 @@ def label(mask):
         b.append(q[both])
     a, b = np.concatenate(a), np.concatenate(b)
     out[mask] = (
-        connected_components(sparse.coo_matrix((np.ones(a.size), (a, b)), (n, n)), directed=False)[1] + 1
+        connected_components(sparse.coo_matrix((np.ones(a.size), (a, b)), (n, n)), directed=False)[
+            1
+        ]
+        + 1
     )
     return out

@@ -15,7 +15,10 @@ def layers(lL, *, sigma_s, sigma_r=0.4):
     numerator = np.zeros_like(l)
     denominator = np.zeros_like(l)
     offsets = [
-        (y, x) for y in range(-r, r + 1) for x in range(-r, r + 1) if y * y + x * x <= (2 * sigma_s) ** 2
+        (y, x)
+        for y in range(-r, r + 1)
+        for x in range(-r, r + 1)
+        if y * y + x * x <= (2 * sigma_s) ** 2
     ]
     for y, x in offsets:
         other = padded[r + y : r + y + H, r + x : r + x + W]

@@ -13,7 +13,9 @@ def layers(lL, *, sigma_s, sigma_r=0.4):
                 continue
             p = (slice(max(0, -dy), H - max(0, dy)), slice(max(0, -dx), W - max(0, dx)))
             q = (slice(max(0, dy), H - max(0, -dy)), slice(max(0, dx), W - max(0, -dx)))
-            k = np.exp(-(dy**2 + dx**2) / (2 * sigma_s**2)) * np.exp(-((l[p] - l[q]) ** 2) / (2 * sigma_r**2))
+            k = np.exp(-(dy**2 + dx**2) / (2 * sigma_s**2)) * np.exp(
+                -((l[p] - l[q]) ** 2) / (2 * sigma_r**2)
+            )
             top[p] += k * l[q]
             bottom[p] += k
     return top / bottom, l - top / bottom

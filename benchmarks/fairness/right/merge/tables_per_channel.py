@@ -21,4 +21,6 @@ def merge(images, times, g, w=None):
         return np.exp(merge_channel(Z, ln_t, g.reshape(256, -1)[:, 0], w))
     if g.ndim == 1:
         g = np.repeat(g[:, None], Z.shape[-1], axis=1)
-    return np.exp(np.stack([merge_channel(Z[..., c], ln_t, g[:, c], w) for c in range(Z.shape[-1])], -1))
+    return np.exp(
+        np.stack([merge_channel(Z[..., c], ln_t, g[:, c], w) for c in range(Z.shape[-1])], -1)
+    )

@@ -17,7 +17,11 @@ def ratio_steps(found, *, limit=9.0, tolerance=1e-6, rounds=100):
                 top += v * v * x * y
                 bottom += v * v * x * x
         k = top / bottom
-        errors = [(v * (y - k * x)) ** 2 for (x, y, v), counts in zip(pairs, inside, strict=True) if counts]
+        errors = [
+            (v * (y - k * x)) ** 2
+            for (x, y, v), counts in zip(pairs, inside, strict=True)
+            if counts
+        ]
         V = sum(errors) / len(errors)
         yield k, list(inside), V
         if abs(k - before) < tolerance:

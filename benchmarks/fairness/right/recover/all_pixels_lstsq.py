@@ -35,7 +35,11 @@ def _channel(frames, times, order, eps):
     last = None
     for _ in range(100):
         D = np.concatenate([a - r * b for (a, b), r in zip(sides, R)])
-        head = np.linalg.lstsq(D[:, :-1] - D[:, -1:], -D[:, -1], rcond=None)[0] if order > 1 else np.zeros(0)
+        head = (
+            np.linalg.lstsq(D[:, :-1] - D[:, -1:], -D[:, -1], rcond=None)[0]
+            if order > 1
+            else np.zeros(0)
+        )
         c = np.append(head, 1 - head.sum())
         f = levels @ c
         if last is not None and np.abs(f - last).max() < eps:

@@ -15,7 +15,9 @@ def recover(images, times, *, order=5, eps=1e-3):
 def curve(M, t, order, eps):
     R, k, before, z = t[:-1] / t[1:], np.arange(1, order + 1), np.inf, np.arange(256) / 255
     seen = (M > 0.05) & (M < 0.98)
-    pairs = [(M[q, both], M[q + 1, both]) for q in range(len(t) - 1) for both in [seen[q] & seen[q + 1]]]
+    pairs = [
+        (M[q, both], M[q + 1, both]) for q in range(len(t) - 1) for both in [seen[q] & seen[q + 1]]
+    ]
     for _ in range(100):
         A = np.concatenate(
             [a[:, None] ** k - r * b[:, None] ** k for (a, b), r in zip(pairs, R, strict=True)]

@@ -7,7 +7,9 @@ Z = np.arange(256)
 
 def joint(a, b):
     """Return how often level i of a meets level j of b, in the levels that both see well."""
-    table = np.bincount(256 * a.ravel().astype(np.int64) + b.ravel(), minlength=65536).reshape(256, 256)
+    table = np.bincount(256 * a.ravel().astype(np.int64) + b.ravel(), minlength=65536).reshape(
+        256, 256
+    )
     well = (Z > 0.05 * 255) & (Z < 0.98 * 255)
     return table * (well[:, None] & well[None, :])
 

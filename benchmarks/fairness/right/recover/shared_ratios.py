@@ -31,7 +31,9 @@ def recover(images, times, *, order=5, eps=0.001):
 
     def basis(M):
         return (
-            np.stack([M**k - M for k in range(2, order + 1)], axis=-1) if order > 1 else np.zeros((len(M), 0))
+            np.stack([M**k - M for k in range(2, order + 1)], axis=-1)
+            if order > 1
+            else np.zeros((len(M), 0))
         )
 
     ready = {key: (a, b, basis(a), basis(b)) for key, (a, b) in samples.items()}
@@ -51,10 +53,14 @@ def recover(images, times, *, order=5, eps=0.001):
         curves = new
         for q in ratio:
             above = sum(
-                (ready[q, c][0] + ready[q, c][2] @ coefficients[c]).sum() for c in channels if (q, c) in ready
+                (ready[q, c][0] + ready[q, c][2] @ coefficients[c]).sum()
+                for c in channels
+                if (q, c) in ready
             )
             below = sum(
-                (ready[q, c][1] + ready[q, c][3] @ coefficients[c]).sum() for c in channels if (q, c) in ready
+                (ready[q, c][1] + ready[q, c][3] @ coefficients[c]).sum()
+                for c in channels
+                if (q, c) in ready
             )
             ratio[q] = above / below
 

@@ -8,7 +8,9 @@ def _fill(curve):
     known = np.flatnonzero(~np.isnan(curve))
     if len(known) == 1:
         return np.full(256, curve[known[0]])
-    nearest = interp1d(known, curve[known], kind="nearest", bounds_error=False, fill_value="extrapolate")
+    nearest = interp1d(
+        known, curve[known], kind="nearest", bounds_error=False, fill_value="extrapolate"
+    )
     return nearest(np.arange(256))
 
 

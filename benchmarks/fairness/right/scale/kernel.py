@@ -8,5 +8,7 @@ def scale(L, *, headroom=8.0, sigma=None):
     x = np.arange(-int(3 * sigma), int(3 * sigma) + 1)
     k = np.exp(-(x**2) / (2 * sigma**2))
     k /= k.sum()
-    blur = correlate1d(correlate1d(np.asarray(L, float), k, 0, mode="nearest"), k, 1, mode="nearest")
+    blur = correlate1d(
+        correlate1d(np.asarray(L, float), k, 0, mode="nearest"), k, 1, mode="nearest"
+    )
     return 1 / headroom / blur

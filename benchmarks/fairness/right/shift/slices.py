@@ -17,5 +17,8 @@ def shift(images, offsets):
     if bottom <= top or right <= left:
         raise ValueError("the images have nothing in common")
     return np.stack(
-        [im[top - dy : bottom - dy, left - dx : right - dx] for im, (dy, dx) in zip(images, offsets)]
+        [
+            im[top - dy : bottom - dy, left - dx : right - dx]
+            for im, (dy, dx) in zip(images, offsets)
+        ]
     )

@@ -10,5 +10,7 @@ def shrink(Y):
     for y in range(height // 2):
         top, bottom = rows[2 * y], rows[2 * y + 1]
         for x in range(width // 2):
-            small[y, x] = round((top[2 * x] + top[2 * x + 1] + bottom[2 * x] + bottom[2 * x + 1]) / 4)
+            small[y, x] = round(
+                (top[2 * x] + top[2 * x + 1] + bottom[2 * x] + bottom[2 * x + 1]) / 4
+            )
     return small

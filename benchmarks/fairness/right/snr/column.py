@@ -8,12 +8,17 @@ def snr(g, *, least=0.01, span=4):
     n = len(f)
     noise = np.array(
         [
-            (f[min(z + span, n - 1)] - f[max(z - span, 0)]) / (min(z + span, n - 1) - max(z - span, 0))
+            (f[min(z + span, n - 1)] - f[max(z - span, 0)])
+            / (min(z + span, n - 1) - max(z - span, 0))
             for z in range(n)
         ]
     )
     noise = (
-        np.where(noise < least * np.ptp(f[[0, -1]]) / (n - 1), least * np.ptp(f[[0, -1]]) / (n - 1), noise)
+        np.where(
+            noise < least * np.ptp(f[[0, -1]]) / (n - 1),
+            least * np.ptp(f[[0, -1]]) / (n - 1),
+            noise,
+        )
         / f
     )
     w = 1 / noise

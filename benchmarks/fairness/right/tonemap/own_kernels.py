@@ -10,7 +10,9 @@ def blur(picture, sigma):
     k = np.exp(-0.5 * (np.arange(-r, r + 1) / sigma) ** 2)
     k /= k.sum()
     for _ in range(2):
-        picture = np.stack([np.convolve(np.pad(row, r, mode="edge"), k, "valid") for row in picture]).T
+        picture = np.stack(
+            [np.convolve(np.pad(row, r, mode="edge"), k, "valid") for row in picture]
+        ).T
     return picture
 
 

@@ -20,6 +20,8 @@ def tonemap(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
         V1 = [gaussian_filter(Lm, 1.6**k / 4) for k in range(9)]
         even, V = True, V1[0]
         for k in range(8):
-            even = even & (np.abs(V1[k] - V1[k + 1]) / (2**phi * key / 1.6 ** (2 * k) + V1[k]) < threshold)
+            even = even & (
+                np.abs(V1[k] - V1[k + 1]) / (2**phi * key / 1.6 ** (2 * k) + V1[k]) < threshold
+            )
             V = np.where(even, V1[k], V)
     return np.minimum(Lm * (1 + Lm / white**2) / (1 + V), 1).astype(np.float32)

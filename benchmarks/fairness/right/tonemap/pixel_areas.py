@@ -11,7 +11,9 @@ def blurred(Lm, s):
     edges = np.arange(-r - 0.5, r + 1)
     weights = np.diff(erf(edges / (np.sqrt(2) * sigma)))
     weights /= weights.sum()
-    return convolve1d(convolve1d(Lm, weights, axis=0, mode="mirror"), weights, axis=1, mode="mirror")
+    return convolve1d(
+        convolve1d(Lm, weights, axis=0, mode="mirror"), weights, axis=1, mode="mirror"
+    )
 
 
 def tonemap(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
@@ -20,7 +22,9 @@ def tonemap(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
         raise ValueError("luminance has the wrong shape")
     if not np.isfinite(L).all() or L.min() < 0:
         raise ValueError("luminance must be finite and at least 0")
-    if key == "auto" or not all(k > 0 for k in (key, phi, threshold, 1 if white is None else white)):
+    if key == "auto" or not all(
+        k > 0 for k in (key, phi, threshold, 1 if white is None else white)
+    ):
         raise ValueError("knobs must be positive")
     if not L.any():
         return np.zeros_like(L)

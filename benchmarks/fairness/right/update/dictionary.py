@@ -14,4 +14,6 @@ def update(Z, t, E, n=256):
             continue
         for level, time in zip(levels, times):
             members[level].append(light * time)
-    return np.array([math.fsum(members[m]) / len(members[m]) if m in members else math.nan for m in range(n)])
+    return np.array(
+        [math.fsum(members[m]) / len(members[m]) if m in members else math.nan for m in range(n)]
+    )

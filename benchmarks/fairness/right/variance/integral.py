@@ -7,5 +7,8 @@ def variance(X, D, N, R):
     h = np.asarray(D, float) / 2
     rounding = (h**2 + 4 * 0 + h**2) / 6
     return np.sum(
-        np.broadcast_arrays(np.asarray(X, float) / N, np.square(np.asarray(R, float) / N), rounding), axis=0
+        np.broadcast_arrays(
+            np.asarray(X, float) / N, np.square(np.asarray(R, float) / N), rounding
+        ),
+        axis=0,
     )

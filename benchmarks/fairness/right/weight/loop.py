@@ -9,7 +9,10 @@ def weight(F, powers=(1, 1, 1)):
     _, H, W = np.shape(F)
     F = np.asarray(F, float).tolist()
     a, b, c = powers
-    Y = [[0.299 * F[0][y][x] + 0.587 * F[1][y][x] + 0.114 * F[2][y][x] for x in range(W)] for y in range(H)]
+    Y = [
+        [0.299 * F[0][y][x] + 0.587 * F[1][y][x] + 0.114 * F[2][y][x] for x in range(W)]
+        for y in range(H)
+    ]
     out = np.zeros((H, W))
     for y in range(1, H - 1):
         for x in range(1, W - 1):

@@ -13,7 +13,10 @@ def weight(F, powers=(1, 1, 1)):
         for x in range(W):
             r, g, b = (float(one) for one in F[:, y, x])
             near = (
-                Y[max(y - 1, 0), x] + Y[min(y + 1, H - 1), x] + Y[y, max(x - 1, 0)] + Y[y, min(x + 1, W - 1)]
+                Y[max(y - 1, 0), x]
+                + Y[min(y + 1, H - 1), x]
+                + Y[y, max(x - 1, 0)]
+                + Y[y, min(x + 1, W - 1)]
             )
             mean = (r + g + b) / 3
             C = abs(near - 4 * Y[y, x])

@@ -13,7 +13,11 @@ def weight(F, powers=(1, 1, 1)):
     C[:, :-1] += right
     C[:, 1:] -= right
     S = np.sqrt((R - G) ** 2 + (G - B) ** 2 + (B - R) ** 2) / 3
-    E = np.exp(-12.5 * (R - 0.5) ** 2) * np.exp(-12.5 * (G - 0.5) ** 2) * np.exp(-12.5 * (B - 0.5) ** 2)
+    E = (
+        np.exp(-12.5 * (R - 0.5) ** 2)
+        * np.exp(-12.5 * (G - 0.5) ** 2)
+        * np.exp(-12.5 * (B - 0.5) ** 2)
+    )
     W = np.ones(Y.shape)
     for x, p in zip((np.abs(C), S, E), powers):
         if p:

@@ -8,7 +8,9 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     while (min(levels[-1].shape) + 1) // 2 >= 32:
         p = np.pad(levels[-1], 1, mode="edge")
         H, W = levels[-1].shape
-        levels.append(sum(p[y : y + H, x : x + W] for y in range(3) for x in range(3))[::2, ::2] / 9)
+        levels.append(
+            sum(p[y : y + H, x : x + W] for y in range(3) for x in range(3))[::2, ::2] / 9
+        )
     factor = (1 / alpha) ** (beta - 1)
     for k in range(len(levels) - 1, -1, -1):
         gy, gx = np.gradient(levels[k])

@@ -1,7 +1,8 @@
 """What the checks ask for: here `subject` is the library itself, and `rng` draws from the seed 0.
 
-The grader runs the same files with --noconftest and its own plugin, which brings the same two fixtures: there
-`subject` speaks to a student's code in another process, and `rng` draws what is that student's own.
+The grader runs the same files with --noconftest and its own plugin, which brings the same two
+fixtures: there `subject` speaks to a student's code in another process, and `rng` draws what is
+that student's own.
 """
 
 import numpy as np

@@ -10,15 +10,17 @@ from hdrlab.tonemap import ward
 def drawn(rng, bins=50):
     """Return h (bins,), db and D: a scene with two peaks, of more range than the display has.
 
-    Whether trimmings are measured by the first T [the paper's pseudo-code] or by the T before each trim
-    [pcond, Ward's program], the trims of such a histogram end at the same one.
+    Whether trimmings are measured by the first T [the paper's pseudo-code] or by the T before each
+    trim [pcond, Ward's program], the trims of such a histogram end at the same one.
     """
     b, D = np.arange(bins), float(np.log(100))
     while True:
         tall = 900 * np.exp(-(((b - rng.integers(8, 20)) / 1.2) ** 2))
         low = 300 * np.exp(-(((b - 36) / 1.5) ** 2))
         h, db = np.round(20 + tall + low + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24))
-        trims = [(one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)]
+        trims = [
+            (one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)
+        ]
         if all(first > 0.028 or own < 0.022 for first, own in trims) and len(trims) > 3:
             return h, db, D
 
@@ -47,7 +49,13 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
     T = end.sum()
     above = np.maximum(end - T * db / D, 0).sum()
     said = f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T"
-    require(above <= 0.03 * T, said, expected=last(ward.adjust_steps(h, db, D)).h, came=end, kind="curve")
+    require(
+        above <= 0.03 * T,
+        said,
+        expected=last(ward.adjust_steps(h, db, D)).h,
+        came=end,
+        kind="curve",
+    )
 
 
 @points(4)
@@ -59,7 +67,9 @@ def test_trimmings_are_not_put_elsewhere(subject, rng):
     h = minimum(h, ceiling), and that is all.
     """
     h, db, D = drawn(rng)
-    for before, after in zip([h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False):
+    for before, after in zip(
+        [h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False
+    ):
         said, grown = "h: expected no bin to grow in a trim", after > before + 1e-6 * before.max()
         require(not np.any(grown), said, expected=before, came=after, kind="curve")
     require(after.sum() < h.sum(), "h: expected trims, and nothing was cut off")
@@ -75,7 +85,13 @@ def test_the_histogram_ends_where_the_trims_lead(subject, rng):
     """
     h, db, D = drawn(rng)
     truth = last(ward.adjust_steps(h, db, D)).h
-    same(asked(subject, h, db, D)[-1], truth, 0.05 * truth.max(), what="h after the last trim", kind="curve")
+    same(
+        asked(subject, h, db, D)[-1],
+        truth,
+        0.05 * truth.max(),
+        what="h after the last trim",
+        kind="curve",
+    )
 
 
 @points(3)
@@ -91,4 +107,10 @@ def test_an_even_histogram_is_left_alone(subject, rng):
     peak = h.copy()
     peak[7] *= 4
     truth = last(ward.adjust_steps(peak, 0.05, float(np.log(100)) / 3)).h
-    same(asked(subject, peak, 0.05, float(np.log(100)) / 3)[-1], truth, 4, what="h of one peak", kind="curve")
+    same(
+        asked(subject, peak, 0.05, float(np.log(100)) / 3)[-1],
+        truth,
+        4,
+        what="h of one peak",
+        kind="curve",
+    )

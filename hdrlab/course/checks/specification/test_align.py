@@ -6,7 +6,8 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.course.checks.compare import finite, points, same
 
 MARGIN, H, W = 48, 160, 208
-BITS = 5  # the coarsest level has 10 x 13 pixels: one of 5 x 6 is a matter of ties, which any scan may break
+# the coarsest level has 10 x 13 pixels: one of 5 x 6 is a matter of ties, which any scan may break
+BITS = 5
 
 
 def scene(rng, *, fine=0.05):
@@ -66,9 +67,12 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
 
     At every level the best of nine is found, and twice that is where the next level begins.
 
-    XOR of the bitmaps, AND with both exclusion bitmaps; the least share of the compared pixels wins.
+    XOR of the bitmaps, AND with both exclusion bitmaps; the least share of the compared pixels
+    wins.
     """
-    for least, times in zip((16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True):  # 16: on all levels
+    for least, times in zip(
+        (16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True
+    ):  # 16: on all levels
         dy, dx = drawn(rng, least, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
         came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
@@ -79,7 +83,8 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
 def test_in_a_tie_nothing_moves(subject, rng):
     """Which candidate wins where all nine are equally good?
 
-    A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a level.
+    A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a
+    level.
 
     Begin with the centre, and move only for a count that is less.
     """
@@ -89,7 +94,12 @@ def test_in_a_tie_nothing_moves(subject, rng):
         levels = gaussian_filter(rng.standard_normal(160), 2)
         bars = np.tile(128 + 120 * levels / np.abs(levels).max(), (120, 1))
         images = np.stack([bars, rng.uniform(0.6, 0.8) * bars]).astype(np.uint8)
-        same(subject.align(images), np.zeros((2, 2)), 0, what="the offsets of upright bars that agree")
+        same(
+            subject.align(images),
+            np.zeros((2, 2)),
+            0,
+            what="the offsets of upright bars that agree",
+        )
 
 
 @points(5)
@@ -111,7 +121,8 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
 def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
     """More than half of the picture is a wall as bright as the median. What does its bitmap show?
 
-    Noise alone; and where a sensor's noise is the same in each photograph, it says that nothing has moved.
+    Noise alone; and where a sensor's noise is the same in each photograph, it says that nothing has
+    moved.
 
     AND the differences with both exclusion bitmaps before you count.
     """
@@ -143,10 +154,13 @@ def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subj
 
     The offsets of pairs are summed along the chain, away from the image in the middle.
 
-    Sort by brightness to make the pairs, and give the offsets back in the order that the images came in.
+    Sort by brightness to make the pairs, and give the offsets back in the order that the images
+    came in.
     """
     true = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
     true -= true[2]
     images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))
-    order = np.insert(rng.permutation([0, 1, 3, 4]), rng.integers(1, 5), 2)  # the middle is not first
+    order = np.insert(
+        rng.permutation([0, 1, 3, 4]), rng.integers(1, 5), 2
+    )  # the middle is not first
     same(subject.align(images[order], bits=BITS), true[order], 1, what="the offsets")

@@ -10,7 +10,9 @@ def agree(subject, rng, channels=(), **knobs):
     """Compare the light of a picture, of which a third is black, and gains of one range or one a channel."""
     low, high = rng.uniform(-2, -1, channels), rng.uniform(2, 3, channels)
     sdr, g = np.maximum(rng.uniform(-0.5, 1, (2, 12, 16, 3)), 0)
-    came, expected = (f(sdr, g, low, high, **knobs) for f in (subject.apply_gain, gainmap.apply_gain))
+    came, expected = (
+        f(sdr, g, low, high, **knobs) for f in (subject.apply_gain, gainmap.apply_gain)
+    )
     same(came, expected, 1e-3, what="light", picture=True)
 
 

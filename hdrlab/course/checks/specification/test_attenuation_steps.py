@@ -14,7 +14,9 @@ def drawn(rng, shape=(128, 144)):
     soft = gaussian_filter(rng.standard_normal(shape), 12)
     y, x = np.indices(shape)
     lamp = np.hypot(y - rng.integers(40, 88), x - rng.integers(40, 104)) < rng.integers(14, 24)
-    return (2 * soft / soft.std() + 3.0 * lamp + 0.05 * rng.standard_normal(shape)).astype(np.float32)
+    return (2 * soft / soft.std() + 3.0 * lamp + 0.05 * rng.standard_normal(shape)).astype(
+        np.float32
+    )
 
 
 def asked(subject, lL, **knobs):
@@ -42,7 +44,8 @@ def test_there_is_a_state_for_each_level(subject, rng):
 def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
     """On a ramp every slope is the mean slope.
 
-    There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made less.
+    There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made
+    less.
 
     phi = (a / slope) (slope / a)^beta, a = alpha mean, and Phi multiplies the phi of all levels.
     """

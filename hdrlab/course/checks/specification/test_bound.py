@@ -18,7 +18,9 @@ def drawn(rng, P=3, M=40):
 
 def asked(subject, Z, B, shown=None):
     """Return ln E and the flags."""
-    E, flags = parts(subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool) if shown is None else shown), 2)
+    E, flags = parts(
+        subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool) if shown is None else shown), 2
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.log(np.asarray(E, float)), flags
 
@@ -49,7 +51,9 @@ def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
     same(lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels")
     order = rng.permutation(3)
     lE, _ = asked(subject, Z[order], B[order])
-    same(lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels, frames in another order")
+    same(
+        lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels, frames in another order"
+    )
 
 
 @points(4)

@@ -23,13 +23,16 @@ def sure(T, n):
 def test_the_darkest_of_one_are_the_darkest_of_the_other(subject, rng):
     """Which level has the hundredth pixel of A, counted from the dark? And of B?
 
-    The middle of A's step m has the rank H(m) + h(m) / 2, with H(m) the share of the pixels below level m.
+    The middle of A's step m has the rank H(m) + h(m) / 2, with H(m) the share of the pixels below
+    level m.
 
     Find that rank on the line through B's edges: from H_B(z) at z - 1/2 to H_B(z + 1) at z + 1/2.
     """
     h_A, h_B = drawn(rng)
     T = brightness_transfer(h_A, h_B)
-    came = finite(np.nan_to_num(np.asarray(subject.brightness_transfer(h_A, h_B), float)), T.shape, what="T")
+    came = finite(
+        np.nan_to_num(np.asarray(subject.brightness_transfer(h_A, h_B), float)), T.shape, what="T"
+    )
     same(came, T, 0.02, what="T", kind="curve", where=sure(T, len(T)))
 
 

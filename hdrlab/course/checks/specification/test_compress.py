@@ -22,7 +22,10 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
     """
     base, low, high = drawn(rng)
     for contrast in (50.0, 10.0):
-        m, came = np.log10(contrast) / (high - low), subject.compress(base, low, high, contrast=contrast)
+        m, came = (
+            np.log10(contrast) / (high - low),
+            subject.compress(base, low, high, contrast=contrast),
+        )
         what = "the compressed base less its mean"
         same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
@@ -37,7 +40,12 @@ def test_the_bright_end_becomes_white(subject, rng):
     """
     base, low, high = drawn(rng)
     ends = np.array([[low, high]], np.float32)
-    same(subject.compress(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
+    same(
+        subject.compress(ends, low, high, contrast=50.0),
+        [[-np.log10(50), 0]],
+        1e-3,
+        what="low and high",
+    )
 
 
 @points(3)
@@ -50,4 +58,10 @@ def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
     """
     base, low, high = drawn(rng)
     flat, high = low + (base - low) / 10, low + (high - low) / 10
-    same(subject.compress(flat, low, high, contrast=50.0), flat - high, 1e-3, what="the base", picture=True)
+    same(
+        subject.compress(flat, low, high, contrast=50.0),
+        flat - high,
+        1e-3,
+        what="the base",
+        picture=True,
+    )

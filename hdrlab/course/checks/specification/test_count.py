@@ -44,7 +44,9 @@ def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, 
     n = 1 + ceil((scene - usable) / (usable - overlap)).
     """
     scenes = [drawn(rng) for _ in range(8)]
-    found = [subject.count(*one) for one in scenes]  # all of them: a mistake is known by what it answers
+    found = [
+        subject.count(*one) for one in scenes
+    ]  # all of them: a mistake is known by what it answers
     for (scene, usable, overlap), n in zip(scenes, map(float, found), strict=True):
         reach = usable + (n - 1) * (usable - overlap)
         said = f"{n:g} photographs reach over {reach:.1f} stops, and the scene has {scene:.1f}"

@@ -8,7 +8,9 @@ from hdrlab.course.checks.compare import as_shape, numbers, points, require, sam
 def asked(subject, rng, e):
     """Return the values of 200 halves whose exponents are e, and what they are."""
     shape = (10, 20)
-    bits = rng.integers(0, 2, shape) << 15 | rng.choice(e, shape) << 10 | rng.integers(1, 1024, shape)
+    bits = (
+        rng.integers(0, 2, shape) << 15 | rng.choice(e, shape) << 10 | rng.integers(1, 1024, shape)
+    )
     bits = bits.astype(np.uint16)
     return subject.decode_half(bits), bits.view(np.float16).astype(np.float64)
 
@@ -23,7 +25,9 @@ def test_a_half_is_its_mantissa_times_a_power_of_two(subject, rng):
     """
     came, values = asked(subject, rng, np.arange(1, 31))
     shares = np.abs(as_shape(numbers(came), values.shape) / values)
-    same(shares, np.ones(values.shape), 1e-6, what="sizes, in shares of the right ones", picture=True)
+    same(
+        shares, np.ones(values.shape), 1e-6, what="sizes, in shares of the right ones", picture=True
+    )
 
 
 def test_the_first_bit_is_the_sign(subject, rng):
@@ -34,7 +38,13 @@ def test_the_first_bit_is_the_sign(subject, rng):
     Shifted by 15, the bits are 1 for a negative number.
     """
     came, values = asked(subject, rng, [15])
-    same(np.sign(as_shape(numbers(came), values.shape)), np.sign(values), 0, what="signs", picture=True)
+    same(
+        np.sign(as_shape(numbers(came), values.shape)),
+        np.sign(values),
+        0,
+        what="signs",
+        picture=True,
+    )
 
 
 @points(2)
@@ -58,7 +68,9 @@ def test_the_largest_exponent_is_infinite_or_no_number(subject, rng):
 
     np.inf where m is 0, and np.nan elsewhere.
     """
-    bits = np.array([0x7C00, 0xFC00, 0x7C00 + rng.integers(1, 1024), 0xFC00 + rng.integers(1, 1024)])
+    bits = np.array(
+        [0x7C00, 0xFC00, 0x7C00 + rng.integers(1, 1024), 0xFC00 + rng.integers(1, 1024)]
+    )
     came = as_shape(numbers(subject.decode_half(bits.astype(np.uint16)), what="the values"), (4,))
     said = f"expected inf, -inf, nan, nan, got {came.tolist()}"
     require(np.array_equal(came, [np.inf, -np.inf, np.nan, np.nan], equal_nan=True), said)

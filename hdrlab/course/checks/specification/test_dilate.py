@@ -25,14 +25,17 @@ def test_all_within_the_margin_belongs_to_the_mask(subject, rng):
     mask, margin = drawn(rng)
     near, widened = distance_transform_edt(~mask) <= margin, regions.dilate(mask, margin)
     # its holes are another promise's
-    same(subject.dilate(mask, margin), near, 0, what="the mask", picture=True, where=near == widened)
+    same(
+        subject.dilate(mask, margin), near, 0, what="the mask", picture=True, where=near == widened
+    )
 
 
 @points(3)
 def test_the_inside_of_a_figure_belongs_to_it(subject, rng):
     """Somebody who moved is found by the outline. And the inside?
 
-    A hole that the widened mask encloses on all sides belongs to it, even where the outline had a gap.
+    A hole that the widened mask encloses on all sides belongs to it, even where the outline had a
+    gap.
 
     Fill the holes after the margin was added.
     """

@@ -45,5 +45,7 @@ def test_a_pixel_is_held_back_by_its_neighbourhood(subject, rng):
     """
     Lm = drawn(rng)
     around = np.full_like(Lm, np.exp(rng.uniform(-1, 1)))
-    same(subject.display(Lm, around), np.minimum(Lm / (1 + around), 1), 1e-4, what="Ld", picture=True)
+    same(
+        subject.display(Lm, around), np.minimum(Lm / (1 + around), 1), 1e-4, what="Ld", picture=True
+    )
     finite(subject.display(Lm * 1e6, around), Lm.shape, what="Ld")

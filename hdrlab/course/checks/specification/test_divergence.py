@@ -27,7 +27,12 @@ def test_every_pixel_has_a_finite_divergence(subject, rng):
     A field that is 0 has a divergence that is 0.
     """
     finite(subject.divergence(field(rng)), (12, 17), what="div G")
-    same(subject.divergence(np.zeros((2, 5, 6))), np.zeros((5, 6)), 1e-9, what="the divergence of nothing")
+    same(
+        subject.divergence(np.zeros((2, 5, 6))),
+        np.zeros((5, 6)),
+        1e-9,
+        what="the divergence of nothing",
+    )
 
 
 @points(5)

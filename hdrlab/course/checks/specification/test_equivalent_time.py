@@ -22,7 +22,12 @@ def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
     """
     same(subject.equivalent_time(1 / 64, 8.0, 16.0), 1 / 16, 1e-6, what="T'")
     T, F, F_new, _, _ = drawn(rng)
-    same(subject.equivalent_time(T, F, F_new) / T, (F_new / F) ** 2, 1e-4 * (F_new / F) ** 2, what="T' / T")
+    same(
+        subject.equivalent_time(T, F, F_new) / T,
+        (F_new / F) ** 2,
+        1e-4 * (F_new / F) ** 2,
+        what="T' / T",
+    )
 
 
 @points(3)
@@ -48,6 +53,11 @@ def test_there_and_back_is_the_time_one_began_with(subject, rng):
     """
     T, F, F_new, S, S_new = drawn(rng)
     there, exposure = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new)), T * S / F**2
-    same(there * S_new / F_new**2, exposure, 1e-4 * exposure, what="T' S' / F'^2, which is the exposure")
+    same(
+        there * S_new / F_new**2,
+        exposure,
+        1e-4 * exposure,
+        what="T' S' / F'^2, which is the exposure",
+    )
     back = subject.equivalent_time(there, F_new, F, S=S_new, S_new=S)
     same(back / T, np.array(1.0), 1e-4, what="the time after the way back, over that before")

@@ -34,13 +34,19 @@ def test_a_whole_aperture_and_half_the_time_are_a_stop_each(subject, rng):
 def test_twice_the_speed_takes_a_stop(subject, rng):
     """Twice the speed needs half the light.
 
-    A scene that suits ISO 400 at some setting is 2 stops darker than one that suits ISO 100 at the same.
+    A scene that suits ISO 400 at some setting is 2 stops darker than one that suits ISO 100 at the
+    same.
 
     Subtract log2(S / 100).
     """
     F, T = float(rng.uniform(1.4, 16)), float(2.0 ** rng.uniform(-10, 3))
     for n in (-1, 1, 3):
-        same(subject.ev(F, T, S=100.0 * 2**n), np.log2(F * F / T) - n, 1e-4, what=f"EV at ISO {100 * 2**n:g}")
+        same(
+            subject.ev(F, T, S=100.0 * 2**n),
+            np.log2(F * F / T) - n,
+            1e-4,
+            what=f"EV at ISO {100 * 2**n:g}",
+        )
 
 
 @points(3)

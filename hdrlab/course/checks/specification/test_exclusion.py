@@ -41,7 +41,12 @@ def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
     > 4 and not >= 4.
     """
     t = int(rng.integers(20, 230))
-    same(subject.exclusion(CODES, t), np.abs(CODES.astype(int) - t) > 4, 0, what="where Y is compared")
+    same(
+        subject.exclusion(CODES, t),
+        np.abs(CODES.astype(int) - t) > 4,
+        0,
+        what="where Y is compared",
+    )
 
 
 @points(3)

@@ -58,4 +58,10 @@ def test_a_pixel_alone_has_no_say(subject, rng):
     mean, k = drawn(rng)
     k[...] = rng.uniform(0.5, 1, k.shape)
     smooth = gaussian_filter(mean.astype(np.float64), durand.NEAR)[INNER]
-    same(subject.fix_uncertain(mean, k, sigma_s=6.0)[INNER], smooth, 0.02, what="the base", picture=True)
+    same(
+        subject.fix_uncertain(mean, k, sigma_s=6.0)[INNER],
+        smooth,
+        0.02,
+        what="the base",
+        picture=True,
+    )

@@ -9,7 +9,12 @@ from hdrlab.response import selection
 def drawn(rng, t=1, sigma=0.01):
     """Return t frames (t, H, W) of even surfaces, edges and a ramp, with noise."""
     y, x = np.indices((40, 60))
-    E = 0.3 + 0.3 * (x > rng.integers(12, 20)) + 0.2 * (y > 25) * (x < 10) + 0.004 * np.maximum(x - 40, 0)
+    E = (
+        0.3
+        + 0.3 * (x > rng.integers(12, 20))
+        + 0.2 * (y > 25) * (x < 10)
+        + 0.004 * np.maximum(x - 40, 0)
+    )
     return E + rng.normal(0, sigma, (t, 40, 60))
 
 
@@ -35,7 +40,8 @@ def test_a_patch_is_flat_where_noise_explains_its_spread(subject, rng):
 def test_the_average_of_frames_is_held_against_its_own_noise(subject, rng):
     """Of t frames you have the average. How large is its noise?
 
-    Its variance is that of one frame over t; and that is estimated, with s (t - 1) degrees of freedom.
+    Its variance is that of one frame over t; and that is estimated, with s (t - 1) degrees of
+    freedom.
 
     Against an estimate the limit is (s - 1) f.isf(psi, s - 1, s (t - 1)).
     """
@@ -51,5 +57,8 @@ def test_a_patch_that_is_cut_is_not_flat(subject, rng):
 
     False within size // 2 pixels of the edge.
     """
-    inside, came = np.pad(np.ones((36, 56)), 2), subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0)
+    inside, came = (
+        np.pad(np.ones((36, 56)), 2),
+        subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0),
+    )
     same(came, inside, 0, what="flat, of frames with less than their noise", picture=True)

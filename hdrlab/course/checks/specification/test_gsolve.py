@@ -41,12 +41,15 @@ def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
 def test_the_curve_of_a_camera_comes_out(subject, rng):
     """Every sample in every frame gives one row, w (g(Z) - lE) = w B.
 
-    Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural logarithms.
+    Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural
+    logarithms.
 
     Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
-    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, 0.3))  # some of them clipped
+    Z, B = samples(
+        rng, N=200, response=response, noise=0, light=(-2.4, 0.3)
+    )  # some of them clipped
     g, _ = asked(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
@@ -56,7 +59,8 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
 def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
     """Weights multiply whole rows: the left-hand side and the right-hand side.
 
-    The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and w(z) too.
+    The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and
+    w(z) too.
 
     Count your rows: N P of data, one for the gauge, n - 2 of smoothness.
     """
@@ -128,6 +132,15 @@ def test_any_number_of_levels_will_do(subject, rng):
     The unknowns are g (n,) and then lE (N,): n + N columns.
     """
     Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
-    (g, _), (few, _) = asked(subject, Z, B, 10.0, HAT), asked(subject, Z // 16, B, 1.0, weights.hat(16))
+    (g, _), (few, _) = (
+        asked(subject, Z, B, 10.0, HAT),
+        asked(subject, Z // 16, B, 1.0, weights.hat(16)),
+    )
     fine = g[8::16] - g[136]  # g in the middle of each of the 16 levels
-    same(few[4:12], fine[4:12], 0.3, what="g of levels 4 to 11 of 16, beside yours of 256", kind="curve")
+    same(
+        few[4:12],
+        fine[4:12],
+        0.3,
+        what="g of levels 4 to 11 of 16, beside yours of 256",
+        kind="curve",
+    )

@@ -26,7 +26,8 @@ def inside(radius):
 def test_a_picture_is_smoothed_along_its_guide(subject, rng):
     """Each window has a line, p = a I + b. A pixel lies in many windows: which line is its own?
 
-    a = cov(I, p) / (var(I) + eps), b = mean(p) - a mean(I); q is the mean of a times I, plus the mean of b.
+    a = cov(I, p) / (var(I) + eps), b = mean(p) - a mean(I); q is the mean of a times I, plus the
+    mean of b.
 
     All of it are means over (2 r + 1) x (2 r + 1) pixels: cov(I, p) = mean(I p) - mean(I) mean(p).
     """
@@ -39,7 +40,8 @@ def test_a_picture_is_smoothed_along_its_guide(subject, rng):
 def test_a_picture_that_guides_itself_keeps_its_edge(subject, rng):
     """Where no p is given, I takes its place.
 
-    Beside the edge the variance is far above eps, and a is near 1; on a wall it is below, and a is near 0.
+    Beside the edge the variance is far above eps, and a is near 1; on a wall it is below, and a is
+    near 0.
 
     cov(I, I) is the variance of I.
     """

@@ -44,9 +44,13 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
     """
     n = some(rng)
     w = asked(subject, n)
-    steps = np.diff(w) * np.where(np.arange(n - 1) < n // 2, 1, -1)  # the one in the middle may be 0
+    steps = np.diff(w) * np.where(
+        np.arange(n - 1) < n // 2, 1, -1
+    )  # the one in the middle may be 0
     wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
-    said = f"w: expected to rise up to the middle and to fall from there, not so from level {wrong} on"
+    said = (
+        f"w: expected to rise up to the middle and to fall from there, not so from level {wrong} on"
+    )
     require(wrong == n, said, expected=hat(n), came=w, kind="curve")
     same(w, hat(n), 0.02, what="w", kind="curve")  # ends that count are another promise
 

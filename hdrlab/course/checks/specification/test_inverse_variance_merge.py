@@ -16,7 +16,14 @@ def counted(rng, times=TIMES, dimmest=2.0):
     X = (rng.poisson(E * t * N) + R * rng.standard_normal((len(t), *SHAPE))) / N
     step, measured = float(rng.uniform(0.5, 1) / N), E * t < 1
     measured[0] = True
-    return (step * np.maximum(np.round(X / step), 1), np.full(X.shape, step), measured, times, N, R), E
+    return (
+        step * np.maximum(np.round(X / step), 1),
+        np.full(X.shape, step),
+        measured,
+        times,
+        N,
+        R,
+    ), E
 
 
 def asked(subject, given):
@@ -48,9 +55,11 @@ def test_one_photograph_alone_is_as_sure_as_its_own_noise(subject, rng):
 def test_of_equal_times_it_is_the_plain_mean(subject, rng):
     """Four photographs of one light and one time. One of them caught more photons than the others, by chance.
 
-    Chance is no reason to count it for less. V is that of the light which is there, the same in all four.
+    Chance is no reason to count it for less. V is that of the light which is there, the same in all
+    four.
 
-    Take V from E t, once E is known, and not from what each photograph counted; then the weights are equal.
+    Take V from E t, once E is known, and not from what each photograph counted; then the weights
+    are equal.
     """
     given, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
     (X, D, _, _, N, R), (E, s) = given, asked(subject, given)
@@ -99,7 +108,9 @@ def test_no_other_mean_errs_less(subject, rng):
     """
     given, scene = counted(rng)
     best, s = inverse_variance_merge(*given)
-    least, came = (np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, asked(subject, given)[0]))
+    least, came = (
+        np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, asked(subject, given)[0])
+    )
     same(max(came / least, 1.0), 1.0, 0.02, what="root mean square error, over the least")
 
 
@@ -113,4 +124,6 @@ def test_of_100_pixels_95_lie_within_1_96_deviations(subject, rng):
     """
     given, scene = counted(rng)
     E, s = asked(subject, given)
-    same(100 * np.mean(np.abs(E - scene) < 1.96 * s), 95.0, 3.0, what="pixels within 1.96 s, of 100")
+    same(
+        100 * np.mean(np.abs(E - scene) < 1.96 * s), 95.0, 3.0, what="pixels within 1.96 s, of 100"
+    )

@@ -62,7 +62,13 @@ def test_twice_the_time_is_half_the_irradiance(subject, rng):
     """
     Z, t, f_inv = drawn(rng)
     truth, seen = robertson.irradiance(Z, t, f_inv, HAT), HAT[Z].sum(axis=1) > 0.05
-    same(subject.irradiance(Z, 2 * t, f_inv, HAT), truth / 2, 1e-3 * np.nanmax(truth), what="E", where=seen)
+    same(
+        subject.irradiance(Z, 2 * t, f_inv, HAT),
+        truth / 2,
+        1e-3 * np.nanmax(truth),
+        what="E",
+        where=seen,
+    )
 
 
 def test_a_sample_that_no_frame_saw_well_is_nan(subject, rng):

@@ -57,6 +57,9 @@ def test_labels_are_1_to_r_and_0_elsewhere(subject, rng):
     0 where the mask is False.
     """
     mask = drawn(rng)
-    count, came = int(regions.label(mask).max()), finite(subject.label(mask), mask.shape, what="labels")
+    count, came = (
+        int(regions.label(mask).max()),
+        finite(subject.label(mask), mask.shape, what="labels"),
+    )
     same(np.unique(came), np.arange(count + 1), 0, what="the labels there are")
     same(came[~mask], np.zeros(np.count_nonzero(~mask)), 0, what="the labels outside of the mask")

@@ -74,6 +74,8 @@ def test_another_exposure_moves_the_base_and_leaves_the_detail(subject, rng):
     """
     lL = drawn(rng)
     (base, detail), (moved, same_detail) = asked(subject, lL), asked(subject, lL + np.float32(1.3))
-    same(moved - base, np.full(lL.shape, 1.3), 0.02, what="what 20 times the light adds to the base")
+    same(
+        moved - base, np.full(lL.shape, 1.3), 0.02, what="what 20 times the light adds to the base"
+    )
     same(same_detail, detail, 0.02, what="the detail", picture=True)
     same((base + detail).mean(), lL.mean(), 0.01, what="the mean of base + detail")

@@ -58,5 +58,7 @@ def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
     Do not forget exp at the end.
     """
     L = drawn(rng)
-    one, ten = (float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10))
+    one, ten = (
+        float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10)
+    )
     same(ten / one, 10.0, 0.01, what="Lav of 10 L, over that of L")

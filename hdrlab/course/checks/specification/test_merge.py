@@ -20,14 +20,20 @@ def smooth(rng, shape=(48, 64)):
 
 def photographs(rng, E, times=TIMES):
     """Return 8-bit photographs (P, H, W) with noise, of levels 20 to 235: each frame measures all."""
-    M = responses.RESPONSES["gamma"].f(np.clip(0.3 * E * np.reshape(times, (-1,) + (1,) * E.ndim), 0, 1))
+    M = responses.RESPONSES["gamma"].f(
+        np.clip(0.3 * E * np.reshape(times, (-1,) + (1,) * E.ndim), 0, 1)
+    )
     return np.clip(np.round(255 * M + 3 * rng.standard_normal(M.shape)), 20, 235).astype(np.uint8)
 
 
 def same_map(came, truth, tolerance=0.01, **knobs):
     """Compare the logarithms of two maps: radiance is right or wrong by a factor."""
     E = finite(came, truth.shape, what="E").astype(float)
-    require(np.all(E > 0), f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not", came=E)
+    require(
+        np.all(E > 0),
+        f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not",
+        came=E,
+    )
     same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
 
 
@@ -66,10 +72,20 @@ def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
     taken = camera.shoot(E, times, camera.Camera(response="gamma"))
-    came = np.log(finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float))
+    came = np.log(
+        finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float)
+    )
     ratio = came - np.log(E)
-    same(ratio - np.median(ratio), np.zeros(E.shape), 0.06, what="ln E less that of the scene", picture=True)
-    step = np.log(finite(subject.merge(taken.images, 8 * taken.times, G), E.shape, what="E").astype(float))
+    same(
+        ratio - np.median(ratio),
+        np.zeros(E.shape),
+        0.06,
+        what="ln E less that of the scene",
+        picture=True,
+    )
+    step = np.log(
+        finite(subject.merge(taken.images, 8 * taken.times, G), E.shape, what="E").astype(float)
+    )
     same(step, came - np.log(8), 1e-3, what="ln E with times 8 times as long", picture=True)
 
 

@@ -15,7 +15,12 @@ def test_a_reading_too_bright_by_so_many_stops_asks_for_as_many(subject, rng):
     """
     EV, stops = float(rng.uniform(4, 14)), rng.permutation([-2.0, 1.0, 2.0])
     for n in stops:
-        same(subject.optimum(EV, 0.18 * 2**n), EV + n, 1e-3, what=f"EV after a reading off by {n:g} stops")
+        same(
+            subject.optimum(EV, 0.18 * 2**n),
+            EV + n,
+            1e-3,
+            what=f"EV after a reading off by {n:g} stops",
+        )
 
 
 @points(2)
@@ -27,4 +32,9 @@ def test_what_the_reading_should_be_is_asked(subject, rng):
     Subtract log2 B_opt.
     """
     EV, B, B_opt = rng.uniform(4, 14), rng.uniform(0.05, 0.9), rng.uniform(0.3, 0.6)
-    same(subject.optimum(EV, B, B_opt), EV + np.log2(B / B_opt), 1e-3, what=f"EV for B_opt = {B_opt:.2f}")
+    same(
+        subject.optimum(EV, B, B_opt),
+        EV + np.log2(B / B_opt),
+        1e-3,
+        what=f"EV for B_opt = {B_opt:.2f}",
+    )

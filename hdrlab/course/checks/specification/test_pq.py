@@ -27,7 +27,12 @@ def test_the_white_of_an_old_display_lies_in_the_middle(subject, rng):
     Without light Y is 0, and c1^m2 is as good as 0.
     """
     FD = rng.permutation([0.0, 100.0, 10_000.0, 10_000.0])
-    same(subject.pq(FD), np.interp(FD, [0, 100, 10_000], [0, 0.508, 1]), 1e-3, what="v of black and whites")
+    same(
+        subject.pq(FD),
+        np.interp(FD, [0, 100, 10_000], [0, 0.508, 1]),
+        1e-3,
+        what="v of black and whites",
+    )
 
 
 @points(2)

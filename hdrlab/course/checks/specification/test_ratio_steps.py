@@ -41,7 +41,9 @@ def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng)
     """
     for limit in (3.0, 2.0):
         came, expected = asked(subject, drawn(rng), limit=limit, tolerance=0.0, rounds=1)
-        same(came[-1][1], expected[1].used, 0, what="the pairs in use after one round", kind="values")
+        same(
+            came[-1][1], expected[1].used, 0, what="the pairs in use after one round", kind="values"
+        )
         same(came[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
 
 
@@ -55,7 +57,13 @@ def test_a_pair_that_fits_again_comes_back(subject, rng):
     """
     for _ in range(3):
         came, expected = asked(subject, drawn(rng, 25, 0.02), limit=1.2, tolerance=0.0, rounds=4)
-        same(came[-1][1], expected[-1].used, 0, what="the pairs in use after four rounds", kind="values")
+        same(
+            came[-1][1],
+            expected[-1].used,
+            0,
+            what="the pairs in use after four rounds",
+            kind="values",
+        )
 
 
 @points(1, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")

@@ -22,7 +22,9 @@ def asked(subject, images, times, channels=(), **knobs):
 def photographs(rng, response, frames=5, shape=(60, 80)):
     """Return a Bracket a stop apart, hardly any noise."""
     E = (10.0 ** rng.uniform(-1.5, 1.5, shape)).astype(np.float32)
-    return camera.shoot(E, camera.times_around(E, frames, stops=1), camera.Camera(response=response), rng=rng)
+    return camera.shoot(
+        E, camera.times_around(E, frames, stops=1), camera.Camera(response=response), rng=rng
+    )
 
 
 def settled(rng):
@@ -63,7 +65,8 @@ def test_every_level_above_0_has_a_finite_g(subject, rng):
 def test_the_curve_of_a_camera_comes_out(subject, rng):
     """Plot f^-1 over M, from 0 to 1: it goes through (0, 0) and (1, 1).
 
-    With known ratios R the error sum (f^-1(M_q) - R f^-1(M_q+1))^2 is least squares in the coefficients.
+    With known ratios R the error sum (f^-1(M_q) - R f^-1(M_q+1))^2 is least squares in the
+    coefficients.
 
     Use samples between 0.05 and 0.98 in both frames alone, and let f^-1(1) = 1 fix the scale.
     """

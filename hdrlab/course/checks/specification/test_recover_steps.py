@@ -32,7 +32,9 @@ def asked(subject, Z, t, **knobs):
     came = states(subject.recover_steps(Z, t, W, **knobs), what="the states")
     found = []
     for state in came:
-        f = finite(state[0] if isinstance(state, tuple | list) else state, (256,), what="f^-1").astype(float)
+        f = finite(
+            state[0] if isinstance(state, tuple | list) else state, (256,), what="f^-1"
+        ).astype(float)
         require(f[128] > 0, f"f^-1: expected values above 0, got {f[128]:.3g} at level 128")
         found.append(f / f[128])
     return found
@@ -46,7 +48,10 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
 
     Let them go on until f^-1 hardly changes; about thirty are enough.
     """
-    for response in (laws.drawn_response(rng), responses.RESPONSES["gamma"]):  # the line is far from it
+    for response in (
+        laws.drawn_response(rng),
+        responses.RESPONSES["gamma"],
+    ):  # the line is far from it
         Z, t = samples(rng, response, N=2000)
         f, truth = asked(subject, Z, t, max_iterations=25)[-1], np.exp(responses.true_g(response))
         scale = np.sum(f[SHOWN] * truth[SHOWN]) / np.sum(f[SHOWN] ** 2)
@@ -57,7 +62,8 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
 def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     """An iteration is two means, one after the other. Which of them has weights?
 
-    The irradiance is a weighted mean; the new f^-1(m) is the plain mean of E t over the pixels of level m.
+    The irradiance is a weighted mean; the new f^-1(m) is the plain mean of E t over the pixels of
+    level m.
 
     Do not weight the update: all its pixels have one level.
     """

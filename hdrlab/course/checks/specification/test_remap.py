@@ -15,7 +15,8 @@ def drawn(rng):
 def test_sigma_tells_details_from_edges(subject, rng):
     """In a picture there are both. What differs from g by less than sigma is detail, the rest is an edge.
 
-    Draw r over lL: the power up to sigma on either side of g, and from there on a line of slope beta.
+    Draw r over lL: the power up to sigma on either side of g, and from there on a line of slope
+    beta.
 
     r = g +- sigma (d / sigma)^alpha where d <= sigma, and g +- (sigma + beta (d - sigma)) beyond.
     """
@@ -51,7 +52,9 @@ def test_of_an_edge_beta_is_left(subject, rng):
     r = g +- (sigma + beta (d - sigma)); alpha does not matter here.
     """
     lL, g, sigma = drawn(rng)
-    edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(np.float32)  # the same, all of it beyond sigma
+    edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(
+        np.float32
+    )  # the same, all of it beyond sigma
     for beta in (0.0, 0.4):
         beyond = np.abs(edges - g) - sigma
         expected = g + np.sign(edges - g) * (sigma + beta * beyond)

@@ -30,7 +30,9 @@ def doubtful(truth, threshold=0.05):
 def same_adaptation(came, truth, what, sure):
     """Compare the adaptations of the last states, in shares of the largest."""
     scale = truth[-1].adaptation.max()
-    same(came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure)
+    same(
+        came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure
+    )
 
 
 @points(4)
@@ -61,7 +63,9 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
     came, sure = asked(subject, blurred), ~doubtful(truth)
     same_adaptation(came, truth, "the adaptation", sure)
     for one, true in zip(came, truth, strict=True):
-        same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
+        same(
+            one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure
+        )
 
 
 def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):

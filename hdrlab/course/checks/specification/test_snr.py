@@ -43,7 +43,9 @@ def test_clipped_levels_do_not_count(subject, rng):
     w(0) = w(n - 1) = 0.
     """
     g = drawn(rng, 100)
-    same(asked(subject, g, least=0.01, span=4)[[0, -1]], [0, 0], 1e-6, what="the weights of the ends")
+    same(
+        asked(subject, g, least=0.01, span=4)[[0, -1]], [0, 0], 1e-6, what="the weights of the ends"
+    )
 
 
 @points(2)

@@ -31,7 +31,8 @@ def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
 def test_its_laplacian_is_the_divergence(subject, rng):
     """Take the Laplacian of what you found: is it div G?
 
-    Cosines (DCT-II) are the eigenvectors, with eigenvalues 2 cos(pi i / n) - 2; the two axes add up.
+    Cosines (DCT-II) are the eigenvectors, with eigenvalues 2 cos(pi i / n) - 2; the two axes add
+    up.
 
     Divide the coefficients by the eigenvalues, all but the first, which is 0 / 0: set it to 0.
     """
@@ -63,4 +64,10 @@ def test_tall_and_wide_pictures_are_solved_alike(subject, rng):
     for shape in ((9, 40), (40, 9)):
         u = rng.standard_normal(shape)
         u -= u.mean()
-        same(asked(subject, laplacian(u)), u, 5e-3, what=f"u of {shape[0]} x {shape[1]} pixels", picture=True)
+        same(
+            asked(subject, laplacian(u)),
+            u,
+            5e-3,
+            what=f"u of {shape[0]} x {shape[1]} pixels",
+            picture=True,
+        )

@@ -21,7 +21,13 @@ def test_the_pixels_that_are_nearest_count(subject, rng):
     """
     for shape, knobs in (drawn(rng) for _ in range(12)):
         w = finite(subject.spot(shape, **knobs), shape, what="w")
-        same(w > 0, metering.spot(shape, **knobs) > 0, 0, what="the pixels of weight above 0", picture=True)
+        same(
+            w > 0,
+            metering.spot(shape, **knobs) > 0,
+            0,
+            what="the pixels of weight above 0",
+            picture=True,
+        )
 
 
 @points(3, needs="test_the_pixels_that_are_nearest_count")

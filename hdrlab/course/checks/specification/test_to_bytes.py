@@ -86,4 +86,9 @@ def test_the_sign_of_the_scale_is_the_order_of_the_bytes(subject, rng):
     data = asked(subject, E)
     scale = float(data.split(b"\n")[2])
     values = np.frombuffer(data[-4 * E.size :], "<f4" if scale < 0 else ">f4").reshape(E.shape)
-    same(values[::-1], E, 1e-6 * E.max(), what="the values, in the order of bytes that the scale tells")
+    same(
+        values[::-1],
+        E,
+        1e-6 * E.max(),
+        what="the values, in the order of bytes that the scale tells",
+    )

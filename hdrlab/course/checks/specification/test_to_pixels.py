@@ -39,10 +39,19 @@ def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
     m = floor(256 E / 2^(e - 128)): do not forget the 256, nor the 128.
     """
     E = drawn(rng)
-    E[0, :3] = [[1.999, 0.5, 0.25], [0.03, 0.9985, 0.4], [0.1, 0.2, 3.997]]  # 255.9 is no byte when rounded
+    E[0, :3] = [
+        [1.999, 0.5, 0.25],
+        [0.03, 0.9985, 0.4],
+        [0.1, 0.2, 3.997],
+    ]  # 255.9 is no byte when rounded
     m, e = np.split(asked(subject, E), [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
-    same(m / 256 * 2.0 ** (e - 128) / brightest, E / brightest, 1 / 127, what="E per its brightest channel")
+    same(
+        m / 256 * 2.0 ** (e - 128) / brightest,
+        E / brightest,
+        1 / 127,
+        what="E per its brightest channel",
+    )
 
 
 @points(3, needs="test_decoding_gives_the_radiance_back_to_a_part_in_128")

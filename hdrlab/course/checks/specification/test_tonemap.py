@@ -47,7 +47,9 @@ def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
     white = max(1, np.quantile(Lm, 0.9999)), with Lm after the scaling to the key.
     """
     L = drawn(rng)
-    L[:6, :9] = float(rng.uniform(1.5, 3)) * L.max()  # so many that every rule of quantiles finds them
+    L[:6, :9] = (
+        float(rng.uniform(1.5, 3)) * L.max()
+    )  # so many that every rule of quantiles finds them
     for one in (L, np.sqrt(np.sqrt(L))):
         Lm = reinhard.scale_to_key(one.astype(float))
         expected = reinhard.display(Lm, Lm, max(1.0, Lm.max()))
@@ -65,7 +67,9 @@ def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
     for knobs in ({}, {"phi": 12.0, "threshold": 0.02}):
         L = drawn(rng)
         expected = reinhard.tonemap(L, white=np.inf, local=True, **knobs)
-        came = finite(subject.tonemap(L, white=np.inf, local=True, **knobs), L.shape, what="Ld").astype(float)
+        came = finite(
+            subject.tonemap(L, white=np.inf, local=True, **knobs), L.shape, what="Ld"
+        ).astype(float)
         off = np.mean(np.abs(came - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
         said = f"Ld with local=True{knobs or ''}: expected another value at {off:.0%} of the pixels"
         require(off <= 0.03, said, expected=expected, came=came, kind="image")
@@ -77,7 +81,8 @@ def test_it_shows_the_scene_within_what_a_display_has(subject):
 
     A display has two decades at most; what is below or above them is black or white.
 
-    Half the pixels, or more, belong between 0.01 and 0.99, and what differs in light differs in the picture.
+    Half the pixels, or more, belong between 0.01 and 0.99, and what differs in light differs in the
+    picture.
     """
     laws.shows_the_scene(asked(subject))
 
@@ -88,7 +93,8 @@ def test_it_stays_in_range_whatever_the_scene(subject):
 
     0 / 0 and log 0 come from pictures that are all black, or all alike.
 
-    Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide by it.
+    Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide
+    by it.
     """
     laws.stays_in_range(asked(subject))
 

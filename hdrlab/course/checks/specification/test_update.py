@@ -39,11 +39,16 @@ def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
 def test_the_mean_is_a_plain_one(subject):
     """Does it matter in your mean whether m is close to the ends of the range?
 
-    All pixels of E_m have one level, hence one weight; the exposures of a level are averaged as they are.
+    All pixels of E_m have one level, hence one weight; the exposures of a level are averaged as
+    they are.
 
     A plain mean: no table of weights, no time squared.
     """
-    Z, t, E = np.array([[7, 200], [200, 7], [7, 7]]), np.array([1.0, 2.0]), np.array([3.0, 5.0, 4.0])
+    Z, t, E = (
+        np.array([[7, 200], [200, 7], [7, 7]]),
+        np.array([1.0, 2.0]),
+        np.array([3.0, 5.0, 4.0]),
+    )
     expected = np.full(256, np.nan)
     expected[7], expected[200] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4, (3 * 2 + 5 * 1) / 2
     told = ~np.isnan(expected)

@@ -8,7 +8,12 @@ from hdrlab.course.checks.compare import finite, points, same
 def drawn(rng):
     """Return exposures and their steps (24, 30), electrons at exposure 1, and the read noise in electrons."""
     X = np.exp(rng.uniform(-5, 1, (24, 30)))
-    return X, X * rng.uniform(0.02, 0.2, X.shape), float(rng.uniform(200, 2000)), float(rng.uniform(20, 40))
+    return (
+        X,
+        X * rng.uniform(0.02, 0.2, X.shape),
+        float(rng.uniform(200, 2000)),
+        float(rng.uniform(20, 40)),
+    )
 
 
 def alike(came, V, what):
@@ -32,7 +37,8 @@ def test_no_light_no_amplifier_and_no_rounding_have_no_noise(subject, rng):
 def test_photons_have_a_variance_that_grows_with_the_light(subject, rng):
     """X N electrons were counted. By how many do counts of photons differ?
 
-    The variance of a count is the count. V is not that of the count, but of the exposure: the count over N.
+    The variance of a count is the count. V is not that of the count, but of the exposure: the count
+    over N.
 
     Var(x / N) = Var(x) / N^2, so the first term is X N / N^2.
     """
@@ -44,12 +50,17 @@ def test_photons_have_a_variance_that_grows_with_the_light(subject, rng):
 def test_the_amplifier_adds_as_much_in_the_dark(subject, rng):
     """Without any light, what is left?
 
-    R is a standard deviation, in electrons. A variance is the square, and N electrons are an exposure of 1.
+    R is a standard deviation, in electrons. A variance is the square, and N electrons are an
+    exposure of 1.
 
     The second term is (R / N)^2, whatever X is.
     """
     X, _, N, R = drawn(rng)
-    alike(subject.variance(0 * X, 0 * X, N, R), np.full(X.shape, (R / N) ** 2), "V of the amplifier alone")
+    alike(
+        subject.variance(0 * X, 0 * X, N, R),
+        np.full(X.shape, (R / N) ** 2),
+        "V of the amplifier alone",
+    )
 
 
 @points(3)

@@ -3,7 +3,8 @@
 order   on the standard input: where modules are found, then limits, work and piece, pickled by this program
 answer  on the standard output: a sign, + or -, and the result's bytes, or why there are none
 
-The process ends with the one that started it, however that ended, and so do those that it starts itself.
+The process ends with the one that started it, however that ended, and so do those that it starts
+itself.
 """
 
 import contextlib
@@ -56,10 +57,18 @@ def run(
     Failed
         Where the work raised an error, its process died, took too long, or was stopped.
     """
-    order = pickle.dumps([one for one in sys.path if one]) + pickle.dumps((limits or {}, work, piece))
+    order = pickle.dumps([one for one in sys.path if one]) + pickle.dumps(
+        (limits or {}, work, piece)
+    )
     with tempfile.TemporaryDirectory(prefix="hdrlab-piece-", ignore_cleanup_errors=True) as scratch:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "hdrlab.course.classroom.executors.alone", str(os.getpid())],
+            [
+                sys.executable,
+                "-P",
+                "-m",
+                "hdrlab.course.classroom.executors.alone",
+                str(os.getpid()),
+            ],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -73,7 +82,9 @@ def run(
     if answer[:1] == b"+":
         return answer[1:]
     lines = (answer[1:] or said).decode(errors="replace").strip().splitlines()
-    failed = Failed((lines[-1] if lines else f"its process was ended ({process.returncode})")[:LAST])
+    failed = Failed(
+        (lines[-1] if lines else f"its process was ended ({process.returncode})")[:LAST]
+    )
     code = process.returncode
     failed.killed = -code in (signal.SIGTERM, KILLED)
     failed.own = answer[:12] == b"-MemoryError" or (code < 0 and not failed.killed)
@@ -114,7 +125,9 @@ def main(parent: str) -> None:
 def _limit(limits: Mapping[str, int]) -> None:
     """Limit this process; one that has used its seconds is ended by a signal of its own, not by SIGKILL."""
     for name, most in limits.items():
-        with contextlib.suppress(AttributeError, ValueError, OSError):  # Windows has no module resource
+        with contextlib.suppress(
+            AttributeError, ValueError, OSError
+        ):  # Windows has no module resource
             which = getattr(system.resource, f"RLIMIT_{name}")
             system.resource.setrlimit(which, (most, most + (name == "CPU")))
 

@@ -1,9 +1,9 @@
 """An executor on many machines: a Dask cluster, whose workers have hdrlab, and no disk in common with ours.
 
-A submission's bytes go out with the work, and its result's bytes come back; nothing is kept over there. A
-piece is given to one worker, and no worker has more of them than threads, so that it is known who was at work
-where when a worker is lost. A piece that was alone on its worker is blamed for the loss; those that were
-several are not, and each is tried again alone.
+A submission's bytes go out with the work, and its result's bytes come back; nothing is kept over
+there. A piece is given to one worker, and no worker has more of them than threads, so that it is
+known who was at work where when a worker is lost. A piece that was alone on its worker is blamed
+for the loss; those that were several are not, and each is tried again alone.
 """
 
 import contextlib
@@ -95,11 +95,16 @@ class Cluster:
     Raises
     ------
     ValueError
-        Where there is no cluster, where it has another hdrlab, or cannot do the work, or is lost later on.
+        Where there is no cluster, where it has another hdrlab, or cannot do the work, or is lost
+        later on.
     """
 
     def __init__(
-        self, address: str, work: Work, ready: Callable[[], object] = version, patience: float = PATIENCE
+        self,
+        address: str,
+        work: Work,
+        ready: Callable[[], object] = version,
+        patience: float = PATIENCE,
     ) -> None:
         self._address, self._work, self._ready, self._patience = address, work, ready, patience
         self._running: dict[Future[Any], tuple[Piece, str]] = {}  # with its worker's address
@@ -108,11 +113,15 @@ class Cluster:
 
     def __enter__(self) -> Self:
         try:
-            resolve_address(self._address)  # first: a Client that cannot read it is left behind, half made
+            resolve_address(
+                self._address
+            )  # first: a Client that cannot read it is left behind, half made
             self._client = Client(self._address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError) as error:
             why = f": {error}" if isinstance(error, ValueError) else ""
-            raise ValueError(f"expected a Dask cluster at {self._address}, there is none{why}") from None
+            raise ValueError(
+                f"expected a Dask cluster at {self._address}, there is none{why}"
+            ) from None
         with contextlib.ExitStack() as held:
             held.callback(self._client.close)
             self._check()
@@ -148,7 +157,8 @@ class Cluster:
     def _check(self) -> None:
         """Raise a ValueError for another hdrlab over there, or for a worker that cannot do the work.
 
-        One that is lost while it is asked answers by an error of the network, and is not asked for more.
+        One that is lost while it is asked answers by an error of the network, and is not asked for
+        more.
         """
         mine = version()
         with self._talking():
@@ -157,7 +167,9 @@ class Cluster:
             able = self._client.run(self._ready, on_error="return")
         for who, theirs in said.items():
             if theirs != mine and not isinstance(theirs, OSError):
-                raise ValueError(f"{who} of the cluster has hdrlab {theirs}, expected {mine} as it is here")
+                raise ValueError(
+                    f"{who} of the cluster has hdrlab {theirs}, expected {mine} as it is here"
+                )
         for who, why in able.items():
             if isinstance(why, BaseException) and not isinstance(why, OSError):
                 raise ValueError(f"{who} of the cluster cannot do it: {why}")
@@ -187,7 +199,9 @@ class Cluster:
         return known
 
     def _sent(self, piece: Piece, worker: str) -> "Future[Any]":
-        task = Task(self._work, self._ready, piece, piece.path.read_bytes(), self._patience, version())
+        task = Task(
+            self._work, self._ready, piece, piece.path.read_bytes(), self._patience, version()
+        )
         key = f"hdrlab-grade-{secrets.token_hex(8)}"
         with self._talking(), dask.config.set(WARNING):
             return self._client.submit(do, task, key=key, workers=[worker], pure=False)
@@ -232,4 +246,7 @@ class Cluster:
         for one, *_ in lost:
             self._forget(one)
         why = "its worker {} was lost".format
-        return [Ending(piece, None, why(worker), blamed=company[worker] == 1) for _, piece, worker in lost]
+        return [
+            Ending(piece, None, why(worker), blamed=company[worker] == 1)
+            for _, piece, worker in lost
+        ]

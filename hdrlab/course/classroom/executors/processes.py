@@ -41,7 +41,9 @@ class Processes:
         if len(self._running) == self._jobs:
             return False
         patience, stopped = self._patience, self._stopped.is_set
-        future = self._threads.submit(process.run, self._work, piece, patience=patience, stopped=stopped)
+        future = self._threads.submit(
+            process.run, self._work, piece, patience=patience, stopped=stopped
+        )
         self._running[future] = piece
         return True
 

@@ -1,7 +1,8 @@
 """The gallery as a web application: a wall, a closer look, two beside each other, a ballot, and results.
 
-Every answer is a page, a picture or a line of JSON. Nothing is uploaded here and nobody signs up: artifacts
-and voters come by the command line. Addresses hold no state, pages no inline script or style.
+Every answer is a page, a picture or a line of JSON. Nothing is uploaded here and nobody signs up:
+artifacts and voters come by the command line. Addresses hold no state, pages no inline script or
+style.
 """
 
 import mimetypes
@@ -26,7 +27,9 @@ from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_ori
 KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
 FOREVER = "private, max-age=31536000, immutable"
 BALLOTS = Rate(30, 1)  # of a voter
-SPENT = "This link has been used. It works once; ask your course for a new one if you lost your way in."
+SPENT = (
+    "This link has been used. It works once; ask your course for a new one if you lost your way in."
+)
 
 
 class Gallery(Front):
@@ -39,9 +42,15 @@ class Gallery(Front):
         when, chosen = ballots.read_ballot(self.db, voter.id)
         order = tokens.shuffled(list(hung), set_up.secret, voter.id)
         may, key = set_up.is_open(self.clock()), tokens.form_key(shown)
-        each = [(hung[id], {"own": hung[id].team == voter.team, "chosen": id in chosen}) for id in order]
+        each = [
+            (hung[id], {"own": hung[id].team == voter.team, "chosen": id in chosen}) for id in order
+        ]
         cards = [Markup(self.card(one=one, open=may, **said)) for one, said in each]
-        at = None if when is None else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
+        at = (
+            None
+            if when is None
+            else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
+        )
         marks, count = set_up.marks, len(chosen)
         return self.page("wall.html", cards=cards, marks=marks, chosen=count, when=at, key=key)
 
@@ -50,14 +59,18 @@ class Gallery(Front):
         same_origin(request, self.origin)
         voter, shown = self.voter(request)
         if not self.rates.take("ballots", voter.id, BALLOTS):
-            raise Refusal(429, "Too many changes at once. Your ballot of before counts; try again later.")
+            raise Refusal(
+                429, "Too many changes at once. Your ballot of before counts; try again later."
+            )
         fields = await form(request)
         keys = [value for name, value in fields if name == "key"]
         if keys != [tokens.form_key(shown)]:
             raise Refusal(403, "This form is too old, or not yours. Open the gallery again.")
         marked = [value for name, value in fields if name == "mark"]
         try:
-            count = await self.writer.do(lambda db: ballots.cast(db, voter.id, marked, now=self.clock()))
+            count = await self.writer.do(
+                lambda db: ballots.cast(db, voter.id, marked, now=self.clock())
+            )
         except ballots.NotAccepted as reason:
             raise Refusal(409, str(reason)) from None
         if "application/json" in request.headers.get("accept", ""):
@@ -86,7 +99,13 @@ class Gallery(Front):
             raise Refusal(404, SPENT)
         response = RedirectResponse("/", 303)
         response.set_cookie(
-            self.cookie, entered[1], max_age=KEPT, path="/", secure=self.secure, httponly=True, samesite="lax"
+            self.cookie,
+            entered[1],
+            max_age=KEPT,
+            path="/",
+            secure=self.secure,
+            httponly=True,
+            samesite="lax",
         )
         return response
 
@@ -137,7 +156,9 @@ class Gallery(Front):
         if not file.is_file():
             raise Refusal(404, HINTS[404])
         kind, _ = mimetypes.guess_type(file.name)
-        return Response(self.bytes_of(file), media_type=kind, headers={"Cache-Control": "max-age=300"})
+        return Response(
+            self.bytes_of(file), media_type=kind, headers={"Cache-Control": "max-age=300"}
+        )
 
 
 def application(gallery: Gallery) -> ASGIApp:
@@ -159,6 +180,8 @@ def application(gallery: Gallery) -> ASGIApp:
         Route("/results", gallery.results),
         Route("/static/{name}", gallery.static),
     ]
-    handlers: Mapping[Any, Any] = dict.fromkeys((Refusal, HTTPException, sqlite3.Error), gallery.refused)
+    handlers: Mapping[Any, Any] = dict.fromkeys(
+        (Refusal, HTTPException, sqlite3.Error), gallery.refused
+    )
     app = Starlette(routes=routes, exception_handlers=handlers, lifespan=life)
     return Guard(app, host=gallery.host, secure=gallery.secure)

@@ -25,10 +25,14 @@ HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
 class Front:
     """One folder's gallery at one address."""
 
-    def __init__(self, folder: str | Path, address: str, clock: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self, folder: str | Path, address: str, clock: Callable[[], float] = time.time
+    ) -> None:
         parts = urlsplit(address)
         if parts.scheme not in ("http", "https") or not parts.netloc or parts.path not in ("", "/"):
-            raise ValueError(f"expected an address such as https://vote.example.edu, got {address!r}")
+            raise ValueError(
+                f"expected an address such as https://vote.example.edu, got {address!r}"
+            )
         self.host, self.secure = parts.netloc, parts.scheme == "https"
         self.origin = f"{parts.scheme}://{parts.netloc}"
         self.cookie = "__Host-gallery" if self.secure else "gallery"
@@ -57,7 +61,9 @@ class Front:
         if voter is None or shown is None:
             if text:
                 self.failed(request)
-            raise guard.Refusal(401, "To see the gallery, open the personal link that your course sent you.")
+            raise guard.Refusal(
+                401, "To see the gallery, open the personal link that your course sent you."
+            )
         if not self.rates.take("requests", voter.id, REQUESTS):
             raise guard.Refusal(429, "That was a lot at once. Wait a moment, and try again.")
         return voter, shown
@@ -68,7 +74,9 @@ class Front:
         What is good passes always: a class behind one address is not locked out by one of it.
         """
         if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
-            raise guard.Refusal(429, "Too many tries from this address. Wait a minute, and try again.")
+            raise guard.Refusal(
+                429, "Too many tries from this address. Wait a minute, and try again."
+            )
 
     async def refused(self, request: Request, error: Exception) -> Response:
         """Say why, in a page or in JSON."""

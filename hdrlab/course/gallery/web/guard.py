@@ -1,6 +1,7 @@
 """What stands before every page: sizes, hosts, rates and the headers that tell a browser what not to do.
 
-It is written to the interface of ASGI itself, so that a request that is refused costs next to nothing.
+It is written to the interface of ASGI itself, so that a request that is refused costs next to
+nothing.
 """
 
 import asyncio
@@ -76,15 +77,22 @@ class Guard:
                 message = {**message, "headers": [*message["headers"], *extra]}
             await send(message)
 
-        hosts = [value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"]
+        hosts = [
+            value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"
+        ]
         if hosts != [self._host]:
-            return await PlainTextResponse("This gallery has another address.\n", 421)(scope, receive, answer)
+            return await PlainTextResponse("This gallery has another address.\n", 421)(
+                scope, receive, answer
+            )
         await self._app(scope, receive, answer)
 
 
 async def form(request: Request) -> list[tuple[str, str]]:
     """Return the fields of a form, or raise a Refusal for what is none, is too large, or takes too long."""
-    if request.headers.get("content-type", "").split(";")[0].strip() != "application/x-www-form-urlencoded":
+    if (
+        request.headers.get("content-type", "").split(";")[0].strip()
+        != "application/x-www-form-urlencoded"
+    ):
         raise Refusal(415, "This is no form of the gallery.")
     try:
         async with asyncio.timeout(PATIENCE):
@@ -92,7 +100,9 @@ async def form(request: Request) -> list[tuple[str, str]]:
     except TimeoutError:
         raise Refusal(408, "The form took too long to arrive.") from None
     try:
-        return parse_qsl(body.decode("ascii"), keep_blank_values=True, max_num_fields=FIELDS, errors="strict")
+        return parse_qsl(
+            body.decode("ascii"), keep_blank_values=True, max_num_fields=FIELDS, errors="strict"
+        )
     except ValueError:
         raise Refusal(400, "This form cannot be read.") from None
 

@@ -1,8 +1,9 @@
 """The gallery's server: one process, with limits on headers, connections, patience and its log.
 
-A connection that has not sent a whole request waits in a line, the oldest first. It is closed when its time
-is over, or when there are too many and it is the first in the line: a voter's request is whole within
-milliseconds, so those go that only hold a place. Half a request costs a descriptor for some seconds.
+A connection that has not sent a whole request waits in a line, the oldest first. It is closed when
+its time is over, or when there are too many and it is the first in the line: a voter's request is
+whole within milliseconds, so those go that only hold a place. Half a request costs a descriptor for
+some seconds.
 """
 
 import asyncio
@@ -44,7 +45,8 @@ class Limited(H11Protocol):
     Attributes
     ----------
     most : connections at a time
-    silent, idle : those that have sent no whole request yet, and those between two requests; oldest first
+    silent, idle : those that have sent no whole request yet, and those between two requests; oldest
+        first
     """
 
     most: int
@@ -96,7 +98,9 @@ class Limited(H11Protocol):
         kind = type(self)
         if time.monotonic() - kind.said_full >= WORD:
             kind.said_full = time.monotonic()
-            log.warning("full: %d connections; the oldest without a whole request is closed", self.most)
+            log.warning(
+                "full: %d connections; the oldest without a whole request is closed", self.most
+            )
 
 
 def limited(most: int) -> type[Limited]:
@@ -107,22 +111,34 @@ def limited(most: int) -> type[Limited]:
 def serve(folder: str | Path, address: str, *, host: str, port: int, behind_proxy: bool) -> None:
     """Serve the gallery until Ctrl-C.
 
-    Nothing is logged of requests: a personal link is an address, and what is not written down cannot leak.
-    What a proxy says of its clients is believed where there is one, on this machine, and not otherwise.
+    Nothing is logged of requests: a personal link is an address, and what is not written down
+    cannot leak. What a proxy says of its clients is believed where there is one, on this machine,
+    and not otherwise.
     """
     os.umask(0o077)
     keep_log(Path(folder))
     h11 = limited(connection_limit())  # which is strict about headers, and bounds them
-    own: dict[str, Any] = {"host": host, "port": port, "proxy_headers": behind_proxy, "backlog": BACKLOG}
+    own: dict[str, Any] = {
+        "host": host,
+        "port": port,
+        "proxy_headers": behind_proxy,
+        "backlog": BACKLOG,
+    }
     app = application(Gallery(folder, address))
-    config = uvicorn.Config(app, http=h11, log_config=None, timeout_keep_alive=int(PATIENCE), **own, **SERVER)
+    config = uvicorn.Config(
+        app, http=h11, log_config=None, timeout_keep_alive=int(PATIENCE), **own, **SERVER
+    )
     uvicorn.Server(config).run()
 
 
 def keep_log(folder: Path) -> None:
     """Write what is logged from now on into the folder, in a few files of bounded size."""
-    handler = RotatingFileHandler(folder / LOG, maxBytes=LOG_SIZE, backupCount=LOGS, encoding="utf8")
-    logging.basicConfig(handlers=[handler], format="%(asctime)s %(levelname)s %(message)s", force=True)
+    handler = RotatingFileHandler(
+        folder / LOG, maxBytes=LOG_SIZE, backupCount=LOGS, encoding="utf8"
+    )
+    logging.basicConfig(
+        handlers=[handler], format="%(asctime)s %(levelname)s %(message)s", force=True
+    )
 
 
 def connection_limit() -> int:
@@ -143,5 +159,7 @@ def connection_limit() -> int:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     most = CONNECTIONS if soft == resource.RLIM_INFINITY else min(CONNECTIONS, soft - around)
     if most < 1:
-        raise ValueError(f"expected more than {around} open files, got a limit of {soft}: ulimit -n 4096")
+        raise ValueError(
+            f"expected more than {around} open files, got a limit of {soft}: ulimit -n 4096"
+        )
     return most

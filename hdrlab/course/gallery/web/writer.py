@@ -1,7 +1,8 @@
 """The one who writes: ballots that arrive together go to the disk together, and then all are acknowledged.
 
-A full synchronisation takes milliseconds, whether one ballot is in it or a hundred. So jobs wait in a line
-while the disk is busy, and the next transaction takes all of them. Each is undone alone where it fails.
+A full synchronisation takes milliseconds, whether one ballot is in it or a hundred. So jobs wait in
+a line while the disk is busy, and the next transaction takes all of them. Each is undone alone
+where it fails.
 """
 
 import asyncio

@@ -6,9 +6,9 @@ tree    null, true, 7, 0.5, "text", [tree, ...], or one of {"tuple": [tree, ...]
         {"dict": [[key, tree], ...]}, {"array": name}
 
 Both ends read with this module, and neither believes the other: sizes are capped before anything is
-allocated, a dtype comes from a short list, nothing is unpickled or evaluated, and what is built is a plain
-number, text, bytes, list, tuple, dict or array. It needs numpy alone: it goes into the sandbox, where hdrlab
-is not.
+allocated, a dtype comes from a short list, nothing is unpickled or evaluated, and what is built is
+a plain number, text, bytes, list, tuple, dict or array. It needs numpy alone: it goes into the
+sandbox, where hdrlab is not.
 """
 
 import json
@@ -22,7 +22,9 @@ from typing import Any
 import numpy as np
 
 HEADER = 1 << 20  # bytes of a header: the text of a submission passes
-VALUES = 1 << 14  # numbers and texts outside of arrays: each costs the reader more than one in an array
+VALUES = (
+    1 << 14
+)  # numbers and texts outside of arrays: each costs the reader more than one in an array
 BODY = 1 << 26  # bytes of all arrays of a frame, 64 MiB: twenty photographs of a megapixel in RGB
 DEPTH = 16  # lists in lists
 DIMENSIONS = 8
@@ -151,7 +153,9 @@ def receive(source: socket.socket, deadline: float | None = None) -> tuple[str, 
     return head["kind"], head["call"], _unpack(head["value"], waiting)
 
 
-def _exactly(source: socket.socket, size: int, deadline: float | None, first: bool = False) -> bytearray:
+def _exactly(
+    source: socket.socket, size: int, deadline: float | None, first: bool = False
+) -> bytearray:
     """Return the next `size` bytes."""
     data = bytearray(size)
     view, got = memoryview(data), 0
@@ -177,7 +181,9 @@ def _parse(header: bytes) -> dict[str, Any]:
         raise Damaged("a header that is no JSON") from error
     if not isinstance(head, dict) or set(head) != {"kind", "call", "value", "arrays"}:
         raise Damaged("a header without its four fields")
-    if not (type(head["kind"]) is str and type(head["call"]) is int and type(head["arrays"]) is list):
+    if not (
+        type(head["kind"]) is str and type(head["call"]) is int and type(head["arrays"]) is list
+    ):
         raise Damaged("a header whose fields are of other types")
     return head
 
@@ -215,7 +221,8 @@ def _build(dtype: str, shape: tuple[int, ...], data: bytearray) -> Any:
 def _unpack(tree: Any, arrays: deque[tuple[str, Any]], depth: int = 0) -> Any:
     """Return the value that a tree stands for, or raise Damaged; each array is used once, in order.
 
-    One that stood in a list a thousand times would be small here, and huge where the list becomes an array.
+    One that stood in a list a thousand times would be small here, and huge where the list becomes
+    an array.
     """
     if depth > DEPTH:
         raise Damaged(f"a tree that is more than {DEPTH} deep")

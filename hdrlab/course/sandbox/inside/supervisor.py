@@ -3,9 +3,9 @@
 control  the socket to the parent, on which orders come and answers go: see `tend`
 link     the socket of one check, which the parent sends over the control
 
-What a check has left behind ends with it: its memory, its processes, its files. The student's code never runs
-in this process. Like channel.py, system.py and worker.py, which stand beside it in the sandbox, it needs the
-standard library and numpy alone.
+What a check has left behind ends with it: its memory, its processes, its files. The student's code
+never runs in this process. Like channel.py, system.py and worker.py, which stand beside it in the
+sandbox, it needs the standard library and numpy alone.
 """
 
 import contextlib
@@ -51,10 +51,10 @@ def begin(link: socket.socket, order: dict[str, Any]) -> None:
 def tend(control: socket.socket, order: dict[str, Any]) -> None:
     """Fork a process for each check that is ordered, until the other end closes.
 
-    "check" comes with the seconds of a processor that it may use and a descriptor, the new process's link,
-    and is answered by "begun". "end" comes with the seconds in which it is expected to end by itself, and is
-    answered, when nothing of the check is left, by "clean" with the signal that has ended it, or 0, and the
-    seconds it has used.
+    "check" comes with the seconds of a processor that it may use and a descriptor, the new
+    process's link, and is answered by "begun". "end" comes with the seconds in which it is expected
+    to end by itself, and is answered, when nothing of the check is left, by "clean" with the signal
+    that has ended it, or 0, and the seconds it has used.
     """
     system, channel = importlib.import_module("system"), importlib.import_module("channel")
     pid, before = 0, 0.0
@@ -79,7 +79,9 @@ def tend(control: socket.socket, order: dict[str, Any]) -> None:
 def prepare(modules: list[str]) -> None:
     """Import what the checks will need, once, and begin numpy's old random numbers at one place."""
     for name in ("numpy.random", "worker", *modules):
-        with contextlib.suppress(ImportError):  # the submission will say so itself, where it asks for it
+        with contextlib.suppress(
+            ImportError
+        ):  # the submission will say so itself, where it asks for it
             importlib.import_module(name)
     sys.modules["numpy.random"].seed(0)
     gc.collect()
@@ -98,7 +100,9 @@ def main(number: str, *packages: str) -> None:
     control = system.inherit_control(number)
     _, _, order = channel.receive(control)
     for one in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, one):  # the first process of a namespace does not feel its default from inside
+        if hasattr(
+            signal, one
+        ):  # the first process of a namespace does not feel its default from inside
             signal.signal(getattr(signal, one), signal.SIG_DFL)
     system.prctl(system.ADOPT, 1)
     prepare(order["modules"])

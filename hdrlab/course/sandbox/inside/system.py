@@ -132,8 +132,8 @@ def signal_of(pid: int, seconds: float) -> int:
 def sweep(pid: int, alone: bool) -> None:
     """End a check's process and all that it started, and wait until they are gone.
 
-    `alone` says that this is the first process of a namespace of its own, whose every other process is the
-    check's.
+    `alone` says that this is the first process of a namespace of its own, whose every other process
+    is the check's.
     """
     with contextlib.suppress(OSError):
         if alone and os.getpid() == 1:

@@ -1,8 +1,8 @@
 """The process of a check: it runs a student's functions on what the channel brings, and sends their answers.
 
-It stands alone, on the standard library and on channel.py: it goes into the sandbox, where hdrlab is not.
-Nothing in it guards anything against the student's code, which may rewrite all of it in its own process. The
-sandbox around it does, and the reader at the other end of the channel.
+It stands alone, on the standard library and on channel.py: it goes into the sandbox, where hdrlab
+is not. Nothing in it guards anything against the student's code, which may rewrite all of it in its
+own process. The sandbox around it does, and the reader at the other end of the channel.
 """
 
 import io
@@ -23,9 +23,13 @@ HERE = "numpy, scipy and Python's own modules are here"
 CHANGES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
 REFUSED = {  # what no tier for credit lets a function do, by the names of Python's audit events
     "open": "write a file",
-    **dict.fromkeys(("os.remove", "os.rename", "os.mkdir", "os.rmdir", "os.truncate"), "change a file"),
+    **dict.fromkeys(
+        ("os.remove", "os.rename", "os.mkdir", "os.rmdir", "os.truncate"), "change a file"
+    ),
     **dict.fromkeys(("os.link", "os.symlink", "os.chmod", "os.chown", "os.utime"), "change a file"),
-    **dict.fromkeys(("subprocess.Popen", "os.system", "os.exec", "os.posix_spawn"), "start a program"),
+    **dict.fromkeys(
+        ("subprocess.Popen", "os.system", "os.exec", "os.posix_spawn"), "start a program"
+    ),
     **dict.fromkeys(("os.fork", "os.forkpty"), "start a process"),
     **dict.fromkeys(("socket.__new__", "socket.connect", "socket.bind"), "use the network"),
 }
@@ -58,7 +62,8 @@ class Output(io.TextIOBase):
 def refuse(event: str, arguments: tuple[Any, ...]) -> None:
     """Say in plain words what the walls of the stricter tiers would say in the system's: an audit hook.
 
-    It is a courtesy, that a function which is checked at home is checked alike later; it keeps nobody in.
+    It is a courtesy, that a function which is checked at home is checked alike later; it keeps
+    nobody in.
     """
     if event in REFUSED:
         reads = event == "open" and not (isinstance(arguments[2], int) and arguments[2] & CHANGES)
@@ -85,7 +90,9 @@ def complaint(error: BaseException) -> dict[str, Any]:
     message = str(error)
     if isinstance(error, ModuleNotFoundError):
         message = f"{message} ({HERE})"
-    frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith("<")]
+    frames = [
+        one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith("<")
+    ]
     line = frames[-1].lineno if frames else getattr(error, "lineno", None)
     text = frames[-1].line if frames else getattr(error, "text", None)
     return {

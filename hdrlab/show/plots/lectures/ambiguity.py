@@ -5,8 +5,8 @@ f_inv  f^-1        M -> exposure, f^-1(0) = 0, f^-1(1) = 1, a polynomial; c its 
 R      ratios      (P - 1,), exposure of a frame over that of the next longer one
 u      exponent    (f^-u, R^u) solves f^-1(M_q) = R f^-1(M_q+1) whatever u is; u = 1 is the truth
 
-The experiments of the paper: cameras and pictures drawn at random, its scheme as one writes it down from the
-page, its drift when it is not stopped, and the error as a function of R.
+The experiments of the paper: cameras and pictures drawn at random, its scheme as one writes it down
+from the page, its drift when it is not stopped, and the error as a function of R.
 """
 
 from collections.abc import Iterator
@@ -40,8 +40,8 @@ class Drift(NamedTuple):
 def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02) -> F64:
     """Return c of a rising polynomial drawn at random.
 
-    Powers M ... M^N get coefficients uniform in -1 ... 1, scaled to f^-1(1) = 1; drawn again until the slope
-    is `least` or more.
+    Powers M ... M^N get coefficients uniform in -1 ... 1, scaled to f^-1(1) = 1; drawn again until
+    the slope is `least` or more.
     """
     n = np.arange(1, order + 1)
     while True:
@@ -53,13 +53,17 @@ def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02)
 
 
 def draw_trial(
-    rng: np.random.Generator, *, ratios: ArrayLike | None = None, pixels: int = 10_000, sigma: float = 0.005
+    rng: np.random.Generator,
+    *,
+    ratios: ArrayLike | None = None,
+    pixels: int = 10_000,
+    sigma: float = 0.005,
 ) -> Trial:
     """Return a trial of [Mitsunaga99 sec. 5]: a random rising curve, four frames, noise, 256 levels.
 
-    The paper leaves the distributions open. Here: ratios uniform in 0.45 ... 0.55; radiance uniform in its
-    logarithm, two decades wide, the brightest just filling the longest exposure; the curve as
-    `draw_curve` draws it.
+    The paper leaves the distributions open. Here: ratios uniform in 0.45 ... 0.55; radiance uniform
+    in its logarithm, two decades wide, the brightest just filling the longest exposure; the curve
+    as `draw_curve` draws it.
     """
     c = draw_curve(rng)
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
@@ -84,8 +88,8 @@ def mean_error(c: ArrayLike, truth: ArrayLike) -> float:
 def literal_steps(M: F64, start: ArrayLike, *, order: int = 5) -> Iterator[tuple[F64, F64, float]]:
     """Yield c (order + 1,) of the powers of M, R (P - 1,) and the root mean square of eq. 7, for ever.
 
-    As it stands in [Mitsunaga99 sec. 4], for samples M (N, P) that are all good; eq. 10 gets the 1 / N
-    that it lacks in print.
+    As it stands in [Mitsunaga99 sec. 4], for samples M (N, P) that are all good; eq. 10 gets the 1
+    / N that it lacks in print.
     """
     R, powers = np.asarray(start, dtype=np.float64), M[..., None] ** np.arange(order + 1)
     while True:
@@ -101,14 +105,17 @@ def literal_steps(M: F64, start: ArrayLike, *, order: int = 5) -> Iterator[tuple
 def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Drift:
     """Return the Drift of the literal scheme in so many iterations: the error falls or rests, u drifts.
 
-    Each curve is compared with the truth, and with the truth to the power u = ln R / ln (true R): the second
-    fits ever better, so u alone drifts.
+    Each curve is compared with the truth, and with the truth to the power u = ln R / ln (true R):
+    the second fits ever better, so u alone drifts.
     """
     M = self_calibration.average(one.Z)
     M, z = M[np.all((M > 0.05) & (M < 0.98), axis=1)], np.linspace(0, 1, 256)
     truth, rows = value(z, one.c), []
     for c, R, error in islice(literal_steps(M, start, order=len(one.c) + 1), iterations):
-        f_inv, u = np.polynomial.polynomial.polyval(z, c), np.mean(np.log(R)) / np.mean(np.log(one.R))
+        f_inv, u = (
+            np.polynomial.polynomial.polyval(z, c),
+            np.mean(np.log(R)) / np.mean(np.log(one.R)),
+        )
         rows.append((error, u, np.abs(f_inv - truth).mean(), np.abs(f_inv - truth**u).mean()))
     return Drift(*np.array(rows).T)
 
@@ -116,7 +123,8 @@ def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Dri
 def brightness_error(M: F64, R: F64, c: F64) -> float:
     """Return the error in brightness: the residual of eq. 5 over what a unit of noise in M does to it, rms.
 
-    Eq. 7 itself does not measure R: it is small wherever f^-1 is flat, as f^-u is over most of its range.
+    Eq. 7 itself does not measure R: it is small wherever f^-1 is flat, as f^-u is over most of its
+    range.
     """
     return float(np.sqrt(np.mean(polynomial.misfit(M, R, c) ** 2)))
 

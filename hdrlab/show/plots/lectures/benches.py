@@ -45,7 +45,12 @@ class Shot(NamedTuple):
 
 
 def meter_scene(
-    scene: Subject, mode: str = "spot", at: metering.At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
+    scene: Subject,
+    mode: str = "spot",
+    at: metering.At = (0.5, 0.5),
+    *,
+    sensor: Sensor = SENSOR,
+    rng: int = 0,
 ) -> Shot:
     """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
     coarse = figures.fit(scene.E, COARSE)
@@ -74,7 +79,9 @@ def draw_shot(shot: Shot) -> Axes:
     lost = f"full {shot.full.mean():.1%} (orange), lost in noise {shot.noise.mean():.1%} (blue)"
     aside = "too bright" if shot.off > 0 else "too dark"
     text = f"EV {shot.EV:.1f}: {shutter}; subject {abs(shot.off):.1f} stops {aside}\n{lost}"
-    return sensors.draw_titled(sensors.mark_lost(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
+    return sensors.draw_titled(
+        sensors.mark_lost(shot.picture, shot.full, shot.noise), text, ring=shot.asked
+    )
 
 
 def draw_reading(state: autoexposure.State) -> Axes:
@@ -96,20 +103,26 @@ class Calibrated(NamedTuple):
     truth: NDArray[np.float64]  # (256,) the camera's own
 
 
-def calibrate_shaken(E: ArrayLike, *, radius: int = 6, count: int = 5, stops: float = 2.0) -> Calibrated:
+def calibrate_shaken(
+    E: ArrayLike, *, radius: int = 6, count: int = 5, stops: float = 2.0
+) -> Calibrated:
     """Return a calibration of `count` gray photographs, `stops` apart, shaken by up to `radius` pixels."""
     L, offsets = luminance(E), camera.shake(count, radius=radius)
     times = camera.times_around(L, count, stops=stops)
     taken = camera.shoot(L, times, NOISY, offsets=offsets)
     found = pipeline.aligned(taken, "mtb")
     wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
-    both = [debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)]
+    both = [
+        debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)
+    ]
     return Calibrated(taken, wrong, both[0], both[1], responses.true_g())
 
 
 def draw_calibrated(found: Calibrated) -> Axes:
     """Draw how many stops both curves lie off the truth; above, how many photographs found their place."""
     count = len(found.bracket.images)
-    ax = curves.deviations({"as shot": found.shot, "aligned": found.aligned}, found.truth, limit=1.0)
+    ax = curves.deviations(
+        {"as shot": found.shot, "aligned": found.aligned}, found.truth, limit=1.0
+    )
     ax.set_title(f"{count - found.wrong} of {count} photographs aligned to the pixel", fontsize=10)
     return ax

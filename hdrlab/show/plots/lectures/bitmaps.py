@@ -4,8 +4,8 @@ bits     of one photograph   (2, H, W) bool: bitmap, and exclusion bitmap, True 
 state    of `align.mtb`      one level of one pair
 errors   (2 n + 1, 2 n + 1)  bits that differ / bits compared, dy down and dx across, -n to n pixels
 
-Bits that agree are white or nearly black, those that differ orange, and what is not compared is blue; in gray
-the four part as well.
+Bits that agree are white or nearly black, those that differ orange, and what is not compared is
+blue; in gray the four part as well.
 """
 
 from collections.abc import Mapping
@@ -29,11 +29,19 @@ DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
 CENTRE, BEST = "#808080", "#D55E00"
 
 
-def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None) -> NDArray[np.uint8]:
+def overlay(
+    fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None
+) -> NDArray[np.uint8]:
     """Return two bitmaps (H, W) as one picture (H, W, 3); `compared` (H, W) is False where no bit counts."""
     a, b = np.asarray(fixed, bool), np.asarray(moved, bool)
-    if a.ndim != 2 or a.shape != b.shape or (compared is not None and np.shape(compared) != a.shape):
-        raise ValueError(f"expected two bitmaps (H, W) of one size, got {describe(a)} and {describe(b)}")
+    if (
+        a.ndim != 2
+        or a.shape != b.shape
+        or (compared is not None and np.shape(compared) != a.shape)
+    ):
+        raise ValueError(
+            f"expected two bitmaps (H, W) of one size, got {describe(a)} and {describe(b)}"
+        )
     picture = np.array(AGREE, np.uint8)[a.astype(int)]
     picture[a != b] = DIFFER
     if compared is not None:
@@ -100,9 +108,13 @@ def words(rows: dict[str, ArrayLike]) -> Figure:
     ax = figure.add_axes((0.26, 0.03, 0.73, 0.94))
     for y, row in enumerate(each.values()):
         for x, bit in enumerate(row.tolist()):
-            ax.add_patch(Rectangle((x, y), 1, 1, facecolor="#FFFFFF" if bit else "#404040", edgecolor=CENTRE))
+            ax.add_patch(
+                Rectangle((x, y), 1, 1, facecolor="#FFFFFF" if bit else "#404040", edgecolor=CENTRE)
+            )
             dark = "#1A1A1A" if bit else "#FFFFFF"
-            ax.text(x + 0.5, y + 0.5, str(int(bit)), color=dark, fontsize=10, ha="center", va="center")
+            ax.text(
+                x + 0.5, y + 0.5, str(int(bit)), color=dark, fontsize=10, ha="center", va="center"
+            )
     ax.set(xlim=(-0.1, count + 0.1), ylim=(len(each) + 0.1, -0.1), xticks=())
     ax.set_yticks(np.arange(len(each)) + 0.5, list(each), fontsize=10)
     ax.tick_params(length=0)

@@ -22,7 +22,11 @@ from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.show.plots import picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
-ROW, SIDE, LONG = 0.36, 0.21, 20  # inches from row to row, and of a box; bits beyond which a row is long
+ROW, SIDE, LONG = (
+    0.36,
+    0.21,
+    20,
+)  # inches from row to row, and of a box; bits beyond which a row is long
 CHANNELS = {"red": "#F6CDBB", "green": "#BFE5D8", "blue": "#C0DAEE"}
 COLOURS = {"sign": "#E6E6E6", "exponent": "#F3D9A4", "mantissa": "#C6E2F5", **CHANNELS}
 FORMATS: dict[int, Any] = {16: (np.float16, np.uint16, 5, 15), 32: (np.float32, np.uint32, 8, 127)}
@@ -84,13 +88,20 @@ def rows(fields: Sequence[Field], *, title: str = "") -> Axes:
             digits[bit].append((x + SIDE / 2, top + SIDE / 2))
         colours += [COLOURS.get(name.split()[0], COLOURS["mantissa"])] * len(bits)
         ax.text(0, y + SIDE / 2, name, fontsize=10, va="center")
-        ax.text(1.3 if long else 1.4 + SIDE * len(bits), y + SIDE / 2, said, fontsize=10, va="center")
+        ax.text(
+            1.3 if long else 1.4 + SIDE * len(bits), y + SIDE / 2, said, fontsize=10, va="center"
+        )
     ax.add_collection(PatchCollection(boxes, facecolors=colours, edgecolors="#808080"))
     look: dict[str, Any] = dict(color="#1A1A1A", markersize=7, markeredgewidth=0, linestyle="none")
-    for digit, at in digits.items():  # as markers: a text for each bit takes longer than all the rest
+    for (
+        digit,
+        at,
+    ) in digits.items():  # as markers: a text for each bit takes longer than all the rest
         ax.plot(*np.reshape(at, (-1, 2)).T, marker=f"${digit}$", **look)
     ax.set(xlim=(0, WIDTH * 0.98), ylim=(sum(tall), -0.03))
-    ax.text(0.012, 1 - 0.2 / height, title, fontsize=11, va="center", transform=ax.figure.transFigure)
+    ax.text(
+        0.012, 1 - 0.2 / height, title, fontsize=11, va="center", transform=ax.figure.transFigure
+    )
     return ax
 
 
@@ -98,7 +109,9 @@ def scanline(planes: ArrayLike, done: int, *, title: str = "") -> Figure:
     """Return the four planes of a scanline (4, W), of whose 4 W bytes `done` are known; the rest is pale."""
     given = np.asarray(planes)
     if given.ndim != 2 or len(given) != 4 or not 0 <= done <= given.size:
-        raise ValueError(f"expected planes (4, W) and 0 to 4 W bytes, got {describe(given)} and {done}")
+        raise ValueError(
+            f"expected planes (4, W) and 0 to 4 W bytes, got {describe(given)} and {done}"
+        )
     width, figure = given.shape[1], Figure(figsize=(WIDTH, 2.6), dpi=100)
     for k, (name, plane) in enumerate(zip((*CHANNELS, "exponent"), given, strict=True)):
         ax = figure.add_axes((0.15, 0.72 - 0.18 * k, 0.83, 0.15))

@@ -5,8 +5,9 @@ b      right-hand side     (m,)
 x      unknowns            (2,), a point of the plane
 sigma  singular values     (k,), from large to small
 
-Row i of A x = b is a straight line in the plane of x. Where |A x - b| is the same, x lies on an ellipse; its
-axes point along the columns of V, and are the longer the smaller their singular value is.
+Row i of A x = b is a straight line in the plane of x. Where |A x - b| is the same, x lies on an
+ellipse; its axes point along the columns of V, and are the longer the smaller their singular value
+is.
 """
 
 from collections.abc import Mapping
@@ -61,14 +62,19 @@ def equations(
     ax.contour(side, side, residual, levels=rings, colors="#999999", linewidths=0.8)
     for (p, q), right in zip(A, b, strict=True):
         if p or q:
-            foot, along = np.array([p, q]) * right / (p * p + q * q), np.array([-q, p]) / np.hypot(p, q)
+            foot, along = (
+                np.array([p, q]) * right / (p * p + q * q),
+                np.array([-q, p]) / np.hypot(p, q),
+            )
             ends = foot[:, None] + along[:, None] * np.array([-3, 3]) * reach
             ax.plot(*ends, color="#0072B2", linewidth=1.2)
     for k, (name, at) in enumerate((points or {}).items()):
         colour, marker = (("#D55E00", "o"), ("#009E73", "^"), ("#CC79A7", "D"))[k % 3]
         x, y = np.reshape(np.asarray(at, np.float64), (2, -1))
         many = len(x) > 1
-        ax.plot(x, y, "." if many else marker, color=colour, markersize=3 if many else 8, label=name)
+        ax.plot(
+            x, y, "." if many else marker, color=colour, markersize=3 if many else 8, label=name
+        )
     return with_legend(ax, "lower left") if points else ax
 
 
@@ -80,10 +86,14 @@ def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17) -> Axes:
     ax = axes()
     if not 0 < len(each) < len(LINES):
         raise ValueError(f"expected 1 to {len(LINES) - 1} systems in one picture, got {len(each)}")
-    for (colour, _), (_, marker), (name, sigma) in zip(LINES[1:], SAMPLES, each.items(), strict=False):
+    for (colour, _), (_, marker), (name, sigma) in zip(
+        LINES[1:], SAMPLES, each.items(), strict=False
+    ):
         share = np.asarray(sigma, np.float64) / np.max(sigma)
         decades = np.log10(np.maximum(share, least))
-        ax.plot(np.arange(1, len(share) + 1), decades, marker, color=colour, markersize=3, label=name)
+        ax.plot(
+            np.arange(1, len(share) + 1), decades, marker, color=colour, markersize=3, label=name
+        )
     ax.set(xlabel="number k of the singular value", ylabel="log10 of its share of the largest")
     ax.set_ylim(np.log10(least) - 0.5, 0.5)
     return with_legend(ax, "lower left")

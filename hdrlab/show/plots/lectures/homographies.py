@@ -3,7 +3,8 @@
 X      light               (2, h, w): a fixed and a moving photograph on one scale, NaN where discarded
 H      homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 d      difference          (a - b) / mean of the two: orange where the fixed one is brighter, violet where the
-                           moving one is, white where they agree, gray where one of them shows nothing
+                           moving one is, white where they agree, gray where one of them shows
+                           nothing
 state  of `align.cerman`   one level of one pair
 """
 

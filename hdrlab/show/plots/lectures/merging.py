@@ -32,8 +32,8 @@ def draw_measurements(
 ) -> Axes:
     """Draw the radiance of a pixel by each photograph: a measurement with the width of its level, or a bound.
 
-    A dot's area is its weight. Level 0 means "at most" and a level of `top` or more "at least", drawn as
-    arrows. `lE` is the merged value, `truth` the true one; `middle` is ln E at 0 stops.
+    A dot's area is its weight. Level 0 means "at most" and a level of `top` or more "at least",
+    drawn as arrows. `lE` is the merged value, `truth` the true one; `middle` is ln E at 0 stops.
     """
     Z, B = np.asarray(Z), np.asarray(B, np.float64)
     g, w = np.asarray(g, np.float64), np.asarray(w, np.float64)
@@ -46,8 +46,13 @@ def draw_measurements(
     dark, clipped = Z == 0, Z >= top
     whole = ~(dark | clipped)
     ax.vlines(x[whole], low[whole], high[whole], color=MEASURED, linewidth=6, alpha=0.35)
-    ax.scatter(x[whole], here[whole], s=12 + 110 * w[Z[whole]] / w.max(), color=MEASURED, label="measured")
-    for at, level, way, mark, name in ((clipped, top, 1, "^", "at least"), (dark, 1, -1, "v", "at most")):
+    ax.scatter(
+        x[whole], here[whole], s=12 + 110 * w[Z[whole]] / w.max(), color=MEASURED, label="measured"
+    )
+    for at, level, way, mark, name in (
+        (clipped, top, 1, "^", "at least"),
+        (dark, 1, -1, "v", "at most"),
+    ):
         bound = (g[level] - B[at] - middle) / STOP
         ax.vlines(x[at], bound, bound + way * 1.6, color=BOUND, linewidth=1.6)
         if at.any():
@@ -56,8 +61,12 @@ def draw_measurements(
         at = (truth - middle) / STOP
         ax.axhline(at, color=TRUE, linewidth=1.2, linestyle="--", zorder=4, label="truth")
     ax.axhline((lE - middle) / STOP, color=MEAN, linewidth=1.6, label="merged")
-    ax.set(xlim=(-0.6, len(Z) - 0.4), ylim=(-REACH, REACH), ylabel="radiance, stops from the median")
-    ax.set_xticks(x, [f"{seconds(t)}\n{z}" for t, z in zip(np.exp(B), Z.tolist(), strict=True)], fontsize=8)
+    ax.set(
+        xlim=(-0.6, len(Z) - 0.4), ylim=(-REACH, REACH), ylabel="radiance, stops from the median"
+    )
+    ax.set_xticks(
+        x, [f"{seconds(t)}\n{z}" for t, z in zip(np.exp(B), Z.tolist(), strict=True)], fontsize=8
+    )
     ax.set_xlabel("exposure time, and the pixel's level", labelpad=1)
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=5, **NARROW)
     return ax

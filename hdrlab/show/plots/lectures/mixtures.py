@@ -4,7 +4,8 @@ I, M  samples of a blend  (l,): relative irradiance, in a unit and from a zero o
 s, r  scale and offset    of each blend: s I + r is the exposure of its samples
 M, X  inverse response    a `InverseResponse`: exposure X, 0 to 1 over the brightnesses that were measured
 
-Brightness is drawn as a pixel level, 255 M, up; exposure is drawn across, as in the plots of responses.
+Brightness is drawn as a pixel level, 255 M, up; exposure is drawn across, as in the plots of
+responses.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -29,9 +30,12 @@ def samples(
 ) -> Axes:
     """Draw each blend's samples at (s I + r, 255 M), and the curve that joins them.
 
-    Up to six blends have a colour and a marker each, and those of `names` a label; more are drawn alike.
+    Up to six blends have a colour and a marker each, and those of `names` a label; more are drawn
+    alike.
     """
-    scales, offsets = (np.broadcast_to(np.asarray(one, np.float64), (len(blends),)) for one in (s, r))
+    scales, offsets = (
+        np.broadcast_to(np.asarray(one, np.float64), (len(blends),)) for one in (s, r)
+    )
     few, ax = len(blends) <= len(SAMPLES), axes()
     if joined is not None:  # above the samples, which would hide it
         ax.plot(joined.X, 255 * joined.M, color="#1A1A1A", linewidth=1.5, zorder=3, label="joined")
@@ -50,12 +54,15 @@ def deviations(
 ) -> Axes:
     """Draw how far each curve lies from the camera's own inverse response, in percent of the range.
 
-    Both go from 0 to 1 over the brightnesses measured [Wilburn08 sec. 5], so every line begins and ends at 0.
+    Both go from 0 to 1 over the brightnesses measured [Wilburn08 sec. 5], so every line begins and
+    ends at 0.
     """
     ax = axes()
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     if len(found) >= len(LINES):
-        raise ValueError(f"expected at most {len(LINES) - 1} curves in one picture, got {len(found)}")
+        raise ValueError(
+            f"expected at most {len(LINES) - 1} curves in one picture, got {len(found)}"
+        )
     for (colour, style), (name, one) in zip(LINES[1:], found.items(), strict=False):
         off = difference(one, one._replace(X=np.asarray(inverse(one.M), np.float64)))
         ax.plot(255 * one.M, 100 * off, linestyle=style, color=colour, linewidth=1.6, label=name)

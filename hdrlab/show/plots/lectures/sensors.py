@@ -5,7 +5,8 @@ held   what one exposure makes of it: `capture.ranges.ExposedLevels`
 full, noise        (H, W) bool, pixels that are full, and those that noise has swallowed
 found  a photon transfer curve: `capture.photon_transfer.Transfer`
 
-What is full is orange, what is lost in noise blue, here as in the benches; hatching tells them apart as well.
+What is full is orange, what is lost in noise blue, here as in the benches; hatching tells them
+apart as well.
 """
 
 from typing import Any
@@ -17,7 +18,15 @@ from matplotlib.patheffects import withStroke
 
 from hdrlab.capture import photon_transfer, planning, ranges
 from hdrlab.core.arrays import ArrayLike, NDArray, as_picture, describe
-from hdrlab.show.plots import Ends, axes, fix_limits, logarithmic, nearest, picture_axes, with_legend
+from hdrlab.show.plots import (
+    Ends,
+    axes,
+    fix_limits,
+    logarithmic,
+    nearest,
+    picture_axes,
+    with_legend,
+)
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
 ORANGE, BLUE = np.array([213, 94, 0], np.uint8), np.array([0, 114, 178], np.uint8)
@@ -47,7 +56,9 @@ def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> 
     for (label, colour, hatch), mask in zip(KINDS, lost, strict=True):
         above = below + 100 * np.append(np.histogram(L[mask], edges)[0], 0) / L.size
         style: dict[str, Any] = dict(facecolor=colour, hatch=hatch, edgecolor="white", linewidth=0)
-        ax.fill_between(edges, below, above, step="post", label=f"{label}: {mask.mean():.0%}", **style)
+        ax.fill_between(
+            edges, below, above, step="post", label=f"{label}: {mask.mean():.0%}", **style
+        )
         below = above
     ax.set(xlabel="luminance, cd/m²", ylabel="pixels, %", xlim=(low, high), ylim=(0, None))
     return logarithmic(with_legend(ax, "upper right"))
@@ -61,7 +72,9 @@ def staircase(L: ArrayLike, held: ranges.ExposedLevels) -> Axes:
     ax.step(L, held.Z, where="mid", color="#1A1A1A", linewidth=1.8)
     for (label, colour, hatch), mask in ((KINDS[0], held.noise), (KINDS[2], held.full)):
         if mask.any():
-            span: dict[str, Any] = dict(color=colour, alpha=0.35, hatch=hatch, linewidth=0, label=label)
+            span: dict[str, Any] = dict(
+                color=colour, alpha=0.35, hatch=hatch, linewidth=0, label=label
+            )
             ax.axvspan(L[mask][0], L[mask][-1], **span)
     ax.set(xlabel="luminance, any unit", ylabel="level of the converter", xlim=(L[0], L[-1]))
     if held.noise.any() or held.full.any():
@@ -78,7 +91,9 @@ def transfer(found: photon_transfer.Transfer, *, span: Ends = None, limits: Ends
     ax.plot(S[used], V[used], "o", color="#D55E00", label="pairs that are used")
     ax.plot(S[~used], V[~used], "x", color="#0072B2", label="too near to a full well")
     line = np.array([0, S.max()])
-    ax.plot(line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}")
+    ax.plot(
+        line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}"
+    )
     ax.set(xlabel="signal S, levels above black", ylabel="variance V, levels squared")
     fix_limits(ax, span, limits)
     return with_legend(ax, "upper left")
@@ -90,9 +105,16 @@ def coverage(plan: planning.Plan, low: float, high: float) -> Axes:
     ax.axvspan(low, high, color=KEPT, alpha=0.45, label="the scene", linewidth=0)
     for row, (name, (dark, bright)) in enumerate(zip(plan.names, plan.holds, strict=True)):
         ax.plot([dark, bright], [row, row], color=NOISE, linewidth=7, solid_capstyle="butt")
-        ax.annotate(f"{name} s", (np.sqrt(dark * bright), row - 0.22), ha="center", va="bottom", fontsize=9)
+        ax.annotate(
+            f"{name} s", (np.sqrt(dark * bright), row - 0.22), ha="center", va="bottom", fontsize=9
+        )
     count = len(plan.names)
-    ax.set(xlabel="luminance, cd/m²", ylabel="photograph", yticks=range(count), ylim=(count - 0.5, -0.8))
+    ax.set(
+        xlabel="luminance, cd/m²",
+        ylabel="photograph",
+        yticks=range(count),
+        ylim=(count - 0.5, -0.8),
+    )
     ax.set(xlim=(low / 200, high * 200), yticklabels=range(1, count + 1))
     return logarithmic(with_legend(ax, "lower right"))
 
@@ -108,7 +130,9 @@ def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None)
     return logarithmic(ax, "y")
 
 
-def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:
+def draw_titled(
+    picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4
+) -> Axes:
     """Draw a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
     shown = as_picture(picture)
     high, lines = width * shown.shape[0] / shown.shape[1], 0.25 * (text.count("\n") + 1) + 0.12
@@ -117,5 +141,12 @@ def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None,
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:
         edge = ax.contour(np.asarray(ring, float), [0.5], colors="white", linewidths=1.2)
         edge.set_path_effects([withStroke(linewidth=3, foreground="black")])
-    ax.text(0.01, 1 - 0.06 / (high + lines), text, va="top", fontsize=11.5, transform=ax.figure.transFigure)
+    ax.text(
+        0.01,
+        1 - 0.06 / (high + lines),
+        text,
+        va="top",
+        fontsize=11.5,
+        transform=ax.figure.transFigure,
+    )
     return ax

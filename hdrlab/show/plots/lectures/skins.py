@@ -27,7 +27,10 @@ def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.REACH) ->
     """Draw the chrominance of pixels, and the ellipse within `reach` of the Gaussian of skin."""
     x, ax = skin.chrominance(_pixels(Z)), axes(4.6, 4.2)
     turn = np.linspace(0, 2 * np.pi, 200)
-    edge = known.mu + reach * np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ np.linalg.cholesky(known.S).T
+    edge = (
+        known.mu
+        + reach * np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ np.linalg.cholesky(known.S).T
+    )
     ax.plot(*x.T, ".", color=PALE, markersize=2, label="pixels")
     ax.plot(*edge.T, color=RUST, linewidth=2, label=f"Mahalanobis {reach:g}")
     ax.plot(*known.mu, "+", color=DARK, markersize=10, label="mean of skin")
@@ -41,7 +44,16 @@ def locus(Z: ArrayLike) -> Axes:
     r, g = (Z[:, :2] / np.maximum(Z.sum(axis=1), 1)[:, None]).T
     across = np.linspace(0.2, 0.65, 100)
     ax.plot(r, g, ".", color=PALE, markersize=2, label="pixels")
-    ax.plot(across, np.polyval(skin.UPPER, across), "-", color=RUST, linewidth=2, label="above: no skin")
-    ax.plot(across, np.polyval(skin.LOWER, across), "--", color=DARK, linewidth=2, label="below: no skin")
+    ax.plot(
+        across, np.polyval(skin.UPPER, across), "-", color=RUST, linewidth=2, label="above: no skin"
+    )
+    ax.plot(
+        across,
+        np.polyval(skin.LOWER, across),
+        "--",
+        color=DARK,
+        linewidth=2,
+        label="below: no skin",
+    )
     ax.set(xlabel="share of red, r", ylabel="share of green, g", xlim=(0.2, 0.65), ylim=(0.1, 0.5))
     return with_legend(ax, "upper right")

@@ -30,7 +30,8 @@ def comparagram(
 ) -> Axes:
     """Draw how many pixels have level m in A and z in B, in colours on a logarithmic scale, with T on it.
 
-    The scale ends at the largest count between the clipped levels, which hold far more than all others.
+    The scale ends at the largest count between the clipped levels, which hold far more than all
+    others.
     """
     J = np.asarray(J, np.float64)
     if J.ndim != 2 or J.shape[0] != J.shape[1] or len(J) < 3 or not np.any(J > 0):
@@ -39,7 +40,9 @@ def comparagram(
     scale, ax = LogNorm(max(most / 1000, J[J > 0].min()), most), axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
     counted = np.where(J > 0, J, np.nan).T
-    shown = ax.imshow(counted, norm=scale, origin="lower", interpolation="nearest", zorder=1)  # upon the grid
+    shown = ax.imshow(
+        counted, norm=scale, origin="lower", interpolation="nearest", zorder=1
+    )  # upon the grid
     counts = [count for count in 10.0 ** np.arange(15) if scale.vmin <= count <= scale.vmax]
     named = {f"{count:,.0f}": shown.cmap(scale(count)) for count in counts}
     swatches: list[Artist] = [Patch(facecolor=colour, label=name) for name, colour in named.items()]
@@ -59,13 +62,28 @@ def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike) -> Axes:
     """Draw both cumulated histograms, and the way from level m of A at its rank across to T(m) of B."""
     H_A, H_B = (np.cumsum(h) / np.sum(h) for h in (h_A, h_B))
     level, rank, ax = np.arange(len(H_A)), H_A[m] - np.diff(H_A, prepend=0)[m] / 2, axes()
-    for (colour, style), H, name in zip(LINES[1:], (H_A, H_B), ("frame A", "frame B"), strict=False):
+    for (colour, style), H, name in zip(
+        LINES[1:], (H_A, H_B), ("frame A", "frame B"), strict=False
+    ):
         ax.plot(level, 100 * H, linestyle=style, color=colour, drawstyle="steps-mid", label=name)
     z = float(np.asarray(T)[m])
-    label = f"level {m} of A is level {z:.1f} of B" if np.isfinite(z) else f"level {m} of A is clipped in B"
-    way = ([m, m, z, z], np.array([0, rank, rank, 0]) * 100) if np.isfinite(z) else ([m, m], [0, 100 * rank])
+    label = (
+        f"level {m} of A is level {z:.1f} of B"
+        if np.isfinite(z)
+        else f"level {m} of A is clipped in B"
+    )
+    way = (
+        ([m, m, z, z], np.array([0, rank, rank, 0]) * 100)
+        if np.isfinite(z)
+        else ([m, m], [0, 100 * rank])
+    )
     ax.plot(*way, color="#1A1A1A", linewidth=1.2, marker="o", markersize=4, label=label)
-    ax.set(xlabel="pixel level", ylabel="pixels at this level or below, %", xlim=(0, 255), ylim=(0, 102))
+    ax.set(
+        xlabel="pixel level",
+        ylabel="pixels at this level or below, %",
+        xlim=(0, 255),
+        ylim=(0, 102),
+    )
     return with_legend(ax, "upper left")
 
 
@@ -76,21 +94,37 @@ def staircase(T: ArrayLike, s: ArrayLike) -> Axes:
     ax.plot([0, n - 1], [0, n - 1], color="#808080", linewidth=1, label="the same level")
     ax.plot(np.arange(n), T, color="#D55E00", linewidth=1.8, label="T, bright to dark")
     x, y = np.repeat(s, 2)[:-1], np.repeat(s, 2)[1:]
-    ax.plot(x, y, color="#0072B2", linewidth=1, marker="s", markersize=3.5, label=f"{len(s)} levels")
-    ax.set(xlabel="level in the bright frame", ylabel="level in the dark frame", xlim=(0, n), ylim=(0, n))
+    ax.plot(
+        x, y, color="#0072B2", linewidth=1, marker="s", markersize=3.5, label=f"{len(s)} levels"
+    )
+    ax.set(
+        xlabel="level in the bright frame",
+        ylabel="level in the dark frame",
+        xlim=(0, n),
+        ylim=(0, n),
+    )
     return with_legend(ax, "upper left")
 
 
 def ladders(found: Mapping[str, tuple[ArrayLike, float]]) -> Axes:
     """Draw series (s, R) on logarithmic paper, level over stops, each with its best straight line."""
     ax = axes()
-    for (colour, style), (_, marker), (name, (s, R)) in zip(LINES[1:], SAMPLES, found.items(), strict=False):
+    for (colour, style), (_, marker), (name, (s, R)) in zip(
+        LINES[1:], SAMPLES, found.items(), strict=False
+    ):
         levels = np.asarray(s, np.float64)
         stops = np.arange(len(levels)) * np.log2(R)
         slope, at = np.polyfit(stops, np.log2(levels), 1)
-        ax.plot(stops, levels, marker, color=colour, markersize=5, label=f"{name}: slope {slope:.2f}")
+        ax.plot(
+            stops, levels, marker, color=colour, markersize=5, label=f"{name}: slope {slope:.2f}"
+        )
         ax.plot(stops, 2 ** (at + slope * stops), linestyle=style, color=colour, linewidth=1.2)
-    ax.set(xlabel="exposure, stops below the first level's", ylabel="level", yscale="log", ylim=(10, 400))
+    ax.set(
+        xlabel="exposure, stops below the first level's",
+        ylabel="level",
+        yscale="log",
+        ylim=(10, 400),
+    )
     ax.set_yticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])
     ax.minorticks_off()
     return with_legend(ax, "lower right")
