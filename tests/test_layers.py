@@ -19,7 +19,7 @@ CHAPTERS = (
     "enhance",
     "beyond",
 )
-BELOW = {"core": set()}  # which rooms each room may use, beside itself
+BELOW = {"core": set(), "errors": set()}  # which rooms each room may use, beside itself
 BELOW |= {chapter: {"core"} for chapter in CHAPTERS}
 BELOW["fast"] = BELOW["diagnostics"] = {"core", *CHAPTERS}
 BELOW["pipeline"] = {"core", *CHAPTERS, "fast", "diagnostics"}
@@ -112,7 +112,7 @@ def wrong_in(path, level, target):
     if target[0] == "hdrlab":
         used = target[1] if len(target) > 1 else "__init__"
         stands_on = f"but {room} stands on {', '.join(sorted(BELOW[room])) or 'nothing'}"
-        return "" if used in BELOW[room] | {room, "__init__"} else stands_on
+        return "" if used in BELOW[room] | {room, "__init__", "errors"} else stands_on
     if target[0] in ONLY_IN:
         belongs = f"which belongs to {', '.join(ONLY_IN[target[0]])}"
         return "" if room in ONLY_IN[target[0]] else belongs

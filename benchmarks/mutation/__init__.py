@@ -5,9 +5,9 @@ grader    what grades, on the side that a submission does not reach: plan, check
 
 Of all mutants (`mutants`) MUTANTS are drawn in each of the two, the same ones each time. A mutant's
 tests are those that run its line, and then those that run anything else of its file (`known`). A
-mutant is killed where one of them fails, ends otherwise, or takes ten times as long. Who survives
-is listed. `equivalent.toml` names those that change no result, each with the reason: they count
-neither for nor against.
+mutant is killed where one of them fails, ends otherwise, or takes ten times as long. The survivors
+are printed: read them as hints to promises that no test states. Many change no result at all, so
+the share that is killed is no target.
 
 `MUTANTS=40 python -m benchmarks mutation` is a shorter run, and `MUTANTS_SEED=2` draws others.
 """
@@ -18,7 +18,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -30,7 +29,7 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 from tqdm import tqdm
 
-from benchmarks.experiments import Experiment, at_least
+from benchmarks.experiments import Experiment
 from benchmarks.measure import ROOT, THREADS
 from benchmarks.mutation.known import Known, known
 from benchmarks.mutation.mutants import Mutant, of
@@ -60,7 +59,7 @@ GRADER = (
 # seconds of tests that are asked of a mutant: of those that run its line, and of those that run its
 # file
 NEAR, FAR = 240.0, 60.0
-CLOSE = "killed, % of those that change a result"
+CLOSE = "killed, %"
 
 
 class Fate(NamedTuple):
@@ -191,48 +190,25 @@ def fates(files: Sequence[str]) -> list[Fate]:
                 one.end()
 
 
-def equivalent() -> dict[tuple[str, ...], str]:
-    """Return the mutants that a person has found to change no result: (file, text, old, new) -> why."""
-    listed = tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf8"))
-    return {
-        (one["file"], one["text"], one["old"], one["new"]): one["why"]
-        for one in listed["equivalent"]
-    }
-
-
 def table(found: list[Fate]) -> str:
     """Return a line a room, and one for each survivor."""
-    same = equivalent()
-    lines = [f"  {'room':<28}{'mutants':>9}{'killed':>8}{'the same':>10}"]
+    lines = [f"  {'room':<28}{'mutants':>9}{'killed':>8}"]
     rooms: dict[str, list[Fate]] = {}
     for one in found:
         rooms.setdefault("/".join(one.mutant.file.split("/")[1:-1])[:27] or "(top)", []).append(one)
     for room, own in sorted(rooms.items()):
-        counts = (
-            len(own),
-            sum(one.killed for one in own),
-            sum(_key(one) in same for one in own if not one.killed),
-        )
-        lines.append(f"  {room:<28}{counts[0]:>9}{counts[1]:>8}{counts[2]:>10}")
-    left = [one for one in found if not one.killed and _key(one) not in same]
+        killed = sum(one.killed for one in own)
+        lines.append(f"  {room:<28}{len(own):>9}{killed:>8}")
+    left = [one for one in found if not one.killed]
     lines += ["  not seen:", *(f"  {one.mutant.said} ({one.tests} tests)" for one in left)]
     return "\n".join(lines)
 
 
-def _key(one: Fate) -> tuple[str, ...]:
-    return one.mutant.file, one.mutant.text, one.mutant.old, one.mutant.new
-
-
 def figures(files: Sequence[str]) -> dict[str, Any]:
     """Print the table of mutants of some files, and return how many the tests see."""
-    found, same = fates(files), equivalent()
+    found = fates(files)
     print(table(found), flush=True)
-    changing = [one for one in found if one.killed or _key(one) not in same]
-    return {
-        "mutants": len(found),
-        "of which change no result": len(found) - len(changing),
-        CLOSE: 100 * sum(one.killed for one in changing) / len(changing),
-    }
+    return {"mutants": len(found), CLOSE: 100 * sum(one.killed for one in found) / len(found)}
 
 
 def lessons(_: Path) -> dict[str, Any]:
@@ -258,10 +234,6 @@ def grader(_: Path) -> dict[str, Any]:
 
 
 ROWS = (
-    Experiment(
-        "lessons", "mutants of the lessons, in the quick tier", lessons, (at_least(CLOSE, 90),)
-    ),
-    Experiment(
-        "grader", "mutants of the grader, in the quick tier", grader, (at_least(CLOSE, 90),)
-    ),
+    Experiment("lessons", "mutants of the lessons, in the quick tier", lessons, ()),
+    Experiment("grader", "mutants of the grader, in the quick tier", grader, ()),
 )

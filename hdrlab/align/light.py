@@ -29,6 +29,7 @@ from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.transfer import brightness_transfer, histograms
+from hdrlab.errors import InputError
 
 # of the range of levels: noise below, saturation above
 DARK, BRIGHT = 5 / 255, 250 / 255
@@ -56,12 +57,12 @@ def neighbours(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[li
         or t.shape != images.shape[:1]
         or not np.all((t > 0) & (t < np.inf))
     ):
-        raise ValueError(
+        raise InputError(
             f"expected photographs (P, H, W[, 3]), positive times (P,), got {images.shape}, {t}"
         )
     Z, n = images if images.ndim == 3 else images[..., 1], np.iinfo(images.dtype).max + 1
     if g.shape not in ((n,), (n, 3)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
-        raise ValueError(f"expected g ({n},) or ({n}, 3) that rises, -80 to 80, got {g.shape}")
+        raise InputError(f"expected g ({n},) or ({n}, 3) that rises, -80 to 80, got {g.shape}")
     f_inv = np.exp(g if g.ndim == 1 else g[:, 1])
     for moving, fixed in pairwise(np.argsort(t, kind="stable")):
         yield pair(Z[fixed], Z[moving], f_inv, t[fixed] / t[moving] * f_inv)

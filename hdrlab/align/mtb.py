@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray
+from hdrlab.errors import InputError
 
 # codes: closer than this to the threshold, noise decides the bit
 NOISE = 4
@@ -135,7 +136,7 @@ def align_steps(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> Iter
         or images.dtype.kind != "u"
         or bits < 1
     ):
-        raise ValueError(
+        raise InputError(
             f"expected photographs (P, H, W[, 3]) and bits > 0, got {images.shape}, {bits=}"
         )
     for moving, fixed in pairwise(by_brightness(images)):

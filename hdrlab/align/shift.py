@@ -7,6 +7,7 @@ crop     two slices          the rectangle, in the coordinates of an image that 
 import numpy as np
 
 from hdrlab.core.arrays import Array, ArrayLike, NDArray
+from hdrlab.errors import InputError
 
 
 def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64]:
@@ -18,7 +19,7 @@ def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64
         or array.dtype.kind not in "iu"
     ):
         wanted = f"expected offsets ({count or 'P'}, 2) of whole pixels, one per image"
-        raise ValueError(f"{wanted}, got {array.dtype} {array.shape}")
+        raise InputError(f"{wanted}, got {array.dtype} {array.shape}")
     return array.astype(np.int64)
 
 
@@ -34,7 +35,7 @@ def crop(offsets: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     first = np.maximum(moved.max(axis=0), 0)
     end = np.minimum(moved.min(axis=0), 0) + shape[:2]
     if np.any(first >= end):
-        raise ValueError(
+        raise InputError(
             f"expected images that overlap, got offsets {moved.tolist()} for {shape[:2]} pixels"
         )
     return slice(int(first[0]), int(end[0])), slice(int(first[1]), int(end[1]))
@@ -69,7 +70,7 @@ def shift(images: ArrayLike, offsets: ArrayLike) -> Array:
     """
     images = np.asarray(images)
     if images.ndim < 3:
-        raise ValueError(f"expected images (P, H, W[, 3]), got {images.dtype} {images.shape}")
+        raise InputError(f"expected images (P, H, W[, 3]), got {images.dtype} {images.shape}")
     moved = as_offsets(offsets, len(images))
     if not moved.any():
         return images

@@ -19,6 +19,7 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance, describe, levels
 from hdrlab.core.filters.mosaic import BAYER, as_channels, sample
+from hdrlab.errors import InputError
 
 # four transparencies, two stops apart, in a square
 FOUR_EXPOSURES = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])
@@ -79,11 +80,11 @@ def shoot(
     """
     E, e = as_radiance(E), _transparency(e, np.shape(E)[:2])
     if (c is None) != (E.ndim == 2) or bits not in (8, 16):
-        raise ValueError(
+        raise InputError(
             f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}"
         )
     if not (full_well > 0 and 0 <= read_noise < np.inf):
-        raise ValueError(
+        raise InputError(
             f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}"
         )
     light = E if c is None else sample(E, c)
@@ -155,7 +156,7 @@ def reconstruct(
     """
     Z = np.asarray(Z)
     if Z.ndim != 2 or Z.dtype not in (np.uint8, np.uint16) or Z.size == 0:
-        raise ValueError(f"expected levels (H, W) of uint8 or uint16, got {describe(Z)}")
+        raise InputError(f"expected levels (H, W) of uint8 or uint16, got {describe(Z)}")
     e = _transparency(e, Z.shape)
     w, values = weight(Z, e, full_well=full_well, read_noise=read_noise), Z / (levels(Z) - 1) / e
     if c is None:
@@ -179,7 +180,7 @@ def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) 
 def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> F64:
     checked = np.asarray(e, np.float64)
     if checked.shape != shape or not np.all((checked > 0) & (checked <= 1)):
-        raise ValueError(
+        raise InputError(
             f"expected transparencies {shape} above 0 and at most 1, got {describe(checked)}"
         )
     return checked

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import solve
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
+from hdrlab.errors import InputError
 
 # 52 chops
 RASKAR_CODE = np.array(
@@ -28,7 +29,7 @@ def as_code(h: ArrayLike) -> F64:
     """Return a shutter's chops (m,) as 0.0 and 1.0, at least one of them open."""
     code = np.asarray(h, np.float64)
     if code.ndim != 1 or not np.all((code == 0) | (code == 1)) or not code.any():
-        raise ValueError(f"expected a code of 0 and 1, one of them open, got {describe(code)}")
+        raise InputError(f"expected a code of 0 and 1, one of them open, got {describe(code)}")
     return code
 
 
@@ -107,7 +108,7 @@ def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
     y, code = np.asarray(y, np.float64), as_code(h)
     n = len(y) - len(code) + 1
     if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
-        raise ValueError(
+        raise InputError(
             f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}"
         )
     A = matrix(code, n)
@@ -138,7 +139,7 @@ def combine(photographs: ArrayLike, gains: ArrayLike) -> F64:
     """
     X, g = np.asarray(photographs, np.float64), np.asarray(gains, np.float64)
     if X.ndim < 2 or g.shape != X.shape[:1] or not np.all(g > 0):
-        raise ValueError(
+        raise InputError(
             f"expected photographs (P, n, ...) and P positive gains, got {describe(X)} and {g}"
         )
     g = g.reshape(-1, *[1] * (X.ndim - 1))

@@ -28,6 +28,7 @@ from hdrlab.beyond import ldr_values, patchmatch, synthesis
 from hdrlab.beyond.bidirectional import Search, search, similarity, vote
 from hdrlab.core import bracket, steps
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Indices
+from hdrlab.errors import InputError
 
 # where the search of both ways begins
 Fields = tuple[Indices, tuple[Indices, ...]]
@@ -94,7 +95,7 @@ def as_scene(
     place = len(order) // 2
     if reference is not None:
         if not 0 <= reference < len(order):
-            raise ValueError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
+            raise InputError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
         place = int(np.flatnonzero(order == reference)[0])
     alpha = synthesis.trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
     v, noise, clipped, t = each.v[order], each.noise[order], each.clipped[order], each.t[order]
@@ -116,7 +117,7 @@ def synthesise_steps(
     finest = as_scene(images, times, g, reference)
     sizes = plan_scales(finest.L.shape[1:3], coarsest)
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
-        raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
+        raise InputError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
     generator, state, fields = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(
         zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)
@@ -192,7 +193,7 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
 def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
     """Return how many rounds each of `count` scales has: as many less from scale to scale."""
     if not min(rounds) >= 0:
-        raise ValueError(
+        raise InputError(
             f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}"
         )
     return np.rint(np.linspace(*rounds, count)).astype(int).tolist()

@@ -28,6 +28,7 @@ from hdrlab.beyond import assorted
 from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, NDArray, as_radiance, describe, levels
 from hdrlab.core.filters.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 # shares of the light, by the first pellicle, and by the second of what the first reflected
 REFLECTANCES = (0.08, 0.06)
@@ -101,7 +102,7 @@ def shoot(
     """
     E, each, rng = as_radiance(E), as_shares(e), np.random.default_rng(rng)
     if not 8 <= bits <= 16:
-        raise ValueError(f"expected 8 to 16 bits, got {bits}")
+        raise InputError(f"expected 8 to 16 bits, got {bits}")
     shoot_one = partial(
         assorted.shoot, full_well=full_well, read_noise=read_noise, bits=16, rng=rng
     )
@@ -144,11 +145,11 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> 
     """Yield the State from the darkest sensor alone to all of them; parameters are those of `merge`."""
     each, stack = as_shares(e), np.asarray(Z)
     if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(each):
-        raise ValueError(
+        raise InputError(
             f"expected levels ({len(each)}, H, W), a picture per share, got {describe(stack)}"
         )
     if not 0 < full <= 1:
-        raise ValueError(f"expected a level that counts as full, above 0 and at most 1, got {full}")
+        raise InputError(f"expected a level that counts as full, above 0 and at most 1, got {full}")
     X = stack / (levels(stack) - 1)
     E = X[-1] / each[-1]
     yield State(len(each) - 1, E, np.zeros(E.shape, np.uint8))
@@ -203,7 +204,7 @@ def as_shares(e: ArrayLike) -> F64:
     each = np.asarray(e, np.float64)
     falling = each.ndim == 1 and len(each) and np.all(each > 0) and np.all(np.diff(each) < 0)
     if not (falling and each.sum() < 1.001):
-        raise ValueError(
+        raise InputError(
             f"expected positive, falling shares of the light, at most 1 in all, got {each}"
         )
     return each

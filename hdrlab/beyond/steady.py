@@ -22,6 +22,7 @@ import numpy as np
 from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, ArrayLike, as_radiance
+from hdrlab.errors import InputError
 
 SMALLEST_LUMINANCE = float(np.finfo(np.float32).tiny)
 
@@ -101,7 +102,7 @@ def tonemap_steps(
     [0.113, 0.222, 0.113]
     """
     if not 0 < key < np.inf or span < 0:
-        raise ValueError(f"expected a positive key and a span of at least 0, got {key} and {span}")
+        raise InputError(f"expected a positive key and a span of at least 0, got {key} and {span}")
     for place, window in slide_windows((measure_frame(E) for E in frames), span):
         frame = window[place]
         average, white = adapt(window, key=key)
@@ -132,5 +133,5 @@ def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
     part = ... if still is None else np.asarray(still, bool)
     y = np.array([255 * float(one[part].mean()) for one in shown])
     if len(y) < 3:
-        raise ValueError(f"expected at least three frames, got {len(y)}")
+        raise InputError(f"expected at least three frames, got {len(y)}")
     return float(np.sqrt(np.mean((np.diff(y, 2) / 4) ** 2)))

@@ -26,6 +26,7 @@ from hdrlab.beyond import ldr_values, neighbours, synthesis
 from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
 from hdrlab.core import weights
 from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_table, as_times, levels
+from hdrlab.errors import InputError
 
 # of values: a neighbour that is farther off counts for nothing
 VALUE_TOLERANCE = np.float32(16 / 255)
@@ -210,7 +211,7 @@ def merge(
     """
     found = [state.E for state in merge_steps(frames, times, g, w, flow=flow)]
     if not found:
-        raise ValueError("expected at least one frame, got none")
+        raise InputError("expected at least one frame, got none")
     return np.stack(found)
 
 
@@ -232,5 +233,5 @@ def require_one_size(frames: Iterable[Frame]) -> Iterator[Frame]:
         first = frame if first is None else first
         if frame.v.shape != first.v.shape:
             got = f"{first.v.shape} and, number {number + 1}, {frame.v.shape}"
-            raise ValueError(f"expected frames of one size, got {got}")
+            raise InputError(f"expected frames of one size, got {got}")
         yield frame

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
+from hdrlab.errors import InputError
 
 # The paper's typical range of brightnesses that are measurements.
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 15 / 255, 240 / 255
@@ -57,11 +58,11 @@ def make_blend(
     """
     x, M = np.asarray(irradiance, np.float64), np.asarray(brightness, np.float64)
     if x.shape != M.shape or x.ndim != 1 or not np.all(np.isfinite([x, M])):
-        raise ValueError(
+        raise InputError(
             f"expected finite irradiance and brightness (l,), got {describe(x)}, {describe(M)}"
         )
     if not 0 <= low < high <= 1:
-        raise ValueError(f"expected a range of brightness within 0 to 1, got {low} to {high}")
+        raise InputError(f"expected a range of brightness within 0 to 1, got {low} to {high}")
     inside = (low <= M) & (M <= high)
     return Blend(x[inside], M[inside])
 
@@ -76,7 +77,7 @@ def select_blends(blends: Sequence[Blend], *, min_samples: int = 3) -> list[Blen
     usable = [b for b in blends if len(b.M) >= min_samples and np.ptp(b.I) > 0 and np.ptp(b.M) > 0]
     if not usable:
         sizes = ", ".join(str(len(blend.M)) for blend in blends)
-        raise ValueError(
+        raise InputError(
             f"expected a blend with {min_samples} different brightnesses, got {sizes or 'none'}"
         )
     return usable
@@ -115,7 +116,7 @@ def build_response(
         For a part that is not in 0 to 0.25.
     """
     if not 0 <= ends < 0.25:
-        raise ValueError(f"expected ends from 0 to 0.25, got {ends}")
+        raise InputError(f"expected ends from 0 to 0.25, got {ends}")
     M = np.linspace(*brightness_range(blends), len(g))
     X = np.concatenate(
         [scale * blend.I + zero for blend, scale, zero in zip(blends, s, r, strict=True)]
@@ -139,7 +140,7 @@ def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = Fa
     """
     low, high = max(found.M[0], truth.M[0]), min(found.M[-1], truth.M[-1])
     if not low < high:
-        raise ValueError(
+        raise InputError(
             f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}"
         )
     M = np.linspace(low, high, TABLE_SIZE)
@@ -182,7 +183,7 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     (0.5, np.True_)
     """
     if not black < joined.X[0]:
-        raise ValueError(
+        raise InputError(
             f"expected a black below {joined.X[0]}, the darkest X measured, got {black}"
         )
     M, X = joined.M, joined.X - black

@@ -29,6 +29,7 @@ from hdrlab.calibration import blends, joining
 from hdrlab.core.arrays import F64, ArrayLike, as_stack, as_times, describe, levels
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_draw
+from hdrlab.errors import InputError
 
 ROWS, COLUMNS = 4, 6
 # Space between the patches of the classic chart, over a patch's width.
@@ -63,11 +64,11 @@ def _as_corners(points: ArrayLike) -> F64:
     """Return points (4, 2) that turn one way at each of four corners, or raise a ValueError."""
     corners = np.asarray(points, np.float64)
     if corners.shape != (4, 2) or not np.all(np.isfinite(corners)):
-        raise ValueError(f"expected four corners (4, 2), (x, y) in pixels, got {describe(corners)}")
+        raise InputError(f"expected four corners (4, 2), (x, y) in pixels, got {describe(corners)}")
     edges = np.roll(corners, -1, axis=0) - corners
     turns = np.linalg.det(np.stack([edges, np.roll(edges, -1, axis=0)], axis=1))
     if not abs(np.sign(turns).sum()) == 4 or np.abs(turns).min() < 1e-6 * np.ptp(corners) ** 2:
-        raise ValueError(f"expected the corners of a convex quadrilateral, got {corners.tolist()}")
+        raise InputError(f"expected the corners of a convex quadrilateral, got {corners.tolist()}")
     return corners
 
 
@@ -116,11 +117,11 @@ def read_patches(
     """
     stack = as_stack(np.asarray(image)[None])
     if rows < 1 or columns < 1 or not gap >= 0 or not 0 < core <= 1:
-        raise ValueError(f"expected {rows=}, {columns=} > 0, {gap=} >= 0 and 0 < {core=} <= 1")
+        raise InputError(f"expected {rows=}, {columns=} > 0, {gap=} >= 0 and 0 < {core=} <= 1")
     H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
     shape = np.array(stack.shape[1:3])
     if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
-        raise ValueError(
+        raise InputError(
             f"expected corners within a picture of {shape} pixels, got {describe(corners)}"
         )
     M = np.empty((rows, columns, *stack.shape[3:]))
@@ -129,7 +130,7 @@ def read_patches(
         x, y, w = H @ np.vstack([core_corners.T, np.ones(4)])
         pixels = stack[0][skimage_draw.polygon(y / w, x / w, shape)]
         if len(pixels) == 0:
-            raise ValueError(
+            raise InputError(
                 "expected patches of a few pixels at least, one holds none: check the corners"
             )
         M[row, column] = pixels.mean(axis=0) / (levels(stack) - 1)
@@ -200,11 +201,11 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
     order = np.argsort(samples.I)
     x, m = samples.I[order], samples.M[order]
     if len(x) < 3:
-        raise ValueError(
+        raise InputError(
             f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}"
         )
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
-        raise ValueError(
+        raise InputError(
             f"expected patches brighter the more they reflect, got {m.round(4).tolist()}"
         )
     brightness = np.linspace(m[0], m[-1], blends.TABLE_SIZE)
@@ -244,7 +245,7 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     """
     M = np.asarray(M, np.float64)
     if M.ndim != 2:
-        raise ValueError(
+        raise InputError(
             f"expected brightness (P, K) of K patches in P photographs, got {describe(M)}"
         )
     times = as_times(times, len(M))

@@ -18,6 +18,7 @@ import numpy as np
 
 from hdrlab.calibration import blends, chart
 from hdrlab.core.arrays import F64, ArrayLike, NDArray
+from hdrlab.errors import InputError
 
 
 class Schedule(NamedTuple):
@@ -54,7 +55,7 @@ def mixing_ratios(rows: int = 3, columns: int = 5, steps: int = 15) -> F64:
            [0.75, 1.  ]])
     """
     if rows < 1 or columns < 1 or steps < rows * columns:
-        raise ValueError(
+        raise InputError(
             f"expected at least as many steps as patches, got {rows} x {columns} and {steps}"
         )
     return np.arange(1, rows * columns + 1).reshape(rows, columns) / steps
@@ -94,17 +95,17 @@ def draw_schedule(
     """
     high, low, rows, columns, steps, patch, border = schedule
     if not high or not all(0 <= low < one <= 255 for one in high):
-        raise ValueError(
+        raise InputError(
             f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}"
         )
     if patch < 1 or border < 0:
-        raise ValueError(
+        raise InputError(
             f"expected a patch of a pixel and a border of 0 at least, got {patch} and {border}"
         )
     last_step = np.tile(np.round(mixing_ratios(rows, columns, steps) * steps), (len(high), 1))
     need = [count * (patch + border) - border for count in last_step.shape]
     if need[0] > shape[0] or need[1] > shape[1]:
-        raise ValueError(f"expected pictures of at least {need[0]} x {need[1]} pixels, got {shape}")
+        raise InputError(f"expected pictures of at least {need[0]} x {need[1]} pixels, got {shape}")
     P_hi = np.repeat(high, rows)[:, None]
     values = [np.where(step < last_step, P_hi, low).astype(np.uint8) for step in range(steps)]
     return np.stack([draw_patches(one, patch=patch, border=border, shape=shape) for one in values])
@@ -119,7 +120,7 @@ def find_corners(picture: ArrayLike) -> F64:
     bright = np.asarray(picture, np.float64)
     *_, y, x = np.nonzero(np.atleast_2d(bright > bright.max() / 4))
     if bright.ndim != 2 or not bright.max() > 0 or np.ptp(x) == 0 or np.ptp(y) == 0:
-        raise ValueError("expected a picture (H, W) of a grid, bright on black")
+        raise InputError("expected a picture (H, W) of a grid, bright on black")
     signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     far = [int(np.argmax(sx * x + sy * y)) for sx, sy in signs]
     return np.column_stack([x[far], y[far]]) + signs / 2
@@ -172,7 +173,7 @@ def recover_display(P: ArrayLike, joined: blends.InverseResponse) -> tuple[F64, 
     """
     P = np.asarray(P, np.float64)
     if P.shape != joined.s.shape:
-        raise ValueError(
+        raise InputError(
             f"expected {len(joined.s)} pixel values, one per blend, got shape {P.shape}"
         )
     order = np.argsort(P)

@@ -39,6 +39,7 @@ from hdrlab.calibration.blends import (
 )
 from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 # Of the mean slope: what is flatter can hardly be distinguished from a step.
 MIN_SLOPE = 1e-3
@@ -133,7 +134,7 @@ def update(
     c, cost = solve_increments(systems, np.sqrt(smoothness) * slope_curvature(v, count), offset)
     g = i_splines(GRID, count) @ c
     if not g[-1] > g[0]:
-        raise ValueError(
+        raise InputError(
             "expected brightness that rises with irradiance, the blends fit a flat curve best"
         )
     x = [np.linalg.lstsq(F, A @ c - b, rcond=None)[0] for A, F, b in systems]
@@ -161,7 +162,7 @@ def join_steps(
     """Yield the State after each iteration, until the curve moves by less than `tolerance` of its range."""
     blends = rescale(select_blends(blends))
     if count < 6 or not smoothness >= 0 or max_iterations < 1:
-        raise ValueError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
+        raise InputError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
     p, v, before = np.concatenate([blend.M for blend in blends]), np.ones_like(GRID), GRID
     for _ in range(max_iterations):
         state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)

@@ -27,6 +27,7 @@ from hdrlab.calibration.blends import (
     rmse,
 )
 from hdrlab.core.arrays import F64, ArrayLike, NDArray, as_stack, levels
+from hdrlab.errors import InputError
 
 # Fraction of the range: the paper's good example stays below, its bad one has 0.028.
 MAX_RMSE = 0.01
@@ -128,11 +129,11 @@ def find_ramps(
     """
     stack = as_stack(np.asarray(image)[None])
     if stack.ndim != 3:
-        raise ValueError(
+        raise InputError(
             f"expected one channel of a photograph (R, W), got shape {stack.shape[1:]}"
         )
     if not 0 <= low < high <= 1 or width < 1 or shortest < 3:
-        raise ValueError(f"expected 0 <= {low=} < {high=} <= 1, {width=} >= 1 and {shortest=} >= 3")
+        raise InputError(f"expected 0 <= {low=} < {high=} <= 1, {width=} >= 1 and {shortest=} >= 3")
     found = []
     for number, row in enumerate(stack[0] / (levels(stack) - 1)):
         side = classify(row, low=low, high=high, width=width)
@@ -210,7 +211,7 @@ def compare_edges(
     ramps = find_ramps(image) if ramps is None else ramps
     left, right = ([one for one in ramps if one.rises == rises] for rises in (False, True))
     if not left or not right:
-        raise ValueError(f"expected ramps on both sides, got {len(left)} down and {len(right)} up")
+        raise InputError(f"expected ramps on both sides, got {len(left)} down and {len(right)} up")
     curves = join(image, left), join(image, right)
     apart = rmse(*curves)
     return Comparison(apart <= limit, apart, *curves)

@@ -34,6 +34,7 @@ from hdrlab.calibration.blends import (
 )
 from hdrlab.core.arrays import F64, ArrayLike
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 SIMPLEX = {"xatol": 1e-6, "fatol": 1e-12, "maxfev": 4000, "adaptive": True}
 
@@ -80,7 +81,7 @@ def join_steps(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12) -> I
     wall it may collapse before the minimum; a new one goes on.
     """
     if degree < 2 or runs < 1:
-        raise ValueError(
+        raise InputError(
             f"expected a degree of 2 or more and at least 1 run, got {degree} and {runs}"
         )
     Q = quadratic_form(rescale(select_blends(blends)), degree)

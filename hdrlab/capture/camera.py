@@ -37,12 +37,13 @@ from hdrlab.core.arrays import (
 )
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 
 
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
     """Return offsets (P, 2) of a shaking hand, up to `radius` pixels each way; frame P // 2 stays at 0."""
     if count < 1 or radius < 0:
-        raise ValueError(
+        raise InputError(
             f"expected at least one frame and a radius of at least 0, got {count} and {radius}"
         )
     offsets = np.random.default_rng(rng).integers(-radius, radius, (count, 2), endpoint=True)
@@ -70,12 +71,12 @@ def times_around(
     """
     if count < 1 or not all(0 < knob < np.inf for knob in (stops, middle, sensitivity)):
         got = f"{count}, {stops}, {middle} and {sensitivity}"
-        raise ValueError(
+        raise InputError(
             f"expected at least one frame, positive stops, middle and sensitivity; got {got}"
         )
     L = luminance(E).astype(np.float64)
     if not L.any():
-        raise ValueError("expected radiance with a positive pixel, got zeros")
+        raise InputError("expected radiance with a positive pixel, got zeros")
     suitable = middle / (sensitivity * np.exp(np.log(L[L > 0]).mean()))
     return suitable * 2.0 ** (stops * (np.arange(count) - (count - 1) / 2))
 
@@ -152,7 +153,7 @@ class Camera:
             (self.sensor is None or self.full_well == np.inf, "one full well, not both"),
         ):
             if not valid:
-                raise ValueError(f"expected {expected}, got {self}")
+                raise InputError(f"expected {expected}, got {self}")
 
     @property
     def coloured(self) -> bool:
@@ -204,9 +205,9 @@ def shoot(
     times = as_times(times, max(times.size, 1))
     moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
     if moves.shape[:1] != times.shape:
-        raise ValueError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
+        raise InputError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
     if E.ndim == 2 and camera.coloured:
-        raise ValueError(
+        raise InputError(
             f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}"
         )
     rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, NDArray
+from hdrlab.errors import InputError
 
 Real = float | NDArray[np.floating[Any]]
 
@@ -54,7 +55,7 @@ def shutter_series(per_stop: int = 1) -> Dial:
     ('1/60', 64.0)
     """
     if per_stop not in (1, 3):
-        raise ValueError(f"expected a dial of 1 or 3 settings per stop, got {per_stop}")
+        raise InputError(f"expected a dial of 1 or 3 settings per stop, got {per_stop}")
     chosen = tuple(SHUTTER.split()[:: 3 // per_stop])
     return Dial(chosen, 2.0 ** (LONGEST_STOP - np.arange(len(chosen)) / per_stop))
 
@@ -73,7 +74,7 @@ def seconds(name: str) -> float:
     except (ValueError, ZeroDivisionError):
         time = 0.0
     if not 0 < time < np.inf:
-        raise ValueError(f"expected a shutter time such as 1/60 or 2, got {name!r}")
+        raise InputError(f"expected a shutter time such as 1/60 or 2, got {name!r}")
     return time
 
 
@@ -208,4 +209,4 @@ def require_positive(*settings: tuple[str, Real]) -> None:
     """Raise a ValueError that names the first setting that is not positive and finite."""
     for what, value in settings:
         if not np.all(np.greater(value, 0) & np.isfinite(value)):
-            raise ValueError(f"expected a positive {what}, got {value}")
+            raise InputError(f"expected a positive {what}, got {value}")

@@ -13,6 +13,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.filters import warp
+from hdrlab.errors import InputError
 
 Seed = int | np.random.Generator | None
 
@@ -35,13 +36,13 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
         size, first = (rows.stop - rows.start, columns.stop - columns.start), _from((rows, columns))
         return [warp.sample(E, H @ first, size) for H in warp.as_homographies(given)]
     if not pairs or given.dtype.kind not in "iu":
-        raise ValueError(
+        raise InputError(
             f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(given)}"
         )
     corners = given - given.min(axis=0)
     h, w = E.shape[:2] - corners.max(axis=0)
     if h < 1 or w < 1:
-        raise ValueError(
+        raise InputError(
             f"expected offsets that span less than {E.shape[:2]}, got {given.tolist()}"
         )
     return [E[y : y + h, x : x + w] for y, x in corners]
@@ -95,7 +96,7 @@ def shake(
     rng, knobs = np.random.default_rng(rng), np.array([radius, degrees, zoom, tilt], float)
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
-        raise ValueError(
+        raise InputError(
             f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}"
         )
     homographies = []

@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, NDArray, as_luminance, describe
+from hdrlab.errors import InputError
 
 At = tuple[float, float]
 
@@ -28,9 +29,9 @@ FULL_PIXEL_BRIGHTNESS = 16.0
 def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
     """Return how far down and right of `at` each pixel lies, in heights and in widths of the picture."""
     if len(shape) != 2 or min(shape) < 1:
-        raise ValueError(f"expected the shape (H, W) of a picture, got {shape}")
+        raise InputError(f"expected the shape (H, W) of a picture, got {shape}")
     if not all(0 <= part <= 1 for part in at):
-        raise ValueError(
+        raise InputError(
             f"expected a place (down, right) as parts of the picture, 0 to 1, got {at}"
         )
     down, right = ((np.arange(n) + 0.5) / n - part for n, part in zip(shape, at, strict=True))
@@ -52,7 +53,7 @@ def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) ->
     A spot meter's disc is 1 to 5 % of the picture.
     """
     if not 0 < share <= 1:
-        raise ValueError(f"expected a share of the picture from 0 to 1, got {share}")
+        raise InputError(f"expected a share of the picture from 0 to 1, got {share}")
     down, right = _places(shape, at)
     distance = np.hypot(down * shape[0], right * shape[1])
     reach = np.sort(distance, axis=None)[max(round(share * distance.size), 1) - 1]
@@ -72,7 +73,7 @@ def centre(
     It falls as a Gaussian of the distance, whose width is found by halving.
     """
     if not share < inside < 1:
-        raise ValueError(
+        raise InputError(
             f"expected more than {share} of the weight inside, and less than 1, got {inside}"
         )
     down, right = _places(shape, at)
@@ -136,7 +137,7 @@ def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> F64:
     """Return the weights (H, W) of a mode, of MODES, for a picture of brightness B."""
     B = as_luminance(B)
     if mode not in MODES:
-        raise ValueError(f"expected a mode among {', '.join(MODES)}, got {mode!r}")
+        raise InputError(f"expected a mode among {', '.join(MODES)}, got {mode!r}")
     return matrix(B, at=at) if mode == "matrix" else _blind(mode, B.shape, tuple(at)).copy()
 
 
@@ -151,7 +152,7 @@ def reading(B: ArrayLike, w: ArrayLike) -> float:
     """Return B_pre = sum w B / sum w."""
     B, w = as_luminance(B), np.asarray(w, np.float64)
     if w.shape != B.shape or not np.all(w >= 0) or not w.sum() > 0:
-        raise ValueError(
+        raise InputError(
             f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}"
         )
     return float((w * B).sum() / w.sum())

@@ -18,6 +18,7 @@ from hdrlab.capture.hand_motion import views
 from hdrlab.capture.sensor import Seed
 from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, NDArray, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
+from hdrlab.errors import InputError
 
 # (y, x, z), where a ball is lit from: above, left and the camera's side
 SUN_DIRECTION = np.array([-0.5, -0.5, 0.7])
@@ -85,9 +86,9 @@ def ball(
     """
     colour, middle = np.asarray(radiance, np.float32), np.asarray(centre, float)
     if colour.shape not in ((), (3,)) or not np.all((colour > 0) & (colour < np.inf)):
-        raise ValueError(f"expected one positive radiance or three, got {describe(colour)}")
+        raise InputError(f"expected one positive radiance or three, got {describe(colour)}")
     if not (0 < radius < np.inf) or middle.shape != (2,) or stripes < 0:
-        raise ValueError(
+        raise InputError(
             f"expected a centre (y, x) and a positive radius, got {centre!r} and {radius}"
         )
     y, x = np.indices(shape) - middle[:, None, None]
@@ -111,7 +112,7 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
     """
     stride = np.asarray(step, float)
     if count < 1 or stride.shape != (2,) or not np.all(np.isfinite(stride)):
-        raise ValueError(
+        raise InputError(
             f"expected at least one frame and a step (dy, dx), got {count} and {step!r}"
         )
     return np.rint(np.arange(count)[:, None] * stride - (count - 1) / 2 * stride).astype(np.int64)
@@ -180,13 +181,13 @@ def shoot(
     moves = np.zeros((len(seconds), 2), int) if offsets is None else np.asarray(offsets)
     for what, one in (("places", places), ("offsets", moves)):
         if one.shape != (len(seconds), 2) or one.dtype.kind not in "iu":
-            raise ValueError(
+            raise InputError(
                 f"expected {what} ({len(seconds)}, 2) of whole pixels, got {describe(one)}"
             )
     if not np.any(np.all(moves == 0, axis=1)):
-        raise ValueError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
+        raise InputError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
     if model.hot:
-        raise ValueError("expected no hot pixels: here each photograph would have others")
+        raise InputError("expected no hot pixels: here each photograph would have others")
     rng, still = (
         np.random.default_rng(rng),
         views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))],
@@ -211,9 +212,9 @@ def as_figure(figure: Figure, E: F32) -> Figure:
     """Return the layers of a figure as float32, or raise a ValueError where they do not fit the scene."""
     light, mask = (np.asarray(layer) for layer in figure)
     if light.shape != E.shape or mask.shape != E.shape[:2]:
-        raise ValueError(
+        raise InputError(
             f"expected light {E.shape} and a mask of it, got {light.shape} and {mask.shape}"
         )
     if not (mask.min() >= 0 and mask.max() <= 1):
-        raise ValueError(f"expected a mask from 0 to 1, got {describe(mask)}")
+        raise InputError(f"expected a mask from 0 to 1, got {describe(mask)}")
     return Figure(as_radiance(light), mask.astype(np.float32))

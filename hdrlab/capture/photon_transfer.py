@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, describe
+from hdrlab.errors import InputError
 
 # levels^2: what rounding to whole levels adds
 ROUNDING_VARIANCE = 1 / 12
@@ -105,7 +106,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
         or len(Z) < 4
         or Z[0, 0].size < 100
     ):
-        raise ValueError(
+        raise InputError(
             f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}"
         )
     mean = Z.mean(axis=(1, 2, 3))
@@ -113,12 +114,12 @@ def calibrate(Z: ArrayLike) -> Transfer:
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
         got = S.round(1).tolist()
-        raise ValueError(
+        raise InputError(
             f"expected two pairs between the dark and the brightest, got signals {got}"
         )
     slope = line(S[used], V[used])
     if not slope > 0:
-        raise ValueError(
+        raise InputError(
             "expected noise that grows with the light, as of RAW levels; got one that does not"
         )
     R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope

@@ -29,6 +29,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from hdrlab.capture import exposure
 from hdrlab.core.arrays import F64, ArrayLike, NDArray
 from hdrlab.core.silence import silence
+from hdrlab.errors import InputError
 
 # photographs of one setting
 MOST = 1000
@@ -112,15 +113,15 @@ def plan(
     (('1/15', '1', '15', '256'), 4.0)
     """
     if not 0 < L_low <= L_high < math.inf:
-        raise ValueError(f"expected luminances 0 < low <= high, got {L_low} and {L_high} cd/m^2")
+        raise InputError(f"expected luminances 0 < low <= high, got {L_low} and {L_high} cd/m^2")
     if not 0 <= overlap < usable < math.inf:
-        raise ValueError(
+        raise InputError(
             f"expected an overlap from 0 to below the {usable} usable stops, got {overlap}"
         )
     dial = exposure.shutter_series(per_stop)
     step = math.floor((usable - overlap) * per_stop + 1e-9) / per_stop
     if step <= 0:
-        raise ValueError(
+        raise InputError(
             f"expected a step of at least 1/{per_stop} stop, got {usable - overlap:.2f}"
         )
     fills = exposure.saturating_luminance(1.0, F=aperture, S=iso)  # cd/m^2, in one second
@@ -151,7 +152,7 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
     if len(set(chosen)) < frames:
         has = f"{len(times)} over {np.ptp(known):.1f} stops"
-        raise ValueError(
+        raise InputError(
             f"expected {frames} times {stops:g} stops apart, the camera has {has}; take fewer"
         )
     return chosen
@@ -226,7 +227,7 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     positive = [L_low, snr, camera.full_well, camera.gain]
     rest = [L_high - L_low, camera.read_noise, camera.converter_noise, camera.pause]
     if not (min(positive) > 0 <= min(rest) and np.isfinite(positive + rest).all()):
-        raise ValueError(
+        raise InputError(
             f"expected 0 < low <= high, a ratio, a camera, got {L_low, L_high, snr, camera}"
         )
     t, S = settings(L_low, L_high, snr, camera)
@@ -237,7 +238,7 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
             t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH}
         )
     if found.x is None:
-        raise ValueError(
+        raise InputError(
             f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}"
         )
     t, S, dial = (

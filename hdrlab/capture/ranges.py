@@ -17,6 +17,7 @@ import numpy as np
 
 from hdrlab.capture.sensor import Sensor, as_sensor, full_electrons
 from hdrlab.core.arrays import F64, ArrayLike, Mask, NDArray, describe
+from hdrlab.errors import InputError
 
 
 class Range(NamedTuple):
@@ -45,7 +46,7 @@ def dynamic_range(high: float, low: float) -> Range:
     Range(decades=5.0, stops=16.609640474436812, decibels=100.0)
     """
     if not 0 < low <= high < np.inf:
-        raise ValueError(f"expected 0 < low <= high, got high {high} and low {low}")
+        raise InputError(f"expected 0 < low <= high, got high {high} and low {low}")
     decades = float(np.log10(high) - np.log10(low))
     return Range(decades, decades / float(np.log10(2)), 20 * decades)
 
@@ -90,7 +91,7 @@ def expose_levels(
     if not np.all((L >= 0) & np.isfinite(L)) or not (
         0 < time < np.inf and 0 < sensitivity < np.inf
     ):
-        raise ValueError(
+        raise InputError(
             f"expected luminances, a time and a sensitivity, got {describe(L)} and {time} s"
         )
     X = sensitivity * time * L
@@ -111,5 +112,5 @@ def levels_per_stop(bits: int) -> NDArray[np.int64]:
     (array([128,  64,  32,  16,   8,   4,   2,   1]), 16)
     """
     if bits not in range(1, 33):
-        raise ValueError(f"expected 1 to 32 bits, got {bits}")
+        raise InputError(f"expected 1 to 32 bits, got {bits}")
     return 2 ** np.arange(bits - 1, -1, -1)

@@ -13,6 +13,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array
 from hdrlab.core.colour import decode_srgb, encode_srgb
+from hdrlab.errors import InputError
 
 Curve = Callable[[Array], Array]
 
@@ -68,12 +69,12 @@ def as_response(response: str | Curve | Response | None) -> Response:
     """Return the Response of that name (None: "linear"), or of a rising function from [0, 1] into [0, 1]."""
     if response is None or isinstance(response, str):
         if (response or "linear") not in RESPONSES:
-            raise ValueError(f"expected a response among {', '.join(RESPONSES)}, got {response!r}")
+            raise InputError(f"expected a response among {', '.join(RESPONSES)}, got {response!r}")
         return RESPONSES[response or "linear"]
     made = response if isinstance(response, Response) else Response(response, bisect(response))
     M = np.asarray(made.f(np.linspace(0, 1, 1025)))
     if M.shape != (1025,) or not (np.all(np.diff(M) >= 0) and 0 <= M[0] < M[-1] <= 1):
-        raise ValueError(
+        raise InputError(
             "expected a response that rises from [0, 1] into [0, 1], got one that does not"
         )
     return made

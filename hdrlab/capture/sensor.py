@@ -22,6 +22,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, NDArray, as_radiance, describe
 from hdrlab.core.filters import mosaic
+from hdrlab.errors import InputError
 
 Seed = int | np.random.Generator
 
@@ -87,7 +88,7 @@ def balance(gray: ArrayLike) -> F64:
     """Return gains (3,), the least of them 1, that make a gray card of these channels (3,) gray."""
     gray = np.asarray(gray, np.float64)
     if gray.shape != (3,) or not np.all((gray > 0) & np.isfinite(gray)):
-        raise ValueError(f"expected three positive channels of a gray card, got {describe(gray)}")
+        raise InputError(f"expected three positive channels of a gray card, got {describe(gray)}")
     return gray.max() / gray
 
 
@@ -147,7 +148,7 @@ def raw(
     E, sensor = as_radiance(E), as_sensor(sensor)
     if not (0 <= time < np.inf and 0 < sensitivity < np.inf and 0 <= vignetting <= 1):
         got = f"{time} s, {sensitivity} and {vignetting}"
-        raise ValueError(
+        raise InputError(
             f"expected a time, a positive sensitivity and a vignetting from 0 to 1, got {got}"
         )
     X = exposure(vignette(E, vignetting), time, sensitivity=sensitivity)
@@ -186,9 +187,9 @@ def develop(
     """
     Z, gains, sensor = np.asarray(Z), np.asarray(white, np.float64), as_sensor(sensor)
     if Z.dtype != np.uint16 or Z.ndim not in (2, 3) or Z.size == 0 or (bayer and Z.ndim == 3):
-        raise ValueError(f"expected RAW levels uint16, (H, W) of a mosaic, got {describe(Z)}")
+        raise InputError(f"expected RAW levels uint16, (H, W) of a mosaic, got {describe(Z)}")
     if gains.shape != (3,) or not np.all((gains > 0) & np.isfinite(gains)):
-        raise ValueError(f"expected three positive gains, got {describe(gains)}")
+        raise InputError(f"expected three positive gains, got {describe(gains)}")
     X = np.float32(sensor.gain / full_electrons(sensor)) * (
         Z.astype(np.float32) - np.float32(sensor.black)
     )
@@ -204,7 +205,7 @@ def as_sensor(sensor: Sensor) -> Sensor:
     full_well, read_noise, gain, bits, black = sensor
     positive = 0 < full_well < np.inf and 0 < gain < np.inf and 0 <= read_noise < np.inf
     if not (positive and bits in range(1, 17) and 0 <= black < 2**bits - 1):
-        raise ValueError(
+        raise InputError(
             f"expected a well, a gain and 1 to 16 bits that hold the black level, got {sensor}"
         )
     return sensor

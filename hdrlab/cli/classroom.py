@@ -14,6 +14,7 @@ import click
 
 from hdrlab.cli import common, grading
 from hdrlab.course import plan as plans
+from hdrlab.errors import InputError
 
 # options of a run; the others are of the class, and a regrade takes them as they were
 OF_A_RUN = ("submission", "out", "only", "since", "regrade", "jobs", "cluster")
@@ -38,7 +39,7 @@ def class_of(conditions: plans.Conditions, asked: Any) -> Class:
     from hdrlab.course.classroom import handins, marks, roster as lists, run as classroom
 
     if asked.roster is None:
-        raise ValueError("expected --roster, which says who is in the class")
+        raise InputError("expected --roster, which says who is in the class")
     homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
     late, before = plans.read(asked.plan).late, marks.read(asked.before)
     course = classroom.Course(lists.read(asked.roster), homework, conditions, late, before)
@@ -134,7 +135,7 @@ def _executor(course: "Course", asked: Any) -> "Executor":
             raise common.no_tier(found.says)
         return processes.Processes(grader.result, asked.jobs)
     if asked.jobs is not None:
-        raise ValueError(
+        raise InputError(
             "expected --jobs or --cluster: a cluster grades as many at a time as it has threads"
         )
     common.require("cluster", ["dask", "distributed"])
@@ -195,7 +196,7 @@ def _as_graded(results: Path, how: dict[str, Any]) -> Class:
     """Return a class as it was graded, by the options of then but for those that are given."""
     file = results / "asked.json"
     if not file.is_file():
-        raise ValueError(
+        raise InputError(
             f"{results}: expected the results of a class that `hdrlab grade` has graded"
         )
     folder, said = json.loads(file.read_bytes())

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import click
 
 from hdrlab import __version__
+from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 
 Item = TypeVar("Item")
@@ -91,7 +92,7 @@ def _photographs(folder: Path) -> list[Path]:
     return [path for path in inside if path.suffix.lower() in album.SUFFIXES]
 
 
-def no_tier(reason: str) -> ValueError:
+def no_tier(reason: str) -> InputError:
     """Return the error of a tier that cannot be had, with what can be done about it, in one line."""
     from hdrlab.course.sandbox import doctor
 
@@ -100,13 +101,13 @@ def no_tier(reason: str) -> ValueError:
     other = (
         "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
     )
-    return ValueError(f"{line}; {helps}{other}")
+    return InputError(f"{line}; {helps}{other}")
 
 
 def require(extra: str, names: Iterable[str]) -> None:
     """Raise a ValueError that says what to install, where modules of an extra are not there."""
     if missing := [name for name in names if find_spec(name) is None]:
-        raise ValueError(f'expected {", ".join(missing)}: pip install "hdrlab[{extra}]"')
+        raise InputError(f'expected {", ".join(missing)}: pip install "hdrlab[{extra}]"')
 
 
 def say(word: str, lines: Iterable[object]) -> None:
@@ -167,7 +168,7 @@ def read_map(source: Path, clean: bool) -> Any:
     said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
     pixels = E.shape[0] * E.shape[1]
     if not clean and 2 * (unknown + black + infinite / (E.size / pixels)) >= pixels:
-        raise ValueError(
+        raise InputError(
             f"{source}: expected radiance, got {said} of {pixels} pixels; --clean repairs all"
         )
     if said:
@@ -202,7 +203,7 @@ def colour(text: str | None) -> tuple[int, int, int] | None:
     try:
         red, green, blue = bytes.fromhex(text.removeprefix("#"))
     except ValueError:
-        raise ValueError(
+        raise InputError(
             f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}"
         ) from None
     return red, green, blue
@@ -212,7 +213,7 @@ def reading(text: str) -> tuple[int, int, float]:
     """Return X,Y=CD as a place and its luminance, or raise a ValueError."""
     found = re.fullmatch(r"(\d{1,6}),(\d{1,6})=(\d{1,9}(?:\.\d{1,9})?)", text, re.ASCII)
     if not found:
-        raise ValueError(f"--calibrate: expected X,Y=CD, such as 640,360=125, got {text[:40]!r}")
+        raise InputError(f"--calibrate: expected X,Y=CD, such as 640,360=125, got {text[:40]!r}")
     return int(found[1]), int(found[2]), float(found[3])
 
 
@@ -220,7 +221,7 @@ def knob(text: str) -> tuple[str, Any]:
     """Return knob=value as a name and a number, a word, True, False or None."""
     name, equals, value = text.partition("=")
     if not equals or not name.isidentifier():
-        raise ValueError(f"--set: expected knob=value, such as key=0.36, got {text!r}")
+        raise InputError(f"--set: expected knob=value, such as key=0.36, got {text!r}")
     if value in ("true", "false", "none"):
         return name, {"true": True, "false": False, "none": None}[value]
     try:

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from hdrlab.cli import common, photographs
+from hdrlab.errors import InputError
 
 MODES = ("spot", "partial", "centre", "average", "matrix")
 
@@ -53,7 +54,7 @@ def plan(asked: Any) -> None:
         L = luminance(common.read_map(asked.source, clean=False))
         low, high = np.quantile(L[L > 0], [0.001, 0.999]) if (L > 0).any() else (0.0, 0.0)
     elif asked.source is not None or low is None or high is None:
-        raise ValueError("expected LOW and HIGH in cd/m^2, or --map FILE")
+        raise InputError("expected LOW and HIGH in cd/m^2, or --map FILE")
     made = planning.plan(low, high, per_stop=3 if asked.thirds else 1, **camera)
     usual = planning.Model(speeds=(camera["iso"],), aperture=camera["aperture"])
     maker = usual._replace(**_camera(asked.model, usual._fields)) if asked.model else usual
@@ -196,7 +197,7 @@ def _camera(file: Path, known: Sequence[str]) -> dict[str, Any]:
     except (TypeError, ValueError, OverflowError):
         found = {"": ()}
     if not set(found) <= set(known) or found.get("speeds") == ():
-        raise ValueError(
+        raise InputError(
             f"{file}: expected numbers {', '.join(known)}, of speeds a list, got {said}"
         )
     return found
@@ -206,7 +207,7 @@ def _place(text: str) -> tuple[float, float]:
     try:
         down, right = (float(part) for part in text.split(","))
     except ValueError:
-        raise ValueError(
+        raise InputError(
             f"--at: expected two parts of the picture, such as 0.5,0.5, got {text!r}"
         ) from None
     return down, right

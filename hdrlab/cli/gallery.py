@@ -12,6 +12,7 @@ from hdrlab.course.classroom import roster as lists
 from hdrlab.course.gallery import store
 from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 FOLDER = click.argument("folder", type=common.FILE)
 NEEDS = ("starlette", "uvicorn")
@@ -35,7 +36,7 @@ def init(folder: Path, title: str, closes: str, marks: int) -> None:
         end = datetime.fromisoformat(closes)
     except ValueError:
         said = f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
-        raise ValueError(said) from None
+        raise InputError(said) from None
     store.create(folder, plain(title, 80), end, marks)
     click.echo(
         f"{folder}: a gallery, open until {store.format_time(end)}, {marks} votes on a ballot"
@@ -151,7 +152,7 @@ def close(folder: Path) -> None:
     with store.writing(folder) as db:
         now = datetime.now().astimezone()
         if not store.settings(db).is_open(now.timestamp()):
-            raise ValueError(f"{folder}: expected an open vote, it has ended")
+            raise InputError(f"{folder}: expected an open vote, it has ended")
         store.close(db, now)
     click.echo(f"{folder}: closed")
 
@@ -166,7 +167,7 @@ def results(folder: Path, out: Path) -> None:
     with closing(store.connect(folder)) as db:
         set_up = store.settings(db)
         if set_up.is_open(time.time()):
-            raise ValueError(
+            raise InputError(
                 f"{folder}: expected a vote that has ended, it is open until {set_up.closes}"
             )
         rows, changes = list(ballots.gradebook(db)), store.changes(db)

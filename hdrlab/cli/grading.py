@@ -7,6 +7,7 @@ import click
 
 from hdrlab.cli import common
 from hdrlab.course import plan as plans
+from hdrlab.errors import InputError
 
 if TYPE_CHECKING:
     from hdrlab.course.reports.results import Result
@@ -46,7 +47,7 @@ def check(asked: Any) -> None:
     if asked.task is not None:
         tasks = {one.id: one for one in homework.tasks}
         if asked.task not in tasks:
-            raise ValueError(f"expected a task out of {', '.join(tasks)}, got {asked.task!r}")
+            raise InputError(f"expected a task out of {', '.join(tasks)}, got {asked.task!r}")
         homework = homework._replace(tasks=(tasks[asked.task],))
     conditions = plans.Conditions(tier="practice", draw=asked.page is not None)
     result = _graded(asked.submission, homework, conditions)
@@ -109,7 +110,7 @@ def grade(asked: Any) -> None:
     from hdrlab.course.scratch import temporary_folder
 
     if asked.student and asked.secret_file is None:
-        raise ValueError(
+        raise InputError(
             "expected --secret-file with --student: else anybody could draw the same inputs"
         )
     secret, note = secret_of(asked.secret_file)
@@ -151,10 +152,10 @@ def homework_of(submission: Path, name: str | None, plan: Path | None) -> plans.
         fitting = [one for one in homeworks if one in submission.stem.lower()]
         if len(fitting) != 1:
             names = ", ".join(homeworks)
-            raise ValueError(f"expected --homework, one of {names}: {submission.name} does not say")
+            raise InputError(f"expected --homework, one of {names}: {submission.name} does not say")
         (name,) = fitting
     if name not in homeworks:
-        raise ValueError(f"expected a homework out of {', '.join(homeworks)}, got {name!r}")
+        raise InputError(f"expected a homework out of {', '.join(homeworks)}, got {name!r}")
     return homeworks[name]
 
 

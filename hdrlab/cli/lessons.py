@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common, grading
+from hdrlab.errors import InputError
 
 FIRST = "notebooks/00_welcome.ipynb"
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
@@ -79,7 +80,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
     if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
-        raise ValueError(
+        raise InputError(
             f"expected notebooks of different names, and none called {pages.FRONT.name}"
         )
     os.getcwd()  # Jupyter needs one: where it is gone, nothing is begun

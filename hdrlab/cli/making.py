@@ -8,6 +8,7 @@ import click
 from hdrlab.cli import common
 from hdrlab.cli.grading import FILE, FOLDER, PLAN, SECRET, secret_of
 from hdrlab.course import plan as plans
+from hdrlab.errors import InputError
 
 
 @common.main.group()
@@ -46,7 +47,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_clas
         if file is not None:
             secret, note = secret_of(of_class["secret_file"])
             if not secret:
-                raise ValueError(
+                raise InputError(
                     "expected --secret-file with --variants, which draws them, as for grade"
                 )
             click.echo(note, nl=bool(note), err=True)
@@ -74,7 +75,7 @@ def export(asked: Any) -> None:
     from hdrlab.course.export import gradescope as to_gradescope, nbgrader as to_nbgrader
 
     if asked.nbgrader is None and asked.gradescope is None:
-        raise ValueError("expected --nbgrader DIR or --gradescope DIR")
+        raise InputError("expected --nbgrader DIR or --gradescope DIR")
     read = plans.read(asked.plan)
     if asked.nbgrader is not None:
         common.list_files(to_nbgrader.export(read, asked.nbgrader))

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from hdrlab.cli import common, terminal
+from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 
 TO = ["picture", "ultrahdr", "png", "avif", "jxl"]
@@ -83,7 +84,7 @@ def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, A
     for knob in knobs:
         if knob not in known:
             name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]
-            raise ValueError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")
+            raise InputError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")
 
 
 @common.command()

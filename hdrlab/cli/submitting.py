@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
+from hdrlab.errors import InputError
 
 PROJECT = click.argument("project", type=common.FILE, default=".")
 
@@ -26,7 +27,7 @@ def report(project: Path, example: bool) -> None:
     words = project / projects.WORDS[0]
     if example:
         if words.exists():
-            raise ValueError(f"{words}: expected no report yet, it is there")
+            raise InputError(f"{words}: expected no report yet, it is there")
         words.write_text(reports.example(), encoding="utf8")
         click.echo(words)
         return
@@ -52,7 +53,7 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     from hdrlab.course.projects import project as projects, review, submit as handing
 
     if out.exists() and not handing.is_archive(out):
-        raise ValueError(
+        raise InputError(
             f"{out}: expected a new name or an archive of before, this is another file"
         )
     found = projects.look(project)
@@ -65,7 +66,7 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
         click.echo(f"{'  ok     ' if good else '  MISSING'}  {part:<12} {indented}")
     missing = sum(not one.good for one in findings)
     if missing and not (force and found.artifact):
-        raise ValueError(
+        raise InputError(
             f"{missing} to mend; nothing was written (--force makes the archive as it is)"
         )
     files = list(

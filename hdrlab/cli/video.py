@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from hdrlab.cli import common, curves
+from hdrlab.errors import InputError
 
 
 @common.command()
@@ -68,9 +69,9 @@ def seconds(text: str) -> list[float]:
     try:
         found = [exposure.seconds(one) for one in text.split(",")]
     except ValueError:
-        raise ValueError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
+        raise InputError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
     if len(set(found)) < 2:
-        raise ValueError(f"--times: expected at least two exposures of a turn, got {text!r}")
+        raise InputError(f"--times: expected at least two exposures of a turn, got {text!r}")
     return found
 
 
@@ -84,7 +85,7 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     if isinstance(response, Path):
         return curves.method_or_curve(response)()  # type: ignore[operator]  # of a file it is a function
     if len(frames) < len(turn):
-        raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
+        raise InputError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
     taken = bracket(np.stack(frames), turn)
     method = recovery.find_validated_method("space" if response == "auto" else response)
     return method(taken.images, taken.times)

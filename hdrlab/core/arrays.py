@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike as ArrayLike, NDArray as NDArray
 
+from hdrlab.errors import InputError
+
 Array = NDArray[Any]
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -58,7 +60,7 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
         # forgets masks
         if len(kinds) > 1:
             got = ", ".join(sorted(kinds))
-            raise ValueError(
+            raise InputError(
                 f"expected frames of one size and type, no mask and no palette, got {got}"
             )
         images = np.stack(frames) if frames else np.empty(0)
@@ -67,11 +69,11 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
         or (images.ndim == 4 and images.shape[-1] != 3)
         or 0 in images.shape
     ):
-        raise ValueError(
+        raise InputError(
             f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}"
         )
     if images.dtype not in (np.uint8, np.uint16) or np.ma.is_masked(images):
-        raise ValueError(f"expected images of uint8 or uint16, got {describe(images)}")
+        raise InputError(f"expected images of uint8 or uint16, got {describe(images)}")
     return np.asarray(images)
 
 
@@ -88,12 +90,12 @@ def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.f
         or np.asarray(times).dtype.kind not in "biufO"
         or np.ma.is_masked(times)
     ):
-        raise ValueError(f"expected {count} exposure times, one per image, got {describe(times)}")
+        raise InputError(f"expected {count} exposure times, one per image, got {describe(times)}")
     checked = np.asarray(times, dtype=np.float64)
     if not np.all(np.isfinite(checked) & (checked > 0)):
-        raise ValueError(f"expected positive exposure times in seconds, got {checked.tolist()}")
+        raise InputError(f"expected positive exposure times in seconds, got {checked.tolist()}")
     if len(np.unique(checked)) < distinct:
-        raise ValueError(
+        raise InputError(
             f"expected at least {distinct} different exposure times, got {checked.tolist()} s"
         )
     return checked
@@ -105,7 +107,7 @@ def as_mask(valid: ArrayLike | None, images: Array) -> NDArray[np.bool_] | None:
         return None
     checked = np.asarray(valid, dtype=bool)
     if checked.shape != images.shape[:3] or np.ma.is_masked(valid):
-        raise ValueError(f"expected a mask of shape {images.shape[:3]}, got {describe(valid)}")
+        raise InputError(f"expected a mask of shape {images.shape[:3]}, got {describe(valid)}")
     return checked
 
 
@@ -113,7 +115,7 @@ def as_radiance(E: ArrayLike) -> NDArray[np.float32]:
     """Return `E` as float32 (H, W) or (H, W, 3), finite and not negative, or raise a ValueError."""
     array = np.asanyarray(E)
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] != 3) or 0 in array.shape:
-        raise ValueError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
+        raise InputError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
     return _finite(array, "radiance")
 
 
@@ -121,7 +123,7 @@ def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
     """Return `L` as float32 (H, W), finite and not negative, or raise a ValueError."""
     array = np.asanyarray(L)
     if array.ndim != 2 or 0 in array.shape:
-        raise ValueError(f"expected luminance (H, W), got {describe(array)}")
+        raise InputError(f"expected luminance (H, W), got {describe(array)}")
     return _finite(array, "luminance")
 
 
@@ -129,7 +131,7 @@ def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
     Z, why = np.asarray(picture), hidden(picture)
     if why or Z.dtype != np.uint8 or Z.ndim < 2 or Z.shape[2:] not in ((), (3,)) or not Z.size:
-        raise ValueError(
+        raise InputError(
             f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}"
         )
     return Z
@@ -138,7 +140,7 @@ def as_picture(picture: ArrayLike) -> Array:
 def _finite(array: Array, what: str) -> NDArray[np.float32]:
     """Return `array` as float32, or raise a ValueError that counts what is not finite or negative."""
     if array.dtype.kind not in "iuf" or np.ma.is_masked(array):
-        raise ValueError(f"expected {what} as numbers, got {describe(array)}")
+        raise InputError(f"expected {what} as numbers, got {describe(array)}")
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
         array = np.asarray(array).astype(np.float32, copy=False)
     # one pass tells it in most cases: infinity, NaN and what has a minus have the largest bits
@@ -147,7 +149,7 @@ def _finite(array: Array, what: str) -> NDArray[np.float32]:
     ):
         wrong = map(np.count_nonzero, (np.isnan(array), np.isinf(array), array < 0))
         counts = "{} NaN, {} infinite and {} negative values".format(*wrong)
-        raise ValueError(
+        raise InputError(
             f"expected finite {what} that is not negative, got {counts} in shape {array.shape}"
         )
     return array
@@ -172,12 +174,12 @@ def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
     table = as_table(g, n).reshape(n, -1)
     if table.shape[1] not in (1, channels):
         wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
-        raise ValueError(f"expected a response {wanted}, got shape {table.shape}")
+        raise InputError(f"expected a response {wanted}, got shape {table.shape}")
     if len(np.asarray(g)) not in (n, 256, 65536):
-        raise ValueError(f"expected a response of {n} levels, or of 256, got {describe(g)}")
+        raise InputError(f"expected a response of {n} levels, or of 256, got {describe(g)}")
     if not np.all(table[-1] > table[0]) or np.abs(table).max() > LARGEST_LN_EXPOSURE:
         most = LARGEST_LN_EXPOSURE
-        raise ValueError(
+        raise InputError(
             f"expected ln exposures that rise, from -{most} to {most}, got {describe(table)}"
         )
     return np.broadcast_to(table, (n, channels))
@@ -190,10 +192,10 @@ def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
     """
     given = np.asanyarray(table)
     if given.dtype.kind not in "biuf" or np.ma.is_masked(given):
-        raise ValueError(f"expected a table of numbers, all of them known, got {describe(given)}")
+        raise InputError(f"expected a table of numbers, all of them known, got {describe(given)}")
     array = np.asarray(given, dtype=np.float64)
     if array.ndim not in (1, 2) or len(array) < 2 or not np.all(np.isfinite(array)):
-        raise ValueError(
+        raise InputError(
             f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}"
         )
     if len(array) == n:

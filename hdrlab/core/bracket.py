@@ -7,6 +7,7 @@ from zlib import crc32
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, as_times
+from hdrlab.errors import InputError
 
 
 class Bracket(NamedTuple):
@@ -59,7 +60,7 @@ def bracket(
         tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
     )
     if len(names) != len(images):
-        raise ValueError(f"expected {len(images)} names, one per image, got {len(names)}")
+        raise InputError(f"expected {len(images)} names, one per image, got {len(names)}")
     mask, order = as_mask(valid, images), short_to_long(images, times)
     if np.any(order != np.arange(len(order))):
         images, times, names = images[order], times[order], tuple(names[j] for j in order)

@@ -25,6 +25,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance, describe
 from hdrlab.core.threads import each
+from hdrlab.errors import InputError
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
 DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
@@ -116,7 +117,7 @@ def render(
     [[[188, 188, 188]]]
     """
     if way not in WAYS:
-        raise ValueError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
+        raise InputError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
     E, L, Ld = _as_fitting(E, L, Ld, saturation)
     picture = np.empty(E.shape, np.uint8)
 
@@ -189,9 +190,9 @@ def _as_fitting(
 ) -> tuple[F32, F32, F32]:
     E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
     if not E.shape[:2] == L.shape == Ld.shape:
-        raise ValueError(
+        raise InputError(
             f"expected L and Ld of shape {E.shape[:2]}, got {describe(L)} and {describe(Ld)}"
         )
     if not 0 <= saturation < np.inf:
-        raise ValueError(f"expected a saturation that is finite and not negative, got {saturation}")
+        raise InputError(f"expected a saturation that is finite and not negative, got {saturation}")
     return E, L, Ld

@@ -8,6 +8,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 
 # pixels: a larger picture is ranked by every second, third, ... of its pixels
 ENOUGH = 1 << 18
@@ -77,9 +78,9 @@ def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
     5.0
     """
     if not 0 <= tail < 0.5:
-        raise ValueError(f"expected a tail in [0, 0.5), got {tail}")
+        raise InputError(f"expected a tail in [0, 0.5), got {tail}")
     L = luminance(E)
     if not L.any():
-        raise ValueError("expected radiance with a positive pixel, got zeros")
+        raise InputError("expected radiance with a positive pixel, got zeros")
     low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
     return float(np.log10(high / low))

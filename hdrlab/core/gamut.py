@@ -24,6 +24,7 @@ import scipy
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, Mask, describe
 from hdrlab.core.colour import LUMINANCE
+from hdrlab.errors import InputError
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
 # of screens that show more colours: ITU-R BT.2020, and Display P3, whose primaries are of SMPTE RP
@@ -87,7 +88,7 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
     array = np.asanyarray(E)
     fits = array.ndim == 2 or (array.ndim == 3 and array.shape[2] == 3)
     if not fits or 0 in array.shape or array.dtype.kind not in "iuf" or np.ma.is_masked(array):
-        raise ValueError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
+        raise InputError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
     with np.errstate(over="ignore"):
         values = np.asarray(array).astype(np.float32)
     planes = values.reshape(*values.shape[:2], -1)

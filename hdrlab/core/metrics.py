@@ -15,6 +15,7 @@ import numpy as np
 
 from hdrlab.core import arrays
 from hdrlab.core.arrays import F64, Array, ArrayLike, NDArray
+from hdrlab.errors import InputError
 
 # Of 256 levels: noise dominates below, the cut of the weights above.
 LOW_LEVEL, HIGH_LEVEL = 10, 250
@@ -99,7 +100,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     E, truth = arrays.as_radiance(E).astype(np.float64), arrays.as_radiance(truth)
     well = np.asarray(well)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
-        raise ValueError(
+        raise InputError(
             f"expected maps of one shape, got {E.shape}, {truth.shape}, {arrays.describe(well)}"
         )
     ratio = E / np.where(truth > 0, truth, np.nan)
@@ -107,7 +108,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
         np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     )
     if not median > 0:
-        raise ValueError("expected a well exposed pixel with light, got none")
+        raise InputError("expected a well exposed pixel with light, got none")
     return ratio / median - 1
 
 
@@ -115,7 +116,7 @@ def offset_errors(found: ArrayLike, truth: ArrayLike) -> NDArray[np.int64]:
     """Return found - truth (P, 2) in pixels, less the shift that most frames share: the whole map's."""
     found, truth = np.asarray(found, np.int64), np.asarray(truth, np.int64)
     if found.shape != truth.shape or found.ndim != 2 or found.shape[1] != 2:
-        raise ValueError(
+        raise InputError(
             f"expected offsets (P, 2) twice, got {arrays.describe(found)} and {arrays.describe(truth)}"
         )
     apart = found - truth

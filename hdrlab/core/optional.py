@@ -14,11 +14,13 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
+from hdrlab.errors import InputError
+
 # where pip knows a module under another name, or as an extra
 PACKAGES = {"skimage": "scikit-image", "rawpy": '"hdrlab[raw]"', "pillow_heif": '"hdrlab[heic]"'}
 
 
-class MissingPackageError(ModuleNotFoundError, ValueError):
+class MissingPackageError(ModuleNotFoundError, InputError):
     """A file needs a package that is not installed; the message says what to install."""
 
 

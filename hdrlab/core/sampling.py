@@ -15,6 +15,7 @@ needs no alignment, averages noise away, and spends its samples where the pictur
 import numpy as np
 
 from hdrlab.core.arrays import Array, ArrayLike, Indices, Mask, as_stack, to_256
+from hdrlab.errors import InputError
 
 # an even choice of about so many ranks a frame as well as all of it
 PIXELS = 1_000_000
@@ -62,7 +63,7 @@ def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
     """Raise a ValueError unless a sample has weight at two levels, at two times: such connect the levels."""
     Z, times, has_weight = np.asarray(Z), np.asarray(times), np.asarray(w) > 0
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or times.shape != Z.shape[1:]:
-        raise ValueError(
+        raise InputError(
             f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}"
         )
     for z in (Z[:50], Z):  # the first few connect levels, as a rule
@@ -71,7 +72,7 @@ def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
             np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)
         ):
             return
-    raise ValueError(
+    raise InputError(
         "expected samples seen well in two exposures, which connect the levels; got none"
     )
 
@@ -83,7 +84,7 @@ def _shown_in_all(valid: ArrayLike, images: Array) -> Mask:
         got = (
             "but the mask leaves none" if valid.shape == images.shape[:3] else f"got {valid.shape}"
         )
-        raise ValueError(
+        raise InputError(
             f"expected a mask of shape {images.shape[:3]} with pixels that all show, {got}"
         )
     return np.asarray(valid.all(axis=0))

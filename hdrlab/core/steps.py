@@ -4,6 +4,8 @@ from collections import deque
 from collections.abc import Iterable
 from typing import TypeVar
 
+from hdrlab.errors import InputError
+
 State = TypeVar("State")
 
 
@@ -17,5 +19,5 @@ def last(states: Iterable[State]) -> State:
     """
     kept = deque(states, maxlen=1)
     if not kept:
-        raise ValueError("expected at least one state, got none")
+        raise InputError("expected at least one state, got none")
     return kept[0]

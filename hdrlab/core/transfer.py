@@ -18,6 +18,7 @@ T(m) + 1/2.
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_mask, as_stack, describe, levels
+from hdrlab.errors import InputError
 
 
 def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:
@@ -35,7 +36,7 @@ def cumulate(h: ArrayLike, n: int) -> F64:
     """Return H (n + 1,) from 0 to 1: shares of all pixels, so that photographs of two sizes compare."""
     h = np.asarray(h, np.float64)
     if h.shape != (n,) or not h.min() >= 0 or not h.any():
-        raise ValueError(f"expected a histogram ({n},) of counts, not all 0, got {describe(h)}")
+        raise InputError(f"expected a histogram ({n},) of counts, not all 0, got {describe(h)}")
     return np.concatenate([[0], np.cumsum(h) / h.sum()])
 
 

@@ -11,6 +11,7 @@ says how much, validity says whether.
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike
+from hdrlab.errors import InputError
 
 
 def hat(n: int = 256) -> F64:
@@ -46,7 +47,7 @@ def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
     level too.
     """
     if not 0 <= below < above <= 1:
-        raise ValueError(f"expected 0 <= below < above <= 1, got below={below} and above={above}")
+        raise InputError(f"expected 0 <= below < above <= 1, got below={below} and above={above}")
     w = np.asarray(w, dtype=np.float64)
     z = np.linspace(0, 1, len(w))
     return np.where((z > above) | (z < below), 0.0, w)
@@ -63,10 +64,10 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
     """
     g = np.asarray(g, dtype=np.float64)
     if g.ndim not in (1, 2) or len(g) < 3 or not np.all(np.isfinite(g)):
-        raise ValueError(f"expected a finite response (n,) or (n, 3), got shape {g.shape}")
+        raise InputError(f"expected a finite response (n,) or (n, 3), got shape {g.shape}")
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     if not f[-1] > f[0]:
-        raise ValueError(
+        raise InputError(
             "expected a response that rises, got one that ends where it began, or below"
         )
     z = np.arange(len(g))

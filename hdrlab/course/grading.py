@@ -31,6 +31,7 @@ from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.submission import Submission
 from hdrlab.course.wording import lines
+from hdrlab.errors import InputError
 
 WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
@@ -88,7 +89,7 @@ def heard_steps(
 ) -> Iterator[Any]:
     """Yield what the checks write down as they run, and first their digest; `more` stands in the job."""
     if conditions.hidden is not None and not conditions.hidden.is_dir():
-        raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
+        raise InputError(f"expected a folder with hidden checks, got {conditions.hidden}")
     tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
@@ -111,7 +112,7 @@ def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
     ]
     if present := [file for file in files if file.is_file()]:
         return present
-    raise ValueError(f"expected checks for {homework.name} in {homes[0]}, got none")
+    raise InputError(f"expected checks for {homework.name} in {homes[0]}, got none")
 
 
 def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[Path]:

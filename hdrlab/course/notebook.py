@@ -12,6 +12,7 @@ from hdrlab.course import grading, plan as plans, submission, variants as choice
 from hdrlab.course.code import closure, names
 from hdrlab.course.material import handouts
 from hdrlab.course.reports import feedback, results
+from hdrlab.errors import InputError
 
 PRACTICE = plans.Conditions(tier="practice")
 _latest: dict[str, results.Result] = {}  # of each task in this kernel, for the homework's bar
@@ -116,7 +117,7 @@ def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
         if name in [task.id for task in homework.tasks]:
             return homework, [name]
     tasks = ", ".join(task.id for homework in homeworks.values() for task in homework.tasks)
-    raise ValueError(
+    raise InputError(
         f"expected a homework ({', '.join(homeworks)}) or a task ({tasks}), got {name!r}"
     )
 

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks import rewording
+from hdrlab.errors import InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
 PATIENCE = 10.0  # seconds for one answer
@@ -143,13 +144,13 @@ def read(path: str | Path | None = None) -> Plan:
         ValueError,
         RecursionError,
     ) as error:  # of digits beyond counting, and brackets in brackets
-        raise ValueError(f"{path}: expected a plan in TOML, {error}") from None
+        raise InputError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
     plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     twice = sorted({id for id in ids if ids.count(id) > 1})
     if not ids or twice:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected tasks, each once, got {', '.join(twice) or 'none':.200}"
         )
     return plan
@@ -160,7 +161,7 @@ def _late(table: dict[str, Any], path: Path) -> Late:
         late = Late(**table)
         if late.free_days >= 0 and late.points_a_day >= 0:
             return late
-    raise ValueError(
+    raise InputError(
         f"{path}: expected free_days and points_a_day, at least 0, in [late], got {table!s:.80}"
     )
 
@@ -176,21 +177,21 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
         at_most = float(sheet["at_most"]) if "at_most" in sheet else None
         made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand, at_most)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected title, due and tasks in {here}, {error!r:.200}"
         ) from None
     if not isinstance(made.due, datetime) or made.due.tzinfo is None:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}"
         )
     points = [one.points for one in tasks] + [one.points for one in by_hand]
     if not (points and min(points) >= 0 and sum(points) < math.inf):
-        raise ValueError(
+        raise InputError(
             f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}"
         )
     if at_most is not None and not 0 < at_most <= sum(points):
         most = sum(points)
-        raise ValueError(
+        raise InputError(
             f"{path}: expected at_most of {here} above 0 and at most {most:g}, got {at_most:g}"
         )
     return made
@@ -204,7 +205,7 @@ def _task(one: dict[str, Any], plan: Path) -> Task:
     )
     known = {} if ":" in function else rewording.parameters(id)
     if not {*parameters} <= {*known}:
-        raise ValueError(
+        raise InputError(
             f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}"
         )
     return Task(id, function, float(one["points"]), one.get("minimum") is True, parameters)
@@ -214,7 +215,7 @@ def _placed(function: str, plan: Path) -> str:
     """Return a function as a plan names it, the file of one that is not the library's with its folder."""
     file, colon, name = function.rpartition(":")
     if colon and not (file.endswith(".py") and file == Path(file).name and name):
-        raise ValueError(
+        raise InputError(
             f"expected a function of hdrlab, or FILE.py:NAME beside the plan, got {function}"
         )
     return f"{plan.resolve().parent / file}:{name}" if colon else function
@@ -246,7 +247,7 @@ def read_secret(path: Path) -> tuple[str, bool]:
             file.write(secrets.token_urlsafe(32) + "\n")
     secret = path.read_text(encoding="utf8").strip()
     if not secret:
-        raise ValueError(f"{path}: expected a line that nobody else knows, it is empty")
+        raise InputError(f"{path}: expected a line that nobody else knows, it is empty")
     return secret, made
 
 

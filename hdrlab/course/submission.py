@@ -20,6 +20,7 @@ from hdrlab.course.archives.members import Limits, Refused
 from hdrlab.course.classroom.executors import alone
 from hdrlab.course.code import closure, names
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 READ, PACKED = (".ipynb", ".py"), (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
 LARGEST = 50_000_000  # bytes: a notebook with pictures has a few
@@ -77,7 +78,7 @@ def read(
                 what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, as no homework does"
                 return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
             if tried == TRIES or not error.killed:
-                raise ValueError(f"it could not be read: {error}") from None
+                raise InputError(f"it could not be read: {error}") from None
     return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from hdrlab.core import arrays
 from hdrlab.core.arrays import F32, F64, ArrayLike, Flags, Mask
+from hdrlab.errors import InputError
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
@@ -55,7 +56,7 @@ def measure_level_exposures(
     stack, E = arrays.as_stack(images), arrays.as_radiance(E)
     times, mask = arrays.as_times(times, len(stack)), arrays.as_mask(valid, stack)
     if E.shape != stack.shape[1:]:
-        raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
+        raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     few, channels = choose_grid(E.shape), 1 if E.ndim == 2 else E.shape[-1]
     Z = np.moveaxis(arrays.to_256(stack[:, *few]).reshape(len(stack), -1, channels), -1, 0).copy()
     whole: Mask = np.all(Z <= TOP, axis=0)

@@ -25,6 +25,7 @@ from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance
 from hdrlab.diagnostics.doubts import say
+from hdrlab.errors import InputError
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a channel, on an even grid, that stand for all
@@ -94,7 +95,7 @@ def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLi
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
     light, Z = as_radiance(E).astype(np.float64), stack.reshape(*stack.shape[:3], -1)
     if light.shape != stack.shape[1:]:
-        raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {light.shape}")
+        raise InputError(f"expected a map of shape {stack.shape[1:]}, got {light.shape}")
     every, found = max(1, int(np.sqrt(Z[0, ..., 0].size / PIXELS))), []
     few = np.s_[2:-2:every, 2:-2:every]
     for c, curve in enumerate(curves.T):
@@ -147,7 +148,7 @@ def _fit(
         rows.append([*scatter(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
     S, bias, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 7).T
     if len(S) < 6:
-        raise ValueError(say("few", count=len(S)))
+        raise InputError(say("few", count=len(S)))
     N, R, rho = _solve(S, a0, np.array(a), count)
     return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0) / MEDIAN)
 

@@ -30,6 +30,7 @@ from hdrlab.core.arrays import (
     as_times,
 )
 from hdrlab.diagnostics.doubts import say
+from hdrlab.errors import InputError
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
 NEIGHBOUR_ERROR_LIMIT = 4.0
@@ -114,16 +115,16 @@ def validate_response(
     Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
     error, darker_share = neighbour_errors(Z, t, curve)
     if np.any(darker_share > 0.5):
-        raise ValueError(say("darker", pair=_pair(t, darker_share)))
+        raise InputError(say("darker", pair=_pair(t, darker_share)))
     measured = error[np.isfinite(error)]
     if np.any(measured > NEIGHBOUR_ERROR_LIMIT) or (
         len(measured) > 2 and np.median(measured) > MEDIAN_ERROR_LIMIT
     ):
-        raise ValueError(say("steep", pair=_pair(t, error), stops=measured.max()))
+        raise InputError(say("steep", pair=_pair(t, error), stops=measured.max()))
     low, high = INNER_LEVELS
     span = float(np.max(curve[high] - curve[low]) / np.log(2))
     if span > SPAN_LIMIT:
-        raise ValueError(say("wide", stops=span, low=low, high=high, widest=WIDEST_CAMERA))
+        raise InputError(say("wide", stops=span, low=low, high=high, widest=WIDEST_CAMERA))
     return g
 
 

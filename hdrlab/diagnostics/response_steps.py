@@ -27,6 +27,7 @@ import numpy as np
 from hdrlab.core import weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask, as_times
 from hdrlab.core.weights import second_differences
+from hdrlab.errors import InputError
 
 W = weights.cut(weights.hat(), below=0.02)
 # of w(a) w(b): below, a level is of the response's ends, where the floor of a scan stays when light
@@ -80,7 +81,7 @@ def as_ascending_times(times: ArrayLike, count: int) -> F64:
     """Return `times` as float64 (count,), from short to long, or raise a ValueError."""
     checked = as_times(times, count)
     if np.any(np.diff(checked) < 0):
-        raise ValueError(f"expected photographs from short to long, got times {checked.tolist()}")
+        raise InputError(f"expected photographs from short to long, got times {checked.tolist()}")
     return checked
 
 

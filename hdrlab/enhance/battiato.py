@@ -21,6 +21,7 @@ from scipy.ndimage import correlate1d, laplace
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_picture, describe
 from hdrlab.enhance import relight, skin
+from hdrlab.errors import InputError
 
 # levels: 2 sigma of the Laplacian of noise of 2.2; the norm of its weights is sqrt 20
 NOISE = 20.0
@@ -147,14 +148,14 @@ def correct(
     ('contrast and focus', True)
     """
     if not (1 <= target <= 254 and by in ("auto", "skin", "blocks")):
-        raise ValueError(
+        raise InputError(
             f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}"
         )
     Z, (a, c) = as_picture(picture), shape
     Y, visible = brightness(Z), brighten(Z, a=a, c=c)
     faces = find_skin(visible) if Z.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
     if by == "skin" and not faces.any():
-        raise ValueError("expected a colour picture with skin in it, found none")
+        raise InputError("expected a colour picture with skin in it, found none")
     by = "skin" if by == "skin" or faces.mean() >= SMALLEST_FACE else "contrast and focus"
     relevant = faces if by == "skin" else find_relevant_blocks(brightness(visible), noise=noise)
     inner = (
@@ -172,7 +173,7 @@ def quarter_size(mosaic: ArrayLike) -> Array:
     """Return the quarter-size picture (H/2, W/2, 3) of a Bayer mosaic R G / G B: a cell becomes a pixel."""
     Z = np.asarray(mosaic)
     if Z.ndim != 2 or min(Z.shape) < 2 or Z.dtype != np.uint8:
-        raise ValueError(
+        raise InputError(
             f"expected a Bayer mosaic (H, W) of uint8, at least 2 x 2, got {describe(Z)}"
         )
     Z = Z[: Z.shape[0] // 2 * 2, : Z.shape[1] // 2 * 2]

@@ -21,6 +21,7 @@ import numpy as np
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_stack, levels
 from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 # ITU-R BT.601: the gray of encoded values
 LUMA = np.array([0.299, 0.587, 0.114], np.float32)
@@ -115,7 +116,7 @@ def fuse_steps(
     """
     stack, powers = as_stack(images), (contrast, saturation, exposedness)
     if not all(0 <= power < np.inf for power in powers):
-        raise ValueError(
+        raise InputError(
             f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}"
         )
     depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Mask
+from hdrlab.errors import InputError
 
 LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
 CHROMA = np.array(
@@ -69,11 +70,11 @@ def fit(Z: ArrayLike) -> Skin:
     """
     Z = np.asarray(Z, np.float64)
     if Z.ndim != 2 or Z.shape[1] != 3 or len(Z) < 3:
-        raise ValueError(f"expected training pixels (N, 3), at least three, got shape {Z.shape}")
+        raise InputError(f"expected training pixels (N, 3), at least three, got shape {Z.shape}")
     x = chrominance(Z)
     S = np.cov(x.T)
     if not np.linalg.det(S) > 1e-9:
-        raise ValueError(
+        raise InputError(
             f"expected training pixels of different colours, got a covariance of {S.tolist()}"
         )
     return Skin(x.mean(axis=0), S)

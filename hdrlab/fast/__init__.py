@@ -5,6 +5,8 @@ from functools import update_wrapper
 from types import FunctionType
 from typing import Any, TypeVar
 
+from hdrlab.errors import InputError
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -23,7 +25,7 @@ def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
     """
     plain: Any = lesson
     if strange := parts.keys() - set(plain.__code__.co_names):
-        raise ValueError(
+        raise InputError(
             f"expected functions that {plain.__name__} calls, got {', '.join(sorted(strange))}"
         )
     names = {**plain.__globals__, **parts}

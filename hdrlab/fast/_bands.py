@@ -11,6 +11,7 @@ import numpy as np
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.threads import each
+from hdrlab.errors import InputError
 
 BAND = 32  # rows
 
@@ -47,5 +48,5 @@ def banded(equation: Callable[..., Array], *pictures: Array, margin: int = 0) ->
         whole = np.empty((n, slab.shape[1]), slab.dtype) if whole is None else whole
         whole[top : top + BAND] = slab
     if whole is None:
-        raise ValueError("expected pictures of at least one row")
+        raise InputError("expected pictures of at least one row")
     return whole

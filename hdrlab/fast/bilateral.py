@@ -16,6 +16,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, NDArray, describe
 from hdrlab.core.filters.bilateral import Filtered, require_signal
+from hdrlab.errors import InputError
 from hdrlab.fast import blur
 
 # levels in all
@@ -47,7 +48,7 @@ def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
     low, extent = float(v.min()), float(np.ptp(v))
     step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
     if extent > (most := MAX_LEVELS * step):
-        raise ValueError(f"expected a range of at most {most:g} for {sigma_r=}, got {describe(v)}")
+        raise InputError(f"expected a range of at most {most:g} for {sigma_r=}, got {describe(v)}")
     Y, X = ((n - 1) // h + 2 for n in v.shape)
     return Axes(h, X, Y, low, step, int(extent / step) + 2, sigma_s, sigma_r)
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import F32, ArrayLike
+from hdrlab.errors import InputError
 
 # rows of a product: more would multiply more of the band's zeros, fewer idle the processor
 TILE = 16
@@ -30,7 +31,7 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
     """
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
-        raise ValueError(
+        raise InputError(
             f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}"
         )
     h = (

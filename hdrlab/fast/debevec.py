@@ -11,6 +11,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.sampling import require_two_exposures
+from hdrlab.errors import InputError
 from hdrlab.fast import with_parts
 from hdrlab.response import debevec
 
@@ -65,7 +66,7 @@ def _solve_with_gauge(S: F64, r: F64) -> F64:
     try:
         g = np.linalg.solve(S, r)
     except np.linalg.LinAlgError as error:
-        raise ValueError(
+        raise InputError(
             "expected more levels, frames or smoothness: the samples leave g open"
         ) from error
     return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
@@ -80,15 +81,15 @@ def _validate(
     """Return Z, B and w as arrays that fit together, or raise a ValueError."""
     Z, B, w = np.asarray(Z), np.asarray(B, dtype=np.float64), np.asarray(w, dtype=np.float64)
     if not 0 <= smoothness < np.inf:
-        raise ValueError(f"expected a smoothness that is finite and not negative, got {smoothness}")
+        raise InputError(f"expected a smoothness that is finite and not negative, got {smoothness}")
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or Z.size == 0:
-        raise ValueError(f"expected integer pixel levels Z (N, P), got {describe(Z)}")
+        raise InputError(f"expected integer pixel levels Z (N, P), got {describe(Z)}")
     if w.ndim != 1 or not np.all((w >= 0) & (w < np.inf)):
-        raise ValueError(f"expected weights w (n,), finite and not negative, got {describe(w)}")
+        raise InputError(f"expected weights w (n,), finite and not negative, got {describe(w)}")
     if Z.min() < 0 or Z.max() >= len(w):
-        raise ValueError(
+        raise InputError(
             f"expected pixel levels 0 to {len(w) - 1}, as many as weights, got {describe(Z)}"
         )
     if B.shape != Z.shape[1:] or not np.all(np.isfinite(B)):
-        raise ValueError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
+        raise InputError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
     return Z.astype(np.intp, copy=False), B, w

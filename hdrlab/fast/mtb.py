@@ -18,6 +18,7 @@ import numpy as np
 from hdrlab.align import mtb as lesson
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray, as_stack
 from hdrlab.core.threads import each
+from hdrlab.errors import InputError
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]
@@ -108,7 +109,7 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     """Return the offsets (P, 2) that lay every image on the one in the middle of their brightness."""
     images = as_stack(images)
     if bits < 1:
-        raise ValueError(f"expected at least 1 bit for the largest offset, got bits={bits}")
+        raise InputError(f"expected at least 1 bit for the largest offset, got bits={bits}")
     order = lesson.by_brightness(images)
     taken = each(
         lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size

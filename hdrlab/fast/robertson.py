@@ -19,6 +19,7 @@ import scipy
 
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times
+from hdrlab.errors import InputError
 from hdrlab.fast import with_parts
 from hdrlab.response import robertson
 
@@ -77,7 +78,7 @@ class Smooth:
 
     def __init__(self, smoothness: float) -> None:
         if not 0 <= smoothness < np.inf:
-            raise ValueError(
+            raise InputError(
                 f"expected a smoothness that is finite and not negative, got {smoothness}"
             )
         self.smoothness = smoothness

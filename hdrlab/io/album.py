@@ -9,6 +9,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
+from hdrlab.errors import InputError
 from hdrlab.io import decode, files, raw
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
@@ -43,7 +44,7 @@ def select(paths: Paths) -> Selection:
             given, said = choose(given)
             notes += said
         if len(given) < 2:
-            raise ValueError(
+            raise InputError(
                 f"expected two photographs or more, got {'; '.join([*map(str, given), *notes])}"
             )
     return given, notes
@@ -59,14 +60,14 @@ def photographs(paths: Paths) -> list[Path]:
         if not given:
             below = ", ".join(sorted(path.name for path in folder.iterdir() if path.is_dir()))
             where = f", but the folders {below}" if below else ""
-            raise ValueError(f"{folder}: expected a folder with photographs, it holds none{where}")
+            raise InputError(f"{folder}: expected a folder with photographs, it holds none{where}")
     for path in given:
         if path.is_dir():
-            raise ValueError(
+            raise InputError(
                 f"{path}: expected photographs or one folder, this is a folder among others"
             )
     if len(given) < 2:
-        raise ValueError(
+        raise InputError(
             f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}"
         )
     return given

@@ -16,6 +16,7 @@ from PIL import Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
+from hdrlab.errors import InputError
 from hdrlab.io import jpegxl
 
 for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
@@ -34,7 +35,7 @@ def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
         raise
     except Exception as error:  # on damaged files the codecs raise what they like
         why = str(error)[:200] or type(error).__name__
-        raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
+        raise InputError(f"{path}: it is cut short or damaged ({why})") from None
 
 
 def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
@@ -58,7 +59,7 @@ def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
         if found[1] == b"\xd9":
             return
         at = end
-    raise ValueError("no end of image after its last scan")
+    raise InputError("no end of image after its last scan")
 
 
 def jpeg_end(data: bytes, start: int = 0) -> int:
@@ -122,7 +123,7 @@ def _tiff(data: bytes, out: Array | None) -> Array:
         if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(
             4 * np.prod(page.shape), 1 << 24
         ):
-            raise ValueError(
+            raise InputError(
                 "its pixels go past the end of the file, or its tiles far beyond its picture"
             )
         pixels = page.asarray()

@@ -16,6 +16,7 @@ from PIL import ExifTags, Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
+from hdrlab.errors import InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import OtherPixels, check_size
@@ -79,7 +80,7 @@ def look(path: str | Path, *, light: bool | None = False) -> Header:
         (kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), ""
     )
     if not kind:
-        raise ValueError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
+        raise InputError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
     header = {"TIFF": _look_tiff, "JXL": _look_jxl}.get(kind, _look_pillow)(path, kind, head)
     shape, ratio = header.shape, RATIOS.get(kind, BEST_COMPRESSION_RATIO)
     check_size(path, shape[0], shape[1], int(np.prod(shape)) * header.dtype.itemsize // ratio)
@@ -111,7 +112,7 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
             pixels = profiles.to_srgb(header.path, pixels, header.icc)
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
         got = f"{pixels.shape} {pixels.dtype}"
-        raise ValueError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
+        raise InputError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
     if pixels is not out:
         out[...] = pixels
 
@@ -128,7 +129,7 @@ def opaque(path: Path, pixels: Array) -> Array:
     if pixels.ndim < 3 or pixels.shape[2] == 3:
         return pixels
     if pixels.dtype.kind == "u" and (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
-        raise ValueError(
+        raise InputError(
             f"{path}: expected gray or RGB, got an alpha channel with transparent pixels"
         )
     return pixels[..., 0] if pixels.shape[2] < 3 else pixels[..., :3]
@@ -147,9 +148,9 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
             kind, lambda: 8
         )()
     except Image.DecompressionBombError as error:
-        raise ValueError(f"{path}: its header claims an absurd size ({error})") from None
+        raise InputError(f"{path}: its header claims an absurd size ({error})") from None
     except Exception as error:  # on damaged files Pillow raises what it likes
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a photograph, its header is damaged ({error})"
         ) from None
     depth = info.get("bit_depth", depth)
@@ -191,7 +192,7 @@ def _look_tiff(path: Path, form: str, head: bytes) -> Header:
             )
     except Exception as error:  # on damaged files tifffile raises what it likes
         why = str(error)[:200]
-        raise ValueError(f"{path}: expected a photograph, its header is damaged ({why})") from None
+        raise InputError(f"{path}: expected a photograph, its header is damaged ({why})") from None
     light = dtype.kind == "f"
     colours = channels - (alpha if light else alpha == 1)
     if KINDS.get(colours) != kind or not (light or dtype in ("u1", "u2")):

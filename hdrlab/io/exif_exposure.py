@@ -16,6 +16,8 @@ from typing import Any, NamedTuple
 
 from PIL import ExifTags, Image
 
+from hdrlab.errors import InputError
+
 HINT = "give them by --times FILE (times= in Python), or without a list by --stops 2 or --times estimate"
 SHUTTER, SHUTTER_APEX = ExifTags.Base.ExposureTime, ExifTags.Base.ShutterSpeedValue
 APERTURE, APERTURE_APEX = ExifTags.Base.FNumber, ExifTags.Base.ApertureValue
@@ -65,7 +67,7 @@ def equivalent(names: Sequence[str], exposures: Sequence[Exposure]) -> list[floa
         Where a time is missing, or S or N is known of some photographs only.
     """
     if untimed := [name for name, one in zip(names, exposures, strict=True) if one.seconds is None]:
-        raise ValueError(
+        raise InputError(
             f"{untimed[0]}: expected an exposure time in its EXIF, there is none; {HINT}"
         )
     seconds = [exposure.seconds for exposure in exposures if exposure.seconds is not None]
@@ -82,7 +84,7 @@ def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> l
     known = [value for value in values if value is not None]
     if known and len(known) < len(values):
         missing = names[values.index(None)]
-        raise ValueError(
+        raise InputError(
             f"{missing[:200]}: expected the {what}, which other photographs state; {HINT}"
         )
     return known or [1.0] * len(values)

@@ -9,11 +9,13 @@ from itertools import product
 from pathlib import Path
 from typing import BinaryIO
 
+from hdrlab.errors import InputError
+
 # 134 million: beyond any camera, and 1.6 GB as float32 RGB
 MAX_PIXELS = 1 << 27
 
 
-class OtherPixels(ValueError):
+class OtherPixels(InputError):
     """A picture that is no photograph of a bracket: with a palette, of CMYK, of floats, ..."""
 
 
@@ -44,7 +46,7 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise FileNotFoundError(f"cannot write {path.name}: there is no folder {path.parent}")
     if path.exists() and not path.is_file():
-        raise ValueError(
+        raise InputError(
             f"cannot write {path}: expected the name of a file, this is a folder or a device"
         )
     temporary = path.with_name(
@@ -96,7 +98,7 @@ def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
     """Return the suffix of a file's name in small letters, or raise a ValueError where it is not known."""
     suffix = Path(path).suffix.lower()
     if suffix not in known:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}"
         )
     return suffix
@@ -110,7 +112,7 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
     inputs = [path for path in read if os.path.exists(path)]
     for path, source in product(filter(os.path.exists, written), inputs):
         if os.path.samefile(path, source):
-            raise ValueError(
+            raise InputError(
                 f"{path}: expected another name to write to, {source} is read and would be lost"
             )
 
@@ -138,11 +140,11 @@ def check_size(
     """
     claim = f"{path}: its header claims {width} x {height} pixels"
     if height < 1 or width < 1:
-        raise ValueError(f"{claim}, expected at least one")
+        raise InputError(f"{claim}, expected at least one")
     if height * width > MAX_PIXELS:
-        raise ValueError(f"{claim}, expected at most {MAX_PIXELS} in all")
+        raise InputError(f"{claim}, expected at most {MAX_PIXELS} in all")
     size = Path(path).stat().st_size if available is None else available
     if size < least:
-        raise ValueError(
+        raise InputError(
             f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged"
         )

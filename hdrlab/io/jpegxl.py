@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core.optional import imagecodecs
+from hdrlab.errors import InputError
 from hdrlab.io.files import OtherPixels
 
 USUAL = 0b110010000
@@ -130,7 +131,7 @@ def look(
     """
     data = codestream(head)
     if not data:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a photograph, its header is damaged (it has no codestream)"
         )
     bits, orientation = Bits(data[2:ENOUGH]), 1

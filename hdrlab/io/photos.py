@@ -16,6 +16,7 @@ from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import each
+from hdrlab.errors import InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.times import Times, are_inverse, bracket_times
@@ -116,7 +117,7 @@ def read_bracket(
     balance = raw.balance(headers[0].path) if linear else None
     images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
     if mask is not None and images.ndim != 4:
-        raise ValueError(f"expected RGB photographs for the mask colour {mask}, these are gray")
+        raise InputError(f"expected RGB photographs for the mask colour {mask}, these are gray")
     valid = None if mask is None else np.empty(images.shape[:3], bool)
 
     def fill(j: int) -> None:
@@ -176,7 +177,7 @@ def _check_alike(headers: list[Header]) -> None:
             what = "expected frames all gray or all RGB, all of 8 or all of 16 bits"
         else:
             continue
-        raise ValueError(f"{what}: {_short(first)}, {_short(other)}")
+        raise InputError(f"{what}: {_short(first)}, {_short(other)}")
 
 
 def _processed(headers: list[Header]) -> list[str]:

@@ -15,6 +15,7 @@ import numpy as np
 from PIL import ImageCms
 
 from hdrlab.core import arrays, colour, optional
+from hdrlab.errors import InputError
 
 # stands for the profile of a camera that says Adobe RGB in EXIF, by R03, and holds none
 ADOBE = b"adobergb"
@@ -40,7 +41,7 @@ def to_srgb(path: str | Path, pixels: arrays.Array, icc: bytes) -> arrays.Array:
     except ModuleNotFoundError:
         raise
     except Exception as error:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a colour profile of RGB, this one is damaged ({error})"
         ) from None
 

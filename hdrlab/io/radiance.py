@@ -11,6 +11,7 @@ from types import ModuleType
 import numpy as np
 
 from hdrlab.core import arrays, gamut
+from hdrlab.errors import InputError
 from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
@@ -74,7 +75,7 @@ def read_valid(path: str | Path) -> arrays.F32:
     try:
         E = arrays.as_radiance(E)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}; clean=True repairs them") from None
+        raise InputError(f"{path}: {error}; clean=True repairs them") from None
     primaries = primaries_of(path)
     return E if primaries is None else gamut.to_srgb(E, primaries)
 
@@ -121,7 +122,7 @@ def write_radiance(
     """
     form = format_of(path)
     if half and form is not exr:
-        raise ValueError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
+        raise InputError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
     knobs = ({"half": True} if half else {}) | ({} if form is pfm else {"comments": comments})
     form.write(path, E, **knobs)
 

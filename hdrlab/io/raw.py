@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core import arrays, optional
+from hdrlab.errors import InputError
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
@@ -37,7 +38,7 @@ def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
     with _open(path) as file:
         sizes, other = file.sizes, file.other
         if file.num_colors != 3:
-            raise ValueError(f"{path}: expected a sensor of three colours, got {file.num_colors}")
+            raise InputError(f"{path}: expected a sensor of three colours, got {file.num_colors}")
         # by 5 and 6 it is turned by a quarter
         height, width = (sizes.iheight, sizes.iwidth)[:: -1 if sizes.flip in (5, 6) else 1]
         values = (other.shutter_speed, other.aperture, other.iso_speed)
@@ -97,4 +98,4 @@ def _open(path: str | Path) -> Iterator[Any]:
     except (optional.rawpy.LibRawError, optional.rawpy.NotSupportedError) as error:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
         reason = "it does not read JPEG XL, set the camera to lossless JPEG" if packed else reason
-        raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
+        raise InputError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None

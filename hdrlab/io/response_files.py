@@ -18,6 +18,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, LARGEST_LN_EXPOSURE, ArrayLike, describe
 from hdrlab.core.weights import gaussian
+from hdrlab.errors import InputError
 from hdrlab.io.files import replacing, require_suffix
 
 # three channels of 65536 levels take 10 million
@@ -88,13 +89,13 @@ def read_curve(path: str | Path) -> F64:
     _, read = FORMS[suffix_of(path)]
     size = Path(path).stat().st_size
     if size > MAX_FILE_BYTES:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a response of at most {MAX_FILE_BYTES} bytes, got {size}"
         )
     try:
         g = as_curve(read(Path(path)))
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise InputError(f"{path}: {error}") from None
     return g - g[len(g) // 2]
 
 
@@ -111,12 +112,12 @@ def as_curve(g: ArrayLike) -> F64:
         or curve.ndim not in (1, 2)
         or curve.shape[1:] not in ((), (3,))
     ):
-        raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
+        raise InputError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
-        raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
+        raise InputError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
     if not np.all(np.abs(curve) <= LARGEST_LN_EXPOSURE):  # NaN neither
         limits = f"-{LARGEST_LN_EXPOSURE} to {LARGEST_LN_EXPOSURE}"
-        raise ValueError(f"expected ln exposures from {limits}, got {describe(curve)}")
+        raise InputError(f"expected ln exposures from {limits}, got {describe(curve)}")
     return curve.astype(np.float64)
 
 
@@ -131,12 +132,12 @@ def _read_csv(path: Path) -> F64:
     header, _, body = path.read_text(encoding="latin-1").partition("\n")
     names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
     if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
-        raise ValueError(
+        raise InputError(
             f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}"
         )
     table = numbers(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
-        raise ValueError(
+        raise InputError(
             f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ..."
         )
     return squeeze_gray(table[:, 1:])
@@ -171,7 +172,7 @@ def _read_pfstools(path: Path) -> F64:
     rows = {int(head[2]) for head in heads}
     if tuple(head[1] for head in heads) not in MATRICES.values() or len(rows) != 1:
         got = ", ".join(f"{head[1]} of {head[2]} levels" for head in heads[:4]) or "none"
-        raise ValueError(
+        raise InputError(
             f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}"
         )
     f = [_read_block(text[head.end() :], *rows) for head in heads]
@@ -183,7 +184,7 @@ def _read_block(text: str, rows: int) -> F64:
     *lines, _ = text.split("\n", rows)
     table = numbers("\n".join([*lines, ""]), 3)
     if not np.array_equal(table[:, 1], np.arange(rows)):
-        raise ValueError(
+        raise InputError(
             f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?"
         )
     return table[:, 2]
@@ -203,7 +204,7 @@ def ln_exposure(f: F64) -> F64:
     [0.0, 0.693, 1.386]
     """
     if np.any(f < 0) or not np.all(np.any(f > 0, axis=0)):
-        raise ValueError(
+        raise InputError(
             f"expected exposures that are not negative, and not all zero, got {describe(f)}"
         )
     level = np.arange(len(f))
@@ -217,12 +218,12 @@ def numbers(text: str, columns: int, separator: str | None = None) -> F64:
     The last line must end too: a number that was cut short is a number still.
     """
     if not text.endswith("\n"):
-        raise ValueError("expected a table whose last line ends: is it cut short?")
+        raise InputError("expected a table whose last line ends: is it cut short?")
     rows = [line.split(separator) for line in text.splitlines()]
     for count, row in enumerate(rows, 1):
         if len(row) != columns or not all(map(NUMBER.fullmatch, row)):
             got = (separator or " ").join(row)[:60]
-            raise ValueError(
+            raise InputError(
                 f"expected {columns} numbers in line {count} of its table, got {got!r}"
             )
     return np.array(rows, np.float64).reshape(-1, columns)

@@ -19,6 +19,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, Array, as_picture
 from hdrlab.core.optional import imageio_v3 as iio
+from hdrlab.errors import InputError
 from hdrlab.io import album, photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
 
@@ -59,7 +60,7 @@ def read(path: str | Path) -> Iterator[Array]:
         files = album.photographs(path)
         return require_alike((photos.read_photo(file) for file in files), path)
     if path.suffix.lower() not in FILMS:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILMS))})"
         )
     if not path.is_file():
@@ -79,7 +80,7 @@ def require_films(path: Path) -> None:
     import importlib.util
 
     if importlib.util.find_spec("av") is None:
-        raise ValueError(f"{path}: {MISSING}")
+        raise InputError(f"{path}: {MISSING}")
 
 
 def decode_frames(path: Path) -> Iterator[Array]:
@@ -90,13 +91,13 @@ def decode_frames(path: Path) -> Iterator[Array]:
             source: Any = file  # what its plug-in takes beyond the common type
             height, width = source.properties(index=0).shape[:2]
             if height * width > MAX_PIXELS:
-                raise ValueError(f"its header claims {width} x {height} pixels")
+                raise InputError(f"its header claims {width} x {height} pixels")
             for frame in source.iter():
                 yield np.asarray(frame)[..., :3]
     except GeneratorExit:
         raise
     except Exception as error:  # on damaged files the codecs raise what they like
-        raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
+        raise InputError(f"{path}: it is cut short or damaged ({error})") from None
 
 
 def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
@@ -106,10 +107,10 @@ def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
         first = frame if first is None else first
         if (frame.shape, frame.dtype) != (first.shape, first.dtype):
             got = f"{first.shape} {first.dtype} and, number {number}, {frame.shape} {frame.dtype}"
-            raise ValueError(f"{path}: expected frames of one size and depth, got {got}")
+            raise InputError(f"{path}: expected frames of one size and depth, got {got}")
         yield frame
     if first is None:
-        raise ValueError(f"{path}: expected at least one frame, got none")
+        raise InputError(f"{path}: expected at least one frame, got none")
 
 
 def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> int:
@@ -140,7 +141,7 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
     path = Path(path)
     require_writable(path)
     if not 0 < rate <= 1000:
-        raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
+        raise InputError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
     pictures = require_alike((web.as_rgb(as_picture(frame)) for frame in frames), path)
     with replacing(path) as name:
         return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
@@ -182,7 +183,7 @@ def write_maps(folder: str | Path, maps: Iterable[F32], *, suffix: str = ".exr")
         for number, E in enumerate(maps, 1):
             radiance.write_radiance(made / f"{number:04d}{suffix}", E)
         if not number:
-            raise ValueError(f"{folder}: expected at least one map, got none")
+            raise InputError(f"{folder}: expected at least one map, got none")
         made.replace(folder)
     return number
 
@@ -193,7 +194,7 @@ def require_new(folder: Path) -> None:
     if not folder.parent.is_dir():
         raise FileNotFoundError(f"cannot write {folder.name}: there is no folder {folder.parent}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise ValueError(f"{folder}: expected a folder that is new or empty, it holds something")
+        raise InputError(f"{folder}: expected a folder that is new or empty, it holds something")
 
 
 def require_writable(path: Path) -> None:

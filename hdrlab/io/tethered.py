@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from hdrlab.core.optional import gphoto2
+from hdrlab.errors import InputError
 from hdrlab.io.files import replacing
 
 SPELLINGS = tomllib.loads(Path(__file__).with_name("tethered.toml").read_text("utf8"))
@@ -60,7 +61,7 @@ class Camera:
         """
         setting = self._setting(*SHUTTER)
         if setting is None:
-            raise ValueError("the camera does not tell its shutter times: set it to M or A (Av)")
+            raise InputError("the camera does not tell its shutter times: set it to M or A (Av)")
         return setting.get_value(), _choices(setting)
 
     def fix(self, part: str) -> list[str]:
@@ -93,7 +94,7 @@ class Camera:
             Where the time cannot be set, or the camera stops answering; no file is left half.
         """
         if self._set(self._setting(*SHUTTER).get_name(), time) != time:
-            raise ValueError(
+            raise InputError(
                 f"the camera does not take the shutter time {time}: turn its dial to M"
             )
         with _told():
@@ -146,4 +147,4 @@ def _told() -> Iterator[None]:
         yield
     except gphoto2.GPhoto2Error as error:
         meaning = ERRORS.get(str(error.code), ERRORS["other"])
-        raise ValueError(f"no camera answers: {meaning} ({error})") from None
+        raise InputError(f"no camera answers: {meaning} ({error})") from None

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.errors import InputError
 from hdrlab.io.exif_exposure import HINT, Exposure, equivalent, positive
 
 Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Path
@@ -54,12 +55,12 @@ def bracket_times(
     if isinstance(times, Mapping):
         times = _look_up(times, names, where)
     if len(times) != len(names):
-        raise ValueError(
+        raise InputError(
             f"expected {len(names)} exposure times, one per photograph, got {len(times)}"
         )
     for name, t in zip(names, times, strict=True):
         if not 0 < t < np.inf:
-            raise ValueError(
+            raise InputError(
                 f"{name}: expected a positive exposure time in seconds, got {t}; {HINT}"
             )
     seconds = [float(t) for t in times]
@@ -88,7 +89,7 @@ def are_inverse(
     )
     if abs(r) < CORRELATION:
         why = "to distinguish seconds from 1/seconds; write them as 1/60 or as 0.5 s"
-        raise ValueError(
+        raise InputError(
             f"{where}: expected numbers that rise or fall with the photographs' brightness, {why}"
         )
     return r < 0
@@ -126,12 +127,12 @@ def read_times(path: str | Path) -> TimeList:
     try:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a list of exposure times, this is not a text file"
         ) from None
     lines = text.splitlines()
     if (longest := max(map(len, lines), default=0)) > LONGEST_LINE:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected lines with a file and its time, got one of {longest} letters"
         )
     numbered = [(n, _split(line.partition("#")[0])) for n, line in enumerate(lines, 1)]
@@ -141,7 +142,7 @@ def read_times(path: str | Path) -> TimeList:
     for where, cells in rows[bool(heading) :]:
         cell = _named_cells(where, heading, cells)
         if cell["file"] in read:
-            raise ValueError(f"{where}: expected each file once, got {cell['file']:.80} again")
+            raise InputError(f"{where}: expected each file once, got {cell['file']:.80} again")
         number = {
             what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)
         }
@@ -153,7 +154,7 @@ def read_times(path: str | Path) -> TimeList:
         )
         read[cell["file"]] = Exposure(seconds, number.get("f_number"), number.get("iso"))
     if not read:
-        raise ValueError(f"{path}: expected a list of exposure times, it is empty")
+        raise InputError(f"{path}: expected a list of exposure times, it is empty")
     each = list(read.values())
     given, inverted = (
         dict(zip(read, equivalent([f"{path}: {name}" for name in read], one), strict=True))
@@ -171,7 +172,7 @@ def _look_up(times: Mapping[str, float], names: Sequence[str], where: str) -> li
         for name in names
     ]
     if missing := [name for name, t in zip(names, found, strict=True) if t is None]:
-        raise ValueError(
+        raise InputError(
             f"{where}: expected a time for each photograph, none for {', '.join(missing)}"
         )
     return [t for t in found if t is not None]
@@ -205,10 +206,10 @@ def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dic
     columns = heading or COLUMNS.get(str(len(cells)), COLUMNS["3"])
     if len(columns) != len(cells):
         what = f"{len(heading)} columns" if heading else "a file name and its time, such as 1/60"
-        raise ValueError(f"{where}: expected {what}, got {' '.join(cells):.80}")
+        raise InputError(f"{where}: expected {what}, got {' '.join(cells):.80}")
     cell = dict(zip(columns, cells, strict=True))
     if cell.get("gain", "0").strip("0.") or cell.get("filters", "0").strip("0."):
-        raise ValueError(
+        raise InputError(
             f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}"
         )
     if not heading and len(cells) == 3:
@@ -230,5 +231,5 @@ def _number(where: str, text: str) -> float:
     value, below = (positive(one.replace(",", ".")) for one in parts)
     if value is None or below is None:
         got = text[:80] or "nothing"
-        raise ValueError(f"{where}: expected a positive number such as 0.5 or 1/60, got {got}")
+        raise InputError(f"{where}: expected a positive number such as 0.5 or 1/60, got {got}")
     return value / below

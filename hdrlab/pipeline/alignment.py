@@ -18,6 +18,7 @@ from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, a
 from hdrlab.core.filters import warp
 from hdrlab.core.threads import each
 from hdrlab.diagnostics import registration as judgement
+from hdrlab.errors import InputError
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
 
@@ -86,7 +87,7 @@ def register(
     """
     images = as_stack(images)
     if method not in METHODS:
-        raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
+        raise InputError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
     as_light, by_bits = (
         light_scale(images, times, g),
         starmap(best_percentile, photograph_pairs(images)),

@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from hdrlab.errors import InputError
+
 VERBS = {"align": "align", "response": "recover", "tonemap": "tonemap"}
 
 
@@ -39,7 +41,7 @@ def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
     if callable(name):
         return name
     if name not in names(chapter):
-        raise ValueError(
+        raise InputError(
             f"expected a method of {chapter} out of {', '.join(names(chapter))}, got {name!r}"
         )
     fast = find_spec(f"hdrlab.fast.{name}") and import_module(f"hdrlab.fast.{name}")

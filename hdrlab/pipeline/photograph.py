@@ -19,6 +19,7 @@ import numpy as np
 from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance
 from hdrlab.core.filters.blur import blur_matrix
+from hdrlab.errors import InputError
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
 
@@ -139,7 +140,7 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
     numbers = all(isinstance(knob, int | float) for knob in (share, key, white, black))
     if not (numbers and 0 < share <= 1 and key > 0 and white > 0 and 0 <= black < 1):
         got = f"{share=}, {key=}, {white=}, {black=}"
-        raise ValueError(
+        raise InputError(
             f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}"
         )
     L = as_luminance(L)

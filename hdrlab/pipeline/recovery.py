@@ -21,6 +21,7 @@ from hdrlab.core import metrics, sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency, doubts, plausibility
+from hdrlab.errors import InputError
 from hdrlab.fast import debevec, merge, robertson
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
@@ -192,7 +193,7 @@ def find_response(
     try:
         g = space.recover(images, times, valid=valid)
     except ValueError as error:
-        raise ValueError(doubts.say("in_common", error=error)) from None
+        raise InputError(doubts.say("in_common", error=error)) from None
     try:
         return plausibility.validate_response(g, images, times, valid=valid), (said,), ""
     except ValueError:

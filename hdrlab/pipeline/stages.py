@@ -17,6 +17,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import beside, each
 from hdrlab.diagnostics import consistency, contradictions, motion, outlying_frames
 from hdrlab.diagnostics.doubts import say
+from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable, merge_with_quality
 from hdrlab.pipeline import recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames
@@ -126,7 +127,7 @@ def assemble_steps(
         asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True
     ):
         if given not in known:
-            raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
+            raise InputError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
     state = registration.aligned(bracket, align, response, in_place=in_place)
     apart = bool(
@@ -243,7 +244,7 @@ def remove_glare(state: Assembly) -> Assembly:
 def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     """Return the Assembly with E in cd/m^2, by what a meter read at a pixel of it: see `scales.fit_unit`."""
     if state.quality[y : y + 1, x : x + 1].any():
-        raise ValueError(
+        raise InputError(
             f"expected a place that the photographs measured, got {x},{y}, which none did"
         )
     k = scales.fit_unit(state.E, x, y, reading)

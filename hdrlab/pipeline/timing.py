@@ -16,6 +16,7 @@ from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.diagnostics import exposure_times, plausibility
 from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.exposure_times import Estimate
+from hdrlab.errors import InputError
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, take_frames
 
@@ -51,7 +52,7 @@ def space_by_stops(bracket: Bracket, stops: arrays.ArrayLike) -> Bracket:
     """
     images, _, names, valid, linear = bracket
     if not np.all(np.asarray(stops) >= 0):
-        raise ValueError(f"expected positive steps between the photographs in stops, got {stops!r}")
+        raise InputError(f"expected positive steps between the photographs in stops, got {stops!r}")
     times, steps = (
         np.empty(len(images)),
         np.broadcast_to(np.asarray(stops, float), (len(images) - 1,)),
@@ -89,11 +90,11 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
             return bracket, ()
     if len(falls) and times != "estimate":
         pair = " and ".join(f"{names[j]} ({seconds[j]:.4g} s)" for j in (falls[0], falls[0] + 1))
-        raise ValueError(say("order", pair=pair))
+        raise InputError(say("order", pair=pair))
     found = estimate_relative_times(bracket)
     if len(seconds) < 2 or np.log2(found.times[-1]) < LEAST_SPAN or (equal and times == "stated"):
         got = ", ".join(f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True))
-        raise ValueError(f"expected photographs of at least two different exposures, got {got}")
+        raise InputError(f"expected photographs of at least two different exposures, got {got}")
     same = "all stated times are the same, so: " if equal and times == "correct" else ""
     return found, (same + describe_steps(found.times),)
 

@@ -22,6 +22,7 @@ import numpy as np
 from hdrlab.core.arrays import F32, ArrayLike, Mask, as_radiance
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5)
 # of the pixels: the lowest ratios, and those that must agree with them
@@ -158,7 +159,7 @@ def estimate_spread(
     """
     F = as_radiance(F)
     if not powers:
-        raise ValueError("expected at least one power")
+        raise InputError("expected at least one power")
     factor = max(1, F.shape[1] // WIDTH)
     small = block_means(F, factor)
     best = max(
@@ -207,7 +208,7 @@ def remove_glare(
     """
     F = as_radiance(F)
     if not 0 < part < 1:
-        raise ValueError(f"expected a part between 0 and 1, got {part}")
+        raise InputError(f"expected a part between 0 and 1, got {part}")
     found, agreement = estimate_spread(F) if spread is None else (validate_spread(spread), 1.0)
     if found.share == 0:
         return Deglared(F.copy(), found, np.zeros(F.shape[:2], bool), np.zeros_like(F), agreement)

@@ -22,6 +22,7 @@ import numpy as np
 from hdrlab.core import arrays
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.core.weights import hat
+from hdrlab.errors import InputError
 from hdrlab.radiance.stuck import repair_stuck
 
 # of the top level: levels above are clipped
@@ -125,9 +126,9 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
         or images.shape[3:] not in ((), (3,))
         or not images.size
     ):
-        raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
+        raise InputError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
-        raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
+        raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
     c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
     if (
@@ -135,7 +136,7 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
         or not np.all(np.abs(g) < 80)
         or not np.all(g[-1] > g[0])
     ):
-        raise ValueError(
+        raise InputError(
             f"expected g ({n},) or ({n}, {len(c)}) that rises, -80 to 80, got {g.shape}"
         )
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
@@ -227,12 +228,12 @@ def as_tables(
         arrays.as_response(g, n, channels),
     )
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
-        raise ValueError(
+        raise InputError(
             f"expected weights (n,), not negative and not all 0, got shape {weights.shape}"
         )
     if method not in METHODS:
-        raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
+        raise InputError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:
-        raise ValueError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
+        raise InputError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
     first = min(int(top * (n - 1)) + 1, n - 1)
     return stack, arrays.as_times(times, len(stack)), weights, curves, first

@@ -26,6 +26,7 @@ import numpy as np
 from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_stack
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
+from hdrlab.errors import InputError
 
 # of the top level: above, noise hides clipped pixels
 SATURATED = 0.98
@@ -70,7 +71,7 @@ def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") 
     Levels are those of 256, whatever the depth.
     """
     if scheme not in SCHEMES:
-        raise ValueError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
+        raise InputError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
     how, h_A, h_B = SCHEMES[scheme], np.asarray(h_A, np.float64), np.asarray(h_B, np.float64)
     n = len(h_A)
     level, top = np.arange(n) * (255 / (n - 1)), 255 * SATURATED
@@ -154,7 +155,7 @@ def estimate_ratios(
     """
     stack = as_stack(images)
     if len(stack) < 2:
-        raise ValueError(f"expected at least two photographs, got {len(stack)}")
+        raise InputError(f"expected at least two photographs, got {len(stack)}")
     h = histograms(stack, valid).swapaxes(0, 1)
     return np.array([_estimate_pair(a, b, scheme) for a, b in pairwise(h)])
 
@@ -170,7 +171,7 @@ def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
         np.unique(np.round(found.x))
     )  # levels of the darker frame that the brighter one has, too
     if overlap < FEWEST:
-        raise ValueError(
+        raise InputError(
             f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}"
         )
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k

@@ -13,6 +13,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 
 # of the pixels: the steepest edges of the mirrored lights
 EDGES = 2e-3
@@ -79,7 +80,7 @@ def remove_reflection(F: ArrayLike, r: float | None = None) -> F32:
     F = as_radiance(F)
     r = fit_reflection(F) if r is None else r
     if not 0 <= r < 1:
-        raise ValueError(f"expected a share of 0 to 1, got {r}")
+        raise InputError(f"expected a share of 0 to 1, got {r}")
     return np.maximum(F - np.float32(r) * F[::-1, ::-1], np.float32(1e-3) * F) / np.float32(
         1 - r**2
     )

@@ -14,6 +14,7 @@ import scipy
 
 from hdrlab.core.arrays import F64, ArrayLike, as_radiance, describe
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 
 
 def chromaticity(M: ArrayLike) -> F64:
@@ -51,11 +52,11 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     """
     I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
     if I.shape != M.shape or I.shape[-1:] != (3,) or I.size == 0:
-        raise ValueError(
+        raise InputError(
             f"expected radiance and brightness (..., 3), got {describe(I)} and {describe(M)}"
         )
     if not (np.all(np.isfinite(I) & (I > 0)) and np.all(np.isfinite(M) & (M > 0))):
-        raise ValueError(
+        raise InputError(
             f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}"
         )
     I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741
@@ -99,7 +100,7 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     )
     if not (seen.any() and 0 < reading < np.inf):
         size = f"{L.shape[1]} x {L.shape[0]}"
-        raise ValueError(
+        raise InputError(
             f"expected cd/m^2 of a lit place in {size} pixels, got {reading:g} at {x},{y}"
         )
     return float(reading / seen.mean())

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, Mask
+from hdrlab.errors import InputError
 from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2
@@ -151,7 +152,7 @@ def merge_with_deviation(
     for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
-            raise ValueError(
+            raise InputError(
                 f"expected {name} of at least {floor:g}, one or one a channel, got {value}"
             )
     table, steps, R = np.exp(curves), np.gradient(np.exp(curves), axis=0), np.asarray(R, np.float64)

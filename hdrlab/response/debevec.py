@@ -19,6 +19,7 @@ import numpy as np
 
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_times, describe
+from hdrlab.errors import InputError
 
 
 class Solution(NamedTuple):
@@ -106,13 +107,13 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
     n = len(w)
     if Z.ndim != 2 or B.shape != Z.shape[1:] or not 0 <= Z.min() <= Z.max() < n:
-        raise ValueError(
+        raise InputError(
             f"expected levels Z (N, P) below {n} and B (P,), got {describe(Z)} and {describe(B)}"
         )
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
     if rank < np.count_nonzero(A.any(axis=0)):
-        raise ValueError(
+        raise InputError(
             "expected samples seen well in two exposures, which connect the levels; got none"
         )
     reached = np.flatnonzero(A[:, :n].any(axis=0))

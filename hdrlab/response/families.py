@@ -20,6 +20,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
+from hdrlab.errors import InputError
 
 
 def power(M: F64, gamma: float) -> F64:
@@ -110,11 +111,11 @@ def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -
         np.atleast_2d(np.asarray(brightness, np.float64)),
     )
     if X.shape != M.shape or not np.all(np.isfinite([X, M])):
-        raise ValueError(
+        raise InputError(
             f"expected exposure and brightness (C, m), finite, got {describe(X)}, {describe(M)}"
         )
     if np.any(np.diff([X, M]) < 0) or not np.all(M[:, 0] < M[:, -1]):
-        raise ValueError("expected curves that rise, got one that falls or is flat")
+        raise InputError("expected curves that rise, got one that falls or is flat")
     levels = level_brightness(n)
     return to_log(np.maximum([_invert(levels, x, m) for x, m in zip(X, M, strict=True)], 1e-6))
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from hdrlab.core import transfer, weights
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, as_stack, as_times, to_256
+from hdrlab.errors import InputError
 from hdrlab.response.mitsunaga import curve, terms
 
 
@@ -76,7 +77,7 @@ def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
     own. Levels that no row constrains take the value of the nearest one that is.
     """
     if not np.any(found.weight > 0) or not 0 < smoothness < np.inf:
-        raise ValueError(
+        raise InputError(
             f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}"
         )
     z = np.arange(len(w))
@@ -97,7 +98,7 @@ def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
     f^-1(M) = M + sum_k c_k b_k(M) in the basis of `mitsunaga`: f^-1(0) = 0 and f^-1(1) = 1.
     """
     if not np.any(found.weight > 0) or not 1 <= order <= 20:
-        raise ValueError(
+        raise InputError(
             f"expected an order to 20 and levels measured well in two exposures, got {order}"
         )
     M, MT = found.m / (n - 1), found.T / (n - 1)

@@ -20,6 +20,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
+from hdrlab.errors import InputError
 
 # Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is
 # clipped.
@@ -66,7 +67,7 @@ def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> flo
         xy += float((x - x.mean()) @ y)
         xx += float((x - x.mean()) @ x)
     if xx == 0:
-        raise ValueError(
+        raise InputError(
             "expected levels measured well in two exposures; no series has a second member"
         )
     return xy / xx
@@ -128,7 +129,7 @@ def recover(
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
     if not 0 <= alpha <= 64 or starts < 1:
-        raise ValueError(
+        raise InputError(
             f"expected alpha from 0 to 64 and at least one start, got {alpha} and {starts}"
         )
     curves = []

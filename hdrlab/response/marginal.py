@@ -22,6 +22,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 from hdrlab.response import likelihood, polynomial
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.self_calibration import HIGHEST, calibrate as self_calibrate, levels_by_time
@@ -134,7 +135,7 @@ def fit_steps(
     Z, c, R = np.asarray(Z), np.asarray(c, dtype=np.float64), np.asarray(R, dtype=np.float64)
     stated = R if stated is None else np.asarray(stated, dtype=np.float64)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
-        raise ValueError(
+        raise InputError(
             f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}"
         )
     theta, prior = (

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask
+from hdrlab.errors import InputError
 
 # of the trace of H: where the samples constrain less, the straight line is kept
 RIDGE = 1e-7
@@ -175,9 +176,9 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
         or images.shape[3:] not in ((), (3,))
         or not images.size
     ):
-        raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
+        raise InputError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
-        raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
+        raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
     images, t = images[np.argsort(t)], np.sort(t)
     every = max(
         1, int(np.sqrt(images.size / len(t) / 12_000))
@@ -187,7 +188,7 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
         / np.iinfo(images.dtype).max
     )
     if not all(in_range(own).any() for own in M):
-        raise ValueError(
+        raise InputError(
             "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames"
         )
     *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)

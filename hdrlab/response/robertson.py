@@ -24,6 +24,7 @@ import numpy as np
 
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack
+from hdrlab.errors import InputError
 
 
 class State(NamedTuple):
@@ -172,7 +173,7 @@ def recover(
     """
     stack, times = as_stack(images), np.asarray(times, np.float64)
     if times.shape != (len(stack),) or not np.all((times > 0) & (times < np.inf)):
-        raise ValueError(f"expected {len(stack)} positive times in seconds, got {times}")
+        raise InputError(f"expected {len(stack)} positive times in seconds, got {times}")
     w = weights.cut(weights.gaussian(), below=0.02) if w is None else np.asarray(w, np.float64)
     Z = choose(stack, samples, valid=valid)
     channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)

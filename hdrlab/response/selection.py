@@ -22,6 +22,7 @@ from scipy.ndimage import binary_erosion, uniform_filter
 from scipy.stats import chi2, f
 
 from hdrlab.core.arrays import F64, ArrayLike, Mask, as_stack, describe, to_256
+from hdrlab.errors import InputError
 
 
 class Average(NamedTuple):
@@ -36,7 +37,7 @@ def temporal_average(A: ArrayLike, *, sigma: float = 0.01) -> Average:
     """Return mean and variance over t frames (t, H, W); of a single frame the variance is sigma^2."""
     A = np.asarray(A, np.float64)
     if A.ndim != 3 or A.size == 0 or not np.all(np.isfinite(A)):
-        raise ValueError(f"expected finite frames of one exposure (t, H, W), got {describe(A)}")
+        raise InputError(f"expected finite frames of one exposure (t, H, W), got {describe(A)}")
     variance = A.var(axis=0, ddof=1) if len(A) > 1 else np.full(A.shape[1:], sigma**2)
     return Average(A.mean(axis=0), variance, len(A))
 
@@ -57,7 +58,7 @@ def threshold(s: int = 25, *, psi: float = 0.05, estimated: float = np.inf) -> f
     estimated}(psi).
     """
     if s < 2 or not 0 < psi < 1 or estimated <= 0:
-        raise ValueError(f"expected s of at least 2 and psi in (0, 1), got {s} and {psi}")
+        raise InputError(f"expected s of at least 2 and psi in (0, 1), got {s} and {psi}")
     return float(
         chi2.isf(psi, s - 1) if np.isinf(estimated) else (s - 1) * f.isf(psi, s - 1, estimated)
     )
@@ -96,7 +97,7 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     True
     """
     if size < 2 or not sigma > 0:
-        raise ValueError(
+        raise InputError(
             f"expected a patch of 2 x 2 pixels or more, noise above 0, got {size} and {sigma}"
         )
     mean, variance, t = temporal_average(A, sigma=sigma)
@@ -129,7 +130,7 @@ def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 4
     count = np.bincount(a[heart].astype(int), minlength=256)
     known = np.flatnonzero(count)
     if len(known) < 2:
-        raise ValueError("expected a middle with levels that neither frame clips, got none")
+        raise InputError("expected a middle with levels that neither frame clips, got none")
     T = np.bincount(a[heart].astype(int), b[heart], 256)[known] / count[known]
     usable &= (a >= known[0]) & (a <= known[-1])
     miss = b - np.interp(a, known, T)

@@ -15,6 +15,7 @@ import numpy as np
 
 from hdrlab.core import bracket, sampling, steps
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times, describe
+from hdrlab.errors import InputError
 from hdrlab.response.mitsunaga import (
     Fit,
     coefficients,
@@ -45,7 +46,7 @@ def average(Z: ArrayLike, count: int = 80) -> F64:
     """
     Z = np.asarray(Z)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not Z.size or Z.min() < 0 or Z.max() > 255:
-        raise ValueError(f"expected levels 0 to 255, Z (N, P), got {describe(Z)}")
+        raise InputError(f"expected levels 0 to 255, Z (N, P), got {describe(Z)}")
     frames = np.ascontiguousarray(Z.T, dtype=np.uint8)
     key = 256 * frames.sum(axis=0, dtype=np.uint32) // len(frames)
     frames = frames[
@@ -173,7 +174,7 @@ def calibrate(
     parts, R = samples(images, times, valid=valid)
     M = np.concatenate(parts, axis=1)
     if not np.all(in_range(M).any(axis=(1, 2))):
-        raise ValueError(
+        raise InputError(
             "expected pixels from 0.05 to 0.98 of the top level in two neighbours; got none"
         )
     return steps.last(fit_steps(M, R, choose_order(parts, R) if order is None else order, eps=eps))

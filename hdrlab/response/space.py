@@ -18,6 +18,7 @@ import numpy as np
 
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_table, as_times, describe
+from hdrlab.errors import InputError
 from hdrlab.response import families
 
 
@@ -48,7 +49,7 @@ def fit_space(curves: ArrayLike, count: int) -> Space:
     """
     curves = np.asarray(curves, np.float64)
     if curves.ndim != 2 or not np.all(np.isfinite(curves)) or not 1 <= count < len(curves):
-        raise ValueError(
+        raise InputError(
             f"expected more than {count} >= 1 finite curves (C, n), got {describe(curves)}"
         )
     mean = curves.mean(axis=0)
@@ -59,7 +60,7 @@ def fit_space(curves: ArrayLike, count: int) -> Space:
 def truncate(space: Space, count: int) -> Space:
     """Return the Space of the first `count` components alone."""
     if not 1 <= count <= len(space.H):
-        raise ValueError(f"expected 1 to {len(space.H)} components, got {count}")
+        raise InputError(f"expected 1 to {len(space.H)} components, got {count}")
     return Space(space.mean, space.H[:count], space.sd[:count])
 
 
@@ -67,7 +68,7 @@ def project(curve: ArrayLike, space: Space) -> F64:
     """Return c = H (curve - mean), the nearest point of the space; curves (..., n) give (..., K)."""
     curve = np.asarray(curve, np.float64)
     if curve.shape[-1:] != space.mean.shape:
-        raise ValueError(
+        raise InputError(
             f"expected a curve at the space's {len(space.mean)} places, got {describe(curve)}"
         )
     return (curve - space.mean) @ space.H.T
@@ -117,11 +118,11 @@ def fit_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: fl
         or places.shape != values.shape
         or not np.all((places >= 0) & (places <= 1))
     ):
-        raise ValueError(
+        raise InputError(
             f"expected places (m,) in 0 to 1 and values, got {describe(places)} and {describe(values)}"
         )
     if not np.all(np.isfinite(values)) or not noise > 0:
-        raise ValueError(
+        raise InputError(
             f"expected finite values and a positive noise, got {describe(values)} and {noise}"
         )
     grid = np.linspace(0, 1, len(space.mean))
@@ -147,7 +148,7 @@ def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]
         x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])
     ]
     if not np.any(W * columns[0] ** 2 > 1e-12):
-        raise ValueError(
+        raise InputError(
             "expected samples seen well in two exposures, which connect the levels; got none"
         )
     B, mean, *H = (w[Z] * column for column in columns)
@@ -218,7 +219,7 @@ def recover(
     times = as_times(times, len(stack), distinct=2)
     space = default_space() if basis is None else basis
     if space.mean.shape != (256,) or not noise > 0:
-        raise ValueError(
+        raise InputError(
             f"expected a basis of 256 levels and a noise > 0, got {len(space.mean)} and {noise}"
         )
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)

@@ -16,6 +16,7 @@ import numpy as np
 
 from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import F32, F64, ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.io.maps.layers import read_layers
 
 Shape = tuple[int, int]
@@ -131,7 +132,7 @@ def layers(name: str, shape: Shape | None = None) -> Layers:
     (64, 96)
     """
     if name not in PLACES:
-        raise ValueError(f"expected one of {', '.join(PLACES)}, got {name!r}")
+        raise InputError(f"expected one of {', '.join(PLACES)}, got {name!r}")
     read = read_layers(FOLDER / f"{name}.exr")
     visitor = read["mover"]
     found = Layers(read["radiance"], read["depth"], visitor[..., :3], visitor[..., 3])
@@ -173,7 +174,7 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     """
     move = np.asarray(offset)
     if move.shape != (2,) or move.dtype.kind not in "iu":
-        raise ValueError(f"expected an offset (dy, dx) of whole pixels, got {describe(move)}")
+        raise InputError(f"expected an offset (dy, dx) of whole pixels, got {describe(move)}")
     return compose_moment(place.radiance, Figure(place.mover, place.mask), move)[0]
 
 
@@ -182,7 +183,7 @@ def resample(layer: F32, shape: Shape) -> F32:
     if len(shape) != 2 or any(
         not 1 <= n <= full for n, full in zip(shape, layer.shape, strict=False)
     ):
-        raise ValueError(f"expected a shape (H, W) from (1, 1) to {layer.shape[:2]}, got {shape}")
+        raise InputError(f"expected a shape (H, W) from (1, 1) to {layer.shape[:2]}, got {shape}")
     pixel = min(full / n for n, full in zip(shape, layer.shape, strict=False))
     for axis, n in enumerate(shape):
         edges = (layer.shape[axis] - n * pixel) / 2 + pixel * np.arange(n + 1)

@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from hdrlab.core.arrays import ArrayLike, NDArray, describe
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 from hdrlab.show.plots import figures, reuse
@@ -125,13 +126,13 @@ def strip(
     A gray square, level 0; A gray square, level 128
     """
     if len(values) != 1:
-        raise ValueError(
+        raise InputError(
             f"expected one parameter with its values, got {len(values)}: {', '.join(values)}"
         )
     ((name, each),) = values.items()
     each = list(each)
     if not each:
-        raise ValueError(f"expected at least one value for {name}, got none")
+        raise InputError(f"expected at least one value for {name}, got none")
     drawn = (draw(f(**{name: value})) for value in each)
     each_one = ((encode(one, SHARP), _density(one), pictured(one)) for one in drawn)
     frames, densities, areas = zip(*each_one, strict=True)
@@ -206,7 +207,7 @@ def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
     came = (
         f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
     )
-    raise ValueError(
+    raise InputError(
         f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}"
     )
 
@@ -225,7 +226,7 @@ def pictured(drawn: object) -> list[list[float]]:
 def require_alt(alt: str) -> str:
     """Return the alt text, or raise a ValueError where it says nothing."""
     if not isinstance(alt, str) or not alt.strip():
-        raise ValueError(f"expected an alt text that says what the picture shows, got {alt!r}")
+        raise InputError(f"expected an alt text that says what the picture shows, got {alt!r}")
     return alt
 
 

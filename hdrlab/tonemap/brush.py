@@ -17,6 +17,7 @@ import numpy as np
 
 from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
+from hdrlab.errors import InputError
 
 LAWS = ("monotone", "exposure")
 # ratio of luminances that the bins span at least: what is flatter is not stretched further
@@ -65,7 +66,7 @@ def cumulative(h: F64) -> F64:
 def check_knobs(bins: int, limit: float) -> None:
     """Raise a ValueError where there is no bin, or a limit below an even share."""
     if not (bins >= 1 and limit >= 1):
-        raise ValueError(
+        raise InputError(
             f"expected at least 1 bin and a limit of at least 1, got {bins=} and {limit=}"
         )
 
@@ -129,9 +130,9 @@ def lens(
     (40, 40)
     """
     if not (1 <= magnification <= size):
-        raise ValueError(f"expected 1 <= magnification <= size, got {magnification=} and {size=}")
+        raise InputError(f"expected 1 <= magnification <= size, got {magnification=} and {size=}")
     if np.shape(centre) != (2,) or not np.all(np.isfinite(centre)):
-        raise ValueError(f"expected the centre (y, x) of the brush, got {centre}")
+        raise InputError(f"expected the centre (y, x) of the brush, got {centre}")
     L = as_luminance(L)
     rows, columns = place_window(L.shape[:2], centre, -(-size // magnification))
     Ld = equalise(L[rows, columns], bins=bins, limit=limit)

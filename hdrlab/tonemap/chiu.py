@@ -25,6 +25,7 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.core import extremes, steps
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.filters.bilateral import bilateral
+from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
 # sigma of the blur, of the longer side: narrower, every place is as bright as every other
@@ -145,7 +146,7 @@ def tonemap(
     """
     L = as_luminance(L)
     if not (headroom > 0 and choose_sigma(L, sigma) > 0 and passes >= 0):
-        raise ValueError(
+        raise InputError(
             f"expected headroom and sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
     state = steps.last(

@@ -22,6 +22,7 @@ import numpy as np
 from hdrlab.core import extremes
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance
 from hdrlab.core.colour import decode_srgb
+from hdrlab.errors import InputError
 
 LAWS = ("monotone", "exposure")
 
@@ -55,10 +56,10 @@ def quantise(Ld: ArrayLike, *, levels: int = 256) -> Array:
     """
     Ld = np.asarray(Ld)
     if not 2 <= levels <= 65536:
-        raise ValueError(f"expected 2 to 65536 levels, got {levels}")
+        raise InputError(f"expected 2 to 65536 levels, got {levels}")
     outside = np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))
     if outside:
-        raise ValueError(f"expected values in [0, 1], got {outside} outside it in shape {Ld.shape}")
+        raise InputError(f"expected values in [0, 1], got {outside} outside it in shape {Ld.shape}")
     return np.floor((levels - 1) * Ld + 0.5).astype(np.uint8 if levels <= 256 else np.uint16)
 
 
@@ -118,9 +119,9 @@ def tonemap(
     """
     L = as_luminance(L)
     if curve not in CURVES:
-        raise ValueError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
+        raise InputError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
-        raise ValueError(
+        raise InputError(
             f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}"
         )
     low, high = (

@@ -25,6 +25,7 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.bilateral import bilateral
+from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
 # sigma_s, of the longer side
@@ -131,7 +132,7 @@ def tonemap(
     L = as_luminance(L)
     sigma_s = WIDTH * max(L.shape) if sigma_s is None else sigma_s
     if not (1 < contrast < np.inf and 0 <= cut < 0.5):
-        raise ValueError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
+        raise InputError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
     base, detail = layers(logarithm(L), sigma_s=sigma_s, sigma_r=sigma_r)
     low, high = base_range(base, cut=cut)
     return np.minimum(combine(compress(base, low, high, contrast=contrast), detail), 1)

@@ -23,6 +23,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.filters import poisson, pyramid
+from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
 # gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale
@@ -187,11 +188,11 @@ def tonemap(
     """
     L = as_luminance(L)
     if not (0 < alpha < np.inf and 0 < beta <= 1 and 0 < noise < np.inf):
-        raise ValueError(
+        raise InputError(
             f"expected alpha > 0, 0 < beta <= 1, noise > 0, got {alpha=}, {beta=}, {noise=}"
         )
     if not (0 <= black < 0.5 and 0 <= white < 0.5):
-        raise ValueError(f"expected fractions black and white in 0 ... 0.5, got {black=}, {white=}")
+        raise InputError(f"expected fractions black and white in 0 ... 0.5, got {black=}, {white=}")
     if L.max() == 0:
         return np.zeros_like(L)
     lL = log_luminance(L)

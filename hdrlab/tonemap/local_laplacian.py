@@ -22,6 +22,7 @@ from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
 # of the display, nats, and the fraction of pixels beyond it at either end: those of Paris's program
@@ -99,7 +100,7 @@ def tonemap(
     """
     L = as_luminance(L)
     if not (0.01 <= sigma < np.inf and 0 < alpha < np.inf and 0 <= beta <= 1 and samples >= 2):
-        raise ValueError(f"expected knobs in range, got {sigma=}, {alpha=}, {beta=}, {samples=}")
+        raise InputError(f"expected knobs in range, got {sigma=}, {alpha=}, {beta=}, {samples=}")
     if L.max() == 0:
         return np.zeros_like(L)
     lLd = filtered(log_luminance(L), sigma=sigma, alpha=alpha, beta=beta, samples=samples)

@@ -26,6 +26,7 @@ from scipy.special import ndtr
 
 from hdrlab.core.arrays import F64, ArrayLike, as_luminance, describe
 from hdrlab.core.picture import gray
+from hdrlab.errors import InputError
 
 FREQUENCIES = (16.0, 8.0, 4.0, 2.0, 1.0)  # finest scale first
 WEIGHTS = (
@@ -196,7 +197,7 @@ def tmqi(L: ArrayLike, picture: ArrayLike) -> Quality:
     """
     x, y = scale_luminance(L), gray(picture)
     if x.shape != y.shape:
-        raise ValueError(
+        raise InputError(
             f"expected a picture of the scene's {x.shape} pixels, got {describe(picture)}"
         )
     S, N = structural_fidelity(x, y), naturalness(y)

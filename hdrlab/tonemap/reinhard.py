@@ -21,6 +21,7 @@ import numpy as np
 import scipy
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Flags, Mask
+from hdrlab.errors import InputError
 
 LAWS = ("monotone", "exposure")
 # eight centres, and the surround of the last
@@ -168,7 +169,7 @@ def tonemap(
     L = as_light(L)
     a = automatic_key(L) if key == "auto" else key
     if isinstance(a, str) or not (a > 0 and threshold > 0 and (white is None or white > 0)):
-        raise ValueError(
+        raise InputError(
             f"expected key, white and threshold above 0, got {key=}, {white=}, {threshold=}"
         )
     Lm = scale_to_key(L, key=a)
@@ -185,7 +186,7 @@ def as_light(L: ArrayLike) -> Array:
         or L.dtype.kind not in "iuf"
         or not (L.size and L.min() >= 0 and L.max() < np.inf)
     ):
-        raise ValueError(
+        raise InputError(
             f"expected luminance (H, W), finite and not negative, got {L.dtype} {L.shape}"
         )
     return L.astype(np.float64)

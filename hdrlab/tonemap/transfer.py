@@ -15,6 +15,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
+from hdrlab.errors import InputError
 
 # cd/m2, of PQ's largest code
 BRIGHTEST = 10_000
@@ -30,7 +31,7 @@ def within(values: ArrayLike, high: float) -> F64:
     """Return values as float64, 0 ... high but for rounding, which is cut; or raise a ValueError."""
     array = np.asarray(values, np.float64)
     if not np.all((array >= 0) & (array <= high * (1 + 1e-6))):
-        raise ValueError(f"expected values in 0 ... {high}, got {describe(values)}")
+        raise InputError(f"expected values in 0 ... {high}, got {describe(values)}")
     return np.minimum(array, high)
 
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from hdrlab.core import extremes, steps
 from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
+from hdrlab.errors import InputError
 
 LAWS = ("monotone", "exposure")
 TINY = np.finfo(np.float32).tiny
@@ -136,7 +137,7 @@ def curve(
     """
     if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
         got = f"{black=}, {white=}, {bins=}, {field=}, {tolerance=}"
-        raise ValueError(
+        raise InputError(
             f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}"
         )
     Lf = foveal_image(L, field=field)

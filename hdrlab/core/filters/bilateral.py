@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike
+from hdrlab.errors import InputError
 
 # beyond the edge: too different from any pixel to have weight
 FAR = 1e9
@@ -55,4 +56,4 @@ def require_signal(v: F32, *, sigma_s: float, sigma_r: float) -> None:
         v.size and np.isfinite(v).all() and 0 < sigma_s < np.inf and 0 < sigma_r < np.inf
     ):
         expected = "expected a finite signal (H, W) and sigmas above 0"
-        raise ValueError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")
+        raise InputError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")

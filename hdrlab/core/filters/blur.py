@@ -10,6 +10,7 @@ import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import F32, ArrayLike
+from hdrlab.errors import InputError
 
 
 def gaussian(image: ArrayLike, sigma: float) -> F32:
@@ -36,7 +37,7 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
     """
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
-        raise ValueError(
+        raise InputError(
             f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}"
         )
     return scipy.ndimage.gaussian_filter(image, sigma)

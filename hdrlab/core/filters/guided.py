@@ -18,6 +18,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from hdrlab.core.arrays import F64, ArrayLike
+from hdrlab.errors import InputError
 
 
 class Lines(NamedTuple):
@@ -62,10 +63,10 @@ def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: fl
     I = np.asarray(I, np.float64)  # noqa: E741
     p = I if p is None else np.asarray(p, np.float64)
     if I.ndim != 2 or p.shape != I.shape or not (np.isfinite(I).all() and np.isfinite(p).all()):
-        raise ValueError(
+        raise InputError(
             f"expected a finite guide (H, W) and p of its shape, got {I.shape} and {p.shape}"
         )
     if not (radius >= 1 and 0 < epsilon < np.inf):
-        raise ValueError(f"expected radius >= 1 and epsilon > 0, got {radius=}, {epsilon=}")
+        raise InputError(f"expected radius >= 1 and epsilon > 0, got {radius=}, {epsilon=}")
     a, b = lines(I, p, radius=radius, epsilon=epsilon)
     return window_mean(a, radius) * I + window_mean(b, radius)

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.ndimage import correlate
 
 from hdrlab.core.arrays import Array, ArrayLike, Indices, NDArray, describe
+from hdrlab.errors import InputError
 
 # channels, R G / G B
 BAYER = np.array([[0, 1], [1, 2]])
@@ -29,7 +30,7 @@ def tile(pattern: ArrayLike, shape: tuple[int, ...]) -> Array:
     """
     p = np.asarray(pattern)
     if p.ndim != 2 or 0 in p.shape or len(shape) != 2 or min(shape) < 1:
-        raise ValueError(f"expected a pattern (h, w) and a shape (H, W), got {p.shape} and {shape}")
+        raise InputError(f"expected a pattern (h, w) and a shape (H, W), got {p.shape} and {shape}")
     return np.tile(p, [-(-n // m) for n, m in zip(shape, p.shape, strict=True)])[
         : shape[0], : shape[1]
     ]
@@ -39,7 +40,7 @@ def sample(E: ArrayLike, c: ArrayLike) -> Array:
     """Return X = E_c, the mosaic (H, W) of a picture (H, W, 3): of each pixel the channel of its filter."""
     E, c = np.asarray(E), as_channels(c, np.shape(E)[:2])
     if E.ndim != 3 or E.shape[2] != 3:
-        raise ValueError(f"expected a picture (H, W, 3), got {describe(E)}")
+        raise InputError(f"expected a picture (H, W, 3), got {describe(E)}")
     return np.take_along_axis(E, c[..., None], axis=-1)[..., 0]
 
 
@@ -47,7 +48,7 @@ def as_channels(c: ArrayLike, shape: tuple[int, ...]) -> Indices:
     """Return the channels (H, W) of a sensor's pixels, 0 to 2, or raise a ValueError."""
     channels = np.asarray(c)
     if channels.shape != tuple(shape) or not np.all(np.isin(channels, (0, 1, 2))):
-        raise ValueError(
+        raise InputError(
             f"expected channels 0 to 2 of shape {tuple(shape)}, got {describe(channels)}"
         )
     return channels.astype(np.intp)

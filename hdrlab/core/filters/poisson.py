@@ -16,6 +16,7 @@ import numpy as np
 from scipy.fft import dctn, idctn
 
 from hdrlab.core.arrays import Array
+from hdrlab.errors import InputError
 
 
 def gradient(u: Array) -> Array:
@@ -29,7 +30,7 @@ def gradient(u: Array) -> Array:
 def divergence(G: Array) -> Array:
     """Return div G = Gy(y, x) - Gy(y - 1, x) + Gx(y, x) - Gx(y, x - 1), G = 0 on the steps across an edge."""
     if G.ndim != 3 or len(G) != 2:
-        raise ValueError(f"expected a gradient field (2, H, W), got shape {G.shape}")
+        raise InputError(f"expected a gradient field (2, H, W), got shape {G.shape}")
     Gy = np.pad(G[0, :-1], ((1, 1), (0, 0)))
     Gx = np.pad(G[1, :, :-1], ((0, 0), (1, 1)))
     return np.diff(Gy, axis=0) + np.diff(Gx, axis=1)
@@ -77,7 +78,7 @@ def solve(divG: Array) -> Array:
            [ 0.,  3.]])
     """
     if divG.ndim != 2 or 0 in divG.shape:
-        raise ValueError(f"expected a picture (H, W), got shape {divG.shape}")
+        raise InputError(f"expected a picture (H, W), got shape {divG.shape}")
     coefficients = dctn(divG, type=2)
     factors = np.add.outer(*(eigenvalues(n).astype(coefficients.dtype) for n in divG.shape))
     factors[0, 0] = np.inf

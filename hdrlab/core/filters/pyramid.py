@@ -17,6 +17,7 @@ import numpy as np
 from scipy.ndimage import correlate1d, map_coordinates
 
 from hdrlab.core.arrays import F32, Array
+from hdrlab.errors import InputError
 
 KERNEL = np.array([1, 4, 6, 4, 1]) / 16
 
@@ -27,7 +28,7 @@ def reduce(image: F32) -> F32:
     Sides are halved, and rounded up where they are odd.
     """
     if np.ndim(image) < 2:
-        raise ValueError(f"expected an image (..., H, W), got shape {np.shape(image)}")
+        raise InputError(f"expected an image (..., H, W), got shape {np.shape(image)}")
     rows = correlate1d(image, KERNEL, axis=-2, mode="mirror")[..., ::2, :]
     return correlate1d(rows, KERNEL, axis=-1, mode="mirror")[..., ::2]
 
@@ -38,7 +39,7 @@ def expand(image: F32, shape: Sequence[int]) -> F32:
     The last two of `shape` are the sides of the finer level.
     """
     if image.shape[-2:] != half_shape(shape):
-        raise ValueError(f"expected sides {half_shape(shape)}, half of {shape}, got {image.shape}")
+        raise InputError(f"expected sides {half_shape(shape)}, half of {shape}, got {image.shape}")
     rows = _expand_rows(image, shape[-2])
     return _expand_rows(rows.swapaxes(-2, -1), shape[-1]).swapaxes(-2, -1)
 

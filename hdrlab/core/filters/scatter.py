@@ -16,6 +16,7 @@ import numpy as np
 import scipy
 
 from hdrlab.core.arrays import F32, Array
+from hdrlab.errors import InputError
 
 
 class GlareSpread(NamedTuple):
@@ -30,7 +31,7 @@ def validate_spread(spread: GlareSpread) -> GlareSpread:
     """Return the spread, or raise a ValueError for numbers out of range."""
     share, power, core = spread
     if not (0 <= share < 1 and 0 < power < np.inf and 0 < core < np.inf):
-        raise ValueError(
+        raise InputError(
             f"expected a share from 0 to below 1, a power and core above 0, got {tuple(spread)}"
         )
     return spread

@@ -16,6 +16,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.optional import scipy_optimize as optimize, skimage_transform as transform
+from hdrlab.errors import InputError
 
 # pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has
 # sides, too
@@ -33,17 +34,17 @@ def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
     given = np.asarray(homographies)
     numbers = given.dtype.kind in "iuf" and given.size > 0 and bool(np.isfinite(given).all())
     if not numbers or given.shape[1:] not in ((2,), (3, 3)):
-        raise ValueError(
+        raise InputError(
             f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(given)}"
         )
     if count is not None and len(given) != count:
-        raise ValueError(f"expected {count} homographies, one per image, got {len(given)}")
+        raise InputError(f"expected {count} homographies, one per image, got {len(given)}")
     if given.ndim == 2:
         shifts = np.tile(np.eye(3), (len(given), 1, 1))
         shifts[:, :2, 2] = given[:, ::-1]
         return shifts
     if np.any(np.abs(np.linalg.det(given)) < 1e-12) or np.any(np.abs(given[:, 2, 2]) < 1e-12):
-        raise ValueError(
+        raise InputError(
             "expected homographies that can be undone, got a matrix without an inverse"
         )
     return given / given[:, 2:, 2:].astype(np.float64)
@@ -126,7 +127,7 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     """
     H, wide = as_homographies(homographies), corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
     if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
-        raise ValueError(
+        raise InputError(
             "expected homographies that keep a picture in front of the camera, got another"
         )
     quads = apply(H, wide)
@@ -140,7 +141,7 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
         a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape
     )
     if left > right or top > bottom:
-        raise ValueError(
+        raise InputError(
             "expected images that overlap, got homographies that leave them no pixel in common"
         )
     return slice(top, bottom + 1), slice(left, right + 1)

@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, NamedTuple
 
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 DEVICES = {
     "con",
@@ -18,7 +19,7 @@ DEVICES = {
 PIECE = 1 << 16  # bytes read at a time
 
 
-class Refused(ValueError):
+class Refused(InputError):
     """Why an archive is not unpacked, in one line."""
 
 

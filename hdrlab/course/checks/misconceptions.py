@@ -23,6 +23,7 @@ import numpy as np
 from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES, compare, rewording
 from hdrlab.course.code import inline
+from hdrlab.errors import InputError
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
@@ -116,7 +117,7 @@ def put_in(cells: Mapping[str, str], name: str, variant: str = "") -> dict[str, 
     for change in CHANGES[name]["changes"]:
         was, now = (rewording.reword(task, variant, one) for one in change)
         if text.count(was) != 1:
-            raise ValueError(f"expected once in the solution of {task}, for {name}: {was}")
+            raise InputError(f"expected once in the solution of {task}, for {name}: {was}")
         text = text.replace(was, now)
     return {**cells, task: text}
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from hdrlab.course.code import inline
+from hdrlab.errors import InputError
 
 FOLDER = Path(__file__).parent / "parameters"
 
@@ -52,7 +53,7 @@ def reword(task: str, variant: str, text: str, *, all_of_it: bool = False) -> st
         for was, now in known[value]:
             text = text.replace(was, now)
         if all_of_it and known[value] and text == before:
-            raise ValueError(
+            raise InputError(
                 f"expected the sheet of {task} in hdrlab's words, to put {value!r} there"
             )
     return text

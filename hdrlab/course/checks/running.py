@@ -11,6 +11,7 @@ from typing import Any
 
 import hdrlab
 from hdrlab.course.checks import SPECIFICATION
+from hdrlab.errors import InputError
 
 LIBRARY = Path(hdrlab.__file__).parent
 TICK = 0.02  # seconds between two looks at what has come
@@ -34,10 +35,10 @@ def run(
             process.kill()
             process.wait()
     if ended is not None and ended < 0:
-        raise ValueError(f"the checks were ended from outside, by signal {-ended}")
+        raise InputError(f"the checks were ended from outside, by signal {-ended}")
     if ended not in (None, 0, 1):  # 1: some checks do not hold
         told = (folder / "said").read_text(errors="replace").strip().splitlines()
-        raise ValueError("the checks could not be run: " + " / ".join(told[-4:]))
+        raise InputError("the checks could not be run: " + " / ".join(told[-4:]))
 
 
 def _followed(

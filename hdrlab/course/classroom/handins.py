@@ -19,6 +19,7 @@ from typing import NamedTuple
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 KINDS = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
 # bytes of a file: what an archive of one may hold
@@ -64,7 +65,7 @@ def find(
     """
     folder, teams = Path(folder), roster.teams()
     if not folder.is_dir():
-        raise ValueError(f"{folder}: expected the folder of what was handed in")
+        raise InputError(f"{folder}: expected the folder of what was handed in")
     rows, notes = dict(received or {}), []
     handins: dict[str, Handin] = {}
     refused: dict[str, str] = {}
@@ -158,10 +159,10 @@ def read_times(path: Path) -> dict[str, datetime]:
             name, when = _key(row["file"]), datetime.fromisoformat(row["received"])
         except (KeyError, ValueError):
             says = f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
-            raise ValueError(says) from None
+            raise InputError(says) from None
         if when.tzinfo is None:
-            raise ValueError(f"{path}: expected times with a zone, got {row['received']}")
+            raise InputError(f"{path}: expected times with a zone, got {row['received']}")
         if name in came:
-            raise ValueError(f"{path}: expected each file once, got {plain(name, 80)} twice")
+            raise InputError(f"{path}: expected each file once, got {plain(name, 80)} twice")
         came[name] = when
     return came

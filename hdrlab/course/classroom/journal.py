@@ -17,6 +17,7 @@ from typing import NamedTuple, Protocol, Self
 
 from hdrlab.course import scratch
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 from hdrlab.io.files import replacing
 
 TRIES = 3
@@ -130,7 +131,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
         try:
             held.enter_context(scratch.locked(folder.resolve()))
         except BlockingIOError:
-            raise ValueError(f"{folder}: another run is writing to it") from None
+            raise InputError(f"{folder}: another run is writing to it") from None
         for rest in folder.rglob(".hdrlab-*"):
             rest.unlink(missing_ok=True)
         yield
@@ -151,7 +152,7 @@ def parted(folder: Path, pieces: Sequence[Piece]) -> tuple[list[Done], list[Piec
         For an owner who is there twice.
     """
     if len({piece.owner for piece in pieces}) < len(pieces):
-        raise ValueError("expected each owner once")
+        raise InputError("expected each owner once")
     there = set(folder.glob("*.json"))
     before = [Done(piece, place(folder, piece), fresh=False) for piece in pieces]
     rest = [one.piece for one in before if one.result not in there]

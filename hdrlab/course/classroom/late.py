@@ -14,6 +14,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
+from hdrlab.errors import InputError
+
 GRACE = 10
 DAY = timedelta(days=1)
 
@@ -52,7 +54,7 @@ def lateness(due: datetime, received: datetime) -> int:
     [0, 1, 1, 2]
     """
     if due.tzinfo is None or received.tzinfo is None:
-        raise ValueError(
+        raise InputError(
             f"expected times with a zone, such as 2026-03-20T23:59+08:00, got {due}, {received}"
         )
     return max(0, -((due - received) // DAY))
@@ -88,17 +90,17 @@ def accounts(
         student.
     """
     if grace < 0 or per_day < 0:
-        raise ValueError(
+        raise InputError(
             f"expected grace and points a day of at least 0, got {grace} and {per_day}"
         )
     left: dict[str, int] = {}
     seen: set[tuple[str, str]] = set()
     for project, late, students, points in handed:
         if late < 0:
-            raise ValueError(f"{project}: expected late days of at least 0, got {late}")
+            raise InputError(f"{project}: expected late days of at least 0, got {late}")
         for student in students:
             if (student, project) in seen:
-                raise ValueError(f"{project}: expected {student} once, got it twice")
+                raise InputError(f"{project}: expected {student} once, got it twice")
             seen.add((student, project))
             before = left.get(student, grace)
             excused, lost = penalty(late, before, points, per_day=per_day)
@@ -123,7 +125,7 @@ def what_if(
     5 {'b1': (3.0, 0), 'b2': (0.0, 5)}
     """
     if project not in {one.project for one in handed}:
-        raise ValueError(f"expected a project that was handed in, got {project!r}")
+        raise InputError(f"expected a project that was handed in, got {project!r}")
     table = []
     for late in days:
         supposed = [one._replace(late=late) if one.project == project else one for one in handed]

@@ -13,6 +13,7 @@ from hdrlab.course.classroom.late import Account, Handed, accounts, lateness, wh
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
+from hdrlab.errors import InputError
 
 NOT_GRADED = "not graded"
 LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
@@ -123,7 +124,7 @@ def read(paths: Sequence[Path]) -> list[Handed]:
                         Handed(row["homework"], int(row["late"]), student, float(row["work"]))
                     )
             except (KeyError, ValueError):
-                raise ValueError(
+                raise InputError(
                     f"{path}: expected a gradebook that `hdrlab grade` has written"
                 ) from None
     return handed

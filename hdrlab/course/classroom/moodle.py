@@ -17,6 +17,7 @@ from hdrlab.course.classroom.marks import NOT_GRADED, Mark
 from hdrlab.course.classroom.roster import Roster, fold
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
+from hdrlab.errors import InputError
 
 WHO = ("id number", "username", "email address")  # columns of a worksheet that may say who it is
 NEEDED = ("identifier", "grade", "maximum grade", "last modified (grade)")
@@ -52,14 +53,14 @@ def write(
     files, lost = {}, []
     for line in listed:
         if missing := [name for name in NEEDED if name not in line]:
-            raise ValueError(
+            raise InputError(
                 f"{worksheet}: expected Moodle's worksheet in English, got no {missing[0]!r}"
             )
         if line["maximum grade"] and float(line["maximum grade"]) != homework.points:
             points = (
                 f"{homework.points:g} points as {homework.name} gives, got {line['maximum grade']}"
             )
-            raise ValueError(
+            raise InputError(
                 f"{worksheet}: expected a maximum grade of {points}; set it in the assignment"
             )
         row = next(

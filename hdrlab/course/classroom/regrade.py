@@ -24,6 +24,7 @@ from hdrlab.course.classroom.overview import histogram
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.reports import results, sheets
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
 LOG = "journal.jsonl"
@@ -65,7 +66,7 @@ def requests(paths: Sequence[Path], roster: Roster) -> dict[str, list[str]]:
     for path in paths:
         for row in sheets.read_csv(path):
             if not {"student", "task", "words"} <= set(row):
-                raise ValueError(
+                raise InputError(
                     f"{path}: expected the columns student, task, words, got {', '.join(row)}"
                 )
             said = plain(f"{row['task']}: {row['words']}", 400)
@@ -194,7 +195,7 @@ def apply(
 def signed_lines(out: Path, secret: str) -> list[dict[str, Any]]:
     """Return the journal's lines, or raise a ValueError at the first that is not signed with the secret."""
     if not secret:
-        raise ValueError(
+        raise InputError(
             "expected a class that was graded with --secret-file: it signs what is changed"
         )
     path, before = out / LOG, ""
@@ -205,7 +206,7 @@ def signed_lines(out: Path, secret: str) -> list[dict[str, Any]]:
         rest = {name: value for name, value in line.items() if name != "signature"}
         right = (number, before, _signature(rest, secret))
         if (rest.get("number"), rest.get("before"), before := line.get("signature")) != right:
-            raise ValueError(
+            raise InputError(
                 f"{path}, line {number}: expected a line that the course's secret has signed"
             )
     return lines

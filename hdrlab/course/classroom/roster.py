@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 TEAM = 2  # students at most
 NAME = 80  # characters
@@ -65,7 +66,7 @@ class Roster(NamedTuple):
         for one in self.students:
             if fold(one.id) == wanted:
                 return one
-        raise ValueError(f"expected a student of the roster, got {plain(id, NAME)!r}")
+        raise InputError(f"expected a student of the roster, got {plain(id, NAME)!r}")
 
     def teams(self) -> dict[str, tuple[Student, ...]]:
         """Return who is in each team, in the order of the roster."""
@@ -101,7 +102,7 @@ class Roster(NamedTuple):
         students = [self.find(id) for id in ids]
         if len({one.team for one in students}) != 1:
             said = ", ".join(f"{one.id} of {one.team}" for one in students)
-            raise ValueError(f"expected students of one team, got {said or 'none'}")
+            raise InputError(f"expected students of one team, got {said or 'none'}")
         return students[0].team
 
 
@@ -116,7 +117,7 @@ def read(path: str | Path) -> Roster:
     """
     rows = sheets.read_csv(path)
     if not rows or "student" not in rows[0]:
-        raise ValueError(f"{path}: expected the column student, and name, email, team where wanted")
+        raise InputError(f"{path}: expected the column student, and name, email, team where wanted")
     students = []
     names: list[Name] = []
     for line, row in enumerate(rows, 2):
@@ -130,7 +131,7 @@ def read(path: str | Path) -> Roster:
     _check_names(path, names)
     large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
     if large:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}"
         )
     return Roster(tuple(students))
@@ -143,7 +144,7 @@ def _check_names(path: str | Path, names: list[Name]) -> None:
     """
     for text, kind, line, _ in names:
         if not text or text[0] in ".-" or FORBIDDEN & set(text):
-            raise ValueError(
+            raise InputError(
                 f"{path}, line {line}: expected a {kind} that can name a file, got {text!r}"
             )
     known: dict[str, Name] = {}
@@ -153,7 +154,7 @@ def _check_names(path: str | Path, names: list[Name]) -> None:
             twice = one.kind == other.kind == "student's id" and key == fold(other.text)
             if twice or one.owner != other.owner:
                 first, second = sorted((one, other), key=lambda name: name.line)
-                raise ValueError(
+                raise InputError(
                     f"{path}, lines {first.line} and {second.line}: expected each name once, and none that "
                     f"begins another; got the {first.kind} {first.text!r} and the {second.kind} "
                     f"{second.text!r}, whose files could be taken for each other's"

@@ -25,6 +25,7 @@ from hdrlab.course.plan import Conditions, Homework, Late
 from hdrlab.course.reports import gradebook, results
 from hdrlab.course.sandbox import doctor, running
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
 
@@ -83,7 +84,7 @@ class Grader(NamedTuple):
                 return results.to_json(each[-1])
         if each.count(each[0]) == len(each):
             return results.to_json(each[0])
-        raise ValueError(
+        raise InputError(
             "its functions' process ended without an answer, each time at another check"
         )
 
@@ -116,14 +117,14 @@ def hidden(folder: Path | None) -> list[tuple[str, bytes]]:
     if folder is None:
         return []
     if not folder.is_dir():
-        raise ValueError(f"expected a folder with hidden checks, got {folder}")
+        raise InputError(f"expected a folder with hidden checks, got {folder}")
     files = [
         path
         for path in sorted(folder.rglob("*"))
         if path.is_file() and "__pycache__" not in path.parts
     ]
     if (size := sum(path.stat().st_size for path in files)) > MOST:
-        raise ValueError(f"{folder}: expected hidden checks of at most {MOST} bytes, got {size}")
+        raise InputError(f"{folder}: expected hidden checks of at most {MOST} bytes, got {size}")
     return [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
 
 
@@ -165,7 +166,7 @@ def select_handins(
     """
     names = {one if one in handins else roster.team_of([one]) for one in only}
     if missing := sorted(names - set(handins)):
-        raise ValueError(f"expected names that have handed in, got {', '.join(missing)}")
+        raise InputError(f"expected names that have handed in, got {', '.join(missing)}")
     return {
         team: one
         for team, one in handins.items()

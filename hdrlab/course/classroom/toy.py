@@ -19,6 +19,7 @@ from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.material import solutions
 from hdrlab.course.reports import sheets
+from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
 HOMEWORK = "hw2"
@@ -63,7 +64,7 @@ def write(folder: Path) -> list[Path]:
         Where something is in the folder: it might be a real class.
     """
     if folder.is_dir() and any(folder.iterdir()) or folder.is_file():
-        raise ValueError(f"{folder}: expected a new folder for the toy class, something is there")
+        raise InputError(f"{folder}: expected a new folder for the toy class, something is there")
     homework = plan.read().homeworks[HOMEWORK]
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
     each = list(hand_ins(homework))

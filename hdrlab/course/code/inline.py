@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from hdrlab.course.code.source import Key, key_of, module, statements, targets
+from hdrlab.errors import InputError
 
 
 class Block(NamedTuple):
@@ -147,7 +148,7 @@ def _text(key: Key, names: dict[Key, str]) -> str:
     for target, node in targets(key):
         if isinstance(target, Key) and names.get(target, target.name) != ast.unparse(node):
             if node.lineno != node.end_lineno:
-                raise ValueError(f"{key.module}, line {node.lineno}: expected the name on one line")
+                raise InputError(f"{key.module}, line {node.lineno}: expected the name on one line")
             edit = (node.col_offset, node.end_col_offset or 0, names.get(target, target.name))
             edits.setdefault(node.lineno, []).append(edit)
     own = statements(key) if renamed != key.name else ()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from hdrlab.course import grading, plan, wording
 from hdrlab.course.reports import gradebook
+from hdrlab.errors import InputError
 
 ROOT = Path("/autograder")
 
@@ -54,10 +55,10 @@ def handed_in(folder: Path) -> Path:
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
-            raise ValueError(
+            raise InputError(
                 f"expected one {suffix} file, got {', '.join(one.name for one in fitting)}"
             )
-    raise ValueError("expected a notebook, .ipynb, or a Python file, .py")
+    raise InputError("expected a notebook, .ipynb, or a Python file, .py")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from hdrlab.course import submission
 from hdrlab.course.code import inline
 from hdrlab.course.material import handouts, materials, stubs
 from hdrlab.course.plan import Homework, Plan, Task
+from hdrlab.errors import InputError
 
 SCHEMA = 3  # of nbgrader's metadata, which 0.6 to 0.9 write
 CONFIG = Path(__file__).parent / "nbgrader_config.txt"  # in nbgrader's own language
@@ -36,7 +37,7 @@ def export(plan: Plan, folder: Path) -> Iterator[Path]:
     for name, homework in plan.homeworks.items():
         handout = materials.folder("assignments") / f"{name}.ipynb"
         if not handout.is_file():
-            raise ValueError(f"expected the handout {handout}; make it by: hdrlab course build")
+            raise InputError(f"expected the handout {handout}; make it by: hdrlab course build")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
         yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
     yield handouts.write_text(folder / "nbgrader_config.py", CONFIG.read_text(encoding="utf8"))
@@ -50,7 +51,7 @@ def source(handout: dict[str, Any], homework: Homework) -> str:
         one.task for one in submission.cells_of(json.dumps(handout).encode(), "")[0]
     }
     if missing:
-        raise ValueError(
+        raise InputError(
             f"the handout of {homework.name} has no {', '.join(sorted(missing))}: build it anew"
         )
     return handouts.to_text({**handout, "cells": [cell for cell in cells if cell is not None]})

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Set
 from typing import NamedTuple
 
 from hdrlab.course.gallery import store
+from hdrlab.errors import InputError
 
 GRADEBOOK = ("student", "name", "team", "voted", "artifact", "votes", "place", "shared with")
 METHOD = (
@@ -32,7 +33,7 @@ class Standing(NamedTuple):
     shared: int
 
 
-class NotAccepted(ValueError):
+class NotAccepted(InputError):
     """Why a ballot is not taken."""
 
 

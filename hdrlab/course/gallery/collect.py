@@ -20,6 +20,7 @@ from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.gallery import pictures, store
 from hdrlab.course.projects.project import MANIFEST
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 
 TITLE, CAPTION = 60, 280  # characters
 SMALL = 1_000_000  # bytes, or characters, of a text
@@ -65,11 +66,11 @@ def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
     """
     team = roster.owner(name or source.name)
     if team is None:
-        raise ValueError(
+        raise InputError(
             "expected a file or a folder that is named after a student or a team of the roster"
         )
     if source.is_symlink() or not source.is_file():
-        raise ValueError("expected a plain file, got a link, a pipe or a device")
+        raise InputError("expected a plain file, got a link, a pipe or a device")
     if not source.name.lower().endswith(ARCHIVES):
         yield _picture(source, team)
         return
@@ -103,19 +104,19 @@ def _picture(source: Path, team: str) -> Entry:
 def _archive(folder: Path, team: str) -> Entry:
     manifest = folder / MANIFEST
     if not manifest.is_file() or manifest.stat().st_size > SMALL:
-        raise ValueError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST}")
+        raise InputError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST}")
     try:
         said: Any = json.loads(manifest.read_text(encoding="utf8"))
         title, caption, artifact = (str(said[name]) for name in ("title", "caption", "artifact"))
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise ValueError(
+        raise InputError(
             f"expected an archive of `hdrlab submit`, its {MANIFEST} is damaged"
         ) from None
     inside = {
         path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()
     }
     if artifact not in inside:
-        raise ValueError(
+        raise InputError(
             f"expected an artifact in the archive, got the name {plain(artifact, 40)!r}"
         )
     return _described(team, title, caption, inside[artifact])

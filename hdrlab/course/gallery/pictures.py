@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.core.arrays import to_256
+from hdrlab.errors import InputError
 from hdrlab.io import decode, photos, web
 from hdrlab.io.files import write
 from hdrlab.show.plots.figures import fit
@@ -34,14 +35,14 @@ def prepare(path: str | Path) -> Prepared:
     """
     path = Path(path)
     if not path.is_file() or path.is_symlink():
-        raise ValueError(f"{path.name}: expected a picture, this is no plain file")
+        raise InputError(f"{path.name}: expected a picture, this is no plain file")
     if (size := path.stat().st_size) > MOST_BYTES:
-        raise ValueError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
+        raise InputError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
     header = decode.look(path)
     if header.kind not in ("JPEG", "PNG", "TIFF"):
-        raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
+        raise InputError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:
-        raise ValueError(
+        raise InputError(
             f"{path.name}: expected at most {MOST_PIXELS} pixels, the header has {header.shape}"
         )
     image = to_256(photos.read_photo(path))

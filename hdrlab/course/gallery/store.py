@@ -16,6 +16,8 @@ from pathlib import Path
 from secrets import token_bytes
 from typing import NamedTuple
 
+from hdrlab.errors import InputError
+
 DATABASE, PICTURES = "gallery.sqlite", "pictures"
 VERSION = 2  # of the tables
 
@@ -64,11 +66,11 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
     """
     folder = Path(folder)
     if closes.tzinfo is None:
-        raise ValueError(
+        raise InputError(
             f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}"
         )
     if marks < 1:
-        raise ValueError(f"expected at least 1 vote on a ballot, got {marks}")
+        raise InputError(f"expected at least 1 vote on a ballot, got {marks}")
     if (folder / DATABASE).exists():
         raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
     (folder / PICTURES).mkdir(parents=True, exist_ok=True)
@@ -91,19 +93,19 @@ def connect(folder: str | Path) -> sqlite3.Connection:
     """
     path = Path(folder) / DATABASE
     if not path.is_file():
-        raise ValueError(
+        raise InputError(
             f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one"
         )
     try:
         db = _opened(path)
         (version,) = db.execute("PRAGMA user_version").fetchone()
     except sqlite3.DatabaseError as error:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a gallery's database, it cannot be read: {error}"
         ) from None
     if version != VERSION:
         db.close()
-        raise ValueError(
+        raise InputError(
             f"{folder}: expected a gallery of version {VERSION}, got {max(version, 1)}: end this vote with "
             "the hdrlab that made it, or make a new gallery by `hdrlab gallery init`"
         )

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 from hdrlab.course.gallery import store
+from hdrlab.errors import InputError
 
 Kind = Literal["session", "link"]  # of a token, and the column of its handle
 Row = tuple[str, ...]
@@ -96,7 +97,7 @@ def new_link(db: sqlite3.Connection, voter: str) -> str:
     token = make()
     update = "UPDATE voters SET link = ?, link_digest = ?, session = NULL, session_digest = NULL WHERE id = ?"
     if not db.execute(update, (token.handle, token.digest, voter)).rowcount:
-        raise ValueError(f"expected a voter of this gallery, got {voter!r}")
+        raise InputError(f"expected a voter of this gallery, got {voter!r}")
     return token.text
 
 

@@ -24,6 +24,7 @@ from hdrlab.course.code import closure, inline
 from hdrlab.course.material import materials, stubs
 from hdrlab.course.plan import ByHand, Homework, Plan, Task
 from hdrlab.course.submission import cells_of
+from hdrlab.errors import InputError
 from hdrlab.io.files import write
 
 KERNEL = {
@@ -212,7 +213,7 @@ def made_of(plan: Plan, homework: Homework, sources: Path) -> Handout:
     source = sources / f"{homework.name}.py"
     if not source.is_file():
         where = "it is in a clone of hdrlab, in solutions/"
-        raise ValueError(f"expected the prose of {homework.name} in {source}; {where}")
+        raise InputError(f"expected the prose of {homework.name} in {source}; {where}")
     return handout(source.read_text(encoding="utf8"), homework, lateness(plan))
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hdrlab.course.material.handouts import write_text
+from hdrlab.errors import InputError
 
 # a text for each file; TASK and HOMEWORK in names and texts are replaced
 TEMPLATES = Path(__file__).parent / "new_task"
@@ -32,9 +33,9 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
     """
     for name in (task, homework):
         if not (name.isidentifier() and name.islower()) or keyword.iskeyword(name):
-            raise ValueError(f"expected a name of small letters, digits and _, got {name!r}")
+            raise InputError(f"expected a name of small letters, digits and _, got {name!r}")
     if (folder / f"{task}.py").exists() or task == homework:
-        raise ValueError(
+        raise InputError(
             f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"
         )
     for template in sorted(TEMPLATES.rglob("*.txt")):

@@ -15,6 +15,7 @@ from hdrlab.course import variants
 from hdrlab.course.checks.misconceptions import put_in, solutions, task_of
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework, Plan
+from hdrlab.errors import InputError
 
 FENCE = "\n\n\n# %%\n"
 HEAD = Path(__file__).with_name("solutions_head.md")  # of the table of what is in the pack
@@ -97,7 +98,7 @@ def build_for_teams_steps(
     """
     varied = [one for one in plan.homeworks.values() if any(task.parameters for task in one.tasks)]
     if not varied:
-        raise ValueError(
+        raise InputError(
             "expected a plan that gives parameters to a task, got one that asks all the same"
         )
     for team, homework in product(teams, varied):

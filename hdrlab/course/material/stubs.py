@@ -6,6 +6,7 @@ from functools import cache
 
 from hdrlab.course.code import source
 from hdrlab.course.plan import Task
+from hdrlab.errors import InputError
 
 SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,}\n)")  # of a docstring
 
@@ -30,7 +31,7 @@ def definition(function: str) -> ast.FunctionDef:
     """Return the library's definition of a function, or raise a ValueError."""
     node = source.statements(source.key_of(function))[-1]
     if not isinstance(node, ast.FunctionDef):
-        raise ValueError(f"expected a function of the library, got {function}")
+        raise InputError(f"expected a function of the library, got {function}")
     return node
 
 

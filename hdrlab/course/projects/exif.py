@@ -11,6 +11,8 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.errors import InputError
+
 TAGS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("exif.toml").read_text("utf8"))
 POINTER, POSITION, NOTES = TAGS["pointer"], TAGS["position"], TAGS["notes"]
 PERSONAL, SERIALS, OTHERS = TAGS["personal"], TAGS["serials"], TAGS["others"]
@@ -30,17 +32,17 @@ def order(block: bytes) -> str:
     """Return "<" or ">" as the file says, or raise a ValueError."""
     found = {b"II*\0": "<", b"MM\0*": ">"}.get(bytes(block[:4]))
     if found is None or len(block) < 8:
-        raise ValueError("expected EXIF or TIFF, its first bytes are others")
+        raise InputError("expected EXIF or TIFF, its first bytes are others")
     return found
 
 
 def directory(block: bytes, at: int, sign: str) -> tuple[list[Entry], int]:
     """Return the entries of the directory at a place, and the place of the next one; 0 is none."""
     if at < 8 or at + 6 > len(block):
-        raise ValueError("expected a directory within the file")
+        raise InputError("expected a directory within the file")
     (count,) = struct.unpack_from(f"{sign}H", block, at)
     if at + 6 + 12 * count > len(block):
-        raise ValueError("expected the entries of a directory within the file")
+        raise InputError("expected the entries of a directory within the file")
     entries, left = [], len(block)  # bytes: values that lie over each other would fill any memory
     for k in range(count):
         place = at + 2 + 12 * k

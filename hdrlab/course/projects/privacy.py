@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from hdrlab.course.projects import exif
 from hdrlab.course.projects.project import FILES
+from hdrlab.errors import InputError
 from hdrlab.io.codecs import jpeg_parts
 
 PICTURES, TIFF_LIKE, PLAIN_CHUNKS = (
@@ -46,10 +47,10 @@ def clean(name: str | Path, data: bytes) -> Cleaned:
         if data[:4] in (b"II*\0", b"MM\0*") and suffix in PICTURES | TIFF_LIKE:
             return _tiff(data, raw=suffix in TIFF_LIKE)
     except (struct.error, IndexError, ValueError) as error:
-        raise ValueError(
+        raise InputError(
             f"{name}: expected a picture, it is cut short or damaged ({error})"
         ) from None
-    raise ValueError(
+    raise InputError(
         f"{name}: expected JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF, others cannot be cleaned"
     )
 
@@ -72,7 +73,7 @@ def _jpeg(data: bytes) -> Cleaned:
             if not body:
                 continue
         elif not marker and before != 0xDA and body.strip(b"\xff"):
-            raise ValueError("expected a marker of JPEG, the file is damaged")
+            raise InputError("expected a marker of JPEG, the file is damaged")
         if marker:
             out += bytes((0xFF, marker)) + (
                 b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2)
@@ -105,7 +106,7 @@ def _png(data: bytes) -> Cleaned:
         length, kind = struct.unpack_from(">L4s", data, at)
         body = data[at + 8 : at + 8 + length]
         if len(body) < length:
-            raise ValueError("expected all of a PNG, the file is cut short")
+            raise InputError("expected all of a PNG, the file is cut short")
         if kind == b"eXIf":
             body, told = _exif(body)
             removed |= told

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 from hdrlab.io import response_files
 from hdrlab.io.album import SUFFIXES
 
@@ -64,7 +65,7 @@ def look(folder: str | Path) -> Project:
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise ValueError(f"{folder}: expected the folder of a project")
+        raise InputError(f"{folder}: expected the folder of a project")
     files = tuple(sorted(_files(folder)))
     top = [path for path in files if path.parent == folder]
     album = next((folder / name for name in ALBUMS if (folder / name).is_dir()), None)
@@ -116,12 +117,12 @@ def _about(path: Path) -> About:
     try:
         said: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf8"))
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: {error}; expected something like\n{EXAMPLE}") from None
+        raise InputError(f"{path}: {error}; expected something like\n{EXAMPLE}") from None
     students = said.get("students", ())
     if isinstance(students, str):
         students = (students,)
     if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
-        raise ValueError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
+        raise InputError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
     title, caption = (
         plain(str(said.get(key, "")), most) for key, most in (("title", 60), ("caption", 280))
     )

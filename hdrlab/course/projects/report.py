@@ -14,6 +14,7 @@ from markupsafe import Markup
 from hdrlab.core.arrays import to_256
 from hdrlab.course.projects import words
 from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
+from hdrlab.errors import InputError
 from hdrlab.io import decode, exif_exposure, files, photos, radiance, response_files
 from hdrlab.show import plots
 from hdrlab.show.pages import sections, templates
@@ -54,7 +55,7 @@ def write_report(project: Project) -> Written:
         Where there are no words to make a page of.
     """
     if project.words is None:
-        raise ValueError(
+        raise InputError(
             f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}"
         )
     said = words.read(project.words)

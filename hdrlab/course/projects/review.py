@@ -20,6 +20,7 @@ from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, chec
 from hdrlab.course.code import names
 from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
 from hdrlab.course.projects.words import ASKED
+from hdrlab.errors import InputError
 from hdrlab.io import decode, radiance
 
 TEAM = 2  # students at most
@@ -54,24 +55,24 @@ def _examined(project: Project, part: str, check: Callable[[Project], str]) -> l
 def _students(project: Project) -> str:
     students = project.about.students
     if not students:
-        raise ValueError(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
+        raise InputError(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
     if len(students) > TEAM:
-        raise ValueError(f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
+        raise InputError(f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
     return " and ".join(students)
 
 
 def _title(project: Project) -> str:
     if project.about.students and not project.about.title:
-        raise ValueError(f'Give your artifact a title: title = "..." in {ABOUT}.')
+        raise InputError(f'Give your artifact a title: title = "..." in {ABOUT}.')
     return ""
 
 
 def _source(project: Project) -> str:
     if not project.sources:
-        raise ValueError("There is no source: put your programs and notebooks into the folder.")
+        raise InputError("There is no source: put your programs and notebooks into the folder.")
     wrong = [one for path in project.sources for one in _unreadable(project, path)]
     if wrong := wrong + _foreign(project):
-        raise ValueError(*wrong)
+        raise InputError(*wrong)
     return f"{len(project.sources)} files"
 
 
@@ -105,7 +106,7 @@ def _foreign(project: Project) -> list[str]:
 
 def _report(project: Project) -> str:
     if project.page is None:
-        raise ValueError(f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
+        raise InputError(f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
     wrong = []
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:
         wrong = [f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again."]
@@ -118,14 +119,14 @@ def _report(project: Project) -> str:
     if fetched := FETCHED.search(text):
         wrong.append(f"{PAGE} fetches {fetched[1][:80]}, which may be gone when it is read.")
     if wrong:
-        raise ValueError(*wrong)
+        raise InputError(*wrong)
     return PAGE
 
 
 def _photographs(project: Project) -> str:
     count = len(project.photographs)
     if count < 2:
-        raise ValueError(f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
+        raise InputError(f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
     wrong, exposures = [], set()
     for path in project.photographs:
         try:
@@ -139,22 +140,22 @@ def _photographs(project: Project) -> str:
     if not wrong and len(exposures) == 1:
         wrong = ["All photographs have the same exposure, which makes no bracket."]
     if wrong:
-        raise ValueError(*wrong)
+        raise InputError(*wrong)
     return f"{count}, {len(exposures)} exposures"
 
 
 def _map(project: Project) -> str:
     if project.map is None:
-        raise ValueError("There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
+        raise InputError("There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
     E = radiance.read_radiance(project.map, clean=True)
     if not np.any(E > 0) or E.max() == E.min():
-        raise ValueError(f"{project.name(project.map)} holds one value everywhere.")
+        raise InputError(f"{project.name(project.map)} holds one value everywhere.")
     return f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}"
 
 
 def _artifact(project: Project) -> str:
     if project.artifact is None:
-        raise ValueError("There is no artifact. Save your best picture as artifact.jpg.")
+        raise InputError("There is no artifact. Save your best picture as artifact.jpg.")
     height, width = decode.look(project.artifact).shape[:2]
     return f"{project.name(project.artifact)}, {width} x {height}"
 
@@ -168,7 +169,7 @@ def _archive(project: Project, limits: Limits = LIMITS) -> str:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.total, limits)
     except Refused as reason:
-        raise ValueError(f"The archive would be refused: {reason}.") from None
+        raise InputError(f"The archive would be refused: {reason}.") from None
     return ""
 
 

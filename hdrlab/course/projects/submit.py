@@ -12,6 +12,7 @@ import hdrlab
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.projects import privacy
 from hdrlab.course.projects.project import MANIFEST, Project
+from hdrlab.errors import InputError
 from hdrlab.io.files import write as save
 
 VERSION = 1
@@ -61,7 +62,7 @@ def write(
         For a project without an artifact.
     """
     if project.artifact is None:
-        raise ValueError("expected an artifact, there is none")
+        raise InputError("expected an artifact, there is none")
     described = {
         "version": VERSION,
         "made": (now or datetime.now(UTC)).isoformat(timespec="seconds"),

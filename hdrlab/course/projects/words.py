@@ -19,6 +19,7 @@ from markupsafe import Markup, escape
 
 from hdrlab.core.arrays import to_256
 from hdrlab.course.wording import plain
+from hdrlab.errors import InputError
 from hdrlab.io import photos, web
 from hdrlab.show.plots import figures
 
@@ -58,18 +59,18 @@ def read(path: Path) -> Words:
         For a file that is too large, is not UTF-8, or is no notebook though it is called one.
     """
     if path.stat().st_size > 20 * MOST:
-        raise ValueError(f"{path}: expected a short report, got {path.stat().st_size} bytes")
+        raise InputError(f"{path}: expected a short report, got {path.stat().st_size} bytes")
     try:
         text, pictures = path.read_text(encoding="utf8"), Pictures()
         if path.suffix == ".ipynb":
             text, pictures = notebook(text)
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: expected words in UTF-8") from None
+        raise InputError(f"{path}: expected words in UTF-8") from None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise ValueError(f"{path}: expected a notebook ({error})") from None
+        raise InputError(f"{path}: expected a notebook ({error})") from None
     text = text.encode("utf8", "replace").decode("utf8")  # JSON may hold half a character
     if len(text) > MOST:
-        raise ValueError(f"{path}: expected at most {MOST} letters, got {len(text)}")
+        raise InputError(f"{path}: expected at most {MOST} letters, got {len(text)}")
     return sections(text, path.parent, pictures)
 
 
@@ -161,5 +162,5 @@ def _decoded(source: str, folder: Path, pictures: Pictures) -> figures.Image:
         return web.decode_picture(pictures[source])
     path = (folder / source).resolve()
     if "://" in source or not path.is_relative_to(folder.resolve()) or not path.is_file():
-        raise ValueError("expected a picture in the project's folder")
+        raise InputError("expected a picture in the project's folder")
     return to_256(photos.read_photo(path))

@@ -9,6 +9,8 @@ import json
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
+from hdrlab.errors import InputError
+
 VERSION = 1
 CREDIT = ("strict", "container")  # tiers that count
 DERIVED = ("for_credit", "score", "max_score")  # what the JSON says beside a Result's fields
@@ -204,7 +206,7 @@ def from_json(data: bytes) -> Result:
     except (RecursionError, ValueError):
         read = None
     if not isinstance(read, dict) or read.get("version") != VERSION:
-        raise ValueError(f"expected a result of version {VERSION}, written by hdrlab grade")
+        raise InputError(f"expected a result of version {VERSION}, written by hdrlab grade")
     try:
         checks = tuple(_check_from_json(one) for one in read["checks"])
         early = {"at_most": None}  # which a result of an early version lacks
@@ -212,7 +214,7 @@ def from_json(data: bytes) -> Result:
         rest |= {"checks": checks, "problems": tuple(read["problems"])}
         return Result(**rest)
     except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
-        raise ValueError(
+        raise InputError(
             f"expected a result written by hdrlab grade, {error!r:.200} is wrong"
         ) from None
 

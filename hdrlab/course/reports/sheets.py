@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from itertools import zip_longest
 from pathlib import Path
 
+from hdrlab.errors import InputError
 from hdrlab.io.files import write
 
 Cell = str | int | float | None
@@ -70,7 +71,7 @@ def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]
     """
     path = Path(path)
     if path.stat().st_size > most:
-        raise ValueError(
+        raise InputError(
             f"{path}: expected a table of at most {most} bytes, got {path.stat().st_size}"
         )
     try:
@@ -79,12 +80,12 @@ def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]
             line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)
         ]
     except (UnicodeDecodeError, csv.Error) as error:
-        raise ValueError(f"{path}: expected a table in UTF-8 ({error})") from None
+        raise InputError(f"{path}: expected a table in UTF-8 ({error})") from None
     if not lines:
-        raise ValueError(f"{path}: expected a header and rows, it is empty")
+        raise InputError(f"{path}: expected a header and rows, it is empty")
     header = [name.strip().lower() for name in lines[0]]
     if (longest := max(map(len, lines))) > len(header):
-        raise ValueError(
+        raise InputError(
             f"{path}: expected {len(header)} cells a row, as in its header, got {longest}"
         )
     return [dict(zip_longest(header, map(str.strip, line), fillvalue="")) for line in lines[1:]]

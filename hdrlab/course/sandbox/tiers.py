@@ -2,6 +2,7 @@
 
 from hdrlab.course.sandbox import container, practice, strict
 from hdrlab.course.sandbox.running import Sandbox, Unavailable
+from hdrlab.errors import InputError
 
 __all__ = ["TIERS", "Unavailable", "choose"]
 
@@ -24,5 +25,5 @@ def choose(tier: str) -> Sandbox:
     False
     """
     if tier not in TIERS:
-        raise ValueError(f"expected one of the tiers {', '.join(TIERS)}, got {tier!r}")
+        raise InputError(f"expected one of the tiers {', '.join(TIERS)}, got {tier!r}")
     return TIERS[tier]()

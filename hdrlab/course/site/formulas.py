@@ -9,6 +9,8 @@ import xml.etree.ElementTree as ET
 from functools import cache
 from typing import Any
 
+from hdrlab.errors import InputError
+
 SIZE = 20.0  # of a letter, in the drawing's own unit
 EM = (
     1.15 / SIZE
@@ -72,7 +74,7 @@ def tree(tex: str, *, inline: bool) -> ET.Element:
         part.tag = part.tag.rpartition("}")[2]
         if (part.text or "").startswith("\\"):
             if part.text not in PLAIN:
-                raise ValueError(
+                raise InputError(
                     f"expected a formula that can be drawn, got {part.text} in {tex!r}"
                 )
             part.text = PLAIN[part.text]

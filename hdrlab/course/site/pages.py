@@ -20,6 +20,7 @@ from markupsafe import Markup
 
 from hdrlab.course.site import live, reference
 from hdrlab.course.site.execute import Done, library_key
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
 
@@ -63,9 +64,9 @@ def claim(out: Path) -> Path:
     """
     mark = out / MARK
     if out.exists() and not out.is_dir():
-        raise ValueError(f"expected a folder to write the site to, {out} is a file")
+        raise InputError(f"expected a folder to write the site to, {out} is a file")
     if out.exists() and any(out.iterdir()) and not (mark.exists() and mark.read_bytes() == MADE):
-        raise ValueError(
+        raise InputError(
             f"expected an empty folder or a site of before, {out} holds something else"
         )
     live.write_changed(mark, MADE)

@@ -19,6 +19,7 @@ import numpy as np
 from hdrlab.core.arrays import F32, Array, ArrayLike, Labels, as_radiance
 from hdrlab.core.optional import OpenEXR
 from hdrlab.core.silence import silence
+from hdrlab.errors import FileFormatError
 from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0
@@ -63,16 +64,18 @@ def read_headers(path: str | Path, count: int | None = None) -> list[Header]:
 def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
     """Return the Header that the attributes of a part make, after a look at what they claim."""
     if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
-        raise ValueError(f"{path}: expected a flat image, got {attributes['type'].name}")
+        raise FileFormatError(f"{path}: expected a flat image, got {attributes['type'].name}")
     channels, across, down = zip(*attributes["channels"], strict=True)
     if {*across, *down} != {1}:
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected channels of full size, got subsampled {', '.join(channels)}"
         )
     windows = (attributes["dataWindow"], attributes["displayWindow"])
     data, display = (_window(path, window, len(channels)) for window in windows)
     if display.height * display.width > max(LARGEST_FRAME, FRAME_RATIO * data.height * data.width):
-        raise ValueError(f"{path}: expected a display window not far beyond {data}, got {display}")
+        raise FileFormatError(
+            f"{path}: expected a display window not far beyond {data}, got {display}"
+        )
     return Header(channels, data, display, attributes)
 
 
@@ -103,7 +106,7 @@ def read(path: str | Path) -> F32:
     header = read_header(path)
     names = set(header.channels)
     if names not in COLOURS and names - {"A"} != {"Y"} and len(names) != 1:
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
         )
     ((_, planes),) = parts(path, 1, separate_channels=names not in COLOURS)
@@ -166,7 +169,7 @@ def write(
     """
     E = as_radiance(E)
     if half and E.max() > LARGEST_HALF:
-        raise ValueError(
+        raise FileFormatError(
             f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}"
         )
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
@@ -196,7 +199,7 @@ def parts(
     with open(path, "rb") as start:  # the module takes a missing file for one that is not OpenEXR
         magic = start.read(4)
     if magic != b"v/1\x01":
-        raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
+        raise FileFormatError(f"{path}: expected an OpenEXR file, got {magic!r}")
     # the module prints what is wrong with a part, and leaves the part out
     opened, which = (
         OpenEXR.File,
@@ -217,13 +220,13 @@ def parts(
                 planes = {name: channel.pixels for name, channel in part.channels.items()}
                 found.append(({**part.header, "channels": channels}, planes))
             if printed.getvalue() or not found:  # it tells of parts that it leaves out
-                raise ValueError("a part cannot be read")
+                raise FileFormatError("a part cannot be read")
             return found
     except (
         Exception
     ) as error:  # damaged files make it raise what they like, UnicodeDecodeError included
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})"
         ) from None
 
@@ -240,7 +243,7 @@ def _place(path: str | Path, E: F32, header: Header) -> F32:
     """Return E, which fills the data window, on the display window."""
     data, display = header.data, header.display
     if E.shape[:2] != (data.height, data.width):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected {data.height} x {data.width} pixels of data, got {E.shape[:2]}"
         )
     if data == display:
@@ -249,7 +252,7 @@ def _place(path: str | Path, E: F32, header: Header) -> F32:
     rows = slice(max(top, 0), min(top + data.height, display.height))
     columns = slice(max(left, 0), min(left + data.width, display.width))
     if rows.start >= rows.stop or columns.start >= columns.stop:
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected pixels in its display window {display}, they are all in {data}"
         )
     placed = np.zeros((display.height, display.width, *E.shape[2:]), np.float32)

@@ -11,6 +11,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, describe
 from hdrlab.core.optional import OpenEXR
+from hdrlab.errors import FileFormatError
 from hdrlab.io.maps import exr
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
@@ -44,13 +45,13 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     for number, (header, planes) in enumerate(exr.parts(path)):
         name, channels = header.get("name", f"part {number}"), next(iter(planes))
         if len(planes) != 1 or channels not in CHANNELS.values():
-            raise ValueError(
+            raise FileFormatError(
                 f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}"
             )
         layers[name] = planes[channels].astype(np.float32)
     sizes = {layer.shape[:2] for layer in layers.values()}
     if len(sizes) > 1:
-        raise ValueError(f"{path}: expected parts of one size, got {sorted(sizes)}")
+        raise FileFormatError(f"{path}: expected parts of one size, got {sorted(sizes)}")
     return layers
 
 
@@ -85,7 +86,7 @@ def write_layers(
         pixels = np.ascontiguousarray(layer, np.float32)
         channels = CHANNELS.get(1 if pixels.ndim == 2 else pixels.shape[-1])
         if pixels.ndim not in (2, 3) or not pixels.size or channels is None:
-            raise ValueError(
+            raise FileFormatError(
                 f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}"
             )
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -94,5 +95,5 @@ def write_layers(
         )
     sizes = {np.shape(layer)[:2] for layer in layers.values()}
     if len(sizes) != 1:
-        raise ValueError(f"{path}: expected layers of one size, got {sorted(sizes)}")
+        raise FileFormatError(f"{path}: expected layers of one size, got {sorted(sizes)}")
     exr.save(path, parts)

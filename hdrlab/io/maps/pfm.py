@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_radiance
+from hdrlab.errors import FileFormatError
 from hdrlab.io.files import check_size, replacing, reserve
 
 # one white space, and not more, stands between the scale and the values, whose first byte may look
@@ -28,7 +29,7 @@ def from_bytes(data: bytes) -> F32:
     """Return the values (H, W[, 3]) of a PFM file, given as bytes."""
     match = HEADER.match(data)
     if not match:
-        raise ValueError("expected a PFM file: PF or Pf, width, height and scale")
+        raise FileFormatError("expected a PFM file: PF or Pf, width, height and scale")
     kind, width, height, scale = match.groups()
     shape = (int(height), int(width), 3)[: 3 if kind == b"PF" else 2]
     order = "<f4" if float(scale) < 0 else ">f4"
@@ -70,7 +71,7 @@ def read_header(path: str | Path) -> Header:
     match = HEADER.match(head)
     scale = float(match[4]) if match and match[4].strip(b"+-.eE") else 0.0
     if not match or scale == 0 or not np.isfinite(scale):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}"
         )
     header = Header(int(match[3]), int(match[2]), match[1] == b"PF", scale, match.end())
@@ -113,7 +114,7 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
             os, "readv", lambda _, some: sum(map(file.readinto, some))
         )  # each to its place
         if sum(each(file.fileno(), rows[y : y + 512]) for y in range(0, len(rows), 512)) < E.nbytes:
-            raise ValueError(
+            raise FileFormatError(
                 f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile"
             )
     return E if (header.scale < 0) == (sys.byteorder == "little") else E.byteswap(inplace=True)

@@ -20,6 +20,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, NDArray, as_radiance
 from hdrlab.core.optional import imagecodecs
+from hdrlab.errors import FileFormatError
 from hdrlab.io import decode, files
 
 # the last line of the header, such as -Y 768 +X 512
@@ -130,7 +131,9 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     E = as_radiance(E)
     height, width = E.shape[:2]
     if E.max() >= 2.0**127:
-        raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
+        raise FileFormatError(
+            f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}"
+        )
     E = np.broadcast_to(E if E.ndim == 3 else E[..., None], (height, width, 3))
     room = bytearray(
         BAND_ROWS * (4 + 4 * (width + width // 128 + 1))
@@ -167,14 +170,14 @@ def to_pixels(E: F32) -> NDArray[np.uint8]:
 def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
     if (stated := data[2] * 256 + data[3]) != length:
-        raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
+        raise FileFormatError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
     least = scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN))
     files.check_size(path, scanlines, length, least, available=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
     except (imagecodecs.RgbeError, ValueError):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected {scanlines} scanlines, they are damaged or cut short"
         ) from None
 
@@ -195,7 +198,7 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
     last = int(np.searchsorted(made, count))
     if last == len(made) or made[last] != count or marks[0]:
         size = f"{scanlines} scanlines of {length} pixels"
-        raise ValueError(f"{path}: expected {size}, they are damaged or cut short")
+        raise FileFormatError(f"{path}: expected {size}, they are damaged or cut short")
     repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
 
@@ -219,19 +222,21 @@ def parse(path: str | Path, head: bytes) -> Header:
         match = None
     # the mark need not come first: tools of Radiance put lines of their own before it
     if match is None or not any(line.startswith("#?") for line in lines):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected a Radiance file (#?RADIANCE, -Y 768 +X 512), got {head[:16]!r}"
         )
     if line.endswith("\r"):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected a binary file, its line ends became CR LF: copied as text"
         )
     values = dict(part.split("=", 1) for part in lines if "=" in part)
     if (form := values.get("FORMAT", "32-bit_rle_rgbe").strip()) != "32-bit_rle_rgbe":
-        raise ValueError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form[:60]!r}")
+        raise FileFormatError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form[:60]!r}")
     sign, axis, first, sign2, axis2, second = match.groups()
     if axis == axis2:
-        raise ValueError(f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}")
+        raise FileFormatError(
+            f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}"
+        )
     height, width = (int(first), int(second))[:: 1 if axis == "Y" else -1]
     files.check_size(path, height, width)
     return Header(
@@ -248,11 +253,11 @@ def _exposure(path: str | Path, lines: list[str]) -> F64:
             try:
                 product = product * np.array(value.split(), dtype=np.float64)
             except ValueError:
-                raise ValueError(
+                raise FileFormatError(
                     f"{path}: expected numbers in its header, got {line[:60]!r}"
                 ) from None
     if not np.all((product > 1e-30) & (product < 1e30)):
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected positive exposures in its header, got {product.tolist()}"
         )
     return product

@@ -19,6 +19,7 @@ from PIL import Image
 
 from hdrlab.core import colour, gainmap
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_picture, as_radiance, describe
+from hdrlab.errors import FileFormatError
 from hdrlab.io import decode, files, web
 from hdrlab.io.codecs import DECODERS, jpeg_end
 from hdrlab.io.photos import PICTURES, read_photo
@@ -69,7 +70,7 @@ def read(path: str | Path) -> F32:
         part = _find(Path(path).read_bytes())
         return np.maximum(gainmap.apply_gain(sdr, _decode(header, part), **_meaning(part)), 0)
     except Exception as error:  # on damaged files the codecs raise what they like
-        raise ValueError(
+        raise FileFormatError(
             f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})"
         ) from None
 
@@ -105,7 +106,7 @@ def write_picture(
     picture, E = web.as_rgb(as_picture(picture)), web.as_rgb(as_radiance(E))
     if picture.shape != E.shape or not 1 < headroom <= 2**16:
         got = f"{describe(picture)}, {describe(E)} and {headroom}"
-        raise ValueError(
+        raise FileFormatError(
             f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}"
         )
     sdr = colour.decode_srgb(DECODERS["JPEG"](_jpeg(picture, how), None) / np.float32(255))
@@ -164,7 +165,7 @@ def _find(data: bytes) -> bytes:
         at = jpeg_end(data, start)
         if ISO in data[start:at] or b"hdrgm:GainMapMax" in data[start:at]:
             return data[start:at]
-    raise ValueError(
+    raise FileFormatError(
         "no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW"
     )
 
@@ -179,7 +180,7 @@ def _meaning(part: bytes) -> dict[str, Any]:
     )
     within = np.all(np.abs(values) <= STOPS) and np.all(low <= high) and np.all(gamma > 1 / STOPS)
     if not (within and least < most):
-        raise ValueError(
+        raise FileFormatError(
             f"expected gains within {STOPS:.0f} stops, toward more light, got {values.tolist()}"
         )
     return {"low": low, "high": high, "gamma": gamma, "k": k}

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, as_table
+from hdrlab.errors import InputError
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
 
@@ -117,7 +118,7 @@ def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:
     n = taken.x.shape[-1]
     trust = as_table(w, n)
     if trust.ndim != 1 or not np.all(trust >= 0) or not trust.any():
-        raise ValueError("expected weights (n,) that are not negative and not all 0")
+        raise InputError("expected weights (n,) that are not negative and not all 0")
     z = np.arange(n)
     trust = np.where((z > 0) & (z < taken.top), trust / trust.max(), 0)
     x = taken.x - np.median(taken.x[..., n // 2])  # about 0, where float32 is finest

@@ -19,6 +19,7 @@ import numpy as np
 from scipy import ndimage
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Labels, Mask, as_mask, as_radiance
+from hdrlab.errors import InputError
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of the levels; each has a bias and a spread
@@ -87,7 +88,7 @@ def calibrate_frames(
     stack, seconds, _, curves, first_clipped = as_tables(images, times, g, None, "log", TOP)
     mask, Z, E = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1), as_radiance(E)
     if E.shape != stack.shape[1:]:
-        raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
+        raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     s, x = level_noise(curves.T), curves.T - np.log(seconds)[:, None, None]
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
     with np.errstate(divide="ignore"):

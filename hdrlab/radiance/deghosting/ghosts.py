@@ -34,6 +34,7 @@ from hdrlab.core.arrays import (
     as_stack,
     levels,
 )
+from hdrlab.errors import InputError
 from hdrlab.radiance.deghosting import deviation, reference, regions
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
@@ -192,7 +193,7 @@ def remove_ghosts(
     stack = as_stack(images)
     mask, margin = as_mask(valid, stack), max(4, round(stack.shape[2] / 150))
     if fixed is not None and fixed not in range(len(stack)):
-        raise ValueError(
+        raise InputError(
             f"expected the number of a frame, 0 to {len(stack) - 1}, as fixed, got {fixed}"
         )
     w = weights.hat(levels(stack)) if w is None else w

@@ -14,6 +14,7 @@ from hdrlab import pipeline
 from hdrlab.core import colour
 from hdrlab.core.arrays import ArrayLike, as_radiance
 from hdrlab.core.picture import statistics
+from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.show.pages.sheet import Entry
@@ -71,10 +72,10 @@ def _methods(
     if operators is None:
         operators = catalogue.names("tonemap")
     if isinstance(operators, str):
-        raise ValueError(f"expected a list of operators, got the text {operators!r}")
+        raise InputError(f"expected a list of operators, got the text {operators!r}")
     named = operators if isinstance(operators, Mapping) else {name: name for name in operators}
     if not named:
-        raise ValueError(
+        raise InputError(
             f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none"
         )
     return {label: pipeline.find_operator(method) for label, method in named.items()}

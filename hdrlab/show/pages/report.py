@@ -15,6 +15,7 @@ import scipy
 import hdrlab
 from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.metrics import Truth
+from hdrlab.errors import InputError
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.merge import Quality
@@ -65,7 +66,7 @@ def write_report(
     """
     picture, quality = np.asarray(picture), assembly.quality
     if quality is None or assembly.medians is None:
-        raise ValueError(
+        raise InputError(
             f"expected a finished assembly, got one after the stage {assembly.stage!r}"
         )
     if (
@@ -73,7 +74,7 @@ def write_report(
         or picture.shape[:2] != quality.shape
         or picture.shape[2:] not in ((), (3,))
     ):
-        raise ValueError(
+        raise InputError(
             f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}"
         )
     seen = "fused without a map" if assembly.fallback else "tone-mapped for a display"

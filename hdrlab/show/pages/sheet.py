@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hdrlab.core.picture import Statistics
+from hdrlab.errors import InputError
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
@@ -113,9 +114,9 @@ def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = Non
     """
     entries = list(entries)
     if not entries:
-        raise ValueError("expected at least one picture for the sheet, got none")
+        raise InputError("expected at least one picture for the sheet, got none")
     if columns is not None and columns < 1:
-        raise ValueError(f"expected columns >= 1, got {columns}")
+        raise InputError(f"expected columns >= 1, got {columns}")
     columns, picture, cell = _grid(entries[0].picture.shape, len(entries), columns)
     width = columns * cell[0] + GAP
     head, foot = (

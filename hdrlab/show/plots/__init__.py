@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 
 from hdrlab.core.arrays import ArrayLike, describe, to_256
 from hdrlab.core.bracket import Bracket
+from hdrlab.errors import InputError
 from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
@@ -129,7 +130,7 @@ def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | Non
     """Draw response curves, ln exposure across, pixel level up; one line per channel."""
     curves = np.asarray(g, dtype=np.float64)
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
-        raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
+        raise InputError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
     channels, levels = CHANNELS if curves.ndim == 2 else GRAY, np.arange(len(curves))
     for (name, colour, style), curve in zip(
@@ -149,7 +150,7 @@ def samples(
     """
     Z, lE, B = np.asarray(Z), np.asarray(lE, dtype=np.float64), np.asarray(B, dtype=np.float64)
     if Z.ndim != 2 or Z.shape != lE.shape + B.shape:
-        raise ValueError(
+        raise InputError(
             f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}"
         )
     ax, x = _exposure_axes(axes(), span, 256), lE[:, None] + B

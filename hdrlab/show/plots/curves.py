@@ -19,6 +19,7 @@ from matplotlib.collections import LineCollection
 
 from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
+from hdrlab.errors import InputError
 from hdrlab.show.plots import (
     LINES,
     NARROW,
@@ -50,12 +51,12 @@ def lines(
     x, ax = np.asarray(x, np.float64), ax or axes()
     begun = len(ax.lines)
     if begun + len(curves) > len(LINES):
-        raise ValueError(
+        raise InputError(
             f"expected at most {len(LINES)} curves in one picture, got {begun + len(curves)}"
         )
     for (colour, style), (label, y) in zip(LINES[begun:], curves.items(), strict=False):
         if np.shape(y) != x.shape:
-            raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
+            raise InputError(f"expected {label} at the {x.shape} places, got {describe(y)}")
         ax.plot(x, y, linestyle=style, color=colour, linewidth=1.8, label=label)
     ax.set(xlabel=across, ylabel=up)
     fix_limits(ax, None, limits)
@@ -107,7 +108,7 @@ def quotients(M: ArrayLike, fM: ArrayLike, R: ArrayLike) -> Axes:
     M, fM, R = (np.asarray(one, np.float64) for one in (M, fM, R))
     if M.shape != fM.shape or M.ndim != 2 or R.shape != (M.shape[1] - 1,):
         got = f"{M.shape}, {fM.shape} and {R.shape}"
-        raise ValueError(f"expected M and f(M) (N, P) and R (P - 1,), got {got}")
+        raise InputError(f"expected M and f(M) (N, P) and R (P - 1,), got {got}")
     ax = axes()
     for q, (colour, marker) in zip(range(len(R)), SAMPLES, strict=False):
         held = fM[:, q + 1] > 0

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hdrlab.core.arrays import Array, ArrayLike
+from hdrlab.errors import InputError
 from hdrlab.show import pictures, plots
 from hdrlab.show.plots import figures
 
@@ -29,7 +30,7 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     """
     truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
     if truth.shape != answer.shape or truth.ndim not in (2, 3):
-        raise ValueError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
+        raise InputError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
     place, error = _worst(off)
     shown, label = (
@@ -64,7 +65,7 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     """
     truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
     if truth.ndim != 1 or truth.shape != answer.shape:
-        raise ValueError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
+        raise InputError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
     (k, _), error = _worst((answer - truth)[:, None])
     seen = np.where(np.isfinite(answer), answer, np.nan)
     reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)

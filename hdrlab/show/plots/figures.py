@@ -20,6 +20,7 @@ from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed
@@ -52,7 +53,7 @@ def stops(E: ArrayLike) -> Array:
     """Return ev = log2(L / median L)."""
     L = luminance(E)
     if not np.any(L > 0):
-        raise ValueError("expected radiance with some light in it, got zeros")
+        raise InputError("expected radiance with some light in it, got zeros")
     return np.log2(np.where(L > 0, L, np.nan) / np.median(L[L > 0]))
 
 

@@ -21,6 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.core.colour import encode_srgb
+from hdrlab.errors import InputError
 from hdrlab.show.plots import LINES, Ends, axes, figures, nearest, scaled_axes, with_legend
 
 SIDE = 600  # pixels: a larger map is drawn by means of k x k pixels
@@ -94,7 +95,7 @@ def trims(
     """
     b, whole, f, ax = np.asarray(b), np.asarray(whole), np.asarray(f), axes()
     if not (len(b) - 1 == len(whole) == len(f)):
-        raise ValueError(
+        raise InputError(
             f"expected bins with one edge more, got {len(f)} and {len(whole)}, {len(b)} edges"
         )
     ax.stairs(whole, b, fill=True, color="#D0D0D0", label="as it was")
@@ -118,7 +119,7 @@ def bands(
     """
     ax = axes()
     if not 0 < len(spreads) < len(LINES):
-        raise ValueError(
+        raise InputError(
             f"expected 1 to {len(LINES) - 1} operators in one picture, got {len(spreads)}"
         )
     for (colour, style), (name, (L, least, greatest)) in zip(
@@ -140,7 +141,7 @@ def _arrays(each: Mapping[str, ArrayLike]) -> list[F64]:
     arrays = [np.asarray(v, np.float64) for v in each.values()]
     if not 1 <= len(arrays) <= 3 or any(v.ndim != 2 or v.shape != arrays[0].shape for v in arrays):
         got = ", ".join(describe(v) for v in arrays) or "none"
-        raise ValueError(f"expected one to three maps (H, W) of one shape, got {got}")
+        raise InputError(f"expected one to three maps (H, W) of one shape, got {got}")
     return [figures.fit(v, SIDE) for v in arrays]
 
 

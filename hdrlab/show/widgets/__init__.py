@@ -23,6 +23,7 @@ import anywidget  # noqa: F401  first, so that it is named where it is missing
 import traitlets
 from threadpoolctl import ThreadpoolController
 
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pictures import (
     Picture,
@@ -119,7 +120,7 @@ def play(
             require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}"
         )
     if not 0 < len(frames) <= MOST:
-        raise ValueError(
+        raise InputError(
             f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}"
         )
     return Player(frames=frames, alts=alts, name=name, areas=areas)
@@ -234,9 +235,9 @@ def tune(
     require_alt(alt)
     grids = {name: positions.grid(name, given) for name, given in ranges.items()}
     if not grids:
-        raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
+        raise InputError("expected at least one range, such as smoothness=(1, 100), got none")
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
-        raise ValueError(
+        raise InputError(
             f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}"
         )
 

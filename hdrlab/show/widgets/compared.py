@@ -14,6 +14,7 @@ import numpy as np
 import traitlets
 
 from hdrlab.core.arrays import Array, ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
@@ -137,7 +138,7 @@ def blink(
     ['A', 'B']
     """
     if not SHORTEST <= period < np.inf:
-        raise ValueError(
+        raise InputError(
             f"expected a period of {SHORTEST} s or more: faster flashes can harm, got {period}"
         )
     labels = [chr(ord("A") + k) for k in range(2 + len(more))] if labels is None else labels
@@ -150,9 +151,9 @@ def _traits(
     pictures = [render(one) for one in drawn]
     sizes = [picture.shape[:2] for picture in pictures]
     if len(set(sizes)) > 1:
-        raise ValueError(f"expected pictures of one size, got {', '.join(map(str, sizes))}")
+        raise InputError(f"expected pictures of one size, got {', '.join(map(str, sizes))}")
     if isinstance(labels, str) or len(labels) != len(pictures) or not all(labels):
-        raise ValueError(f"expected a label for each of {len(pictures)} pictures, got {labels!r}")
+        raise InputError(f"expected a label for each of {len(pictures)} pictures, got {labels!r}")
     read = [_readout(one, sizes[0]) for one in _each(values, len(pictures))]
     return {
         "pictures": [web.encode_webp(fit(picture, SIDE), lossless=True) for picture in pictures],
@@ -168,7 +169,7 @@ def _each(values: Any, count: int) -> list[Array]:
         return []
     each = list(values) if isinstance(values, list | tuple) else [values]
     if len(each) not in (1, count):
-        raise ValueError(
+        raise InputError(
             f"expected values for each of {count} pictures, or one array, got {len(each)}"
         )
     return [np.asarray(one) for one in each]
@@ -179,6 +180,6 @@ def _readout(values: Array, size: tuple[int, ...]) -> dict[str, Any]:
         values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
     )
     if not fits or not np.isfinite(values).all():
-        raise ValueError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
+        raise InputError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
     data, scale = web.encode_halves(fit(values.astype(np.float32), SIDE))
     return {"values": data, "scales": scale, "channels": 3 if values.ndim == 3 else 1}

@@ -12,6 +12,7 @@ import traitlets
 
 from hdrlab import pipeline
 from hdrlab.core.arrays import ArrayLike, as_radiance
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
@@ -87,10 +88,10 @@ def brush(
     )
     for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16)}).items():
         if not low <= value <= high:
-            raise ValueError(f"expected {name} from {low} to {high}, got {value}")
+            raise InputError(f"expected {name} from {low} to {high}, got {value}")
     around, E = fit(pipeline.develop(E) if picture is None else render(picture), SIDE), fit(E, SIDE)
     if around.shape[:2] != E.shape[:2]:
-        raise ValueError(
+        raise InputError(
             f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}"
         )
     data, scale = web.encode_halves(E)

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from hdrlab.errors import InputError
+
 Grids = dict[str, list[Any]]
 
 
@@ -25,7 +27,7 @@ def grid(name: str, given: Any) -> list[Any]:
     if not isinstance(given, tuple):
         each = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
         if len(each) < 2:
-            raise ValueError(
+            raise InputError(
                 f"expected {name} as (low, high[, step]) or a list of values, got {given!r}"
             )
         return each
@@ -35,7 +37,7 @@ def grid(name: str, given: Any) -> list[Any]:
     whole = all(isinstance(end, int | np.integer) for end in (low, high))
     step = step if step is not None else 1 if whole else (high - low) / 100
     if not (np.isfinite([low, high, step]).all() and low < high and 0 < step <= high - low):
-        raise ValueError(
+        raise InputError(
             f"expected {name} as a range (low, high[, step]) with low < high, got {given!r}"
         )
     count = int(np.floor((high - low) / step + 1e-9)) + 1
@@ -49,7 +51,7 @@ def start(f: Callable[..., Any], grids: Grids) -> list[int]:
     unknown = [name for name in grids if name not in parameters and not takes_any]
     if unknown:
         known = ", ".join(parameters)
-        raise ValueError(f"expected parameters of the function, {known}; got {', '.join(unknown)}")
+        raise InputError(f"expected parameters of the function, {known}; got {', '.join(unknown)}")
     return [
         _nearest(grid, getattr(parameters.get(name), "default", None))
         for name, grid in grids.items()

@@ -15,6 +15,7 @@ import numpy as np
 import traitlets
 
 from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pictures import render, require_alt
 from hdrlab.show.plots.figures import fit
@@ -80,7 +81,7 @@ def choice(
     """
     if len(labels) < 2 or truth not in range(len(labels)) or len(pictures) not in (0, len(labels)):
         wanted = "two or more labels, one of them true, and no pictures or one each"
-        raise ValueError(
+        raise InputError(
             f"expected {wanted}, got {len(labels)} labels, {len(pictures)} pictures, {truth=}"
         )
     shown = [web.encode_webp(fit(render(one), SIDE // 2), lossless=True) for one in pictures]
@@ -114,7 +115,7 @@ def number(
     """
     low, high = map(float, between)
     if not low <= truth <= high or low == high:
-        raise ValueError(f"expected a truth between {low:g} and {high:g}, got {truth}")
+        raise InputError(f"expected a truth between {low:g} and {high:g}, got {truth}")
     whole = all(one.is_integer() for one in (float(truth), low, high)) and high - low <= POSITIONS
     scale = [low, high, 1.0 if whole else (high - low) / POSITIONS]
     told = f"{truth:.3g} {unit}".strip() + "."
@@ -153,7 +154,7 @@ def curve(
         or np.any(np.diff(x) <= 0)
         or not np.isfinite(y).all()
     ):
-        raise ValueError(
+        raise InputError(
             f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}"
         )
     few, room = (
@@ -196,7 +197,7 @@ def place(
     """
     right, drawn = np.asarray(mask), render(picture)
     if right.dtype != bool or right.shape != drawn.shape[:2] or not right.any():
-        raise ValueError(
+        raise InputError(
             f"expected a mask {drawn.shape[:2]} with some pixels, got {describe(mask)}"
         )
     small, k = fit(drawn, SIDE), -(-max(right.shape) // SIDE)
@@ -212,7 +213,7 @@ def place(
 def ask(kind: str, question: str, truth: Any, told: str, because: str, **parts: Any) -> Prediction:
     """Return the widget of a kind."""
     if not question.strip():
-        raise ValueError("expected a question, got an empty one")
+        raise InputError("expected a question, got an empty one")
     return Prediction(
         kind=kind, question=question, truth=truth, told=told, because=because, **parts
     )

@@ -25,6 +25,7 @@ from hdrlab.course.checks.running import LIBRARY
 from hdrlab.course.classroom.executors import alone as process
 from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
 from hdrlab.course.classroom.journal import Ending, Piece, Work
+from hdrlab.errors import InputError
 
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
 LONELY = 120.0  # seconds without any worker, after which the run ends
@@ -58,7 +59,7 @@ def _sources() -> str:
 def do(task: Task) -> bytes:
     """Do a piece, on a worker: a sign, + or -, and the result's bytes, or why there are none."""
     if version() != task.version:
-        raise ValueError(f"its hdrlab is {version()}, expected {task.version}")
+        raise InputError(f"its hdrlab is {version()}, expected {task.version}")
     task.ready()
     with scratch.locked_folder() as folder:
         path = folder / task.piece.path.name
@@ -119,7 +120,7 @@ class Cluster:
             self._client = Client(self._address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError) as error:
             why = f": {error}" if isinstance(error, ValueError) else ""
-            raise ValueError(
+            raise InputError(
                 f"expected a Dask cluster at {self._address}, there is none{why}"
             ) from None
         with contextlib.ExitStack() as held:
@@ -167,12 +168,12 @@ class Cluster:
             able = self._client.run(self._ready, on_error="return")
         for who, theirs in said.items():
             if theirs != mine and not isinstance(theirs, OSError):
-                raise ValueError(
+                raise InputError(
                     f"{who} of the cluster has hdrlab {theirs}, expected {mine} as it is here"
                 )
         for who, why in able.items():
             if isinstance(why, BaseException) and not isinstance(why, OSError):
-                raise ValueError(f"{who} of the cluster cannot do it: {why}")
+                raise InputError(f"{who} of the cluster cannot do it: {why}")
 
     @contextlib.contextmanager
     def _talking(self) -> Iterator[None]:
@@ -182,7 +183,7 @@ class Cluster:
         except (OSError, RuntimeError) as error:
             why = " ".join(str(error).split())[: process.LAST]
             says = f"the cluster at {self._address} is lost; what is graded stays graded: {why}"
-            raise ValueError(says) from None
+            raise InputError(says) from None
 
     def _busy(self) -> "Counter[str]":
         """Return how many pieces each worker has."""
@@ -195,7 +196,7 @@ class Cluster:
         now = time.monotonic()
         self._met = now if known else self._met
         if now - self._met > LONELY:
-            raise ValueError(f"the cluster at {self._address} has had no worker for {LONELY:.0f} s")
+            raise InputError(f"the cluster at {self._address} has had no worker for {LONELY:.0f} s")
         return known
 
     def _sent(self, piece: Piece, worker: str) -> "Future[Any]":
@@ -215,7 +216,7 @@ class Cluster:
             with self._talking():
                 why = future.exception()
             if not isinstance(why, KilledWorker):
-                raise ValueError(f"{worker} of the cluster cannot do it: {why}")
+                raise InputError(f"{worker} of the cluster cannot do it: {why}")
             return self._lost({worker}, only=future)[0]  # again and again, at the same address
         if future.status in ("cancelled", "lost"):  # somebody has cleared the cluster
             self._forget(future)

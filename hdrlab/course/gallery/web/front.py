@@ -13,6 +13,7 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from hdrlab.course.gallery import store, tokens
 from hdrlab.course.gallery.web import guard, writer
+from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import templates
 
 HERE = Path(__file__).parent
@@ -30,7 +31,7 @@ class Front:
     ) -> None:
         parts = urlsplit(address)
         if parts.scheme not in ("http", "https") or not parts.netloc or parts.path not in ("", "/"):
-            raise ValueError(
+            raise InputError(
                 f"expected an address such as https://vote.example.edu, got {address!r}"
             )
         self.host, self.secure = parts.netloc, parts.scheme == "https"

@@ -20,6 +20,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from hdrlab.course.gallery.web.app import Gallery, application
 from hdrlab.course.sandbox.inside.system import resource
+from hdrlab.errors import InputError
 
 SERVER: dict[str, Any] = tomllib.loads(Path(__file__).with_name("server.toml").read_text("utf8"))
 CONNECTIONS = 2000
@@ -159,7 +160,7 @@ def connection_limit() -> int:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     most = CONNECTIONS if soft == resource.RLIM_INFINITY else min(CONNECTIONS, soft - around)
     if most < 1:
-        raise ValueError(
+        raise InputError(
             f"expected more than {around} open files, got a limit of {soft}: ulimit -n 4096"
         )
     return most

@@ -20,6 +20,7 @@ from hdrlab.align import mtb
 from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import ArrayLike, Mask, NDArray, describe
 from hdrlab.diagnostics.registration import Validation
+from hdrlab.errors import InputError
 from hdrlab.show.plots import nearest, picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 
@@ -39,7 +40,7 @@ def overlay(
         or a.shape != b.shape
         or (compared is not None and np.shape(compared) != a.shape)
     ):
-        raise ValueError(
+        raise InputError(
             f"expected two bitmaps (H, W) of one size, got {describe(a)} and {describe(b)}"
         )
     picture = np.array(AGREE, np.uint8)[a.astype(int)]
@@ -93,7 +94,7 @@ def surface(errors: ArrayLike, *, marks: Mapping[str, Offset] | None = None) -> 
     """Return the errors of all offsets as a map, with named offsets marked on it."""
     found = np.asarray(errors, np.float64)
     if found.ndim != 2 or found.shape[0] != found.shape[1] or len(found) % 2 == 0:
-        raise ValueError(f"expected errors (2 n + 1, 2 n + 1), got {describe(found)}")
+        raise InputError(f"expected errors (2 n + 1, 2 n + 1), got {describe(found)}")
     return draw_offsets(100 * found, "bits that differ, %", marks)
 
 
@@ -102,7 +103,7 @@ def words(rows: dict[str, ArrayLike]) -> Figure:
     each = {name: np.asarray(row, bool) for name, row in rows.items()}
     lengths = {row.shape for row in each.values()}
     if len(lengths) != 1 or len(next(iter(lengths))) != 1:
-        raise ValueError(f"expected rows of one length, got {sorted(lengths)}")
+        raise InputError(f"expected rows of one length, got {sorted(lengths)}")
     (count,) = next(iter(lengths))
     figure = Figure(figsize=(WIDTH, 0.34 * len(each) + 0.15), dpi=100)
     ax = figure.add_axes((0.26, 0.03, 0.73, 0.94))

@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
@@ -44,7 +45,7 @@ def rgbe(pixel: ArrayLike) -> Axes:
     """Draw the four bytes of a pixel (4,) uint8, a row each: bits, number, and what a channel comes to."""
     given = np.asarray(pixel)
     if given.shape != (4,) or given.dtype != np.uint8:
-        raise ValueError(f"expected a pixel (4,) uint8, got {describe(given)}")
+        raise InputError(f"expected a pixel (4,) uint8, got {describe(given)}")
     *mantissas, e = given.tolist()
     fields = []
     for name, m in zip(CHANNELS, mantissas, strict=True):
@@ -57,7 +58,7 @@ def rgbe(pixel: ArrayLike) -> Axes:
 def number(value: float, *, bits: int = 16) -> Axes:
     """Draw the fields of a half (16 bits) or a float (32), a row each, with what they say."""
     if bits not in FORMATS:
-        raise ValueError(f"expected 16 or 32 bits, got {bits}")
+        raise InputError(f"expected 16 or 32 bits, got {bits}")
     kind, as_word, wide, bias = FORMATS[bits]
     with np.errstate(over="ignore"):
         stored = kind(value)
@@ -109,7 +110,7 @@ def scanline(planes: ArrayLike, done: int, *, title: str = "") -> Figure:
     """Return the four planes of a scanline (4, W), of whose 4 W bytes `done` are known; the rest is pale."""
     given = np.asarray(planes)
     if given.ndim != 2 or len(given) != 4 or not 0 <= done <= given.size:
-        raise ValueError(
+        raise InputError(
             f"expected planes (4, W) and 0 to 4 W bytes, got {describe(given)} and {done}"
         )
     width, figure = given.shape[1], Figure(figsize=(WIDTH, 2.6), dpi=100)

@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import LINES, SAMPLES, axes, with_legend
 
 SIZE = (4.4, 4.4)  # inches: a step across is as long as one up
@@ -29,7 +30,7 @@ def circle(A: ArrayLike, *, marks: ArrayLike | None = None) -> Axes:
     """
     A = np.asarray(A, np.float64)
     if A.shape != (2, 2) or not np.all(np.isfinite(A)):
-        raise ValueError(f"expected a finite matrix (2, 2), got {describe(A)}")
+        raise InputError(f"expected a finite matrix (2, 2), got {describe(A)}")
     angle = np.linspace(0, 2 * np.pi, 241)
     ring = A @ np.stack([np.cos(angle), np.sin(angle)])
     ax = _plane(3.0, "first component", "second component")
@@ -54,7 +55,7 @@ def equations(
     """Draw A x = b as lines, rings of equal |A x - b| around the least, and `points`, each (2,) or (2, K)."""
     A, b = np.asarray(A, np.float64), np.asarray(b, np.float64)
     if A.ndim != 2 or A.shape[1] != 2 or b.shape != A.shape[:1]:
-        raise ValueError(f"expected A (m, 2) and b (m,), got {describe(A)} and {describe(b)}")
+        raise InputError(f"expected A (m, 2) and b (m,), got {describe(A)} and {describe(b)}")
     ax, side = _plane(reach, *names), np.linspace(-reach, reach, 161)
     grid = np.stack(np.meshgrid(side, side))
     residual = np.sqrt(np.sum((np.tensordot(A, grid, axes=1) - b[:, None, None]) ** 2, axis=0))
@@ -85,7 +86,7 @@ def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17) -> Axes:
     """
     ax = axes()
     if not 0 < len(each) < len(LINES):
-        raise ValueError(f"expected 1 to {len(LINES) - 1} systems in one picture, got {len(each)}")
+        raise InputError(f"expected 1 to {len(LINES) - 1} systems in one picture, got {len(each)}")
     for (colour, _), (_, marker), (name, sigma) in zip(
         LINES[1:], SAMPLES, each.items(), strict=False
     ):

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from hdrlab.align.cerman import State
 from hdrlab.align.light import differences as compare, error, lattice
 from hdrlab.core.arrays import F64, ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import bare, figures, nearest, picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 
@@ -29,7 +30,7 @@ def differences(X: ArrayLike, H: ArrayLike) -> tuple[F64, float]:
     """Return d of every pixel (h, w), and the error e."""
     light = np.asarray(X, np.float32)
     if light.ndim != 3 or len(light) != 2:
-        raise ValueError(f"expected the light of two photographs (2, h, w), got {describe(light)}")
+        raise InputError(f"expected the light of two photographs (2, h, w), got {describe(light)}")
     p = lattice(light.shape[1:], light[0].size)
     d = compare(light, np.asarray(H, float), p)
     return d.reshape(light.shape[1:]), error(d)
@@ -49,7 +50,7 @@ def correlation(c: ArrayLike, *, marks: Mapping[str, tuple[float, float]] | None
     """Return the correlation at every shift as a map, with named shifts (dy, dx) marked on it."""
     found = np.asarray(c, np.float64)
     if found.ndim != 2 or found.shape[0] % 2 == 0 or found.shape[1] % 2 == 0:
-        raise ValueError(f"expected the correlation at shifts -n to n, got {describe(found)}")
+        raise InputError(f"expected the correlation at shifts -n to n, got {describe(found)}")
     return draw_offsets(found / np.abs(found).max(), "correlation / its largest", marks)
 
 

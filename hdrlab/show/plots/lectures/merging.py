@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import NARROW, axes, seconds
 
 STOP = np.log(2)
@@ -39,7 +40,7 @@ def draw_measurements(
     g, w = np.asarray(g, np.float64), np.asarray(w, np.float64)
     if Z.ndim != 1 or Z.shape != B.shape or g.ndim != 1 or g.shape != w.shape:
         got = ", ".join(map(describe, (Z, B, g, w)))
-        raise ValueError(f"expected Z and B (P,), g and w (n,), got {got}")
+        raise InputError(f"expected Z and B (P,), g and w (n,), got {got}")
     ax, x, n = axes(), np.arange(len(Z)), len(g)
     ends = np.interp([Z - 0.5, Z + 0.5], np.arange(n), g)
     here, low, high = ((one - B - middle) / STOP for one in (g[Z], *ends))

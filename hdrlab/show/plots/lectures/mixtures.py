@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
 from hdrlab.core.arrays import F64, ArrayLike
+from hdrlab.errors import InputError
 from hdrlab.show.plots import LINES, SAMPLES, axes, logarithmic, with_legend
 
 
@@ -60,7 +61,7 @@ def deviations(
     ax = axes()
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     if len(found) >= len(LINES):
-        raise ValueError(
+        raise InputError(
             f"expected at most {len(LINES) - 1} curves in one picture, got {len(found)}"
         )
     for (colour, style), (name, one) in zip(LINES[1:], found.items(), strict=False):

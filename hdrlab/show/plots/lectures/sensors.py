@@ -18,6 +18,7 @@ from matplotlib.patheffects import withStroke
 
 from hdrlab.capture import photon_transfer, planning, ranges
 from hdrlab.core.arrays import ArrayLike, NDArray, as_picture, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import (
     Ends,
     axes,
@@ -40,7 +41,7 @@ def mark_lost(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[
     shown = np.repeat(shown[..., None], 3, axis=-1) if shown.ndim == 2 else shown.copy()
     for mask, colour in ((full, ORANGE), (noise, BLUE)):
         if np.shape(mask) != shown.shape[:2]:
-            raise ValueError(f"expected a mask of shape {shown.shape[:2]}, got {describe(mask)}")
+            raise InputError(f"expected a mask of shape {shown.shape[:2]}, got {describe(mask)}")
         shown[np.asarray(mask, bool)] = colour
     return shown
 
@@ -49,7 +50,7 @@ def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> 
     """Draw how the pixels of a scene spread over luminance, and which of them one exposure holds."""
     L, ax = np.asarray(L, np.float64).ravel(), axes()
     if L.shape != np.shape(held.full) or not np.all(L > 0):
-        raise ValueError(f"expected positive luminances {np.shape(held.full)}, got {describe(L)}")
+        raise InputError(f"expected positive luminances {np.shape(held.full)}, got {describe(L)}")
     low, high = limits or (float(L.min()), float(L.max()) * 1.0001)
     edges, below = np.geomspace(low, high, BINS + 1), np.zeros(BINS + 1)
     lost = (held.noise & ~held.full, ~held.noise & ~held.full, held.full)
@@ -68,7 +69,7 @@ def staircase(L: ArrayLike, held: ranges.ExposedLevels) -> Axes:
     """Draw the converter's level over luminance, and where nothing is told [Battiato08 fig. 1.10 to 1.12]."""
     L, ax = np.asarray(L, np.float64), axes()
     if L.shape != np.shape(held.Z) or L.ndim != 1:
-        raise ValueError(f"expected luminances {np.shape(held.Z)}, got {describe(L)}")
+        raise InputError(f"expected luminances {np.shape(held.Z)}, got {describe(L)}")
     ax.step(L, held.Z, where="mid", color="#1A1A1A", linewidth=1.8)
     for (label, colour, hatch), mask in ((KINDS[0], held.noise), (KINDS[2], held.full)):
         if mask.any():

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.enhance import skin
+from hdrlab.errors import InputError
 from hdrlab.show.plots import axes, with_legend
 
 MOST = 2000  # pixels: more dots hide one another
@@ -19,7 +20,7 @@ def _pixels(Z: ArrayLike) -> F64:
     """Return up to MOST pixels (N, 3), evenly from the whole."""
     Z = np.asarray(Z, np.float64)
     if Z.shape[-1:] != (3,) or Z.size == 0:
-        raise ValueError(f"expected pixels (..., 3), got {describe(Z)}")
+        raise InputError(f"expected pixels (..., 3), got {describe(Z)}")
     return Z.reshape(-1, 3)[:: -(-Z.size // 3 // MOST)]
 
 

@@ -17,6 +17,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch
 
 from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.errors import InputError
 from hdrlab.show.plots import LINES, SAMPLES, Ends, axes, fix_limits, with_legend
 
 
@@ -35,7 +36,7 @@ def comparagram(
     """
     J = np.asarray(J, np.float64)
     if J.ndim != 2 or J.shape[0] != J.shape[1] or len(J) < 3 or not np.any(J > 0):
-        raise ValueError(f"expected a comparagram (n, n) with counts in it, got {describe(J)}")
+        raise InputError(f"expected a comparagram (n, n) with counts in it, got {describe(J)}")
     most = J[1:-1, 1:-1].max() or J.max()
     scale, ax = LogNorm(max(most / 1000, J[J > 0].min()), most), axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
