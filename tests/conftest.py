@@ -17,7 +17,6 @@ from PIL import Image
 from tiers import ALL, QUICK, TIERS, may_hold, tier_of, turn
 from xdist.scheduler import LoadScopeScheduling
 
-import hdrlab.course.site  # noqa: F401  # with it nbformat is loaded two seconds sooner, in each worker
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 

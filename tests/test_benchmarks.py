@@ -135,6 +135,7 @@ WITHOUT_HOLD = {
         "align-arch",
         *(f"align-{kind}-{peer}" for kind in ("shift", "turned") for peer in PEERS),
     },
+    "mutation": {"lessons", "grader"},  # survivors are hints, and their share is no target
     "ghosts": {"ghosts-alone"},  # the slide's own way, printed beside ours
 }
 

@@ -88,8 +88,14 @@ def beside(kind: str, title: str) -> tuple[Experiment, ...]:
     )
 
 
-SHIFT = "shift of up to 32 whole pixels: % of 100 pairs within 1 pixel at the corners, median and 95 % of errors"
-TURN = "shift to 32 pixels, rotation to 3 degrees: % of 100 pairs within 0.3 pixels, median and 95 % of errors"
+SHIFT = (
+    "shift of up to 32 whole pixels: % of 100 pairs within 1 pixel at the corners, "
+    "median and 95th percentile of the errors"
+)
+TURN = (
+    "shift of up to 32 pixels, rotation of up to 3 degrees: % of 100 pairs within 0.3 pixels, "
+    "median and 95th percentile of the errors"
+)
 TOLD = "of 100 pairs of each class of Ward's failures: % of the failures that are told, and their number"
 ROWS = (
     Experiment(

@@ -24,7 +24,8 @@ def plan(folder: Path) -> None:
     """Write plans: that of the package, and a short one."""
     text = plans.PLAN.read_text(encoding="utf8")
     (folder / "whole.toml").write_text(text, encoding="utf8")
-    short = '[late]\nfree_days = 2\npoints_a_day = 1.5\n[hw1]\ntitle = "One"\ndue = 2026-03-20T23:59:00+08:00\n'
+    short = "[late]\nfree_days = 2\npoints_a_day = 1.5\n"
+    short += '[hw1]\ntitle = "One"\ndue = 2026-03-20T23:59:00+08:00\n'
     short += 'tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]\n'
     (folder / "short.toml").write_text(
         short + 'by_hand = [{ title = "Words", points = 5 }]\n', encoding="utf8"

@@ -96,7 +96,8 @@ def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
 
 
 def test_a_difference_of_pictures_is_drawn_three_times(graded):
-    wrong = "import numpy as np\ndef shrink(Y):\n    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
+    wrong = "import numpy as np\ndef shrink(Y):\n"
+    wrong += "    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
     found = graded(wrong, of("hw1", "shrink"))
     drawing = next(one.drawing for one in found.checks if one.drawing.frames)
     assert len(drawing.frames) == 3 and drawing.captions[:2] == ("expected", "yours")

@@ -9,9 +9,3 @@ pages      puts all of it in one folder, and Sphinx with myst-nb makes the site 
 
 What is written by hand lies beside: `pages`, the guides in Markdown, and `theme`, how a page looks.
 """
-
-import sys
-
-# With it nbformat knows addresses of all alphabets, which no notebook has: a grammar that takes two
-# seconds.
-sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]

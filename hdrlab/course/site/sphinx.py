@@ -28,15 +28,9 @@ SETTINGS["extensions"].append(__name__)
 
 def setup(app: Any) -> dict[str, Any]:
     """Tell Sphinx what this extension does."""
-    from numpydoc import docscrape_sphinx as numpydoc
-
     from hdrlab.course.site.words import Words
 
     app.add_search_language(Words)
-    # numpydoc would compile its template for each docstring, in a sixth of the time of the site
-    templates = numpydoc.FileSystemLoader(Path(numpydoc.__file__).parent / "templates")
-    once = numpydoc.SandboxedEnvironment(loader=templates)
-    numpydoc.SandboxedEnvironment = lambda loader: once
     # in a line of text, and by itself
     renderers = ((partial(_draw, tag=tag), None) for tag in ("span", "div"))
     app.add_html_math_renderer("drawn", *renderers)
