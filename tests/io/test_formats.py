@@ -221,7 +221,7 @@ EACH = [
 
 def table():
     """Return the cells of each row of the page's table, by what stands in the first."""
-    section = PAGE.read_text("utf-8").split("## What is read and written\n\n")[1].split("\n\n")[0]
+    section = PAGE.read_text("utf-8").split("## Supported formats\n\n")[1].split("\n\n")[0]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines()]
     assert rows[0] == ["format", "as a photograph of a bracket", "as a radiance map", "written"]
     return {row[0]: row[1:] for row in rows[2:]}
