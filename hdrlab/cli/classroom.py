@@ -175,7 +175,7 @@ def regrade(
     whole = _as_graded(results, how)
     course, pieces = whole.course, whole.pieces
     words = review.requests(requests, course.roster)
-    listed = {course.roster.team_of([one]) for one in only} | set(words)
+    listed = {course.roster.find_team(name) for name in only} | set(words)
     with temporary_folder(), journal.lock_folder(results):
         _, changed = journal.parted(results / "results", pieces)
         done = graded(whole, changed, results / "regrade")

@@ -234,7 +234,7 @@ def test_only_who_is_listed_or_has_asked_moves(folder):
         "--policy",
         "only-listed",
         "--only",
-        "b1",
+        "T",  # the team t, of b1 and b2
         "--requests",
         "asked.csv",
         "--apply",

@@ -97,13 +97,28 @@ class Roster(NamedTuple):
         ('t', 't')
         >>> roster.team_of(["b1", "b3"])
         Traceback (most recent call last):
-        ValueError: expected students of one team, got b1 of t, b3 of b3
+        hdrlab.errors.InputError: expected students of one team, got b1 of t, b3 of b3
         """
         students = [self.find(id) for id in ids]
         if len({one.team for one in students}) != 1:
             said = ", ".join(f"{one.id} of {one.team}" for one in students)
             raise InputError(f"expected students of one team, got {said or 'none'}")
         return students[0].team
+
+    def find_team(self, name: str) -> str:
+        """Return the team of this name, or the team of the student of this name, in any case.
+
+        Examples
+        --------
+        >>> roster = Roster((Student("b1", "Ada", "t1"), Student("b2", "Bo", "t1")))
+        >>> roster.find_team("T1"), roster.find_team("B2")
+        ('t1', 't1')
+        """
+        key = fold(name)
+        for student in self.students:
+            if fold(student.team) == key:
+                return student.team
+        return self.find(name).team
 
 
 def read(path: str | Path) -> Roster:

@@ -157,20 +157,24 @@ def select_handins(
     only: Collection[str] = (),
     since: datetime | None = None,
 ) -> dict[str, Handin]:
-    """Return what counts of these students or teams, all unless told, and has come since a time.
+    """Return the submissions of some students or teams, received at or after a time.
+
+    Names match in any case, as everywhere in a class: "T1" is the team t1. Without `only`, all
+    students count.
 
     Raises
     ------
-    ValueError
-        For a name that the roster does not know, or of which nothing was handed in.
+    InputError
+        For a name that the roster does not know, or from whom there is no submission.
     """
-    names = {one if one in handins else roster.team_of([one]) for one in only}
-    if missing := sorted(names - set(handins)):
+    teams = {roster.find_team(name) for name in only}
+    missing = sorted(teams - set(handins))
+    if missing:
         raise InputError(f"expected names that have handed in, got {', '.join(missing)}")
     return {
-        team: one
-        for team, one in handins.items()
-        if (not only or team in names) and (since is None or one.received >= since)
+        team: handin
+        for team, handin in handins.items()
+        if (not only or team in teams) and (since is None or handin.received >= since)
     }
 
 
