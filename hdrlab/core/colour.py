@@ -24,7 +24,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance, describe
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
@@ -127,7 +127,7 @@ def render(
             Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation)
         )
 
-    for _ in each(fill, range(0, len(E), ROWS), pixels=L.size):
+    for _ in map_in_threads(fill, range(0, len(E), ROWS), pixels=L.size):
         pass
     return picture
 

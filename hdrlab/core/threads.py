@@ -1,66 +1,84 @@
-"""Work in threads, one for each processor at hand, at most four: NumPy lets others compute while it does."""
+"""Run work in threads: one for each processor, at most four.
+
+NumPy releases the interpreter's lock while it computes, so threads are enough.
+"""
 
 import os
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextvars import copy_context
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 Answer = TypeVar("Answer")
 
-# of a picture: with fewer, threads cost what they gain
+# For images with fewer pixels, threads cost as much time as they save.
 PIXELS = 1 << 22
 PROCESSORS = (
     len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 )
-# each may hold a photograph in memory
+# At most four, because each thread may hold a photo in memory.
 THREADS = min(PROCESSORS, 4)
 
 
-def beside(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Callable[[], Answer]:
-    """Return a function that waits for work(), which begins now; it is `work` itself where no thread helps.
+class DeferredTask(Generic[Answer]):
+    """A call that is made only when its result is asked for, in the calling thread."""
+
+    def __init__(self, work: Callable[[], Answer]) -> None:
+        self._work = work
+
+    def result(self) -> Answer:
+        """Make the call and return its result."""
+        return self._work()
+
+
+def run_in_background(
+    work: Callable[[], Answer], *, pixels: int = PIXELS
+) -> "Future[Answer] | DeferredTask[Answer]":
+    """Start work() in a thread and return a task, whose result() waits for it.
+
+    Where a thread would not help (one processor, or fewer than PIXELS pixels), work() runs when
+    result() is called.
 
     Examples
     --------
-    >>> answer = beside(lambda: 6 * 7)
-    >>> answer()
+    >>> task = run_in_background(lambda: 6 * 7)
+    >>> task.result()
     42
     """
     if THREADS == 1 or pixels < PIXELS:
-        return work
+        return DeferredTask(work)
     pool = ThreadPoolExecutor(1)
-    begun = pool.submit(copy_context().run, work)
+    task = pool.submit(copy_context().run, work)
     pool.shutdown(wait=False)
-    return begun.result
+    return task
 
 
-def each(
+def map_in_threads(
     work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = PIXELS
 ) -> Generator[Answer]:
-    """Yield work(item) of every item, in their order, with no threads where all are of fewer than PIXELS.
+    """Yield work(item) for each item, in order, computed in threads a few items ahead.
 
-    A thread of its own has a memory pool of its own, which is slower: with one processor there is
-    none.
+    With one processor, or fewer than PIXELS pixels, no thread is started: each thread has its own
+    memory pool, which is slower.
 
     Examples
     --------
-    >>> list(each(abs, [-3, 1, -2]))
+    >>> list(map_in_threads(abs, [-3, 1, -2]))
     [3, 1, 2]
     """
     if THREADS == 1 or pixels < PIXELS:
         yield from map(work, items)
         return
-    begun: deque[Future[Answer]] = deque()
+    tasks: deque[Future[Answer]] = deque()
     pool = ThreadPoolExecutor(THREADS)
     try:
         for item in items:
-            begun.append(
-                pool.submit(copy_context().run, work, item)
-            )  # np.errstate is the context's
-            if len(begun) > THREADS:
-                yield begun.popleft().result()
-        while begun:
-            yield begun.popleft().result()
+            # np.errstate belongs to the context, so each thread gets a copy of it.
+            tasks.append(pool.submit(copy_context().run, work, item))
+            if len(tasks) > THREADS:
+                yield tasks.popleft().result()
+        while tasks:
+            yield tasks.popleft().result()
     finally:
         pool.shutdown(cancel_futures=True)

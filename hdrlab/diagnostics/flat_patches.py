@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Flags, Mask, as_mask, as_stack, to_256
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.diagnostics import plausibility
 
 # of a patch, pixels
@@ -68,7 +68,7 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
             whole &= _reduce_patches(mask[j], apart, np.minimum)[0]
         return np.where(whole, mean, 0).astype(np.uint8), np.all(high - low <= RANGE, axis=0)
 
-    Z, flat = zip(*each(find, range(len(stack)), pixels=stack[0].size), strict=True)
+    Z, flat = zip(*map_in_threads(find, range(len(stack)), pixels=stack[0].size), strict=True)
     return FlatPatches(np.stack(Z), np.stack(flat))
 
 

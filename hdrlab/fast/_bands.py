@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core.arrays import Array
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 
 BAND = 32  # rows
@@ -44,7 +44,7 @@ def banded(equation: Callable[..., Array], *pictures: Array, margin: int = 0) ->
         return slab[top - start : top - start + BAND]
 
     tops = range(0, n, BAND)
-    for top, slab in zip(tops, each(compute, tops, pixels=pictures[0].size), strict=True):
+    for top, slab in zip(tops, map_in_threads(compute, tops, pixels=pictures[0].size), strict=True):
         whole = np.empty((n, slab.shape[1]), slab.dtype) if whole is None else whole
         whole[top : top + BAND] = slab
     if whole is None:

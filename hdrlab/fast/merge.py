@@ -21,7 +21,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask, as_mask
 from hdrlab.core.bracket import short_to_long
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
 from hdrlab.radiance.stuck import repair_stuck
 
@@ -82,7 +82,7 @@ def merge_with_quality(
         _merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], quality[rows])
 
     starts = range(0, len(quality), ROWS)
-    for start, _ in zip(starts, each(merge_rows, starts), strict=True):
+    for start, _ in zip(starts, map_in_threads(merge_rows, starts), strict=True):
         if isinstance(images, Expendable) and start % BAND == 0:
             for j in order[1:-1]:  # the shortest and the longest tell what is stuck
                 _release(stack[j, :start])

@@ -17,7 +17,7 @@ import numpy as np
 
 from hdrlab.align import mtb as lesson
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray, as_stack
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 
 Words = NDArray[np.uint64]
@@ -111,7 +111,7 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     if bits < 1:
         raise InputError(f"expected at least 1 bit for the largest offset, got bits={bits}")
     order = lesson.by_brightness(images)
-    taken = each(
+    taken = map_in_threads(
         lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size
     )
     found = [

@@ -15,7 +15,7 @@ from PIL import Image
 from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import Header, decode, look
@@ -125,7 +125,7 @@ def read_bracket(
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
-    filled = each(fill, range(len(headers)))
+    filled = map_in_threads(fill, range(len(headers)))
     for _ in progress([header.path for header in headers]):
         next(filled)
     names = [header.path.name for header in headers]

@@ -16,7 +16,7 @@ from hdrlab.align import cerman, homography, light, mtb
 from hdrlab.core import colour, steps, transfer
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, as_times, levels
 from hdrlab.core.filters import warp
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.errors import InputError
 from hdrlab.fast.mtb import Photograph
@@ -108,7 +108,7 @@ def photograph_pairs(
     images: Array, bits: int = BITS
 ) -> Iterator[tuple[int, Photograph, int, Photograph]]:
     """Yield the numbers and Photographs of neighbours from dark to bright, a few at a time in memory."""
-    taken = each(
+    taken = map_in_threads(
         lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images)
     )
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))

@@ -5,7 +5,7 @@ E, s   radiance and its standard deviation   (h, w) or (h, w, 3)
 
 import numpy as np
 
-from hdrlab.core.threads import each
+from hdrlab.core.threads import map_in_threads
 from hdrlab.diagnostics.noise import estimate_noise
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.merge import Quality
@@ -32,7 +32,7 @@ def measure_deviation(state: Assembly) -> Assembly:
             s=np.full_like(state.E, np.inf), notes=(*state.notes, f"not sure: {error}")
         )
     strips = np.array_split(images, range(ROWS, len(state.E), ROWS), axis=1)
-    merged = each(lambda one: merge_with_deviation(one, times, state.g, *noise), strips)
+    merged = map_in_threads(lambda one: merge_with_deviation(one, times, state.g, *noise), strips)
     E, s = (np.concatenate(parts) for parts in zip(*merged, strict=True))
     changed = [one > 0 for one in (state.moving, state.glare) if one is not None]
     s[np.any([state.quality != Quality.MEASURED, *changed], axis=0)] = np.inf

@@ -14,7 +14,7 @@ import numpy as np
 from hdrlab.core import steps, weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.threads import beside, each
+from hdrlab.core.threads import map_in_threads, run_in_background
 from hdrlab.diagnostics import consistency, contradictions, motion, outlying_frames
 from hdrlab.diagnostics.doubts import say
 from hdrlab.errors import InputError
@@ -163,7 +163,7 @@ def assemble_steps(
         lambda: consistency.measure_level_exposures(some, seconds, E, valid=shown),
     ]
     (moved, bands), medians, told = (
-        *each(lambda judge: judge(), judges, pixels=images[0].size),
+        *map_in_threads(lambda judge: judge(), judges, pixels=images[0].size),
         contrary(),
     )
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
@@ -188,7 +188,7 @@ def find_contrary(bracket: Bracket) -> Callable[[], contradictions.Contradiction
     find = partial(
         contradictions.find_contradictions, bracket.images, bracket.times, valid=bracket.valid
     )
-    return beside(find, pixels=bracket.images[0].size)
+    return run_in_background(find, pixels=bracket.images[0].size).result
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:

@@ -16,8 +16,10 @@ def count(request, monkeypatch):
 
 
 def test_answers_come_in_the_order_of_the_items():
-    assert list(threads.each(lambda n: n * n, iter(range(50)))) == [n * n for n in range(50)]
-    assert list(threads.each(abs, [])) == []
+    assert list(threads.map_in_threads(lambda n: n * n, iter(range(50)))) == [
+        n * n for n in range(50)
+    ]
+    assert list(threads.map_in_threads(abs, [])) == []
 
 
 def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
@@ -27,7 +29,7 @@ def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
         begun.append(n)
         return 1 // (n - 2)
 
-    answers = threads.each(work, range(50))
+    answers = threads.map_in_threads(work, range(50))
     assert [next(answers), next(answers)] == [-1, -1]
     with pytest.raises(ZeroDivisionError):
         next(answers)
@@ -36,7 +38,7 @@ def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
 
 def test_no_more_is_begun_than_is_asked_for(count):
     taken = []
-    answers = threads.each(abs, (taken.append(n) or n for n in range(50)))
+    answers = threads.map_in_threads(abs, (taken.append(n) or n for n in range(50)))
     next(answers)
     assert len(taken) <= count + 1
     answers.close()
@@ -46,8 +48,10 @@ def test_a_small_picture_has_no_threads_and_what_numpy_is_told_of_errors_holds_i
     own = threading.get_ident()
     for pixels, alone in ((100, True), (threads.PIXELS, count == 1)):
         with np.errstate(divide="raise"), pytest.raises(FloatingPointError):
-            list(threads.each(lambda n: np.float32(1) / n, [np.float32(0)], pixels=pixels))
-        used = set(threads.each(lambda _: threading.get_ident(), range(9), pixels=pixels))
+            list(
+                threads.map_in_threads(lambda n: np.float32(1) / n, [np.float32(0)], pixels=pixels)
+            )
+        used = set(threads.map_in_threads(lambda _: threading.get_ident(), range(9), pixels=pixels))
         assert (used == {own}) == alone
 
 
@@ -65,22 +69,20 @@ def test_a_large_picture_is_the_same_in_bands(monkeypatch):
         assert np.array_equal(colour.render(E, L, Ld, way=way), np.concatenate(halves))
 
 
-def test_what_is_done_beside_begins_at_once_where_there_are_processors_and_else_when_it_is_asked_for(
+def test_background_work_starts_immediately_where_there_are_processors(
     count,
 ):
     begun = threading.Event()
-    answer = threads.beside(lambda: begun.set() or 7)
+    answer = threads.run_in_background(lambda: begun.set() or 7)
     assert begun.wait(60 * (count > 1)) == (count > 1)
-    assert answer() == 7
+    assert answer.result() == 7
 
 
-def test_what_fails_beside_fails_where_it_is_asked_for():
+def test_an_error_in_background_work_is_raised_by_result():
     with pytest.raises(ZeroDivisionError):
-        threads.beside(lambda: 1 // 0)()
+        threads.run_in_background(lambda: 1 // 0).result()
 
 
-def test_a_small_picture_has_nothing_beside_it():
-    def work():
-        return threading.get_ident()
-
-    assert threads.beside(work, pixels=threads.PIXELS - 1) is work
+def test_work_on_a_small_image_runs_in_the_calling_thread():
+    task = threads.run_in_background(threading.get_ident, pixels=threads.PIXELS - 1)
+    assert task.result() == threading.get_ident()
