@@ -14,7 +14,7 @@ import threadpoolctl
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
-from tiers import ALL, QUICK, TIERS, may_hold, tier_of, turn
+from tiers import ALL, QUICK, TIERS, may_hold, start_order, tier_of
 from xdist.scheduler import LoadScopeScheduling
 
 from hdrlab.capture import camera
@@ -39,7 +39,9 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    """Choose the tier, let Ctrl-C reach what tests start, also where a script ignores it; keep to a core."""
+    """Register the tiers and choose one; let Ctrl-C reach what tests start; use one core a worker."""
+    for tier, description in TIERS.items():
+        config.addinivalue_line("markers", f"{tier}: {description}")
     if config.option.tier is None:
         named = config.args_source is pytest.Config.ArgsSource.ARGS
         config.option.tier = ALL if named else QUICK
@@ -55,22 +57,21 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Leave unread what is of another tier as a whole."""
-    address = (
-        collection_path.relative_to(config.rootpath).as_posix() + "/" * collection_path.is_dir()
-    )
-    return None if may_hold(address, config.option.tier) else True
+    """Do not import files that hold no test of the tier."""
+    return None if may_hold(collection_path, config.option.tier) else True
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out the tests of other tiers, and bring forward what is to begin first."""
+    """Leave out the tests of other tiers, and begin with the long ones."""
     if config.option.tier != ALL:
-        own, others = [], []
+        own = []
+        others = []
         for item in items:
-            (own if tier_of(item.nodeid) == config.option.tier else others).append(item)
+            selected = own if tier_of(item) == config.option.tier else others
+            selected.append(item)
         config.hook.pytest_deselected(items=others)
         items[:] = own
-    items.sort(key=lambda item: turn(item.nodeid))
+    items.sort(key=lambda item: start_order(item.nodeid))
 
 
 class ByNotebook(LoadScopeScheduling):

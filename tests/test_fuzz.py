@@ -66,6 +66,7 @@ WRONG = {
 }
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("kind", WRONG)
 def test_whatever_is_neither_a_result_nor_a_clear_error_is_a_finding(kind, tmp_path, monkeypatch):
     monkeypatch.setattr(warnings, "filters", [*warnings.filters])
@@ -75,6 +76,7 @@ def test_whatever_is_neither_a_result_nor_a_clear_error_is_a_finding(kind, tmp_p
     assert worker.judged(reader, path, lambda: "")[0].startswith(kind)
 
 
+@pytest.mark.papers
 def test_words_past_python_are_a_finding_and_a_clear_error_is_none(tmp_path):
     path = tmp_path / "fuzzed.txt"
     path.write_bytes(b"")
@@ -85,6 +87,7 @@ def test_words_past_python_are_a_finding_and_a_clear_error_is_none(tmp_path):
     assert worker.judged(reader, path, lambda: "libfoo: bad marker")[0].startswith("printed libfoo")
 
 
+@pytest.mark.papers
 @pytest.mark.skipif(sys.platform != "linux", reason="the limits are those of Linux")
 @pytest.mark.parametrize(("sent", "kind"), [(signal.SIGSTOP, "hang"), (signal.SIGKILL, "crash")])
 def test_a_reader_that_waits_or_dies_is_a_finding_and_is_started_again(sent, kind, monkeypatch):

@@ -9,6 +9,8 @@ from benchmarks import mutation
 from benchmarks.measure import ROOT
 from benchmarks.mutation.mutants import mutants
 
+pytestmark = pytest.mark.papers
+
 SOURCE = '''"""Sums of 3 numbers."""
 
 

@@ -4,6 +4,8 @@ import nbformat
 import pytest
 from test_notebooks import NOTEBOOKS
 
+pytestmark = pytest.mark.notebooks
+
 LONG = (
     "13",
     "02",

@@ -15,6 +15,8 @@ from benchmarks import experiments
 from benchmarks.experiments import spread
 from benchmarks.papers import ROWS, cerman, curves, mitsunaga, space, wilburn
 
+pytestmark = pytest.mark.papers
+
 NOWHERE = Path("nowhere")  # no data there: they are looked for in ../shared/data
 EXPERIMENTS = {row.name: row for row in ROWS}
 QUICK = [

@@ -9,53 +9,65 @@ from pathlib import Path
 import pytest
 import results
 import threadpoolctl
-from tiers import ALL, FIRST, QUICK, TIERS, may_hold, tier_of, turn
+from tiers import LONG_FILES
 
 ROOT = Path(__file__).parents[1]
-STARTS = [start for starts in TIERS.values() for start in starts]
 
 
-@pytest.mark.parametrize("start", [*STARTS, *FIRST])
-def test_what_a_tier_lists_is_there(start):
-    file, _, test = start.partition("::")
-    there = [ROOT / file] if file.endswith("/") else list(ROOT.glob(f"{file}*"))
-    assert there and all(path.exists() for path in there)
-    assert not test or re.search(
-        rf"^(def|class) {test.partition('[')[0]}", there[0].read_text(encoding="utf8"), re.MULTILINE
-    )
+@pytest.mark.parametrize("file", LONG_FILES)
+def test_a_file_that_begins_first_exists(file):
+    assert (ROOT / file).is_file()
 
 
-def test_the_longest_start_counts():
-    assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestThree::test_a") == "browser"
-    assert (
-        tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestOthers0::test_a")
-        == "jupyterlab"
-    )
-    assert len(set(STARTS)) == len(STARTS)
+TESTS = """
+import pytest
+
+{mark}
+
+def test_of_the_file():
+    pass
+
+@pytest.mark.papers
+def test_on_paper():
+    pass
+
+@pytest.mark.grading
+class TestGrading:
+    def test_of_the_class(self):
+        pass
+
+    @pytest.mark.quick
+    def test_nearest(self):
+        pass
+"""
+WITHOUT_MARK = {
+    "quick": {"test_of_the_file", "test_nearest"},
+    "papers": {"test_on_paper"},
+    "grading": {"test_of_the_class"},
+    "browser": set(),
+}
 
 
-def test_what_is_long_has_its_turn_before_the_others():
-    addresses = [
-        "tests/core/test_blur.py::test_a",
-        *(f"{start}::test_a" for start in reversed(FIRST)),
-    ]
-    assert sorted(addresses, key=turn) == [*reversed(addresses[1:]), addresses[0]]
+@pytest.mark.parametrize("tier", WITHOUT_MARK)
+def test_the_nearest_marker_names_the_tier(tier, tmp_path):
+    assert collected(tmp_path, tier, mark="") == WITHOUT_MARK[tier]
 
 
-def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():
-    assert tier_of("tests/core/test_blur.py::test_a") == QUICK and may_hold(
-        "tests/core/test_blur.py", QUICK
-    )
-    assert tier_of("tests/browser/test_new.py::test_a") == "browser"
-    assert may_hold("tests/", "browser") and may_hold("tests/browser/test_new.py", "browser")
-    assert not may_hold("tests/browser/", QUICK) and may_hold("tests/browser/", ALL)
-    assert not may_hold("tests/core/", "browser")
+def test_a_marked_file_gives_its_tier_to_the_tests_without_a_marker(tmp_path):
+    mark = "pytestmark = pytest.mark.browser"
+    assert collected(tmp_path, "browser", mark) == {"test_of_the_file"}
+    assert collected(tmp_path, "quick", mark) == {"test_nearest"}
+    assert collected(tmp_path, "wheel", mark) == set()
 
 
-def test_a_file_that_holds_one_dear_test_is_read_for_both_tiers():
-    start = next(start for start in TIERS["papers"] if "::" in start)
-    file, tier = start.partition("::")[0], tier_of(start)
-    assert may_hold(file, tier) and may_hold(file, QUICK) and tier != QUICK
+def collected(folder, tier, mark):
+    """Return the names of the tests that pytest selects in a file with these tests."""
+    for name in ("conftest.py", "tiers.py"):
+        (folder / name).write_text((ROOT / "tests" / name).read_text("utf8"), "utf8")
+    (folder / "test_toy.py").write_text(TESTS.format(mark=mark), "utf8")
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", f"--tier={tier}"]
+    output = subprocess.run(command, cwd=folder, capture_output=True, text=True).stdout
+    return set(re.findall(r"::(test_\w+)$", output, re.MULTILINE))
 
 
 def test_ctrl_c_reaches_what_a_test_starts():

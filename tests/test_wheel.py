@@ -11,10 +11,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-pytestmark = pytest.mark.skipif(
-    not (ROOT / "pyproject.toml").exists(),
-    reason="builds the wheel from a clone, and this is an installed package",
-)
+pytestmark = [
+    pytest.mark.wheel,
+    pytest.mark.skipif(
+        not (ROOT / "pyproject.toml").exists(),
+        reason="builds the wheel from a clone, and this is an installed package",
+    ),
+]
 
 
 @pytest.fixture(scope="module")

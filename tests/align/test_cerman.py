@@ -11,6 +11,8 @@ from hdrlab.capture.responses import true_g
 from hdrlab.core.arrays import levels
 from hdrlab.core.filters import warp
 
+pytestmark = pytest.mark.papers
+
 SHAPE = (110, 160)
 
 

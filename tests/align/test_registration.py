@@ -17,6 +17,8 @@ from hdrlab.pipeline import alignment, registration
 from hdrlab.radiance.merge import Quality
 from scenes.computed import view
 
+pytestmark = pytest.mark.papers
+
 SHAPE = (150, 220)
 CAMERA = camera.Camera(full_well=20_000, read_noise=5)
 HAND = dict(radius=4, degrees=2, rng=6)

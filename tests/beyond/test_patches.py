@@ -10,6 +10,8 @@ from hdrlab.capture.responses import true_g
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.scenes.places import layers
 
+pytestmark = pytest.mark.papers
+
 G = true_g("film")
 
 
@@ -261,6 +263,7 @@ def test_a_match_goes_on_from_a_neighbour_and_at_the_edge_from_the_nearest_pixel
         assert found[y, x].tolist() == (at[beside] + [0, *step]).tolist()
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("k", "unknown"), [(0, [[1, 1, 1], [2, 2, 2]]), (1, [[2, 2, 2]]), (2, [])])
 def test_only_what_a_longer_exposure_clips_has_no_price(k, unknown):
     L, clipped = np.full((3, 4, 5, 3), 0.5, np.float32), np.zeros((3, 4, 5, 3), bool)

@@ -101,6 +101,7 @@ def test_windows_hold_the_neighbours_of_each_item():
                 assert list(around) == list(range(max(0, i - span), min(count, i + span + 1)))
 
 
+@pytest.mark.papers
 def test_each_frame_is_nearer_to_its_moment_than_a_plain_merge_and_than_the_frame_alone(
     film, states
 ):
@@ -186,6 +187,7 @@ def test_what_means_nothing_is_refused(call):
         call()
 
 
+@pytest.mark.papers
 def test_the_times_of_a_turn_are_repeated(film):
     frames, t, _ = film
     assert np.array_equal(video.merge(frames, t[:2], G), video.merge(frames, t, G))

@@ -6,6 +6,8 @@ import pytest
 
 from hdrlab.course.material import materials
 
+pytestmark = pytest.mark.browser
+
 WRONG = """def hat(n=256):
 z = np.arange(n)
 return np.abs(z - n // 2) / (n // 2)"""

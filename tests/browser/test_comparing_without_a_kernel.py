@@ -12,6 +12,8 @@ from hdrlab.core import colour
 from hdrlab.show import widgets
 from hdrlab.tonemap import brush
 
+pytestmark = pytest.mark.browser
+
 E = scenes.room((240, 320))
 SHADES = np.arange(0, 240, 10, np.uint8).reshape(4, 6).repeat(100, axis=0).repeat(100, axis=1)
 LIGHT = np.linspace(0.001, 1000, SHADES.size).reshape(SHADES.shape)

@@ -8,6 +8,8 @@ from hdrlab.course import grading, plan
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import feedback
 
+pytestmark = pytest.mark.browser
+
 PAYLOAD = (
     "<script>window.owned = 1</script><img src=x onerror='window.owned = 1'>"
     "<svg onload='window.owned = 1'><a href='javascript:window.owned = 1'>click</a></pre></details>"

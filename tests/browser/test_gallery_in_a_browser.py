@@ -14,10 +14,13 @@ import gallery_class as small
 
 from hdrlab.course.gallery import ballots, store
 
-pytestmark = pytest.mark.skipif(
-    any(find_spec(name) is None for name in ("starlette", "uvicorn")),
-    reason='the gallery needs pip install ".[class]"',
-)
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        any(find_spec(name) is None for name in ("starlette", "uvicorn")),
+        reason='the gallery needs pip install ".[class]"',
+    ),
+]
 TEAMS = {f"team{k}": (f"ann{k}", f"ben{k}") for k in range(1, 9)}
 
 

@@ -1,9 +1,12 @@
 """The switch beside a picture for HDR screens, pressed."""
 
 import numpy as np
+import pytest
 
 from hdrlab.io import screens
 from hdrlab.show.lit import Lit
+
+pytestmark = pytest.mark.browser
 
 LIMIT = "() => getComputedStyle(document.querySelector('img')).dynamicRangeLimit"
 

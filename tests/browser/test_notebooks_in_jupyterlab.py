@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from laboratory import DIGEST, LOOK, PATIENCE, changed_by
 
+pytestmark = pytest.mark.browser
+
 FOLDER = Path(__file__).parents[2] / "notebooks"
 THREE = ["00_welcome.ipynb", "18_all_operators.ipynb", "24_made_of_patches.ipynb"]
 OTHERS = sorted({path.name for path in FOLDER.glob("*.ipynb")} - set(THREE))
@@ -186,9 +188,11 @@ def test_the_three_hold_every_kind_of_widget():
 class TestThree(Notebooks): ...
 
 
+@pytest.mark.jupyterlab
 @pytest.mark.parametrize("notebook", OTHERS[0::2])
 class TestOthers0(Notebooks): ...
 
 
+@pytest.mark.jupyterlab
 @pytest.mark.parametrize("notebook", OTHERS[1::2])
 class TestOthers1(Notebooks): ...

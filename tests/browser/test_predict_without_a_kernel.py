@@ -8,6 +8,8 @@ from laboratory import open_widget
 from hdrlab.core.colour import decode_srgb
 from hdrlab.show.widgets import predict
 
+pytestmark = pytest.mark.browser
+
 LEVELS = np.repeat(np.arange(192, dtype=np.uint8)[None], 120, axis=0)
 ASKED = {
     "choice": lambda: predict.choice(

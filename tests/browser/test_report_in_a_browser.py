@@ -7,6 +7,8 @@ from hdrlab import pipeline
 from hdrlab.core.bracket import bracket
 from hdrlab.show.pages.report import write_report
 
+pytestmark = pytest.mark.browser
+
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):

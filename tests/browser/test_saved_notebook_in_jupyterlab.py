@@ -8,6 +8,8 @@ from laboratory import PATIENCE, Absent, jupyterlab
 
 from hdrlab.course.material import materials
 
+pytestmark = pytest.mark.browser
+
 CELL = """import numpy as np
 from hdrlab.show import widgets
 

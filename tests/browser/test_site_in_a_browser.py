@@ -26,9 +26,13 @@ OTHERS = [
 ]
 MINOR = "empty-table-header"  # the empty corner of a table with names on two sides
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
-pytestmark = pytest.mark.skipif(
-    any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
-)
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        any(find_spec(name) is None for name in NEEDS),
+        reason='the site needs pip install ".[site]"',
+    ),
+]
 
 
 def make_site(folder, kept):

@@ -9,6 +9,8 @@ from hdrlab.io import web
 from hdrlab.show import pictures, plots, widgets
 from hdrlab.show.plots import tones
 
+pytestmark = pytest.mark.browser
+
 
 def square(level=100):
     return np.full((40, 60), level, np.uint8)

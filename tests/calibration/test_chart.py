@@ -80,6 +80,7 @@ def test_the_grays_reflect_what_their_munsell_values_and_their_densities_say():
     assert np.allclose(chart.NEUTRAL, 10**-D, rtol=0.02)
 
 
+@pytest.mark.papers
 def test_the_reflectances_are_those_of_the_specification_and_near_to_those_of_measured_charts():
     listed = pytest.importorskip("colour.characterisation").CCS_COLOURCHECKERS
     Y = {name: [100 * one[2] for one in listed[name].data.values()] for name in listed}

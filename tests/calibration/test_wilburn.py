@@ -20,6 +20,8 @@ from hdrlab.calibration.blends import (
 from hdrlab.calibration.display import Schedule
 from hdrlab.capture.responses import RESPONSES, as_response, true_g
 
+pytestmark = pytest.mark.papers
+
 ALPHA = np.arange(1, 16) / 15
 SOLVERS = {"simplex": wilburn.join, "spline": joining.join}
 
@@ -75,6 +77,7 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
         )
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     "rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]], [[[0, 9], [9, 0]]], [0, 9, 9]]
 )
@@ -83,6 +86,7 @@ def test_a_picture_that_shows_no_grid_is_refused(rows):
         display.find_corners(rows)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("scale", "offset"), [(1.0, 0.0), (3.0, 0.7), (0.2, -5.0)])
 def test_curves_that_differ_in_scale_and_offset_alone_are_the_same(scale, offset):
     M = np.linspace(0.1, 0.9, 200)

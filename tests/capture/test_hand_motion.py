@@ -31,6 +31,7 @@ MOVES = {
 }
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("name", MOVES)
 def test_a_moved_camera_sees_the_scene_between_its_pixels(waves, E, name):
     moves = MOVES[name]

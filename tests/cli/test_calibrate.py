@@ -64,6 +64,7 @@ def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(
     assert all(out.exists() for out in outs)
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_the_plot_carries_its_alt_text(suffix, photographs, tmp_path):
     folder, times, _ = photographs

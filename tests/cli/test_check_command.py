@@ -7,6 +7,8 @@ import pytest
 
 from hdrlab import cli
 
+pytestmark = pytest.mark.grading
+
 PLAN = """
 [hw2]
 title = "The response curve"
@@ -100,6 +102,7 @@ def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
     assert code == 2 and "it is empty" in err
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -116,11 +119,13 @@ def test_bad_input_is_one_line_and_exit_code_2(typed, arguments, said):
     assert code == 2 and said in err and "Traceback" not in err
 
 
+@pytest.mark.quick
 def test_doctor_names_every_tier(typed):
     code, out, _ = typed("doctor")
     assert code == 0 and all(tier in out for tier in ("strict", "container", "practice"))
 
 
+@pytest.mark.quick
 def test_the_course_is_built_and_exported(typed, tmp_path):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     sources = Path(__file__).resolve().parents[2] / "solutions"

@@ -74,6 +74,7 @@ def test_importing_hdrlab_imports_no_chapter():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
 
 
+@pytest.mark.papers
 def test_assembling_loads_nothing_of_scipy_that_it_does_not_use_and_no_plots(photographs, tmp_path):
     folder, times = photographs
     arguments = ["assemble", str(folder), "--times", str(times), "-o", str(tmp_path / "room.hdr")]
@@ -147,6 +148,7 @@ def test_a_map_that_cannot_be_written_beside_its_picture_is_an_error(photographs
     assert code == 2 and "there is no folder" in said and read_photo(picture).ndim == 3
 
 
+@pytest.mark.papers
 def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_path):
     folder, times = photographs
     files = sorted(folder.iterdir(), reverse=True)
@@ -173,6 +175,7 @@ def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_
     assert not (tmp_path / "x.hdr").exists()
 
 
+@pytest.mark.papers
 def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
     photographs, tmp_path, capsys
 ):
@@ -199,6 +202,7 @@ def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
     assert cv2.imread(str(tmp_path / "x.hdr"), cv2.IMREAD_UNCHANGED).any()
 
 
+@pytest.mark.papers
 def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(
     photographs, tmp_path, capsys
 ):
@@ -257,6 +261,7 @@ def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(
     assert b"doubt" not in (tmp_path / "x.hdr").read_bytes()[:500]
 
 
+@pytest.mark.papers
 def test_times_that_nobody_knows_are_steps_or_the_pixels(photographs, tmp_path, capsys):
     folder, _ = photographs
     steps, pixels = tmp_path / "steps.pfm", tmp_path / "pixels.pfm"
@@ -274,6 +279,7 @@ def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
     assert code == 0 and "note: the exposure times are those of" in said and "times.txt" in said
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("form", ["{:g}", "{:g} s"])
 @pytest.mark.parametrize("power", [1, -1])
 def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(
@@ -522,6 +528,7 @@ def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(
     assert [notebook.read_text() for notebook in mine] == ["mine", "mine"]
 
 
+@pytest.mark.papers
 def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
     called = []
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", "")  # which the command sets

@@ -16,6 +16,7 @@ def results(tmp_path_factory):
     return out, lines
 
 
+@pytest.mark.papers
 def test_the_demo_announces_as_many_steps_as_it_takes(results):
     assert len(results[1]) == demo.STEPS
 
@@ -48,11 +49,13 @@ def test_the_report_is_one_file_that_asks_for_nothing_outside_itself(results):
     assert page.count("<img") == page.count("alt=")
 
 
+@pytest.mark.papers
 def test_the_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
     list(demo.demo_steps(tmp_path))
     assert (tmp_path / "radiance.pfm").read_bytes() == (results[0] / "radiance.pfm").read_bytes()
 
 
+@pytest.mark.papers
 def test_the_demo_on_real_photographs_prints_as_many_lines_without_a_truth(tmp_path):
     lines = list(demo.real_steps(tmp_path / "new"))
     assert len(lines) == demo.STEPS and lines[1] == "bracket    6 photographs, hand-held"

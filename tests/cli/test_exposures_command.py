@@ -103,6 +103,7 @@ def test_meter_says_how_much_of_what_it_hears_is_full(tmp_path):
     assert "100% of what it hears is full" in run(exposures.meter, tmp_path / "white.png")
 
 
+@pytest.mark.papers
 def test_meter_names_the_time_that_would_be_right(shared):
     photo = sorted(shared("window").glob("*.jpg"))[5]
     assert "taken with 1/30 s; with 1/40 s it would be right" in run(exposures.meter, photo)

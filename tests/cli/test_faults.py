@@ -22,6 +22,8 @@ from hdrlab.capture import camera
 from hdrlab.io import radiance
 from hdrlab.io.photos import write_picture
 
+pytestmark = pytest.mark.papers
+
 resource = pytest.importorskip("resource", reason="a system without limits cannot play a full disk")
 
 PATIENCE = 1800  # seconds: what hangs ends
@@ -183,7 +185,10 @@ def test_a_site_in_a_folder_that_is_gone_ends_in_a_line(here, made):
 
 
 @pytest.mark.parametrize("refusal", ["a full disk", "no right to write"])
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command",
+    ["assemble", "tonemap", "grade", pytest.param("site", marks=pytest.mark.notebooks)],
+)
 def test_a_disk_that_refuses_is_told_in_a_line(command, refusal, here, made):
     full = refusal == "a full disk"
     if command in MAIN:

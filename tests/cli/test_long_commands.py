@@ -12,6 +12,8 @@ import pytest
 
 from hdrlab.io.maps import pfm
 
+pytestmark = pytest.mark.papers
+
 pty = pytest.importorskip("pty", reason="there are no such terminals here")
 
 SIDES = (3000, 4000)  # 12 megapixels

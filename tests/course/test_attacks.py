@@ -17,6 +17,8 @@ from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
 
+pytestmark = pytest.mark.grading
+
 ENDS = {  # what is said of the first check
     "a01_everything_equals_it": "no array: it contains an object of the class Agreeable",
     "a01_agreeable_array": "expected .*, got 7",

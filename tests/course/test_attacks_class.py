@@ -14,6 +14,8 @@ from hdrlab.course import grading, plan
 from hdrlab.course.reports import feedback, results
 from hdrlab.course.sandbox import tiers
 
+pytestmark = pytest.mark.grading
+
 HONEST = (
     "import numpy as np\n\ndef hat(n):\n    z = np.arange(n)\n    return np.minimum(z, n - 1 - z)\n"
 )

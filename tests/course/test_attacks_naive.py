@@ -16,6 +16,8 @@ import siege
 
 from hdrlab.course.sandbox.inside import system
 
+pytestmark = pytest.mark.grading
+
 ENDLESS = [name for name in siege.NAMES if name.startswith("a12")]
 NOT_NAIVE = {
     "a09_kill_parent": "it would end these tests",

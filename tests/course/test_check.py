@@ -2,10 +2,13 @@
 
 import re
 
+import pytest
 from IPython.display import DisplayHandle
 
 from hdrlab.course import notebook
 from hdrlab.course.code.closure import Cell
+
+pytestmark = pytest.mark.grading
 
 RIGHT = """import numpy as np
 

@@ -25,6 +25,8 @@ from hdrlab.course.classroom.roster import read
 from hdrlab.course.reports import results, sheets
 from hdrlab.course.reports.results import Check, Result
 
+pytestmark = pytest.mark.grading
+
 HW2 = {task.id for task in plan.read().homeworks["hw2"].tasks}
 
 

@@ -254,6 +254,7 @@ def grade(folder, capsys):
     return run
 
 
+@pytest.mark.grading
 def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert "2 of 2 graded, 2 of them now" in grade()
     whole = {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()}
@@ -290,6 +291,7 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     } == whole
 
 
+@pytest.mark.grading
 def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, grade):
     assert "1 of 2 graded, 1 of them now" in grade("--only", "B2")  # of team t
     assert "1 of 2 graded, 0 of them now" in grade("--since", "2026-10-27")

@@ -23,6 +23,8 @@ import hdrlab
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom.executors import cluster, processes
 
+pytestmark = pytest.mark.grading
+
 RUN = """
 import sys
 from pathlib import Path

@@ -16,9 +16,10 @@ from hdrlab.course.checks import compare, inprocess
 HERE = Path(__file__).parents[1] / "equivalent"
 FILES = sorted(HERE.glob("*.py"))
 HOMEWORKS = plan.read().homeworks
-pytestmark = pytest.mark.skipif(
-    not FILES, reason="no model solution is part of the source distribution"
-)
+pytestmark = [
+    pytest.mark.grading,
+    pytest.mark.skipif(not FILES, reason="no model solution is part of the source distribution"),
+]
 
 
 def aside(function):

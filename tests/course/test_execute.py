@@ -8,6 +8,8 @@ import pytest
 
 from hdrlab.course.site import execute
 
+pytestmark = pytest.mark.grading
+
 ASKED = """import json, os, pathlib
 from ipykernel import get_connection_file
 file = pathlib.Path(get_connection_file())

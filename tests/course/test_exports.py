@@ -113,6 +113,7 @@ def test_every_solution_of_the_course_runs_inside_its_own_function(name):
         assert callable(scope[task.id])
 
 
+@pytest.mark.grading
 def test_nbgrader_makes_the_students_version_grades_it_and_gives_feedback(course, tool):
     """One student hands in a right and a wrong function, another the sheet as it was given."""
     assert "0.9.6" in tool(course, "--version")
@@ -202,6 +203,7 @@ def hat(n=256):
 """
 
 
+@pytest.mark.grading
 def test_an_autograder_holds_hdrlab_its_checks_and_scripts_that_run(zipped):
     folder, modes = zipped
     names = set(modes)
@@ -243,6 +245,7 @@ def handed_in(folder, tmp_path, name, text):
     return root
 
 
+@pytest.mark.grading
 def test_an_autograder_grades_with_the_files_of_its_zip_alone(zipped, tmp_path):
     found = run(handed_in(zipped[0], tmp_path, "hw2.py", RIGHT))
     of = {
@@ -260,6 +263,7 @@ def test_an_autograder_grades_with_the_files_of_its_zip_alone(zipped, tmp_path):
     assert "irradiance was not found" in found["output"] and "not for credit" in found["output"]
 
 
+@pytest.mark.grading
 def test_an_autograder_that_cannot_grade_says_so_and_gives_nothing(zipped, tmp_path):
     found = run(handed_in(zipped[0], tmp_path, "hw2.txt", RIGHT))
     assert found["score"] == 0 and "expected a notebook" in found["output"]

@@ -13,9 +13,12 @@ from hdrlab.course.material import solutions
 from hdrlab.course.reports import results
 
 FAIRNESS = Path(__file__).parents[2] / "benchmarks" / "fairness"
-pytestmark = pytest.mark.skipif(
-    not FAIRNESS.is_dir(), reason="benchmarks/ is no part of the installed package"
-)
+pytestmark = [
+    pytest.mark.grading,
+    pytest.mark.skipif(
+        not FAIRNESS.is_dir(), reason="benchmarks/ is no part of the installed package"
+    ),
+]
 
 
 def asked(path):

@@ -170,6 +170,7 @@ def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(
     assert hdrlab("close", "g")[0] == 2 and "cannot be read" in hdrlab("close", "g")[1]
 
 
+@pytest.mark.grading
 @served
 def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path):
     from benchmarks import gallery as bench
@@ -190,6 +191,7 @@ def test_rows_of_the_benchmark_write_into_folders_of_their_own(tmp_path, monkeyp
     assert len(set(folders)) == 3
 
 
+@pytest.mark.grading
 @served
 def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
     from benchmarks import gallery as bench
@@ -199,6 +201,7 @@ def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
     assert found["acknowledged before the kill"] >= 10
 
 
+@pytest.mark.grading
 @served
 @pytest.mark.skipif(
     not Path("/proc/self/fd").is_dir(), reason="counts the descriptors of a server in /proc"

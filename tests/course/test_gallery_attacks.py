@@ -35,6 +35,8 @@ from hdrlab.course.gallery.web import app, guard, serve
 from hdrlab.course.gallery.web.writer import Writer
 from hdrlab.course.reports import sheets
 
+pytestmark = pytest.mark.grading
+
 ORIGIN = {"origin": small.ADDRESS}
 ROSTER = Roster(
     tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m)

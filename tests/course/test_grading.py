@@ -19,6 +19,8 @@ from hdrlab.course.reports import feedback, gradebook, results
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 
+pytestmark = pytest.mark.grading
+
 HOMEWORKS = plan.read().homeworks
 PRACTICE = Conditions(tier="practice")
 
@@ -273,7 +275,13 @@ def test_a_student_may_use_what_the_sheet_gives(graded):
     assert np.isclose(graded(without, of("hw2", "gsolve")).score, 30)
 
 
-@pytest.mark.parametrize("name", HOMEWORKS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.quick if name == "project" else ())
+        for name in HOMEWORKS
+    ],
+)
 def test_in_a_sandbox_the_library_has_all_points_and_a_blank_none(name, tmp_path):
     try:
         tiers.choose("strict")

@@ -243,6 +243,7 @@ def test_a_sheet_of_one_task_has_no_cell_that_needs_another(task):
                 assert {use.node.id for use in names.free(node)} <= known, cell["source"]
 
 
+@pytest.mark.notebooks
 def test_building_writes_both_and_nothing_else(tmp_path):
     """In a process of its own: notebooks are run with asyncio, and a browser may hold this one's loop."""
     pytest.importorskip("jupytext", reason="jupytext is not installed")

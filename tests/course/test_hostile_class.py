@@ -10,6 +10,8 @@ from hdrlab import cli
 from hdrlab.course.reports import sheets
 from hdrlab.course.sandbox import doctor
 
+pytestmark = pytest.mark.grading
+
 HONEST = {"h1": ("h1_hw2.ipynb", hostile.notebook(GOOD))}
 CODE = ("ends by itself",)
 FILES = ("NUL",)

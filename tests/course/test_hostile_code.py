@@ -20,6 +20,8 @@ from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.wording import lines, plain
 
+pytestmark = pytest.mark.grading
+
 KINDS = {  # of no answer; the others answer with something that is compared
     "computes in each call": ("late",),
     "computes in threads": ("late",),

@@ -16,6 +16,8 @@ from hdrlab.course import submission
 from hdrlab.course.classroom import handins
 from hdrlab.course.classroom.roster import Roster, Student
 
+pytestmark = pytest.mark.grading
+
 resource = pytest.importorskip("resource", reason="this system counts no process's seconds")
 LOST = {  # what can not be read; of the others the right function at the end is found
     *("empty dictionaries", "deep lists", "deep dictionaries", "a long number"),
@@ -107,6 +109,7 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
     assert problem.startswith("The archive is refused: ")
 
 
+@pytest.mark.quick
 def test_a_reader_that_is_killed_from_outside_says_nothing_of_the_file(tmp_path, monkeypatch):
     monkeypatch.setattr(submission, "_read", _killed)
     (tmp_path / "hw2.py").write_text(GOOD)
@@ -118,6 +121,7 @@ def _killed(order):
     os.kill(os.getpid(), 9)
 
 
+@pytest.mark.quick
 def test_a_reader_that_is_killed_from_outside_is_started_again(tmp_path, monkeypatch):
     (tmp_path / "hw2.py").write_text(GOOD)
     monkeypatch.setattr(submission, "_read", _killed_twice)

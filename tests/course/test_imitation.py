@@ -12,6 +12,8 @@ from hdrlab.course import plan, submission
 from hdrlab.course.checks import inprocess, misconceptions
 from hdrlab.course.material import solutions
 
+pytestmark = pytest.mark.grading
+
 HERE = Path(__file__).parents[1]
 HOMEWORKS = plan.read().homeworks
 OF_TASK = {task.id: name for name, homework in HOMEWORKS.items() for task in homework.tasks}

@@ -17,9 +17,10 @@ from hdrlab.course.classroom import handins, journal
 from hdrlab.course.classroom.executors import processes
 from hdrlab.course.classroom.roster import Roster, Student
 
-pytestmark = pytest.mark.skipif(
-    os.name != "posix", reason="submissions here are ended by signals of POSIX"
-)
+pytestmark = [
+    pytest.mark.grading,
+    pytest.mark.skipif(os.name != "posix", reason="submissions here are ended by signals of POSIX"),
+]
 
 RUN = """
 import sys
@@ -75,6 +76,7 @@ class AtOnce:
         return ended
 
 
+@pytest.mark.quick
 def test_an_older_result_that_somebody_removes_meanwhile_is_not_missed(tmp_path):
     former, *pieces = (journal.Piece("s0", tmp_path, key) for key in ("old", "new"))
     journal.write(old := journal.place(tmp_path, former), b"{}")

@@ -28,6 +28,8 @@ from hdrlab.course.plan import Conditions, Homework, Task
 from hdrlab.course.reports import results
 from hdrlab.course.sandbox import doctor
 
+pytestmark = pytest.mark.grading
+
 HIDDEN = """
 import pytest
 

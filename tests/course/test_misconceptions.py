@@ -39,6 +39,7 @@ def test_there_are_thirty_and_more_and_some_for_every_task():
     assert {one.task for one in KNOWN} == tasks
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("one", KNOWN, ids=NAMES)
 def test_a_mistake_costs_points_and_not_all_of_them(one):
     for student in ("ada", "grace"):
@@ -54,6 +55,7 @@ def test_a_mistake_has_a_sentence_and_says_what_to_do(one):
     )
 
 
+@pytest.mark.grading
 def test_nine_in_ten_are_recognised_by_name_for_any_student():
     for student in ("ada", "grace"):
         missed = []
@@ -66,6 +68,7 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
         assert len(missed) <= 0.1 * len(KNOWN), missed
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("task", sorted({one.task for one in KNOWN}))
 def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
     subject = inprocess.library()
@@ -77,6 +80,7 @@ def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
     assert misconceptions.closest(PLAN.task(task), []) is None
 
 
+@pytest.mark.grading
 def test_nonsense_is_no_known_mistake():
     Z = np.random.default_rng(0).integers(0, 256, (30, 4))
     given = (Z, np.arange(4.0), 10.0, np.ones(256))
@@ -103,6 +107,7 @@ def unscaled(one):
     return lambda *given, **named: others[one.task](inprocess.plain(one.function(*given, **named)))
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize(
     "name",
     [
@@ -117,6 +122,7 @@ def test_a_mistake_is_named_in_every_scale_and_gauge_that_the_checks_accept(name
     assert misconceptions.closest(PLAN.task(one.task), subject.calls[:20]) == one
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("one", [one for one in KNOWN if one.once], ids=lambda one: one.name)
 def test_a_mistake_costs_half_at_most_unless_it_misses_what_the_task_is_about(one):
     assert asked(one, "ada")[0] >= 0.5

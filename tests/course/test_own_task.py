@@ -88,6 +88,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
     ]
 
 
+@pytest.mark.grading
 def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
     (tmp_path / "extra.py").write_text(WRONG)
     conditions = Conditions("practice", hidden=folder / "hidden")
@@ -111,6 +112,7 @@ def test_a_check_is_worth_what_its_marker_says_and_without_one_a_point(marks, po
     assert json.loads(out.read_text())["points"] == points
 
 
+@pytest.mark.grading
 def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(folder, tmp_path):
     (task,) = extra(folder).tasks
     task.own.unlink()
@@ -145,6 +147,7 @@ def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):
     assert "hat" not in stubs.stub(task)
 
 
+@pytest.mark.grading
 def test_its_own_tests_hold_as_written(folder):
     ran = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", str(folder)],

@@ -404,6 +404,7 @@ def lived(rng):
     return kills
 
 
+@pytest.mark.grading
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes that it has forked")
 def test_after_any_history_what_is_applied_equals_grading_from_scratch(folder):
     rng, kills = random.Random(25), 0

@@ -257,6 +257,7 @@ def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
         assert groups == [] and places == [None] * len(places)
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("tier", ["strict", "container"])
 def test_no_package_but_numpy_and_scipy_is_there(tier):
     source = textwrap.dedent(
@@ -417,6 +418,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
     assert again <= first
 
 
+@pytest.mark.grading
 def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_path):
     """Whatever tier: with the parent gone, the process of the check and its supervisor are gone soon."""
     for tier in ("strict", "practice"):

@@ -26,6 +26,8 @@ from hdrlab.course.overlap.authored import Work
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import sheets
 
+pytestmark = pytest.mark.grading
+
 HW2 = plan.read().homeworks["hw2"]
 TASKS = [task.id for task in HW2.tasks]
 NOW = datetime(2026, 10, 20, tzinfo=UTC)

@@ -29,9 +29,13 @@ from hdrlab.show import pictures
 from hdrlab.show.plots import curves, tones
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
-pytestmark = pytest.mark.skipif(
-    any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
-)
+pytestmark = [
+    pytest.mark.notebooks,
+    pytest.mark.skipif(
+        any(find_spec(name) is None for name in NEEDS),
+        reason='the site needs pip install ".[site]"',
+    ),
+]
 REFUSED = ("without times", "one photograph", "times the other way round", "two sizes")
 ADDRESS = "https://example.org/course"
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"

@@ -8,9 +8,12 @@ import timetable
 
 from hdrlab.course.site import reference
 
-pytestmark = pytest.mark.skipif(
-    not timetable.COPY.exists(), reason="reads a clone, and this is an installed package"
-)
+pytestmark = [
+    pytest.mark.grading,
+    pytest.mark.skipif(
+        not timetable.COPY.exists(), reason="reads a clone, and this is an installed package"
+    ),
+]
 each = pytest.mark.parametrize("row", systems.table(), ids=lambda row: row[0])
 
 

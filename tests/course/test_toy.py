@@ -16,6 +16,8 @@ from hdrlab.course.classroom import toy
 from hdrlab.course.reports import results, sheets
 from hdrlab.course.sandbox import tiers
 
+pytestmark = pytest.mark.grading
+
 HOMEWORK = plan.read().homeworks[toy.HOMEWORK]
 WHOLE = {"s01", "s02", "s03", "s04", "s05", "s11"}  # all right
 NOTHING = {"s10", "s12", "s13", "s14"}  # blank, a hostile archive, attacks, not handed in
@@ -143,6 +145,7 @@ def digests(out, team):
 README = Path(__file__).parents[2] / "README.md"
 
 
+@pytest.mark.quick
 @pytest.mark.skipif(not README.is_file(), reason="README.md stays in the clone")
 def test_the_readme_has_the_two_commands():
     text = README.read_text(encoding="utf8")
@@ -150,6 +153,7 @@ def test_the_readme_has_the_two_commands():
     assert f"\nenv/bin/{toy.COMMAND.format(folder='class')}\n" in text
 
 
+@pytest.mark.quick
 def test_two_toy_classes_are_the_same(tmp_path):
     for name in ("a", "b"):
         toy.write(tmp_path / name)
@@ -162,6 +166,7 @@ def test_two_toy_classes_are_the_same(tmp_path):
             assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
 
 
+@pytest.mark.quick
 def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
     files = toy.write(tmp_path / "class")
     assert all(json.loads(one.read_bytes())["cells"] for one in files if one.suffix == ".ipynb")
@@ -170,6 +175,7 @@ def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
     assert {one.suffix for one in files} == {".ipynb", ".py", ".zip"}
 
 
+@pytest.mark.quick
 def test_a_folder_that_holds_something_is_left_alone(tmp_path, capsys):
     (tmp_path / "roster.csv").write_text("student\nreal\n")
     with pytest.raises(SystemExit) as ended:

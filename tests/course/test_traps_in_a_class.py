@@ -8,6 +8,8 @@ from hdrlab import cli
 from hdrlab.course import submission
 from hdrlab.course.reports import results, sheets
 
+pytestmark = pytest.mark.grading
+
 LISTED = (
     "link",
     "absolute",

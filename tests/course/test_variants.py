@@ -22,6 +22,8 @@ from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import sheets
 
+pytestmark = pytest.mark.grading
+
 SOURCES = materials.folder("tests").parent / "solutions"
 if not (SOURCES / "hw1.py").is_file():
     pytest.skip(
@@ -129,6 +131,7 @@ def filled(homework, path):
 # What a variant is
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("task", TASKS)
 def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(task):
     digests = set()

@@ -22,6 +22,8 @@ from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
 from hdrlab.course.viva import changed, examining, inputs, pages
 
+pytestmark = pytest.mark.grading
+
 HOMEWORKS = plan.read().homeworks
 SOLUTIONS = {name: bench.solutions(one) for name, one in HOMEWORKS.items()}
 SHEETS = [name for name in HOMEWORKS if name != "project"]

@@ -8,6 +8,8 @@ from hdrlab import pipeline
 from hdrlab.capture import movers, responses
 from hdrlab.diagnostics import motion
 
+pytestmark = pytest.mark.papers
+
 WALL = np.full((60, 90), 0.5, np.float32)
 G, W = responses.true_g("film"), np.ones(256)
 
@@ -37,6 +39,7 @@ def test_the_share_of_the_picture_that_moved_is_measured():
     assert motion.MOVED < share(15) < share(30) < 0.5
 
 
+@pytest.mark.quick
 def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
     ball = movers.ball((60, 90), (30, 45), 12, 2.0)
     gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images

@@ -10,6 +10,8 @@ from hdrlab.diagnostics.noise import estimate_noise, group_flat, scatter, slope
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.radiance.uncertainty import merge_with_deviation
 
+pytestmark = pytest.mark.papers
+
 
 @pytest.fixture(scope="module")
 def room():

@@ -28,6 +28,8 @@ from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
 from hdrlab.response import linear
 
+pytestmark = pytest.mark.papers
+
 
 @pytest.fixture(scope="module")
 def taken():

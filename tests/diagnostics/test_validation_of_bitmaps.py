@@ -11,6 +11,8 @@ from skimage.data import astronaut, coffee
 
 from hdrlab.pipeline.alignment import best_percentile, photograph_pairs, register
 
+pytestmark = pytest.mark.papers
+
 
 def offsets_of(images):
     """Return the offsets (P, 2) that the pipeline finds."""

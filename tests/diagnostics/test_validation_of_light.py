@@ -15,6 +15,8 @@ from hdrlab.diagnostics import registration
 from hdrlab.diagnostics.registration import LOST
 from hdrlab.pipeline.alignment import register
 
+pytestmark = pytest.mark.papers
+
 SHAPE = (110, 160)
 
 

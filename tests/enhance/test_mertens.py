@@ -103,6 +103,7 @@ def saturation_with_opencvs_rounding(F):
     return np.sqrt((F[0] - mean) ** 2 + (F[1] - mean) ** 2 + (F[2] - mean) ** 2)
 
 
+@pytest.mark.papers
 def test_opencv_differs_in_a_house_by_its_rounding_alone_and_only_where_no_photograph_has_weight(
     shared, monkeypatch
 ):

@@ -49,6 +49,7 @@ def test_our_own_files_keep_every_bit(tmp_path):
     assert np.array_equal(read_curve(tmp_path / "g.csv"), g)
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("suffix", [".csv", ".m"])
 @pytest.mark.parametrize("n", [256, 65536])
 def test_gray_curves_and_16_bits_keep_their_shape(suffix, n, tmp_path):

@@ -35,6 +35,7 @@ def header(*fields, frame=((1, 1),)):
     return b"\xff\n" + bits(*fields) + bits(*frame) + bytes(40)
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32])
 @pytest.mark.parametrize(
     "knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str

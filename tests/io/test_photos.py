@@ -400,6 +400,7 @@ def test_what_is_no_picture_is_not_written(tmp_path, name, image):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize(
     ("name", "frames"), [("window", 12), ("stlouis_arch", 4), ("frobisher", 3)]
 )

@@ -16,6 +16,8 @@ from hdrlab.cli import run
 from hdrlab.io import radiance, sequence
 from hdrlab.io.photos import write_picture
 
+pytestmark = pytest.mark.papers
+
 WITH_FILMS = pytest.mark.skipif(not find_spec("av"), reason="films need the extra `video`")
 PATIENCE = 600  # seconds: what hangs ends
 

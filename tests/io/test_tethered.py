@@ -18,6 +18,8 @@ from hdrlab.cli import common, run
 from hdrlab.core.colour import encode_srgb
 from hdrlab.io import radiance, tethered
 
+pytestmark = pytest.mark.papers
+
 gphoto2 = pytest.importorskip("gphoto2", reason="the extra `camera` is not installed")
 # bytes of each file: the virtual camera believes that the file in its folder stays as it is
 SIZE = 60_000

@@ -216,6 +216,7 @@ def test_a_list_that_is_not_text_is_refused(tmp_path):
         read_times(path)
 
 
+@pytest.mark.papers
 @given(st.text(max_size=200))
 def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
     path = tmp_path_factory.mktemp("lists") / "times.txt"

@@ -14,6 +14,8 @@ from hdrlab.core.filters import warp
 from hdrlab.pipeline import alignment
 from hdrlab.pipeline.alignment import register
 
+pytestmark = pytest.mark.papers
+
 STILL = [(0, 0)] * 7
 HAND = [(4, -3), (1, 2), (0, 0), (-2, 5), (3, 3), (6, -1), (2, 2)]
 # ends that are nearly black and nearly white
@@ -128,6 +130,7 @@ def by_percentile(monkeypatch, **validations):
     return alignment.best_percentile(0, B, 1, A).moving
 
 
+@pytest.mark.quick
 def test_another_percentile_counts_where_the_median_fails_and_it_is_certain_and_lies_elsewhere(
     monkeypatch,
 ):
@@ -155,6 +158,7 @@ def improved(monkeypatch, side, **searches):
     return alignment.improve(best, "mtb", photograph, photograph, lambda *_: [X])
 
 
+@pytest.mark.quick
 def test_the_simplest_search_that_serves_is_taken_and_none_that_leaves_little_in_common(
     monkeypatch,
 ):

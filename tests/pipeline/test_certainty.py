@@ -11,6 +11,8 @@ from hdrlab.pipeline import certainty
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import wording
 
+pytestmark = pytest.mark.papers
+
 
 @pytest.fixture(scope="module")
 def assembly():

@@ -12,6 +12,8 @@ from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
 from hdrlab.show.pages import report
 
+pytestmark = pytest.mark.papers
+
 SHAPE = (96, 144)
 
 

@@ -38,6 +38,7 @@ def hand_held(room):
 # Stages
 
 
+@pytest.mark.papers
 def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     states = list(assemble_steps(hand_held[0]))
     assert tuple(state.stage for state in states) == pipeline.STAGES
@@ -49,6 +50,7 @@ def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
 
 
+@pytest.mark.papers
 def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held):
     expected = assemble(hand_held[0])
     taken = hand_held[0]._replace(images=hand_held[0].images.copy())
@@ -166,6 +168,7 @@ def test_functions_of_the_readers_own_take_the_place_of_methods(room):
     assert np.all(picture == 188)  # half of white in sRGB
 
 
+@pytest.mark.papers
 def test_alignment_can_be_left_out_and_named(hand_held):
     taken = hand_held[0]
     assert not assemble(taken, align="none").offsets.any()
@@ -190,6 +193,7 @@ def test_masks_move_with_their_photographs_and_hide_what_they_hide(hand_held):
     assert not np.any(found.bracket.valid & blue)
 
 
+@pytest.mark.papers
 def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction():
     room = view.room((128, 192))
     taken = camera.shoot(room, camera.times_around(room, 5))
@@ -211,6 +215,7 @@ def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
 # Doubts
 
 
+@pytest.mark.papers
 def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames(room):
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1))
     wrong = taken._replace(
@@ -238,6 +243,7 @@ def test_photographs_that_share_no_level_are_doubted():
     assert np.isnan(found.spread) and "no level stands in two frames" in found.doubts[-1]
 
 
+@pytest.mark.papers
 def test_photographs_of_two_scenes_are_a_doubt_about_their_alignment(room):
     rng = np.random.default_rng(4)
     other = (10 ** rng.uniform(-1, 3, (32, 48, 1))).astype(np.float32).repeat(4, 0).repeat(
@@ -309,6 +315,7 @@ def assembled(photographs):
     return cache(lambda name: assemble(photographs(name)))
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize(
     ("name", "stops"), [("window", 0.03), ("stlouis_arch", 0.03), ("frobisher", 0.01)]
 )
@@ -318,6 +325,7 @@ def test_the_map_explains_real_photographs(assembled, name, stops):
     assert np.all(np.isfinite(found.E)) and np.mean(found.quality == Quality.MEASURED) > 0.95
 
 
+@pytest.mark.papers
 def test_the_arch_is_aligned_to_within_a_pixel_of_the_measured_shifts(assembled):
     offsets = assembled("stlouis_arch").offsets
     assert np.all(np.abs(np.abs(np.diff(offsets[:, 1])) - [1, 7.5, 2]) <= 1)
@@ -332,6 +340,7 @@ def radiance_of(path, tmp_path):
     return cv2.imread(str(clean), cv2.IMREAD_UNCHANGED)[..., ::-1]
 
 
+@pytest.mark.papers
 def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, tmp_path):
     taken = photographs("memorial")
     valid = ~(taken.images == (0, 0, 255)).all(axis=-1)  # the border of the registered scans
@@ -345,6 +354,7 @@ def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, 
     assert np.corrcoef(ours, theirs)[0, 1] >= 0.98 and np.median(np.abs(error)) <= 0.20
 
 
+@pytest.mark.papers
 def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assembled):
     stated = assemble(photographs("tripod_phone"), times="stated")
     assert stated.spread > 0.5
@@ -355,6 +365,7 @@ def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assemb
     assert found.spread < 0.1 and "stated times contradict the pixels" in found.doubts[0]
 
 
+@pytest.mark.papers
 def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
@@ -364,6 +375,7 @@ def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(s
     assert "leave one out" in doubt and ".jpeg and " in doubt
 
 
+@pytest.mark.papers
 def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     taken = camera.shoot(room, camera.times_around(room, 6, stops=1.5), rng=1)
     images = taken.images.copy()
@@ -376,6 +388,7 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6
 
 
+@pytest.mark.papers
 def test_of_two_photographs_that_may_both_be_the_wrong_one_neither_is_left_out_without_a_warning():
     chapel = scenes.chapel((280, 420))
     taken = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)

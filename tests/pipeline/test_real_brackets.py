@@ -6,6 +6,8 @@ import pytest
 from hdrlab import pipeline
 from hdrlab.cli.photographs import read_bracket
 
+pytestmark = pytest.mark.papers
+
 SIDE = 500  # pixels: of larger photographs every second, third ... is taken
 
 

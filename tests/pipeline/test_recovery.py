@@ -11,6 +11,8 @@ from hdrlab.fast import debevec
 from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import linear
 
+pytestmark = pytest.mark.papers
+
 CAMERAS = {"mann": ["gamma", "linear"], "marginal": ["film"]}
 METHODS = [name for name in catalogue.names("response") if name != "linear"]
 CASES = [(name, one) for name in METHODS for one in CAMERAS.get(name, sorted(RESPONSES))]
@@ -49,6 +51,7 @@ def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken,
     assert "expected the moon" in doubt
 
 
+@pytest.mark.quick
 def test_linear_and_a_function_are_taken_as_they_are():
     assert recovery.find_validated_method("linear") is linear.recover
     assert recovery.find_validated_method(debevec.recover) is debevec.recover
@@ -68,6 +71,7 @@ ASKED = ("three by debevec", "three by space", "one by space", "one by debevec")
 ENOUGH = 1.05 * 0.1 + 0.003
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("spreads", "gap", "name"),
     [

@@ -14,6 +14,8 @@ from hdrlab.pipeline.timing import (
     space_by_stops,
 )
 
+pytestmark = pytest.mark.papers
+
 
 @pytest.fixture(scope="module")
 def room():
@@ -103,6 +105,7 @@ def test_rough_times_are_corrected_unless_they_are_to_stay():
     assert found.spread < stated.spread and "times estimated" in found.notes[0]
 
 
+@pytest.mark.quick
 def test_a_rough_time_is_corrected_before_the_response_is_found():
     room = scenes.room((200, 300))
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)

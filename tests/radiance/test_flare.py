@@ -172,6 +172,7 @@ def test_what_is_alike_on_both_sides_is_no_reflection():
     assert reflection.fit_reflection(np.ones((20, 30))) == 0
 
 
+@pytest.mark.papers
 def test_real_photographs_without_a_reflection_are_left_alone():
     E = pipeline.assemble(scenes.photographs((250, 188))).E
     assert reflection.fit_reflection(E) == 0

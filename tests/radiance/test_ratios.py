@@ -76,6 +76,7 @@ def test_the_darkest_pair_of_the_paper(seed):
     assert abs(ratios.estimate_ratio(*images) - 4) < 0.01
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("name", ["city", "esplanade", "hall", "lobby", "studio", "venice"])
 def test_the_darkest_pair_of_real_radiance(name, shared):
     G = read_radiance(shared("hdri_cc0") / f"{name}.hdr")[..., 1]

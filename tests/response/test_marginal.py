@@ -109,6 +109,7 @@ def test_the_noise_is_found_too():
     assert np.isclose(estimate(one)[1].sigma, 0.008, rtol=0.03)
 
 
+@pytest.mark.papers
 def test_it_beats_the_published_scheme_on_its_own_trials():
     """The first 6 of the trials with the fixed seed; the benchmark runs all 100 and ten other seeds."""
     rng = np.random.default_rng(0)
@@ -127,6 +128,7 @@ def test_it_beats_the_published_scheme_on_its_own_trials():
         assert np.abs(state.R - one.R).max() < 0.01
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("seed", [1, 2])
 def test_it_climbs_to_the_same_place_from_the_truth(seed):
     """So what error is left is noise, nearly all of it along u, and no start nearer by would mend it."""
@@ -148,6 +150,7 @@ def test_ratios_that_are_trusted_stay_and_the_curve_gains():
     assert ambiguity.mean_error(state.c, one.c) < 0.1
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("seed", range(2))
 def test_the_ratios_of_the_canon_camera(seed):
     ratios = np.array([0.419, 0.292, 0.570, 0.512])

@@ -197,6 +197,7 @@ def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, ph
         assert low <= order <= high
 
 
+@pytest.mark.papers
 def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(measured_curves):
     """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
     exposure, brightness = measured_curves
@@ -221,6 +222,7 @@ def test_the_published_trials_of_section_5():
     assert errors.max() <= 2.7 and turns.max() < 10
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("seed", range(1, 11))
 def test_other_seeds_stay_near_the_published_figure(seed):
     """The first 20 trials of each; the benchmark runs all 100."""
@@ -228,6 +230,7 @@ def test_other_seeds_stay_near_the_published_figure(seed):
     assert errors.max() <= 3.2 and turns.max() < 10
 
 
+@pytest.mark.papers
 def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
     """A thousand turns instead of five help most of the first ten trials, and ruin the 32nd."""
     rng = np.random.default_rng(0)

@@ -13,6 +13,8 @@ from hdrlab.fast.merge import merge
 from hdrlab.pipeline import recovery
 from hdrlab.response import grossberg, mann, marginal, space
 
+pytestmark = pytest.mark.papers
+
 FREE = {
     "debevec": debevec.recover,
     "robertson": recovery.find_method("robertson"),

@@ -11,10 +11,11 @@ CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, o
     "mann": ["gamma", "linear"],
     "marginal": ["film"],
 }
+SLOW = {"marginal": pytest.mark.papers}  # it takes seconds
 CASES = [
-    (name, one)
+    pytest.param(name, camera, marks=SLOW.get(name, ()))
     for name in catalogue.names("response")
-    for one in CAMERAS.get(name, sorted(RESPONSES))
+    for camera in CAMERAS.get(name, sorted(RESPONSES))
 ]
 
 
@@ -25,6 +26,8 @@ def test_every_recovery(name, response, law):
 
 
 @pytest.mark.parametrize("law", laws.CALIBRATION, ids=lambda law: law.__name__)
-@pytest.mark.parametrize(("name", "response"), [case for case in CASES if case[0] != "linear"])
+@pytest.mark.parametrize(
+    ("name", "response"), [case for case in CASES if case.values[0] != "linear"]
+)
 def test_every_recovery_that_asks_the_photographs(name, response, law):
     law(recovery.find_method(name), response)

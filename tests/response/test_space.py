@@ -157,6 +157,7 @@ def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
     assert g.shape == (201, 256) and np.all(np.isfinite(g)) and np.all(np.diff(g, axis=1) >= -1e-12)
 
 
+@pytest.mark.papers
 def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
     """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
     errors = []

@@ -9,6 +9,8 @@ from hdrlab.course.site import pages
 from hdrlab.io import web
 from scenes import cases
 
+pytestmark = pytest.mark.scenes
+
 
 @pytest.mark.parametrize("name", cases.CASES)
 def test_the_picture_of_a_case_that_travels_is_the_one_that_is_drawn(name):

@@ -13,6 +13,8 @@ from hdrlab.scenes import subjects as embedded
 from scenes.computed import illumination, interior, subjects, textures, view
 from scenes.computed.__main__ import SAMPLES
 
+pytestmark = pytest.mark.scenes
+
 
 @pytest.fixture(scope="module")
 def room():

@@ -20,6 +20,8 @@ from scenes.files import write_layers
 from scenes.models import openings, shapes, sun, surfaces
 from scenes.models.place import Camera, Light, Place
 
+pytestmark = pytest.mark.scenes
+
 DECADES = {"chapel": 5, "workshop": 5, "street": 6}
 FILES = {name: places.FOLDER / f"{name}.exr" for name in scenes.PLACES}
 each = pytest.mark.parametrize("name", scenes.PLACES)

@@ -12,6 +12,8 @@ from hdrlab.fast.debevec import gsolve
 from hdrlab.io.album import photographs
 from hdrlab.scenes import places
 
+pytestmark = pytest.mark.scenes
+
 FOLDER = places.FOLDER / "tripod"
 SHAPE = (320, 240)
 # at 500 x 375: the rubber of a foot, the device's front, the floor, a post before the windows, a

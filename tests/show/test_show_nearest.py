@@ -35,6 +35,7 @@ def same(picture, **knobs):
     return np.array_equal(drawn(ours, picture, **knobs), drawn(theirs, picture, **knobs))
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("shape", [(1, 1), (7, 401), (191, 287), (200, 300), (500, 900)])
 def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_larger_and_smaller_and_as_it_is(shape):
     rng = np.random.default_rng(1)
@@ -42,6 +43,7 @@ def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_larger_and_smaller_and_a
     assert same(rng.normal(size=shape), colours="viridis", norm=Normalize(-2, 2))
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("seed", range(12))
 def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_wherever_the_axes_lie(seed):
     rng = np.random.default_rng(seed)

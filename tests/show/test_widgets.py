@@ -309,6 +309,7 @@ def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
         widgets.tune(square, same, alt="A square", hue=(0, 9))
 
 
+@pytest.mark.papers
 def test_a_press_means_a_place_of_the_picture_and_not_of_the_title_above_it():
     def dotted(down=0.5, right=0.5):
         return down, right
@@ -664,6 +665,7 @@ def crowned(k):
     return plots.with_legend(ax, "upper left")
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize(
     "draw", [fixed, running, beneath, bare, mapped, named, covering, renamed, crowned]
 )
@@ -695,6 +697,7 @@ STILLS = {
 SHOWN = {"play": [20], "tune": [100], "wipe": [20, 200], "blink": [20, 100, 200], "brush": [20]}
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize("name", STILLS)
 def test_a_saved_notebook_without_its_models_shows_each_widget_as_pictures_with_alt_text(name):
     nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
@@ -716,6 +719,7 @@ def test_a_widget_reads_as_its_alt_text_where_nothing_can_be_drawn(name):
     assert data["text/plain"].startswith("A square")
 
 
+@pytest.mark.papers
 def test_a_saved_notebook_tells_plots_from_photographs_for_a_dark_page():
     plot, photograph = widgets.play([1], curve, alt="A"), widgets.play([1], square, alt="A")
     assert [

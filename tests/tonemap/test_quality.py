@@ -44,6 +44,7 @@ def defined_S(x, y):
     return S
 
 
+@pytest.mark.papers
 def test_structural_fidelity_is_its_definition():
     L = scene((177, 179))
     x, y = quality.scale_luminance(L), quality.gray(shown(L))
