@@ -25,11 +25,12 @@ PAPERS = {
     "B": "Battiato and others 2008",
     "N": "newer than all of these",
 }
-HEAD = """# Every system, and where it is
+HEAD = """# Methods and where to find them
 
-The course rests on five documents: the slides, and four papers. Each system in them has a row here, and so
-have five methods that came later: functions of the library, the sections of a notebook that play it step by
-step, and the tasks that check a student's own function, where there is one. Letters say whose it is: """
+The course is based on five documents: the lecture slides and four papers. The table lists each of
+their methods, and five newer ones: the functions of the library, the notebook sections that step
+through the method, and the tasks that check a student's own function, if there are any. The letters
+name the source: """
 
 
 def table():
@@ -87,7 +88,7 @@ def written():
     """Return the page."""
     tasks, modules = timetable.tasks(), reference.modules()
     lines = [HEAD + "; ".join(f"{letter}, {name}" for letter, name in PAPERS.items()) + ".", ""]
-    lines += ["| system | library | steps in a notebook | graded |", "|---|---|---|---|"]
+    lines += ["| method | library | notebook sections | tasks |", "|---|---|---|---|"]
     for n, (name, papers, places, sections, graded) in enumerate(table(), 1):
         played = []
         for number in dict.fromkeys(number for number, _ in sections):

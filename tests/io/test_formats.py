@@ -110,7 +110,7 @@ def exr():
 # a row of the table: files by other writers, each with what it is as a photograph and as a map: a
 # dtype, or the words with which it is refused
 FILES = {
-    "JPEG, also `.jfif`, and with a film behind it": [
+    "JPEG, `.jfif`, and JPEG with an appended video": [
         ("a.jpg", lambda: pillow("JPEG"), "uint8", "a JPEG with a gain map"),
         ("a.jfif", lambda: pillow("JPEG"), "uint8", NO_MAP),
         (
@@ -223,7 +223,7 @@ def table():
     """Return the cells of each row of the page's table, by what stands in the first."""
     section = PAGE.read_text("utf-8").split("## Supported formats\n\n")[1].split("\n\n")[0]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines()]
-    assert rows[0] == ["format", "as a photograph of a bracket", "as a radiance map", "written"]
+    assert rows[0] == ["format", "as a photo of a bracket", "as a radiance map", "written"]
     return {row[0]: row[1:] for row in rows[2:]}
 
 
@@ -264,7 +264,9 @@ def test_another_programs_file_is_read_as_the_table_says_or_refused_by_name(
 
 
 WRITTEN = {
-    "JPEG, also `.jfif`, and with a film behind it": [("a.jpg", [], lambda data: Image.open(data))],
+    "JPEG, `.jfif`, and JPEG with an appended video": [
+        ("a.jpg", [], lambda data: Image.open(data))
+    ],
     "Ultra HDR, a JPEG with a gain map": [
         ("a.jpg", ["--to", "ultrahdr"], lambda data: imagecodecs.ultrahdr_decode(data.read()))
     ],
