@@ -218,3 +218,25 @@ def test_the_search_goes_through_as_many_levels_as_it_is_told_bits():
     Y = np.random.default_rng(0).integers(0, 256, (512, 640), dtype=np.uint8)
     assert [state.level for state in mtb.search(Y, Y)] == [5, 4, 3, 2, 1, 0]
     assert [state.level for state in mtb.search(Y, Y, bits=2)] == [1, 0]
+
+
+def histogram(codes):
+    """Return the counts of the 256 codes."""
+    return np.bincount(np.asarray(codes, int), minlength=256)
+
+
+def test_the_percentile_is_the_median_where_the_median_divides_both_photographs():
+    dark, bright = histogram(np.arange(20, 120)), histogram(np.arange(120, 240))
+    assert mtb.percentile(dark, bright) == 0.5
+
+
+def test_the_percentile_leaves_the_median_where_a_photograph_is_clipped_there():
+    clipped = histogram([255] * 60 + list(range(40, 200, 4)))  # 60 of 100 pixels are white
+    q = mtb.percentile(clipped, histogram(np.arange(20, 120)))
+    assert q == pytest.approx(0.4, abs=0.01)
+    assert 0 < mtb.threshold(clipped, q) < 255
+
+
+def test_there_is_no_percentile_for_a_photograph_that_no_threshold_divides():
+    assert mtb.percentile(histogram([128] * 50)) is None  # noise decides every bit
+    assert mtb.percentile(histogram([0] * 50 + [255] * 50)) is None

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from PIL import Image
 
 from hdrlab.core import arrays
 
@@ -158,3 +159,36 @@ def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
         ValueError, match=r"at least 2 different exposure times, got \[1.0, 1.0\] s"
     ):
         arrays.as_times([1, 1], 2, distinct=2)
+
+
+RISING = np.log(np.arange(1, 257.0))
+
+
+def test_one_response_serves_all_channels_and_65536_levels():
+    assert arrays.as_response(RISING, 256, 3).shape == (256, 3)
+    table = arrays.as_response(RISING, 65536, 1)
+    assert np.array_equal(table[::257, 0], RISING)
+
+
+@pytest.mark.parametrize(
+    ("g", "channels"),
+    [
+        (RISING[::-1], 1),
+        (RISING * 0, 1),
+        (RISING * 100, 1),
+        (RISING[:200], 1),
+        (np.stack([RISING] * 3, axis=-1), 1),
+        (np.stack([RISING] * 2, axis=-1), 3),
+    ],
+    ids=["falls", "flat", "beyond float32", "200 levels", "3 for gray", "2 for colour"],
+)
+def test_what_is_no_response_of_the_photographs_is_refused(g, channels):
+    with pytest.raises(ValueError, match="expected"):
+        arrays.as_response(g, 256, channels)
+
+
+def test_a_palette_of_colours_is_no_photograph():
+    with pytest.raises(ValueError, match="palette"):
+        arrays.as_stack([Image.new("P", (4, 3))])
+    with pytest.raises(ValueError, match="palette"):
+        arrays.as_picture(Image.new("P", (4, 3)))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import correlate1d
 
 from hdrlab.core.filters import blur
 from hdrlab.fast import blur as fast
@@ -41,3 +42,10 @@ def test_an_image_of_another_shape_is_refused(gaussian, image, sigma):
 def test_a_sigma_that_is_not_positive_is_refused(gaussian, sigma):
     with pytest.raises(ValueError, match="positive sigma"):
         gaussian(np.ones((4, 4)), sigma)
+
+
+@pytest.mark.parametrize(("n", "k"), [(6, [1, 2, 1]), (9, [1, 4, 6, 4, 1]), (2, [0.5, 1, 0.5])])
+def test_the_matrix_of_a_blur_is_the_blur(n, k):
+    values = np.random.default_rng(0).random(n)
+    expected = correlate1d(values, k, mode="reflect")
+    assert np.allclose(blur.blur_matrix(n, k) @ values, expected, rtol=1e-5)

@@ -1,8 +1,9 @@
 """Glare: light of every pixel in every other one, against a sum written out."""
 
 import numpy as np
+import pytest
 
-from hdrlab.core.filters.scatter import scatter, spread_transform
+from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 
 
 def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_whole():
@@ -19,3 +20,11 @@ def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_wh
             E[y, x] * K[height - 1 - y : 2 * height - 1 - y, width - 1 - x : 2 * width - 1 - x]
         )
     assert np.allclose(scatter(E, spread_transform(E.shape, power, core)), expected, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "spread", [(-0.1,), (1,), (np.nan,), (0.1, 0), (0.1, np.inf), (0.1, 2, 0), (0.1, 2, np.inf)]
+)
+def test_a_spread_that_no_lens_has_is_refused(spread):
+    with pytest.raises(ValueError, match="share"):
+        validate_spread(GlareSpread(*spread))
