@@ -24,10 +24,9 @@ SIDE = 1000  # pixels
 SHARP = 2  # pixels of a plot along a pixel of the page, which many screens show
 COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
 FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
-PAPER, MARGIN = (
-    0.72,
-    0.93,
-)  # of a plot's pixels, and of those at its edges, how many are white at least
+# of a plot's pixels, and of those at its edges, how many are white at least
+PAPER = 0.72
+MARGIN = 0.93
 DECADE = float(np.log10(2))  # of a stop
 SIGNS = dict(alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ")
 
@@ -38,9 +37,8 @@ class Picture(NamedTuple):
     frames: tuple[bytes, ...]
     alts: tuple[str, ...]
     captions: tuple[str, ...]
-    scales: tuple[
-        figures.Scale, ...
-    ] = ()  # of the colours, below the pictures: in stops and in decades
+    # of the colours, below the pictures: in stops and in decades
+    scales: tuple[figures.Scale, ...] = ()
     density: int = 1  # pixels of a frame along a pixel of the page
     areas: tuple[list[list[float]], ...] = ()  # of each frame, what `pictured` says
 
@@ -64,7 +62,9 @@ def _template() -> jinja2.Template:
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     """Return `drawn` as a Picture, for the last line of a notebook's cell."""
-    frame, density, areas = encode(drawn, SHARP), _density(drawn), (pictured(drawn),)
+    frame = encode(drawn, SHARP)
+    density = _density(drawn)
+    areas = (pictured(drawn),)
     return Picture((frame,), (require_alt(alt),), (caption,), density=density, areas=areas)
 
 
@@ -147,7 +147,8 @@ def encode(drawn: object, density: int = 1) -> bytes:
     A map, whose pixels are squares of one colour each, is like a photo where that takes half of the
     bytes.
     """
-    image, drawing = render(drawn, density), not isinstance(drawn, np.ndarray)
+    image = render(drawn, density)
+    drawing = not isinstance(drawn, np.ndarray)
     small = web.encode_webp(image, quality=80 - 30 * drawing)
     exact = web.encode_webp(image, lossless=True) if drawing and _is_drawing(image) else b""
     return exact if 0 < len(exact) < 2 * len(small) else small
@@ -168,13 +169,12 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     >>> len(encode_change(page, page)) < 100
     True
     """
-    over, lossless = web.as_rgb(image), _is_drawing(image)
+    over = web.as_rgb(image)
+    lossless = _is_drawing(image)
     if first is not None and first.shape == image.shape:
         changed = (over != web.as_rgb(first)).any(axis=-1)
-        over, lossless = (
-            np.dstack([over, np.uint8(255) * changed]),
-            lossless or changed.mean() < FEW_CHANGED,
-        )
+        over = np.dstack([over, np.uint8(255) * changed])
+        lossless = lossless or changed.mean() < FEW_CHANGED
     return web.encode_webp(over, lossless=True) if lossless else web.encode_webp(image, quality=75)
 
 
@@ -245,7 +245,8 @@ def in_words(name: str, value: object) -> str:
     >>> [in_words("alpha", 2), in_words("sigma_r", 0.05)]
     ['α = 2', 'σᵣ = 0.05']
     """
-    words, said = name.replace("_", " "), short(value)
+    words = name.replace("_", " ")
+    said = short(value)
     if isinstance(value, str | bool):
         return said if isinstance(value, str) else f"{'with' if value else 'without'} {words}"
     if letter := SIGNS.get(name, name if len(name) <= 2 else ""):
@@ -258,15 +259,13 @@ def in_words(name: str, value: object) -> str:
 def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:
     dpi = figure.dpi
     figure.set_dpi(density * dpi)
-    known = (
-        type(figure.canvas) is FigureCanvasAgg
-    )  # which knows the widths of words from the picture before
+    # which knows the widths of words from the picture before
+    known = type(figure.canvas) is FigureCanvasAgg
     canvas = figure.canvas if known else FigureCanvasAgg(figure)
     reuse.paint(canvas)
     figure.set_dpi(dpi)
-    if (
-        "matplotlib.pyplot" in sys.modules
-    ):  # else a figure of pyplot's is shown once more, below the cell
+    # else a figure of pyplot's is shown once more, below the cell
+    if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.array(canvas.buffer_rgba())[..., :3]
 

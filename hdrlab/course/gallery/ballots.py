@@ -45,7 +45,8 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
     NotAccepted
         After the end, for the own team's artifact, for one that is not there, and for too many.
     """
-    set_up, chosen = store.settings(db), sorted(set(chosen))
+    set_up = store.settings(db)
+    chosen = sorted(set(chosen))
     if not set_up.is_open(now):
         raise NotAccepted("The vote is closed. Your ballot of before counts.")
     update = "ON CONFLICT (voter) DO UPDATE SET cast_at = excluded.cast_at"
@@ -101,10 +102,12 @@ def standings(artifacts: Iterable[str], ballots: Iterable[Set[str]]) -> list[Sta
 
 def gradebook(db: sqlite3.Connection) -> Iterator[tuple[str | int, ...]]:
     """Yield a row for each voter: whether they voted, never for what, and how their artifact fared."""
-    hung, cast = store.artifacts(db), every(db)
+    hung = store.artifacts(db)
+    cast = every(db)
     rows = {hung[row.artifact].team: row for row in standings(hung, cast.values())}
     for id, name, team in store.voters(db):
-        voted, row = "yes" if cast.get(id) else "no", rows.get(team)
+        voted = "yes" if cast.get(id) else "no"
+        row = rows.get(team)
         fared = (
             (hung[row.artifact].title, row.votes, row.place, row.shared)
             if row

@@ -22,7 +22,9 @@ from hdrlab.course.projects.project import MANIFEST
 from hdrlab.course.wording import plain
 from hdrlab.errors import InputError
 
-TITLE, CAPTION = 60, 280  # characters
+# characters
+TITLE = 60
+CAPTION = 280
 SMALL = 1_000_000  # bytes, or characters, of a text
 ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
 NOT_THESE = (".txt", ".csv")
@@ -93,7 +95,8 @@ def hang(db: sqlite3.Connection, folder: Path, one: Entry, source: str = "") -> 
 
 
 def _picture(source: Path, team: str) -> Entry:
-    words, text = source.with_suffix(".txt"), ""
+    words = source.with_suffix(".txt")
+    text = ""
     if words.is_file() and not words.is_symlink():
         with words.open(encoding="utf8", errors="replace") as file:
             text = file.read(SMALL)  # and no more of it, however large it is

@@ -14,7 +14,8 @@ from hdrlab.io.files import write
 from hdrlab.show.plots.figures import fit
 
 SIZES = {"small": 720, "large": 2400}  # pixels along a side, at most
-MOST_BYTES, MOST_PIXELS = 80_000_000, 64_000_000
+MOST_BYTES = 80_000_000
+MOST_PIXELS = 64_000_000
 
 
 class Prepared(NamedTuple):

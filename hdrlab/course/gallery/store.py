@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 from hdrlab.errors import InputError
 
-DATABASE, PICTURES = "gallery.sqlite", "pictures"
+DATABASE = "gallery.sqlite"
+PICTURES = "pictures"
 VERSION = 2  # of the tables
 
 

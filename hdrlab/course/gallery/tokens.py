@@ -43,7 +43,8 @@ NOBODY = bytes(32)  # the digest of no secret that could be found
 
 def make() -> Token:
     """Return a new token."""
-    handle, secret = secrets.token_urlsafe(9), secrets.token_urlsafe(32)
+    handle = secrets.token_urlsafe(9)
+    secret = secrets.token_urlsafe(32)
     return Token(handle + secret, handle, digest(secret))
 
 

@@ -31,9 +31,8 @@ WORTH = 0.3  # share of a task, from which its passages are shown
 TEXT = 8_000  # characters of a task that are shown
 COLUMNS = ("one", "other", "share", "one in other", "other in one", "tasks on the other's sheet")
 Piece = tuple[str, bool]  # of a text, and whether the other has it
-Asked = tuple[
-    dict[str, str], dict[str, str]
-]  # variants by task: a team's, and others of the sheet it has
+# variants by task: a team's, and others of the sheet it has
+Asked = tuple[dict[str, str], dict[str, str]]
 
 
 class Row(NamedTuple):
@@ -77,7 +76,8 @@ def write_steps(
 def asked_of(homework: plan.Homework, work: authored.Work, secret: str) -> Asked:
     """Return of which tasks a team is asked which variant, and its sheet another."""
     tasks = variants.draw(homework, work.team, secret, work.variants).tasks
-    own, said = {task.id: task.variant for task in tasks}, work.variants
+    own = {task.id: task.variant for task in tasks}
+    said = work.variants
     return own, {} if said is None else dict(
         {id: said.get(id, "") for id in own}.items() - own.items()
     )
@@ -145,10 +145,12 @@ def page(
 
 def rows(found: similarity.Likeness, pair: similarity.Pair) -> list[Row]:
     """Return what two works have in common: all tasks together, then each task that was compared."""
-    each, signs = [], []
+    each = []
+    signs = []
     for task, prints in found.own.items():
         if pair.one in prints and pair.other in prints:
-            one, other = prints[pair.one], prints[pair.other]
+            one = prints[pair.one]
+            other = prints[pair.other]
             _, (forth, back), places = compare_files(one, other)
             row = Row(task, float(forth), float(back))
             if max(forth, back) >= WORTH:

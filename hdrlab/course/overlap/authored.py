@@ -16,7 +16,9 @@ from hdrlab.course import submission
 from hdrlab.course.code import names
 from hdrlab.course.material import handouts
 
-TASK, ALL = 30_000, 100_000  # characters of one task, and of all
+# characters of one task, and of all
+TASK = 30_000
+ALL = 100_000
 WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
 
 

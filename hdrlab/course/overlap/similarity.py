@@ -125,7 +125,8 @@ def compare(each: Sequence[Printed], given: Sequence[str] = (), library: str = "
     in_library = {text: float(compare_files(whole[text], shared)[1][0]) for text in long}
     mine = {text: without(whole[text], shared.hashes) for text in long}
     own: dict[str, dict[int, CodeFingerprint]] = {}
-    short, copied = {}, {}
+    short = {}
+    copied = {}
     for task in dict.fromkeys(task for printed in each for task in printed.tasks):
         has = {
             n: printed.tasks[task].raw_code
@@ -146,9 +147,12 @@ def shares(n: int, own: Mapping[str, Mapping[int, CodeFingerprint]]) -> np.ndarr
 
     It is that of all tasks together that both have, or of one of them that is long by itself.
     """
-    together, signs, best = np.zeros((n, n)), np.zeros((n, n)), np.full((n, n), -1.0)
+    together = np.zeros((n, n))
+    signs = np.zeros((n, n))
+    best = np.full((n, n), -1.0)
     for prints in filter(None, own.values()):
-        at, each = np.ix_(list(prints), list(prints)), covered(list(prints.values()))
+        at = np.ix_(list(prints), list(prints))
+        each = covered(list(prints.values()))
         size = np.array([one.token_coverage for one in prints.values()])[:, None]
         together[at] += each
         signs[at] += size
@@ -182,10 +186,12 @@ def covered(prints: Sequence[CodeFingerprint]) -> np.ndarray:
 def _pairs(teams: Sequence[str], best: np.ndarray) -> tuple[list[Pair], np.ndarray]:
     """Return the pairs from the threshold on, the most alike first, and how many have which share."""
     one, other = np.triu_indices(len(teams), 1)
-    names, largest = np.array(teams), np.maximum(best, best.T)[one, other]
+    names = np.array(teams)
+    largest = np.maximum(best, best.T)[one, other]
     counted = (names[one] != names[other]) & (largest >= 0)
     kept = np.flatnonzero(counted & (largest >= THRESHOLD))
     kept = kept[np.argsort(-largest[kept], kind="stable")]
-    a, b = one[kept], other[kept]
+    a = one[kept]
+    b = other[kept]
     columns = (each.tolist() for each in (a, b, largest[kept], best[a, b], best[b, a]))
     return [*map(Pair, *columns)], np.histogram(largest[counted], BINS, (0, 1))[0]

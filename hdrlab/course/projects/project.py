@@ -23,7 +23,9 @@ from hdrlab.io.album import SUFFIXES
 
 FILES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("files.toml").read_text("utf8"))
 ALBUMS, MAPS, ARTIFACTS = (tuple(FILES[one]) for one in ("albums", "maps", "artifacts"))
-ABOUT, PAGE, WORDS = "project.toml", "report.html", ("report.md", "report.ipynb")
+ABOUT = "project.toml"
+PAGE = "report.html"
+WORDS = ("report.md", "report.ipynb")
 MANIFEST = "submission.json"  # of an archive
 EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbour"\ncaption = "Seven frames, by hand."\n'
 

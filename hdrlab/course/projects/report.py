@@ -102,7 +102,8 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
     """Return the photographs from the shortest exposure to the longest, one in memory at a time."""
     frames = []
     for path in paths:
-        header, small = decode.look(path), figures.fit(to_256(photos.read_photo(path)), 400)
+        header = decode.look(path)
+        small = figures.fit(to_256(photos.read_photo(path)), 400)
         time = header.exposure.seconds
         alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
         shown = figures.photograph(small, 400, alt)

@@ -127,7 +127,8 @@ def _photographs(project: Project) -> str:
     count = len(project.photographs)
     if count < 2:
         raise InputError(f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
-    wrong, exposures = [], set()
+    wrong = []
+    exposures = set()
     for path in project.photographs:
         try:
             header = decode.look(path)

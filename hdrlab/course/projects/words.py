@@ -61,7 +61,8 @@ def read(path: Path) -> Words:
     if path.stat().st_size > 20 * MOST:
         raise InputError(f"{path}: expected a short report, got {path.stat().st_size} bytes")
     try:
-        text, pictures = path.read_text(encoding="utf8"), Pictures()
+        text = path.read_text(encoding="utf8")
+        pictures = Pictures()
         if path.suffix == ".ipynb":
             text, pictures = notebook(text)
     except UnicodeDecodeError:
@@ -76,7 +77,8 @@ def read(path: Path) -> Words:
 
 def notebook(text: str) -> tuple[str, Pictures]:
     """Return the Markdown of a notebook, with the pictures that its cells have shown."""
-    parts, pictures = [], Pictures()
+    parts = []
+    pictures = Pictures()
     for number, cell in enumerate(json.loads(text)["cells"], 1):
         if cell["cell_type"] == "markdown":
             parts.append("".join(cell["source"]))
@@ -97,9 +99,8 @@ def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words
     """Return Markdown as Words; pictures are looked up by name, and then in the folder."""
     notes: list[str] = []
     parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable("strikethrough")
-    if (
-        max(line.count("|") for line in text.split("\n")) <= COLUMNS
-    ):  # else its time grows with their square
+    # else its time grows with their square
+    if max(line.count("|") for line in text.split("\n")) <= COLUMNS:
         parser.enable("table")
     parser.add_render_rule("image", _drawing(folder, pictures or {}, notes))
     tokens = parser.parse(text)
@@ -110,7 +111,8 @@ def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words
     top = min((level for level in levels[bool(title) :]), default=9)
     starts = [k for k, level in zip(heads, levels, strict=True) if level == top]
     first = heads[0] + 3 if title else 0
-    found, ends = [], [*starts[1:], len(tokens)]
+    found = []
+    ends = [*starts[1:], len(tokens)]
     if before := tokens[first : starts[0] if starts else len(tokens)]:
         found.append(Section("", "", _html(parser, before, top)))
     for start, end in zip(starts, ends[: len(starts)], strict=True):
@@ -141,7 +143,8 @@ def _drawing(folder: Path, pictures: Pictures, notes: list[str]) -> Callable[...
     """Return what draws a picture of the words."""
 
     def draw(self: Any, tokens: Sequence[Token], at: int, options: Any, env: Any) -> str:
-        source, alt = unquote(str(tokens[at].attrs["src"])), plain(tokens[at].content, 300)
+        source = unquote(str(tokens[at].attrs["src"]))
+        alt = plain(tokens[at].content, 300)
         try:
             image = _decoded(source, folder, pictures)
         except Exception as error:  # on damaged pictures the codecs raise what they like

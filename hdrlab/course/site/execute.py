@@ -62,7 +62,8 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
     NotebookError
         For the first cell that fails, or kernel that dies. What has been run is kept nevertheless.
     """
-    key, waiting = library_key(), []
+    key = library_key()
+    waiting = []
     for source in notebooks:
         kept = place(source, cache, key)
         if kept.exists():
@@ -84,9 +85,8 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
     with (
         asyncio.Runner() as runner
     ):  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
-        runner.get_loop().set_exception_handler(
-            lambda *_: None
-        )  # what was ended so has no more to tell
+        # what was ended so has no more to tell
+        runner.get_loop().set_exception_handler(lambda *_: None)
         tasks = {runner.get_loop().create_task(one(*each)) for each in waiting}
         while tasks:
             done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
@@ -100,7 +100,8 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
-    notebook, where = nbformat.read(source, as_version=4), "its kernel"
+    notebook = nbformat.read(source, as_version=4)
+    where = "its kernel"
     # where a notebook may leave something
     folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
     folder.mkdir(parents=True)
@@ -144,9 +145,8 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
 
 async def _end(client: Any, *folders: Path | str) -> None:
     try:
-        if (
-            client.km is not None and client.km.has_kernel
-        ):  # none is left of one that never answered
+        # none is left of one that never answered
+        if client.km is not None and client.km.has_kernel:
             await client.km.shutdown_kernel(now=True)
     finally:
         if client.kc is not None:

@@ -12,9 +12,8 @@ from typing import Any
 from hdrlab.errors import InputError
 
 SIZE = 20.0  # of a letter, in the drawing's own unit
-EM = (
-    1.15 / SIZE
-)  # the letters of formulas are small for their height: this makes them as large as the text's
+# the letters of formulas are small for their height: this makes them as large as the text's
+EM = 1.15 / SIZE
 PLAIN = {  # commands that the parser leaves as they are, after \big for one
     **{r"\{": "{", r"\}": "}", r"\lbrace": "{", r"\rbrace": "}", r"\lbrack": "[", r"\rbrack": "]"},
     **{
@@ -59,9 +58,8 @@ def formula(tex: str, *, inline: bool = True) -> str:
     svg.extend(drawn)
     for part in svg.iter():
         part.tag = part.tag.rpartition("}")[2]
-    text = (
-        ET.tostring(svg, "unicode").replace(' fill="black"', "").replace("STIXTwoMath", "")
-    )  # as all are
+    # as all are
+    text = ET.tostring(svg, "unicode").replace(' fill="black"', "").replace("STIXTwoMath", "")
     return f'{text}<span class="spoken">{ET.tostring(math, "unicode")}</span>'
 
 
@@ -87,8 +85,7 @@ def tree(tex: str, *, inline: bool) -> ET.Element:
             if part.tag == "mo" and part.text in ("\u2212", "+", "±") and opens:
                 part.set("form", "prefix")
             if part.tag == "mo" and part.text in ("|", "‖", "∥") and part.get("fence") is None:
-                part.set(
-                    "stretchy", "false"
-                )  # only those of left and right are as tall as what they enclose
+                # only those of left and right are as tall as what they enclose
+                part.set("stretchy", "false")
             before = part
     return math

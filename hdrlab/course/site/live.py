@@ -25,17 +25,17 @@ from hdrlab.show.pictures import encode_change, is_ink
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
+# traits of every widget, and what a slider stores again
 NOT_OWN = (
     "layout",
     "tabbable",
     "tooltip",
     "frame",
-)  # traits of every widget, and what a slider stores again
+)
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
-LETTER, FIRST = (
-    15,
-    0x3000,
-)  # bits of a letter, and the letter of 0: none of them means anything in a script
+# bits of a letter, and the letter of 0: none of them means anything in a script
+LETTER = 15
+FIRST = 0x3000
 BYTES = re.compile(r'{"base64": "([^"]*)"}')
 EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)?')
 
@@ -92,9 +92,8 @@ def live(model: Any, name: str) -> Live:
     own = {
         key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)
     }
-    shown = next(
-        (own[key] for key in PICTURES if own.get(key)), {"base64": ""}
-    )  # a question has none
+    # a question has none
+    shown = next((own[key] for key in PICTURES if own.get(key)), {"base64": ""})
     shown = shown[0] if isinstance(shown, list) else shown
     alt = own.get("question") or (own["alts"][0] if "alts" in own else own["alt"])
     picture = base64.b64decode(shown["base64"])
@@ -128,7 +127,8 @@ def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
     number = count(1)
 
     def moved(embedded: re.Match[str]) -> str:
-        picture, file = base64.b64decode(embedded[2]), f"{name}-p{next(number)}.{embedded[1]}"
+        picture = base64.b64decode(embedded[2])
+        file = f"{name}-p{next(number)}.{embedded[1]}"
         write_changed(folder / file, picture)
         return f'src="{address}/{file}" {_look(picture)} loading="lazy"'
 

@@ -106,19 +106,22 @@ def build(
 def _build(
     out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str], address: str
 ) -> Site:
-    source, html = cache_of(out) / "source", cache_of(out) / "html"
+    source = cache_of(out) / "source"
+    html = cache_of(out) / "html"
     front = next(one for one in done if one.source == FRONT)
     notebooks = {
         one.source.stem: nbformat.read(one.executed, 4) for one in done if one.source != FRONT
     }
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
-    modules, known = reference.modules(), {*notebooks, *sheets}
+    modules = reference.modules()
+    known = {*notebooks, *sheets}
     uses = {
         name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()
     }
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
-    headings, widgets = {name: _title(notebook) for name, notebook in handouts.items()}, 0
+    headings = {name: _title(notebook) for name, notebook in handouts.items()}
+    widgets = 0
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # of notebooks that may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
@@ -170,10 +173,11 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
         if cell.cell_type == "markdown":
             cell.source = OF_RUNNING.sub("", _linked(cell.source, known))
         if cell.metadata.get("jupyter", {}).get("source_hidden"):  # as JupyterLab has it
+            # as Sphinx has it
             cell.metadata["tags"] = [
                 *cell.metadata.get("tags", ()),
                 "hide-input",
-            ]  # as Sphinx has it
+            ]
     return nbformat.writes(notebook), len(found)
 
 
@@ -201,7 +205,8 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
 
     from hdrlab.course.site.sphinx import SETTINGS
 
-    complaints, notes = io.StringIO(), html.parent / "doctrees"
+    complaints = io.StringIO()
+    notes = html.parent / "doctrees"
     settings = SETTINGS | {"html_baseurl": address and address.rstrip("/") + "/"}
     Sphinx(source, None, html, notes, "html", settings, status=None, warning=complaints).build()
     return [

@@ -18,9 +18,8 @@ from hdrlab.show.pages.templates import templates
 
 NOT_LIBRARY = ("hdrlab.cli", "hdrlab.course", "hdrlab.__main__", "hdrlab.demo", "hdrlab.scenes.")
 RST = Path(__file__).parent / "rst"  # templates of the pages
-ENTRY = re.compile(
-    r"(\S+(?: \S+)*?) {2,}(\S.*)"
-)  # of a legend: a letter, two spaces or more, what it is
+# of a legend: a letter, two spaces or more, what it is
+ENTRY = re.compile(r"(\S+(?: \S+)*?) {2,}(\S.*)")
 NAME = re.compile(r"\b[a-z_]+(?:\.[a-z_0-9]+)+\b|^pipeline\b")
 DOCTEST = ">>> "
 Row = tuple[str, str, list[str]]
@@ -50,7 +49,8 @@ def pages(titles: dict[str, str], uses: dict[str, set[str]]) -> Iterator[tuple[s
     titles : name of a notebook -> its title
     uses : name of a notebook -> the modules that it imports
     """
-    known, env = modules(), templates(RST)
+    known = modules()
+    env = templates(RST)
     env.filters |= {"short": short, "summary": summary, "escaped": escaped}
     index, page, lecture_map = map(env.get_template, ("chapters.rst", "module.rst", "map.rst"))
     yield (
@@ -80,9 +80,8 @@ def rows() -> list[tuple[str, str]]:
     lines = (hdrlab.__doc__ or "").splitlines()
     ruler = next(index for index, line in enumerate(lines) if line.startswith("---"))
     column = lines[ruler].index(" -") + 1
-    table = takewhile(
-        bool, lines[ruler + 1 :]
-    )  # below another ruler stands what goes beyond the course
+    # below another ruler stands what goes beyond the course
+    table = takewhile(bool, lines[ruler + 1 :])
     return [
         (line[:column].strip(), line[column:].strip())
         for line in table
@@ -94,9 +93,8 @@ def _row(lecture: str, where: str, known: Sequence[str], uses: dict[str, set[str
     """Return a row of the map: the lecture's name, links to the functions, the notebooks that play them."""
     linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
     words = [f"hdrlab.{word}" for word in NAME.findall(where)]
-    told = {
-        word if word in known else word.rpartition(".")[0] for word in words
-    }  # a function's module
+    # a function's module
+    told = {word if word in known else word.rpartition(".")[0] for word in words}
     return lecture, linked, [notebook for notebook in uses if told & uses[notebook]]
 
 

@@ -14,7 +14,9 @@ from hdrlab.course.site import formulas, reference
 HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
-SAYING, SUMMARY = 40, 200  # letters that a page's description has at least, and at most
+# letters that a page's description has at least, and at most
+SAYING = 40
+SUMMARY = 200
 GLYPH = re.compile(r"<symbol .*?</symbol>", re.DOTALL)
 # From a source to its place in the reference: viewcode names the module from which it came there
 # first
@@ -73,7 +75,8 @@ def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
     """Find what stands in backticks, such as `merge.merge`: in its module, its chapter, or the package."""
     if node.get("reftype") != "obj" or node.get("refdomain") != "py":
         return None
-    module, python = node.get("py:module") or "hdrlab", env.get_domain("py")
+    module = node.get("py:module") or "hdrlab"
+    python = env.get_domain("py")
     for around in dict.fromkeys((module, module.rpartition(".")[0], "hdrlab")):
         found = python.find_obj(env, None, None, f"{around}.{node['reftarget']}", "obj")
         if found:

@@ -60,7 +60,8 @@ def entry_steps(
     ).items():  # imported by now: that is no part of the time
         begun = perf_counter()
         settings, saturation = pipeline.settle(tonemap, E)
-        Ld, seconds = tonemap(L, **settings), perf_counter() - begun
+        Ld = tonemap(L, **settings)
+        seconds = perf_counter() - begun
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 

@@ -64,7 +64,8 @@ def write_report(
     >>> write_report(tempfile.mkdtemp(), assembly, picture, recipe={"tonemap": "reinhard"}).name
     'report.html'
     """
-    picture, quality = np.asarray(picture), assembly.quality
+    picture = np.asarray(picture)
+    quality = assembly.quality
     if quality is None or assembly.medians is None:
         raise InputError(
             f"expected a finished assembly, got one after the stage {assembly.stage!r}"
@@ -90,6 +91,7 @@ def write_report(
         "modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)},
         "Quality": Quality,
     }
-    text, page = templates.render_page(Path(__file__).parent, PAGE, **words), Path(folder) / PAGE
+    text = templates.render_page(Path(__file__).parent, PAGE, **words)
+    page = Path(folder) / PAGE
     page.parent.mkdir(parents=True, exist_ok=True)
     return write(page, text)

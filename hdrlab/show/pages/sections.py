@@ -81,7 +81,8 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
     """Return how sure each pixel is, as words and in false colour; None where nobody asked."""
     if s is None:
         return None
-    stops, said = wording.deviation(E, s), wording.certainty(E, s)
+    stops = wording.deviation(E, s)
+    said = wording.certainty(E, s)
     stops = np.where(np.isfinite(stops), stops, np.nan)
     if not np.isfinite(stops).any():
         return {"said": said, "picture": None}
@@ -99,7 +100,8 @@ def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
     """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
     if labels is None or not labels.any():
         return None
-    count, part = int(labels.max()), wording.share(labels > 0)
+    count = int(labels.max())
+    part = wording.share(labels > 0)
     regions = "one region" if count == 1 else f"{count} regions"
     alt = f"The picture in pale gray; what moved lies in {regions}, in orange with dark outlines"
     shown = figures.photograph(figures.regions(picture, labels), 1000, alt)
@@ -110,12 +112,12 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     """Return how far each frame departs from what all say, as numbers and as bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])
     shared &= shared.sum(axis=0) >= 2
-    spread, found = consistency.measure_spread(medians), consistency.measure_deviations(medians)
+    spread = consistency.measure_spread(medians)
+    found = consistency.measure_deviations(medians)
     counts = shared.any(axis=1).sum(axis=1).tolist()
-    known, bars = (
-        np.isfinite(found),
-        np.nan_to_num(found),
-    )  # none, for a frame of which nothing is known
+    # none, for a frame of which nothing is known
+    known = np.isfinite(found)
+    bars = np.nan_to_num(found)
     columns = (photographs.names, map(plots.seconds, photographs.times), counts, known, bars)
     widest = max(np.abs(bars).max(), wording.CLOSE)
     return {"spread": spread, "widest": widest, "rows": list(zip(*columns, strict=True))}
@@ -127,7 +129,8 @@ def against(
     """Return how far radiance, response and offsets lie from the truth."""
     well = metrics.well_exposed(photographs.images, photographs.valid)
     apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
-    rmse, off = metrics.response_rmse(g, truth.g), metrics.offset_errors(offsets, truth.offsets)
+    rmse = metrics.response_rmse(g, truth.g)
+    off = metrics.offset_errors(offsets, truth.offsets)
     channels = [name for name, *_ in plots.CHANNELS] if len(rmse) == 3 else ["gray"]
     columns = zip(photographs.names, offsets, truth.offsets, off, strict=True)
     return {

@@ -23,11 +23,10 @@ from hdrlab.tonemap.quality import Quality
 Size = tuple[int, int]  # pixels, width and height
 DPI = 100  # dots per inch: a matplotlib inch is a hundred pixels of the sheet
 SIDE = 480  # pixels, the longer side of a picture on the sheet
-TEXT, CAPTION, GAP = (
-    320,
-    86,
-    14,
-)  # pixels: least width and height of the text under a picture, and margins
+# pixels: least width and height of the text under a picture, and margins
+TEXT = 320
+CAPTION = 86
+GAP = 14
 LEGEND = Path(__file__).with_name("sheet_legend.txt")
 
 
@@ -119,10 +118,8 @@ def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = Non
         raise InputError(f"expected columns >= 1, got {columns}")
     columns, picture, cell = _grid(entries[0].picture.shape, len(entries), columns)
     width = columns * cell[0] + GAP
-    head, foot = (
-        _broken(title or "Tone mapping", width, 12),
-        _broken(LEGEND.read_text("utf8"), width, 7),
-    )
+    head = _broken(title or "Tone mapping", width, 12)
+    foot = _broken(LEGEND.read_text("utf8"), width, 7)
     top = 24 + 20 * len(head)
     below = top + -(-len(entries) // columns) * cell[1]
     size = (width / DPI, (below + 16 + 14 * len(foot)) / DPI)

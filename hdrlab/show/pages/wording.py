@@ -16,7 +16,8 @@ def share(mask: arrays.ArrayLike) -> str:
     >>> [share(np.arange(100_000) < count) for count in (0, 1, 33_333, 99_999, 100_000)]
     ['0 %', '< 0.01 %', '33.33 %', '> 99.99 %', '100 %']
     """
-    part, whole = np.count_nonzero(mask), np.size(mask)
+    part = np.count_nonzero(mask)
+    whole = np.size(mask)
     percent = 100 * part / whole
     if part in (0, whole):
         return f"{percent:.0f} %"

@@ -47,7 +47,10 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
 
     def made() -> list[Axes]:
         figure = Figure(figsize=(width, height), dpi=100)
-        left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
+        left = 0.75
+        bottom = 0.6
+        right = 0.2
+        top = 0.35
         place = (
             left / width,
             bottom / height,
@@ -75,7 +78,8 @@ def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place
 
     def made() -> list[Axes]:
         figure = Figure(figsize=(width, height), dpi=100)
-        maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
+        maps = [bare(figure.add_axes(place)) for place in places]
+        scale = figure.add_axes(bar)
         scale.set_axisbelow(True)
         scale.yaxis.set_visible(False)
         return [*maps, scale]
@@ -132,7 +136,8 @@ def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | Non
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
-    channels, levels = CHANNELS if curves.ndim == 2 else GRAY, np.arange(len(curves))
+    channels = CHANNELS if curves.ndim == 2 else GRAY
+    levels = np.arange(len(curves))
     for (name, colour, style), curve in zip(
         channels, curves.reshape(len(curves), -1).T, strict=True
     ):
@@ -148,12 +153,15 @@ def samples(
     Up to six samples have a colour and a marker each; more are drawn alike. `span` fixes the
     exposure axis.
     """
-    Z, lE, B = np.asarray(Z), np.asarray(lE, dtype=np.float64), np.asarray(B, dtype=np.float64)
+    Z = np.asarray(Z)
+    lE = np.asarray(lE, dtype=np.float64)
+    B = np.asarray(B, dtype=np.float64)
     if Z.ndim != 2 or Z.shape != lE.shape + B.shape:
         raise InputError(
             f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}"
         )
-    ax, x = _exposure_axes(axes(), span, 256), lE[:, None] + B
+    ax = _exposure_axes(axes(), span, 256)
+    x = lE[:, None] + B
     if g is not None:  # above the points, which would hide it
         ax.plot(
             g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g"
@@ -170,7 +178,8 @@ def samples(
 
 def system(A: ArrayLike) -> Axes:
     """Draw where a matrix is not zero: an equation across, an unknown down."""
-    A, ax = np.asarray(A), axes(4.2, 5.4)
+    A = np.asarray(A)
+    ax = axes(4.2, 5.4)
     ax.plot(*np.nonzero(A)[::-1], ".", color="#1A1A1A", markersize=2)
     ax.set(xlabel="unknown (column of A)", ylabel="equation (row of A)")
     ax.set(xlim=(-3, A.shape[1] + 2), ylim=(A.shape[0] + 2, -3))
@@ -179,8 +188,11 @@ def system(A: ArrayLike) -> Axes:
 
 def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
     """Draw the photographs in rows, each under its exposure time and, where given, its offset (dy, dx)."""
-    count, (h, w) = len(bracket.images), bracket.images.shape[1:3]
-    rows, width, title = -(-count // columns), 1.75, 0.25 if offsets is None else 0.4
+    count = len(bracket.images)
+    (h, w) = bracket.images.shape[1:3]
+    rows = -(-count // columns)
+    width = 1.75
+    title = 0.25 if offsets is None else 0.4
     height = width * h / w + title
     figure = Figure(figsize=(columns * width, rows * height), dpi=100)
     for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
@@ -191,7 +203,8 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
             0.97 / columns,
             (1 - title / height) / rows,
         )
-        ax, step = figure.add_axes(place), max(1, w // 350)
+        ax = figure.add_axes(place)
+        step = max(1, w // 350)
         ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
         ax.set_title(seconds(time) + moved, fontsize=11, pad=3)

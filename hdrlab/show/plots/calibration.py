@@ -96,14 +96,14 @@ def calibration(g: F64, medians: F64, times: ArrayLike, *, title: str = "") -> F
 
 def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     """Draw a line per frame, the channels' mean: pixel level across, stops up; dark lines are short times."""
-    ax, lines = ax or plots.axes(), np.ma.masked_invalid(r).mean(axis=1)
+    ax = ax or plots.axes()
+    lines = np.ma.masked_invalid(r).mean(axis=1)
     colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
     for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
         ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
     sizes = np.ma.compressed(np.abs(lines[:, RELIABLE_LEVELS]))
-    most = (
-        max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1
-    )  # but for rare levels
+    # but for rare levels
+    most = max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
     ax.set(
         xlabel="pixel level Z",

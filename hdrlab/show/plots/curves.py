@@ -48,7 +48,8 @@ def lines(
     `limits` fix the ends of y, so that a slider moves the curves and nothing else; on an `ax` that
     has curves the colours go on from there.
     """
-    x, ax = np.asarray(x, np.float64), ax or axes()
+    x = np.asarray(x, np.float64)
+    ax = ax or axes()
     begun = len(ax.lines)
     if begun + len(curves) > len(LINES):
         raise InputError(
@@ -90,7 +91,8 @@ def deviations(
 
 def bundle(x: ArrayLike, many: ArrayLike, *, label: str, across: str, up: str) -> Axes:
     """Draw many curves (C, K) thin and alike, as a ground for a few with a name."""
-    many, ax = np.atleast_2d(many), axes()
+    many = np.atleast_2d(many)
+    ax = axes()
     paths = [np.column_stack([x, y]) for y in many]
     ax.add_collection(
         LineCollection(paths, colors="#56B4E9", linewidths=0.5, alpha=0.7, label=label)

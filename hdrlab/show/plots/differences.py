@@ -28,15 +28,14 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     Both are drawn with the same black and white. In the difference orange is too large, purple too
     small, and gray is no number.
     """
-    truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
+    truth = np.asarray(expected, np.float64)
+    answer = np.asarray(came, np.float64)
     if truth.shape != answer.shape or truth.ndim not in (2, 3):
         raise InputError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
     place, error = _worst(off)
-    shown, label = (
-        [drawn(one, truth) for one in (truth, answer)],
-        "by logarithms" if _wide(truth) else "",
-    )
+    shown = [drawn(one, truth) for one in (truth, answer)]
+    label = "by logarithms" if _wide(truth) else ""
     reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
     colours = figures.false_colour(
         np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r"
@@ -63,16 +62,17 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
 
     What was expected is a broad gray line.
     """
-    truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
+    truth = np.asarray(expected, np.float64)
+    answer = np.asarray(came, np.float64)
     if truth.ndim != 1 or truth.shape != answer.shape:
         raise InputError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
     (k, _), error = _worst((answer - truth)[:, None])
     seen = np.where(np.isfinite(answer), answer, np.nan)
     reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)
-    seen = np.clip(
-        seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach
-    )  # else one spike hides all else
-    figure, x = Figure(figsize=(5.4, 4.6), dpi=100, layout="constrained"), np.arange(len(truth))
+    # else one spike hides all else
+    seen = np.clip(seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach)
+    figure = Figure(figsize=(5.4, 4.6), dpi=100, layout="constrained")
+    x = np.arange(len(truth))
     ax, below = figure.subplots(2, sharex=True, height_ratios=(5, 2))
     ax.plot(x, truth, "-", color="#B0B0B0", linewidth=5, label="expected")
     ax.plot(x, seen, "-", color="#0072B2", linewidth=1.6, label="yours")
@@ -119,7 +119,8 @@ def drawn(values: Array, truth: Array) -> figures.Image:
     if _wide(truth):
         floor = truth[truth > 0].min()
         values, truth = (np.log2(np.where(one > 0, one, floor)) for one in (values, truth))
-    low, high = np.nanmin(truth), np.nanmax(truth)
+    low = np.nanmin(truth)
+    high = np.nanmax(truth)
     with np.errstate(invalid="ignore", over="ignore"):
         levels = 255 * (values - low) / (high - low if high > low else 1)
     return np.where(np.isfinite(levels), np.clip(levels, 0, 255), MISSING).astype(np.uint8)
@@ -146,5 +147,6 @@ def _range(values: Array) -> str:
     known = values[np.isfinite(values)]
     if known.size == 0:
         return "no numbers"
-    missing, said = values.size - known.size, f"from {known.min():.4g} to {known.max():.4g}"
+    missing = values.size - known.size
+    said = f"from {known.min():.4g} to {known.max():.4g}"
     return f"{said}, {missing} not finite" if missing else said

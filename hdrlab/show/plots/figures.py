@@ -27,7 +27,9 @@ from hdrlab.show.pages.wording import signed
 
 Image = NDArray[np.uint8]
 MISSING = "#808080"
-ORANGE, OUTLINE = (230, 126, 0), (60, 20, 0)  # of a region, and its edge
+# of a region, and its edge
+ORANGE = (230, 126, 0)
+OUTLINE = (60, 20, 0)
 # What was not measured, from dark to light, so that the kinds part in gray too.
 KNOWN = {
     Quality.DARK: "#14148C",
@@ -44,7 +46,8 @@ def fit(array: Array, side: int) -> Array:
     if k == 1:
         return array
     down, across = (min(k, length) for length in array.shape[:2])
-    h, w = array.shape[0] // down, array.shape[1] // across
+    h = array.shape[0] // down
+    w = array.shape[1] // across
     blocks = array[: h * down, : w * across].reshape(h, down, w, across, *array.shape[2:])
     return blocks.mean(axis=(1, 3)).astype(array.dtype)
 
@@ -83,7 +86,8 @@ def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
 def regions(picture: Image, labels: NDArray[np.int32]) -> Image:
     """Return the picture in pale gray, regions (labels > 0) in orange, each with a dark outline."""
     gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
-    shown, inside = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1), labels > 0
+    shown = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1)
+    inside = labels > 0
     shown[inside] = 0.5 * shown[inside] + 0.5 * np.array(ORANGE)
     shown[maximum_filter(labels, size=dot(labels.shape)) != labels] = OUTLINE
     return shown.astype(np.uint8)
@@ -111,7 +115,8 @@ def photograph(image: Image, side: int, alt: str) -> Illustration:
 
 def plot(ax: Axes, alt: str) -> Illustration:
     """Return the figure of these Axes as SVG: sharp at every size; the same lines give the same bytes."""
-    figure, file = cast(Figure, ax.get_figure(root=True)), io.BytesIO()
+    figure = cast(Figure, ax.get_figure(root=True))
+    file = io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(file, format="svg", metadata={"Date": None})
     width, height = (round(96 * inches) for inches in figure.get_size_inches())

@@ -22,9 +22,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 State = TypeVar("State")
 Picture = TypeVar("Picture")
-Size = tuple[
-    float, ...
-]  # of the figure, inches, and where in it its Axes lie if not in the usual place
+# of the figure, inches, and where in it its Axes lie if not in the usual place
+Size = tuple[float, ...]
 
 
 class Kept:
@@ -117,7 +116,8 @@ def wipe(ax: Axes) -> Axes:
 
 def paint(canvas: FigureCanvasAgg) -> None:
     """Draw the canvas's figure; where its background is as before, only what stands upon it."""
-    kept, figure = _kept.get(), canvas.figure
+    kept = _kept.get()
+    figure = canvas.figure
     mine = (
         [(size, *out) for size, out in kept.out.items() if out[0][0].figure is figure]
         if kept

@@ -25,7 +25,8 @@ from hdrlab.errors import InputError
 from hdrlab.show.plots import LINES, Ends, axes, figures, nearest, scaled_axes, with_legend
 
 SIDE = 600  # pixels: a larger map is drawn by means of k x k pixels
-SCALE, SIGNED = "viridis", "PuOr_r"
+SCALE = "viridis"
+SIGNED = "PuOr_r"
 BELOW = 0.68  # inches, for the scale
 ABOVE = 0.3  # inches, for the name of a map
 
@@ -93,7 +94,10 @@ def trims(
 
     `top` fixes the axis: bins that are taller go beyond it, as the first few mostly do.
     """
-    b, whole, f, ax = np.asarray(b), np.asarray(whole), np.asarray(f), axes()
+    b = np.asarray(b)
+    whole = np.asarray(whole)
+    f = np.asarray(f)
+    ax = axes()
     if not (len(b) - 1 == len(whole) == len(f)):
         raise InputError(
             f"expected bins with one edge more, got {len(f)} and {len(whole)}, {len(b)} edges"
@@ -159,10 +163,13 @@ def _scale(arrays: list[F64], span: Ends, signed: bool, classes: int) -> tuple[N
 
 def _row(arrays: list[F64], *, titled: bool) -> list[Axes]:
     """Return Axes for maps, and for their scale; one map is 5.4 inches wide, several have less each."""
-    count, (h, w) = len(arrays), arrays[0].shape
+    count = len(arrays)
+    (h, w) = arrays[0].shape
     width = 5.4 if count == 1 else 3.4 * count
     across = (width - 0.1 * (count + 1)) / count
-    tall, above = across * h / w, ABOVE if titled else 0.08
-    height, lefts = above + tall + BELOW, (0.1 + k * (across + 0.1) for k in range(count))
+    tall = across * h / w
+    above = ABOVE if titled else 0.08
+    height = above + tall + BELOW
+    lefts = (0.1 + k * (across + 0.1) for k in range(count))
     places = [(left / width, BELOW / height, across / width, tall / height) for left in lefts]
     return scaled_axes(width, height, places, (0.08, 0.47 / height, 0.84, 0.14 / height))

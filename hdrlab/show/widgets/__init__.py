@@ -110,7 +110,10 @@ def play(
     >>> player.alts[1]
     'A square, ever lighter, step 2'
     """
-    frames, alts, kept, areas = [], [], reuse.Kept(), list[list[float]]()
+    frames = []
+    alts = []
+    kept = reuse.Kept()
+    areas = list[list[float]]()
     for k, state in enumerate(islice(states, MOST + 1)):
         frame, areas = reuse.draw_reusing(
             draw, state, lambda drawn: (encode(drawn), pictured(drawn)), kept
@@ -131,9 +134,8 @@ class Tuner(Widget):
 
     _esm = script("tune.js")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
-    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(
-        sync=True
-    )  # each position's text
+    # each position's text
+    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)
     # The browser moves this, and knows.
     at = traitlets.List(traitlets.Int()).tag(sync=True, echo_update=False)
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
@@ -142,16 +144,16 @@ class Tuner(Widget):
     problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
-    stored = traitlets.List(traitlets.Bytes()).tag(
-        sync=True
-    )  # WebP; each is painted over the first
+    # WebP; each is painted over the first
+    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
     areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
 
     def __init__(
         self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any
     ):
-        self._picture, self._grids = picture, grids
+        self._picture = picture
+        self._grids = grids
         texts = [[short(value) for value in grid] for grid in grids.values()]
         super().__init__(names=list(grids), values=texts, **traits)
         self.observe(self._answer, "at")
@@ -167,7 +169,9 @@ class Tuner(Widget):
 
     def _answer(self, _: object) -> None:
         """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
-        at, frame, problem = list(self.at), self.frame, ""
+        at = list(self.at)
+        frame = self.frame
+        problem = ""
         with undisturbed():
             try:
                 frame = web.encode_frame(self._picture(at))
@@ -249,9 +253,11 @@ def tune(
         ):  # its systems are small: threads would only wait for each other
             return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
-    at, most = positions.start(f, grids), int(os.environ.get("HDRLAB_STORED", stored))
+    at = positions.start(f, grids)
+    most = int(os.environ.get("HDRLAB_STORED", stored))
     first, areas = picture(at, lambda drawn: (render(drawn), pictured(drawn)))
-    stored_at, frames = [at], [encode_change(first)]
+    stored_at = [at]
+    frames = [encode_change(first)]
     for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:
         with suppress(Exception):  # what a student's function refuses is told when it is asked for
             frames.append(encode_change(picture(position), first))

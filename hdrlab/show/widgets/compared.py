@@ -31,9 +31,8 @@ class Comparison(Widget):
     pictures = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP, without loss
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     alt = traitlets.Unicode().tag(sync=True)
-    values = traitlets.List(traitlets.Bytes()).tag(
-        sync=True
-    )  # half floats: for each picture, or one for all
+    # half floats: for each picture, or one for all
+    values = traitlets.List(traitlets.Bytes()).tag(sync=True)
     scales = traitlets.List(traitlets.Float()).tag(sync=True)
     channels = traitlets.List(traitlets.Int()).tag(sync=True)
     unit = traitlets.Unicode().tag(sync=True)

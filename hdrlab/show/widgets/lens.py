@@ -82,14 +82,13 @@ def brush(
     >>> brush(E, alt="A wedge, ever brighter").centre
     [120, 160]
     """
-    E, knobs = (
-        as_radiance(E),
-        {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)},
-    )
+    E = as_radiance(E)
+    knobs = {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)}
     for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16)}).items():
         if not low <= value <= high:
             raise InputError(f"expected {name} from {low} to {high}, got {value}")
-    around, E = fit(pipeline.develop(E) if picture is None else render(picture), SIDE), fit(E, SIDE)
+    around = fit(pipeline.develop(E) if picture is None else render(picture), SIDE)
+    E = fit(E, SIDE)
     if around.shape[:2] != E.shape[:2]:
         raise InputError(
             f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}"

@@ -71,10 +71,8 @@ def beforehand(grids: Grids, at: list[int], most: int) -> list[list[int]]:
     A grid has the ends of each range; of the sliders the longest is thinned out first, and words
     last.
     """
-    counts, words = (
-        list(map(len, grids.values())),
-        [isinstance(each[0], str) for each in grids.values()],
-    )
+    counts = list(map(len, grids.values()))
+    words = [isinstance(each[0], str) for each in grids.values()]
     while math.prod(counts) > max(most, 1):
         counts[
             max(range(len(counts)), key=lambda k: (min(counts[k], 3), not words[k], counts[k]))

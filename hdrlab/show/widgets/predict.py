@@ -146,7 +146,8 @@ def curve(
     >>> curve("Draw it.", [0, 1], [0, 2], names=("level", "light")).scale
     [0.0, 1.0, -0.2, 2.2]
     """
-    x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
+    x = np.asarray(x, np.float64)
+    y = np.asarray(y, np.float64)
     if (
         x.shape != y.shape
         or x.ndim != 1
@@ -157,12 +158,11 @@ def curve(
         raise InputError(
             f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}"
         )
-    few, room = (
-        np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int)),
-        0.1 * (np.ptp(y) or 1.0),
-    )
+    few = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int))
+    room = 0.1 * (np.ptp(y) or 1.0)
     step = 2 * 10.0 ** np.floor(np.log10(room))
-    low, high = step * np.floor((y.min() - room) / step), step * np.ceil((y.max() + room) / step)
+    low = step * np.floor((y.min() - room) / step)
+    high = step * np.ceil((y.max() + room) / step)
     scale = [float(x[0]), float(x[-1]), float(low), float(high)]
     parts = {"scale": scale, "labels": list(names), "alts": [f"Axes: {names[1]} over {names[0]}"]}
     return ask("curve", question, [x[few].tolist(), y[few].tolist()], "", because, **parts)
@@ -195,12 +195,14 @@ def place(
     >>> place("Where?", wall > 50, wall, alt="A wall").kind
     'place'
     """
-    right, drawn = np.asarray(mask), render(picture)
+    right = np.asarray(mask)
+    drawn = render(picture)
     if right.dtype != bool or right.shape != drawn.shape[:2] or not right.any():
         raise InputError(
             f"expected a mask {drawn.shape[:2]} with some pixels, got {describe(mask)}"
         )
-    small, k = fit(drawn, SIDE), -(-max(right.shape) // SIDE)
+    small = fit(drawn, SIDE)
+    k = -(-max(right.shape) // SIDE)
     rows, columns = (k * side for side in small.shape[:2])
     held = right[:rows, :columns].reshape(-1, k, columns // k, k).any(axis=(1, 3))
     shown = [

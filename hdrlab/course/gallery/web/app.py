@@ -38,10 +38,12 @@ class Gallery(Front):
     async def wall(self, request: Request) -> Response:
         """Show all artifacts, in the voter's own order, with the voter's ballot."""
         voter, shown = self.voter(request)
-        set_up, hung = store.settings(self.db), store.artifacts(self.db)
+        set_up = store.settings(self.db)
+        hung = store.artifacts(self.db)
         when, chosen = ballots.read_ballot(self.db, voter.id)
         order = tokens.shuffled(list(hung), set_up.secret, voter.id)
-        may, key = set_up.is_open(self.clock()), tokens.form_key(shown)
+        may = set_up.is_open(self.clock())
+        key = tokens.form_key(shown)
         each = [
             (hung[id], {"own": hung[id].team == voter.team, "chosen": id in chosen}) for id in order
         ]
@@ -51,7 +53,8 @@ class Gallery(Front):
             if when is None
             else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
         )
-        marks, count = set_up.marks, len(chosen)
+        marks = set_up.marks
+        count = len(chosen)
         return self.page("wall.html", cards=cards, marks=marks, chosen=count, when=at, key=key)
 
     async def ballot(self, request: Request) -> Response:
@@ -124,7 +127,8 @@ class Gallery(Front):
     async def compare(self, request: Request) -> Response:
         """Show two artifacts beside each other."""
         self.voter(request)
-        hung, wanted = store.artifacts(self.db), request.query_params.getlist("with")
+        hung = store.artifacts(self.db)
+        wanted = request.query_params.getlist("with")
         if len(set(wanted)) != 2 or not set(wanted) <= hung.keys():
             raise Refusal(400, "Choose two artifacts on the wall, and compare again.")
         return self.page("look.html", shown=[hung[id] for id in wanted], place=0, count=len(hung))
@@ -132,7 +136,8 @@ class Gallery(Front):
     async def picture(self, request: Request) -> Response:
         """Send a picture that this program has encoded."""
         self.voter(request)
-        id, size = request.path_params["id"], request.path_params["size"]
+        id = request.path_params["id"]
+        size = request.path_params["size"]
         if size not in pictures.SIZES or not store.hangs(self.db, id):
             raise Refusal(404, HINTS[404])
         data = self.bytes_of(pictures.place(self.folder / store.PICTURES, id, size))
@@ -141,13 +146,15 @@ class Gallery(Front):
     async def results(self, request: Request) -> Response:
         """Show the places, after the end and not before."""
         self.voter(request)
-        set_up, hung = store.settings(self.db), store.artifacts(self.db)
+        set_up = store.settings(self.db)
+        hung = store.artifacts(self.db)
         if set_up.is_open(self.clock()):
             closes = store.format_time(set_up.closes)
             raise Refusal(403, f"The results are shown when the vote has closed: {closes}.")
         cast = [one for one in ballots.every(self.db).values() if one]
         rows = [(row, hung[row.artifact]) for row in ballots.standings(hung, cast)]
-        method, voters = ballots.METHOD.format(marks=set_up.marks), store.voters(self.db)
+        method = ballots.METHOD.format(marks=set_up.marks)
+        voters = store.voters(self.db)
         return self.page("results.html", rows=rows, cast=len(cast), voters=voters, method=method)
 
     async def static(self, request: Request) -> Response:

@@ -17,7 +17,9 @@ from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import templates
 
 HERE = Path(__file__).parent
-KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again
+# in memory: what a class looks at again and again
+KEPT_FILES = 400
+KEPT_CARDS = 4000
 REQUESTS = guard.Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
 FAILURES = guard.Rate(30, 0.5)  # of an address, with links or sessions that are none
 HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
@@ -34,11 +36,15 @@ class Front:
             raise InputError(
                 f"expected an address such as https://vote.example.edu, got {address!r}"
             )
-        self.host, self.secure = parts.netloc, parts.scheme == "https"
+        self.host = parts.netloc
+        self.secure = parts.scheme == "https"
         self.origin = f"{parts.scheme}://{parts.netloc}"
         self.cookie = "__Host-gallery" if self.secure else "gallery"
-        self.folder, self.clock, self.rates = Path(folder), clock, guard.Rates()
-        self.db, self.writer = store.connect(folder), writer.Writer(folder)
+        self.folder = Path(folder)
+        self.clock = clock
+        self.rates = guard.Rates()
+        self.db = store.connect(folder)
+        self.writer = writer.Writer(folder)
         self.pages = templates(HERE / "templates")
         self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
         self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
@@ -58,7 +64,8 @@ class Front:
     def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
         """Return who asks, or raise a Refusal."""
         text = request.cookies.get(self.cookie, "")
-        shown, voter = tokens.read(text), tokens.whose(self.db, text)
+        shown = tokens.read(text)
+        voter = tokens.whose(self.db, text)
         if voter is None or shown is None:
             if text:
                 self.failed(request)
@@ -82,7 +89,8 @@ class Front:
     async def refused(self, request: Request, error: Exception) -> Response:
         """Say why, in a page or in JSON."""
         if isinstance(error, guard.Refusal):
-            status, why = error.status, error.said
+            status = error.status
+            why = error.said
         else:
             status = error.status_code if isinstance(error, HTTPException) else 500
             why = HINTS.get(status, "Something went wrong here. Your ballot of before counts.")

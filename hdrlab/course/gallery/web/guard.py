@@ -28,7 +28,8 @@ class Refusal(Exception):
 
     def __init__(self, status: int, said: str) -> None:
         super().__init__(said)
-        self.status, self.said = status, said
+        self.status = status
+        self.said = said
 
 
 class Rate(NamedTuple):
@@ -42,7 +43,8 @@ class Rates:
     """Who has done how much lately; the longest unseen are forgotten beyond `most` names."""
 
     def __init__(self, *, clock: Callable[[], float] = time.monotonic, most: int = 20_000) -> None:
-        self._clock, self._most = clock, most
+        self._clock = clock
+        self._most = most
         self._seen: OrderedDict[tuple[str, str], tuple[float, float]] = OrderedDict()
 
     def take(self, kind: str, who: str, rate: Rate) -> bool:
@@ -60,7 +62,8 @@ class Guard:
     """The application with `HEADERS` on every answer, for one host's name alone."""
 
     def __init__(self, app: ASGIApp, *, host: str, secure: bool) -> None:
-        self._app, self._host = app, host.lower()
+        self._app = app
+        self._host = host.lower()
         self._headers = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
         if secure:
             self._headers.append((b"strict-transport-security", b"max-age=31536000"))
@@ -109,9 +112,10 @@ async def form(request: Request) -> list[tuple[str, str]]:
 
 async def _body(request: Request) -> bytes:
     body = b""
+    # counted as it comes: a header may claim anything
     async for piece in request.stream():
         body += piece
-        if len(body) > BODY:  # counted as it comes: a header may claim anything
+        if len(body) > BODY:
             raise Refusal(413, "This form is too large.")
     return body
 

@@ -34,7 +34,8 @@ PATIENCE = 10.0
 ANSWER = 60.0
 LOG = "gallery.log"
 # bytes of the log, and how many older ones are kept
-LOG_SIZE, LOGS = 1_000_000, 2
+LOG_SIZE = 1_000_000
+LOGS = 2
 # seconds between two lines of the log that say the gallery is full
 WORD = 60.0
 log = logging.getLogger("hdrlab.gallery")

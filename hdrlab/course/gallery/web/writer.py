@@ -22,7 +22,8 @@ class Writer:
     """The database's only writing connection of this process."""
 
     def __init__(self, folder: str | Path) -> None:
-        self._db, self._busy = store.connect(folder), False
+        self._db = store.connect(folder)
+        self._busy = False
         self._jobs: list[tuple[Work, asyncio.Future[Any]]] = []
 
     async def do(self, work: Callable[[sqlite3.Connection], Result]) -> Result:
@@ -42,7 +43,8 @@ class Writer:
 
     async def _write(self) -> None:
         while self._jobs:
-            jobs, self._jobs = self._jobs[:TOGETHER], self._jobs[TOGETHER:]
+            jobs = self._jobs[:TOGETHER]
+            self._jobs = self._jobs[TOGETHER:]
             outcomes = await asyncio.to_thread(self._together, [work for work, _ in jobs])
             self._busy = bool(self._jobs)  # before anybody is told, and asks for more
             for (_, waiting), outcome in zip(jobs, outcomes, strict=True):

@@ -67,7 +67,8 @@ def draw_trial(
     """
     c = draw_curve(rng)
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
-    exposures, E = np.append(np.cumprod(R[::-1])[::-1], 1), 10 ** rng.uniform(-2, 0, pixels)
+    exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
+    E = 10 ** rng.uniform(-2, 0, pixels)
     M = polynomial.brightness(E[:, None] * exposures, c)
     M = M + sigma * rng.standard_normal(M.shape)
     return Trial(c, R, np.rint(255 * np.clip(M, 0, 1)).astype(np.intp))
@@ -91,10 +92,13 @@ def literal_steps(M: F64, start: ArrayLike, *, order: int = 5) -> Iterator[tuple
     As it stands in [Mitsunaga99 sec. 4], for samples M (N, P) that are all good; eq. 10 gets the 1
     / N that it lacks in print.
     """
-    R, powers = np.asarray(start, dtype=np.float64), M[..., None] ** np.arange(order + 1)
+    R = np.asarray(start, dtype=np.float64)
+    powers = M[..., None] ** np.arange(order + 1)
     while True:
         rows = np.concatenate([powers[:, q] - R[q] * powers[:, q + 1] for q in range(len(R))])
-        A, last = rows[:, :-1] - rows[:, -1:], rows[:, -1]  # c_N = 1 - sum of the others [eq. 8]
+        # c_N = 1 - sum of the others [eq. 8]
+        A = rows[:, :-1] - rows[:, -1:]
+        last = rows[:, -1]
         c = np.linalg.solve(A.T @ A, -A.T @ last)  # dE / dc_n = 0 [eq. 9]
         c = np.append(c, 1 - c.sum())
         f_inv = powers @ c
@@ -109,13 +113,13 @@ def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Dri
     the second fits ever better, so u alone drifts.
     """
     M = self_calibration.average(one.Z)
-    M, z = M[np.all((M > 0.05) & (M < 0.98), axis=1)], np.linspace(0, 1, 256)
-    truth, rows = value(z, one.c), []
+    M = M[np.all((M > 0.05) & (M < 0.98), axis=1)]
+    z = np.linspace(0, 1, 256)
+    truth = value(z, one.c)
+    rows = []
     for c, R, error in islice(literal_steps(M, start, order=len(one.c) + 1), iterations):
-        f_inv, u = (
-            np.polynomial.polynomial.polyval(z, c),
-            np.mean(np.log(R)) / np.mean(np.log(one.R)),
-        )
+        f_inv = np.polynomial.polynomial.polyval(z, c)
+        u = np.mean(np.log(R)) / np.mean(np.log(one.R))
         rows.append((error, u, np.abs(f_inv - truth).mean(), np.abs(f_inv - truth**u).mean()))
     return Drift(*np.array(rows).T)
 
@@ -131,6 +135,7 @@ def brightness_error(M: F64, R: F64, c: F64) -> float:
 
 def scan_ratios(M: F64, R: ArrayLike, order: int) -> F64:
     """Return the `brightness_error` of the best c at each of the ratios R (K,), for two frames M (N, 2)."""
-    samples, M = neighbours(M, order), M[in_range(M)[:, 0]]
+    samples = neighbours(M, order)
+    M = M[in_range(M)[:, 0]]
     each = np.atleast_1d(R)[:, None]
     return np.array([brightness_error(M, r, coefficients(gram(*samples, r))) for r in each])

@@ -57,12 +57,15 @@ def meter_scene(
     photograph = partial(autoexposure.measure_brightness, aperture=F)
     EV = autoexposure.expose(coarse, mode, at=at, photograph=photograph)
     fills = float(exposure.saturating_luminance(1.0, F=F))
-    time, s = F**2 / 2.0**EV, 1 / fills
+    time = F**2 / 2.0**EV
+    s = 1 / fills
     lens = camera.Camera(response="srgb", sensitivity=s, sensor=sensor)
-    taken, L = camera.shoot(scene.E, [time], lens, rng=rng), luminance(scene.E)
+    taken = camera.shoot(scene.E, [time], lens, rng=rng)
+    L = luminance(scene.E)
     noise = ranges.expose_levels(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
-    asked, picture = metering.weights(photograph(coarse, EV), mode, at=at), taken.images[0]
+    asked = metering.weights(photograph(coarse, EV), mode, at=at)
+    picture = taken.images[0]
     return Shot(picture, np.any(picture == 255, axis=-1), noise, _enlarged(asked, L.shape), EV, off)
 
 
@@ -107,7 +110,8 @@ def calibrate_shaken(
     E: ArrayLike, *, radius: int = 6, count: int = 5, stops: float = 2.0
 ) -> Calibrated:
     """Return a calibration of `count` gray photographs, `stops` apart, shaken by up to `radius` pixels."""
-    L, offsets = luminance(E), camera.shake(count, radius=radius)
+    L = luminance(E)
+    offsets = camera.shake(count, radius=radius)
     times = camera.times_around(L, count, stops=stops)
     taken = camera.shoot(L, times, NOISY, offsets=offsets)
     found = pipeline.aligned(taken, "mtb")

@@ -26,15 +26,18 @@ from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 
 Offset = tuple[int, int]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
-DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
-CENTRE, BEST = "#808080", "#D55E00"
+DIFFER = (230, 159, 0)
+OUTSIDE = (0, 90, 160)
+CENTRE = "#808080"
+BEST = "#D55E00"
 
 
 def overlay(
     fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None
 ) -> NDArray[np.uint8]:
     """Return two bitmaps (H, W) as one picture (H, W, 3); `compared` (H, W) is False where no bit counts."""
-    a, b = np.asarray(fixed, bool), np.asarray(moved, bool)
+    a = np.asarray(fixed, bool)
+    b = np.asarray(moved, bool)
     if (
         a.ndim != 2
         or a.shape != b.shape
@@ -69,14 +72,18 @@ def validated(state: mtb.State, validation: Validation) -> Axes:
 
 def nine(state: mtb.State) -> Figure:
     """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
-    (height, width), gap = state.fixed.shape[1:], 0.06
-    centre, side = next(iter(state.errors)), (WIDTH - 4 * gap) / 3
+    (height, width) = state.fixed.shape[1:]
+    gap = 0.06
+    centre = next(iter(state.errors))
+    side = (WIDTH - 4 * gap) / 3
     tall = side * height / width
     figure = Figure(figsize=(WIDTH, 3 * (tall + 0.25) + 0.45), dpi=100)
     total = figure.get_size_inches()[1]
     for offset, error in sorted(state.errors.items()):
-        row, column = offset[0] - centre[0] + 1, offset[1] - centre[1] + 1
-        left, top = gap + column * (side + gap), 0.4 + row * (tall + 0.25)
+        row = offset[0] - centre[0] + 1
+        column = offset[1] - centre[1] + 1
+        left = gap + column * (side + gap)
+        top = 0.4 + row * (tall + 0.25)
         place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
         ax = figure.add_axes(place)
         nearest.show(ax, _picture(state.fixed, state.moving, offset))

@@ -23,11 +23,10 @@ from hdrlab.errors import InputError
 from hdrlab.show.plots import picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
-ROW, SIDE, LONG = (
-    0.36,
-    0.21,
-    20,
-)  # inches from row to row, and of a box; bits beyond which a row is long
+# inches from row to row, and of a box; bits beyond which a row is long
+ROW = 0.36
+SIDE = 0.21
+LONG = 20
 CHANNELS = {"red": "#F6CDBB", "green": "#BFE5D8", "blue": "#C0DAEE"}
 COLOURS = {"sign": "#E6E6E6", "exponent": "#F3D9A4", "mantissa": "#C6E2F5", **CHANNELS}
 FORMATS: dict[int, Any] = {16: (np.float16, np.uint16, 5, 15), 32: (np.float32, np.uint32, 8, 127)}
@@ -63,8 +62,11 @@ def number(value: float, *, bits: int = 16) -> Axes:
     with np.errstate(over="ignore"):
         stored = kind(value)
     text = f"{int(stored.view(as_word)):0{bits}b}"
-    sign, exponent, mantissa = text[0], text[1 : 1 + wide], text[1 + wide :]
-    e, m = int(exponent, 2), int(mantissa, 2) / 2 ** len(mantissa)
+    sign = text[0]
+    exponent = text[1 : 1 + wide]
+    mantissa = text[1 + wide :]
+    e = int(exponent, 2)
+    m = int(mantissa, 2) / 2 ** len(mantissa)
     fields = [
         Field("sign", sign, "-" if sign == "1" else "+"),
         Field("exponent", exponent, _power(e, bias, 2**wide - 1)),
@@ -80,7 +82,8 @@ def rows(fields: Sequence[Field], *, title: str = "") -> Axes:
     height = sum(tall) + above
     ax = picture_axes(WIDTH, height, (0.01, 0, 0.98, 1 - above / height))
     digits: dict[str, list[tuple[float, float]]] = {"0": [], "1": []}
-    boxes, colours = [], []
+    boxes = []
+    colours = []
     for (name, bits, said), y in zip(fields, np.cumsum([0, *tall]), strict=False):
         long = len(bits) > LONG
         left, top = (0.38, y + ROW - 0.05) if long else (1.3, y)
@@ -113,7 +116,8 @@ def scanline(planes: ArrayLike, done: int, *, title: str = "") -> Figure:
         raise InputError(
             f"expected planes (4, W) and 0 to 4 W bytes, got {describe(given)} and {done}"
         )
-    width, figure = given.shape[1], Figure(figsize=(WIDTH, 2.6), dpi=100)
+    width = given.shape[1]
+    figure = Figure(figsize=(WIDTH, 2.6), dpi=100)
     for k, (name, plane) in enumerate(zip((*CHANNELS, "exponent"), given, strict=True)):
         ax = figure.add_axes((0.15, 0.72 - 0.18 * k, 0.83, 0.15))
         known = min(max(done - k * width, 0), width)

@@ -53,20 +53,20 @@ def equations(
     names: tuple[str, str] = ("x1", "x2"),
 ) -> Axes:
     """Draw A x = b as lines, rings of equal |A x - b| around the least, and `points`, each (2,) or (2, K)."""
-    A, b = np.asarray(A, np.float64), np.asarray(b, np.float64)
+    A = np.asarray(A, np.float64)
+    b = np.asarray(b, np.float64)
     if A.ndim != 2 or A.shape[1] != 2 or b.shape != A.shape[:1]:
         raise InputError(f"expected A (m, 2) and b (m,), got {describe(A)} and {describe(b)}")
-    ax, side = _plane(reach, *names), np.linspace(-reach, reach, 161)
+    ax = _plane(reach, *names)
+    side = np.linspace(-reach, reach, 161)
     grid = np.stack(np.meshgrid(side, side))
     residual = np.sqrt(np.sum((np.tensordot(A, grid, axes=1) - b[:, None, None]) ** 2, axis=0))
     rings = max(float(residual.min()), 0.25) * np.array(RINGS)
     ax.contour(side, side, residual, levels=rings, colors="#999999", linewidths=0.8)
     for (p, q), right in zip(A, b, strict=True):
         if p or q:
-            foot, along = (
-                np.array([p, q]) * right / (p * p + q * q),
-                np.array([-q, p]) / np.hypot(p, q),
-            )
+            foot = np.array([p, q]) * right / (p * p + q * q)
+            along = np.array([-q, p]) / np.hypot(p, q)
             ends = foot[:, None] + along[:, None] * np.array([-3, 3]) * reach
             ax.plot(*ends, color="#0072B2", linewidth=1.2)
     for k, (name, at) in enumerate((points or {}).items()):

@@ -23,7 +23,8 @@ from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 
 REACH = 0.6  # d at which the colours end: one photograph 1.86 times as bright as the other
 COLOURS = "PuOr_r"
-LINE, POINT = "#0072B2", "#D55E00"
+LINE = "#0072B2"
+POINT = "#D55E00"
 
 
 def differences(X: ArrayLike, H: ArrayLike) -> tuple[F64, float]:
@@ -65,7 +66,8 @@ def level(state: State) -> Figure:
     bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
     above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)
-    ax, e = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total)), 1000 * state.errors
+    ax = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total))
+    e = 1000 * state.errors
     ax.plot(e, color=LINE, linewidth=1.8)
     ax.plot(len(e) - 1, e[-1], "o", color=POINT)
     ax.set(xlabel="step of the simplex", ylabel="1000 e", ylim=(0, 1.1 * e.max() + 1e-6))

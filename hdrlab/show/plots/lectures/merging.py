@@ -17,7 +17,10 @@ from hdrlab.show.plots import NARROW, axes, seconds
 STOP = np.log(2)
 # stops: how far a measurement may lie from the middle, and still be shown
 REACH = 12
-MEASURED, BOUND, MEAN, TRUE = "#0072B2", "#E69F00", "#D55E00", "#1A1A1A"
+MEASURED = "#0072B2"
+BOUND = "#E69F00"
+MEAN = "#D55E00"
+TRUE = "#1A1A1A"
 
 
 def draw_measurements(
@@ -36,15 +39,20 @@ def draw_measurements(
     A dot's area is its weight. Level 0 means "at most" and a level of `top` or more "at least",
     drawn as arrows. `lE` is the merged value, `truth` the true one; `middle` is ln E at 0 stops.
     """
-    Z, B = np.asarray(Z), np.asarray(B, np.float64)
-    g, w = np.asarray(g, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    g = np.asarray(g, np.float64)
+    w = np.asarray(w, np.float64)
     if Z.ndim != 1 or Z.shape != B.shape or g.ndim != 1 or g.shape != w.shape:
         got = ", ".join(map(describe, (Z, B, g, w)))
         raise InputError(f"expected Z and B (P,), g and w (n,), got {got}")
-    ax, x, n = axes(), np.arange(len(Z)), len(g)
+    ax = axes()
+    x = np.arange(len(Z))
+    n = len(g)
     ends = np.interp([Z - 0.5, Z + 0.5], np.arange(n), g)
     here, low, high = ((one - B - middle) / STOP for one in (g[Z], *ends))
-    dark, clipped = Z == 0, Z >= top
+    dark = Z == 0
+    clipped = Z >= top
     whole = ~(dark | clipped)
     ax.vlines(x[whole], low[whole], high[whole], color=MEASURED, linewidth=6, alpha=0.35)
     ax.scatter(

@@ -37,7 +37,8 @@ def samples(
     scales, offsets = (
         np.broadcast_to(np.asarray(one, np.float64), (len(blends),)) for one in (s, r)
     )
-    few, ax = len(blends) <= len(SAMPLES), axes()
+    few = len(blends) <= len(SAMPLES)
+    ax = axes()
     if joined is not None:  # above the samples, which would hide it
         ax.plot(joined.X, 255 * joined.M, color="#1A1A1A", linewidth=1.5, zorder=3, label="joined")
     for k, (one, own, start) in enumerate(zip(blends, scales, offsets, strict=True)):

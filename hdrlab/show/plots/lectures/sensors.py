@@ -29,8 +29,11 @@ from hdrlab.show.plots import (
     with_legend,
 )
 
-FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
-ORANGE, BLUE = np.array([213, 94, 0], np.uint8), np.array([0, 114, 178], np.uint8)
+FULL = "#D55E00"
+NOISE = "#0072B2"
+KEPT = "#B8B8B8"
+ORANGE = np.array([213, 94, 0], np.uint8)
+BLUE = np.array([0, 114, 178], np.uint8)
 KINDS = (("lost in noise", NOISE, "///"), ("held", KEPT, ""), ("full", FULL, "..."))
 BINS = 60
 
@@ -48,11 +51,13 @@ def mark_lost(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[
 
 def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> Axes:
     """Draw how the pixels of a scene spread over luminance, and which of them one exposure holds."""
-    L, ax = np.asarray(L, np.float64).ravel(), axes()
+    L = np.asarray(L, np.float64).ravel()
+    ax = axes()
     if L.shape != np.shape(held.full) or not np.all(L > 0):
         raise InputError(f"expected positive luminances {np.shape(held.full)}, got {describe(L)}")
     low, high = limits or (float(L.min()), float(L.max()) * 1.0001)
-    edges, below = np.geomspace(low, high, BINS + 1), np.zeros(BINS + 1)
+    edges = np.geomspace(low, high, BINS + 1)
+    below = np.zeros(BINS + 1)
     lost = (held.noise & ~held.full, ~held.noise & ~held.full, held.full)
     for (label, colour, hatch), mask in zip(KINDS, lost, strict=True):
         above = below + 100 * np.append(np.histogram(L[mask], edges)[0], 0) / L.size
@@ -67,7 +72,8 @@ def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> 
 
 def staircase(L: ArrayLike, held: ranges.ExposedLevels) -> Axes:
     """Draw the converter's level over luminance, and where nothing is told [Battiato08 fig. 1.10 to 1.12]."""
-    L, ax = np.asarray(L, np.float64), axes()
+    L = np.asarray(L, np.float64)
+    ax = axes()
     if L.shape != np.shape(held.Z) or L.ndim != 1:
         raise InputError(f"expected luminances {np.shape(held.Z)}, got {describe(L)}")
     ax.step(L, held.Z, where="mid", color="#1A1A1A", linewidth=1.8)
@@ -88,7 +94,10 @@ def transfer(found: photon_transfer.Transfer, *, span: Ends = None, limits: Ends
 
     `span` and `limits` fix the axes, so that a slider turns the line and nothing else.
     """
-    S, V, used, ax = np.maximum(found.S, 0), found.V, found.used, axes()
+    S = np.maximum(found.S, 0)
+    V = found.V
+    used = found.used
+    ax = axes()
     ax.plot(S[used], V[used], "o", color="#D55E00", label="pairs that are used")
     ax.plot(S[~used], V[~used], "x", color="#0072B2", label="too near to a full well")
     line = np.array([0, S.max()])
@@ -122,7 +131,8 @@ def coverage(plan: planning.Plan, low: float, high: float) -> Axes:
 
 def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None) -> Axes:
     """Draw a number of each of a few kinds, counted from 1, on a logarithmic scale."""
-    counts, ax = np.asarray(counts), axes()
+    counts = np.asarray(counts)
+    ax = axes()
     x = np.arange(1, len(counts) + 1)
     ax.bar(x, counts, color="#0072B2", bottom=0.7)
     for at, count in zip(x, counts, strict=True):
@@ -136,7 +146,8 @@ def draw_titled(
 ) -> Axes:
     """Draw a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
     shown = as_picture(picture)
-    high, lines = width * shown.shape[0] / shown.shape[1], 0.25 * (text.count("\n") + 1) + 0.12
+    high = width * shown.shape[0] / shown.shape[1]
+    lines = 0.25 * (text.count("\n") + 1) + 0.12
     ax = picture_axes(width, high + lines, (0, 0, 1, high / (high + lines)))
     nearest.show(ax, shown, colours="gray", norm=Normalize(0, 255))
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:

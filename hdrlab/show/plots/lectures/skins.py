@@ -13,7 +13,9 @@ from hdrlab.errors import InputError
 from hdrlab.show.plots import axes, with_legend
 
 MOST = 2000  # pixels: more dots hide one another
-PALE, DARK, RUST = "#56B4E9", "#1A1A1A", "#D55E00"
+PALE = "#56B4E9"
+DARK = "#1A1A1A"
+RUST = "#D55E00"
 
 
 def _pixels(Z: ArrayLike) -> F64:
@@ -26,7 +28,8 @@ def _pixels(Z: ArrayLike) -> F64:
 
 def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.REACH) -> Axes:
     """Draw the chrominance of pixels, and the ellipse within `reach` of the Gaussian of skin."""
-    x, ax = skin.chrominance(_pixels(Z)), axes(4.6, 4.2)
+    x = skin.chrominance(_pixels(Z))
+    ax = axes(4.6, 4.2)
     turn = np.linspace(0, 2 * np.pi, 200)
     edge = (
         known.mu
@@ -41,7 +44,8 @@ def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.REACH) ->
 
 def locus(Z: ArrayLike) -> Axes:
     """Draw the shares of red and green of pixels, and the two parabolas of the skin locus [Soriano03]."""
-    Z, ax = _pixels(Z), axes(4.6, 4.2)
+    Z = _pixels(Z)
+    ax = axes(4.6, 4.2)
     r, g = (Z[:, :2] / np.maximum(Z.sum(axis=1), 1)[:, None]).T
     across = np.linspace(0.2, 0.65, 100)
     ax.plot(r, g, ".", color=PALE, markersize=2, label="pixels")

@@ -38,12 +38,12 @@ def comparagram(
     if J.ndim != 2 or J.shape[0] != J.shape[1] or len(J) < 3 or not np.any(J > 0):
         raise InputError(f"expected a comparagram (n, n) with counts in it, got {describe(J)}")
     most = J[1:-1, 1:-1].max() or J.max()
-    scale, ax = LogNorm(max(most / 1000, J[J > 0].min()), most), axes(5.4, 4.3)
+    scale = LogNorm(max(most / 1000, J[J > 0].min()), most)
+    ax = axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
     counted = np.where(J > 0, J, np.nan).T
-    shown = ax.imshow(
-        counted, norm=scale, origin="lower", interpolation="nearest", zorder=1
-    )  # upon the grid
+    # upon the grid
+    shown = ax.imshow(counted, norm=scale, origin="lower", interpolation="nearest", zorder=1)
     counts = [count for count in 10.0 ** np.arange(15) if scale.vmin <= count <= scale.vmax]
     named = {f"{count:,.0f}": shown.cmap(scale(count)) for count in counts}
     swatches: list[Artist] = [Patch(facecolor=colour, label=name) for name, colour in named.items()]
@@ -62,7 +62,9 @@ def comparagram(
 def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike) -> Axes:
     """Draw both cumulated histograms, and the way from level m of A at its rank across to T(m) of B."""
     H_A, H_B = (np.cumsum(h) / np.sum(h) for h in (h_A, h_B))
-    level, rank, ax = np.arange(len(H_A)), H_A[m] - np.diff(H_A, prepend=0)[m] / 2, axes()
+    level = np.arange(len(H_A))
+    rank = H_A[m] - np.diff(H_A, prepend=0)[m] / 2
+    ax = axes()
     for (colour, style), H, name in zip(
         LINES[1:], (H_A, H_B), ("frame A", "frame B"), strict=False
     ):
@@ -90,11 +92,14 @@ def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike) -> Axes:
 
 def staircase(T: ArrayLike, s: ArrayLike) -> Axes:
     """Draw the series s going down between T, bright frame to dark, and the line of equal levels."""
-    T, s, ax = np.asarray(T, np.float64), np.asarray(s, np.float64), axes(4.6, 4.2)
+    T = np.asarray(T, np.float64)
+    s = np.asarray(s, np.float64)
+    ax = axes(4.6, 4.2)
     n = len(T)
     ax.plot([0, n - 1], [0, n - 1], color="#808080", linewidth=1, label="the same level")
     ax.plot(np.arange(n), T, color="#D55E00", linewidth=1.8, label="T, bright to dark")
-    x, y = np.repeat(s, 2)[:-1], np.repeat(s, 2)[1:]
+    x = np.repeat(s, 2)[:-1]
+    y = np.repeat(s, 2)[1:]
     ax.plot(
         x, y, color="#0072B2", linewidth=1, marker="s", markersize=3.5, label=f"{len(s)} levels"
     )
@@ -145,8 +150,12 @@ def equations(
 
     `span` and `limits` fix the axes, so that a slider moves the equations and nothing else.
     """
-    x, y, used, ax = np.asarray(x), np.asarray(y), np.asarray(used, bool), axes()
-    off, out = y - against * x, ~used
+    x = np.asarray(x)
+    y = np.asarray(y)
+    used = np.asarray(used, bool)
+    ax = axes()
+    off = y - against * x
+    out = ~used
     ax.plot(x[out], off[out], "x", color="#999999", markersize=4, label=f"{out.sum()} thrown out")
     ax.plot(x[used], off[used], ".", color="#0072B2", markersize=5, label=f"{used.sum()} in use")
     ends = np.array([0, x.max(initial=1)])
