@@ -241,3 +241,8 @@ def test_frames_that_are_dimmer_than_white_are_not_pulled_up_to_it():
     assert white == 1 and average == pytest.approx(3.0, rel=1e-3)
     bright = steady.measure_frame(np.where(np.eye(64) > 0, 3000.0, 3.0))
     assert steady.adapt([bright], key=0.18)[1] > 1
+
+
+def test_a_picture_too_small_to_be_followed_has_no_motion():
+    a, b = np.random.default_rng(0).random((2, 15, 40)).astype(np.float32)
+    assert not flow.tvl1(a, b).any()

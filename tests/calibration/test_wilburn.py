@@ -306,6 +306,8 @@ def test_what_is_no_blend_is_refused(tmp_path):
         lambda: display.mixing_ratios(3, 5, 14),
         lambda: display.draw_schedule(Schedule((300,))),
         lambda: display.draw_schedule(Schedule((100,), low=100)),
+        lambda: display.draw_schedule(Schedule((100,), patch=0)),
+        lambda: display.draw_schedule(Schedule((100,), border=-1)),
         lambda: display.draw_schedule(shape=(100, 100)),
         lambda: display.find_corners(np.zeros((5, 5))),
     ):

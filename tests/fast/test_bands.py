@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from hdrlab.core.filters import pyramid as lesson
-from hdrlab.fast import _bands as bands, pyramid as quick
+from hdrlab.errors import InputError
+from hdrlab.fast import _bands as bands, pyramid as quick, with_parts
+from hdrlab.tonemap import chiu
 
 
 def noise(shape, seed=0):
@@ -40,3 +42,13 @@ def test_pyramids_of_several_bands_and_planes_are_the_lesson_s():
         np.testing.assert_allclose(found, expected, atol=1e-6)
     fine = quick.interpolate(picture[0], (600, 522))
     np.testing.assert_allclose(fine, lesson.interpolate(picture[0], (600, 522)), atol=1e-6)
+
+
+def test_pictures_without_rows_are_refused():
+    with pytest.raises(InputError, match="row"):
+        bands.banded(np.negative, np.empty((0, 4)))
+
+
+def test_a_part_that_the_lesson_does_not_call_is_refused():
+    with pytest.raises(InputError, match="gausian_filter"):
+        with_parts(__name__, chiu.scale, gausian_filter=np.negative)

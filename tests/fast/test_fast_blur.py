@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.ndimage import gaussian_filter
 
+from hdrlab.errors import InputError
 from hdrlab.fast import blur
 
 
@@ -68,3 +69,15 @@ def test_folding_the_band_matrix_is_reflecting_the_picture(sigma, h, shape):
     K = blur._band(k, len(few), h)
     around = np.pad(image, [(r + h, K.shape[1] - r - h - len(image)), (0, 0)], mode="symmetric")
     assert np.allclose(few, K @ around, atol=1e-5)
+
+
+@pytest.mark.parametrize("sigma", [0, -1, np.inf, np.nan])
+def test_a_sigma_that_is_not_positive_and_finite_is_refused(sigma):
+    with pytest.raises(InputError, match="sigma"):
+        blur.gaussian(np.ones((4, 4)), sigma)
+
+
+@pytest.mark.parametrize("shape", [(4,), (0, 4), (4, 4, 3)])
+def test_an_array_that_is_no_picture_is_refused(shape):
+    with pytest.raises(InputError, match="image"):
+        blur.gaussian(np.ones(shape), 1.0)

@@ -8,6 +8,7 @@ from hdrlab.capture import camera, responses
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import levels
 from hdrlab.course.checks.specification import test_gsolve
+from hdrlab.errors import InputError
 from hdrlab.fast import debevec
 from hdrlab.response import debevec as lesson
 
@@ -215,3 +216,9 @@ def test_a_curve_has_256_levels_at_any_depth(dtype):
     images = np.stack([np.linspace(1, top, 400).reshape(20, 20) for top in (100, 200)])
     images = (images * (levels(np.zeros(1, dtype)) - 1) / 255).astype(dtype)
     assert debevec.recover(images, [1, 2]).shape == (256,)
+
+
+def test_a_system_that_the_samples_leave_open_is_refused():
+    """Two samples connect no levels with each other, and without smoothness nothing else does."""
+    with pytest.raises(InputError, match="levels, frames or smoothness"):
+        debevec.gsolve([[100, 200], [10, 20]], [0.0, 1.0], 0, weights.hat())

@@ -6,6 +6,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import lens_flare as lens
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform
+from hdrlab.errors import InputError
 from hdrlab.radiance import flare, reflection
 
 
@@ -176,3 +177,9 @@ def test_what_is_alike_on_both_sides_is_no_reflection():
 def test_real_photographs_without_a_reflection_are_left_alone():
     E = pipeline.assemble(scenes.photographs((250, 188))).E
     assert reflection.fit_reflection(E) == 0
+
+
+@pytest.mark.parametrize("r", [-0.1, 1.0, np.nan])
+def test_a_reflection_of_less_than_nothing_or_of_all_light_is_refused(r):
+    with pytest.raises(InputError, match=str(r)):
+        reflection.remove_reflection(np.ones((4, 4)), r)

@@ -6,6 +6,7 @@ import pytest
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
+from hdrlab.errors import InputError
 from hdrlab.radiance.deghosting import deviation, frames, ghosts, reference, regions
 from hdrlab.radiance.merge import Quality, merge_with_quality
 from hdrlab.response import linear
@@ -349,3 +350,18 @@ def test_what_is_darker_than_a_clipped_frame_shows_is_found_but_for_an_edge_that
     assert np.array_equal(deviation.find_clipped_elsewhere(taken, E), ~near[..., 0])
     seen = taken._replace(valid=~outside[None, ..., 0])
     assert np.array_equal(deviation.find_clipped_elsewhere(seen, E), ~(near | outside)[..., 0])
+
+
+@pytest.mark.parametrize("w", [np.zeros(256), -np.ones(256), np.ones((256, 3))])
+def test_weights_that_trust_no_level_are_refused(moving, w):
+    images, times = moving.bracket.images, moving.bracket.times
+    E = merge_with_quality(images, times, FILM).E
+    taken = frames.calibrate_frames(images, times, FILM, E)
+    with pytest.raises(InputError, match="weights"):
+        deviation.measure_deviation(taken, w)
+
+
+def test_a_map_of_another_size_than_the_photographs_is_refused(moving):
+    images, times = moving.bracket.images, moving.bracket.times
+    with pytest.raises(InputError, match="shape"):
+        frames.calibrate_frames(images, times, FILM, np.ones((4, 5, 3)))

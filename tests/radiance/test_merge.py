@@ -9,6 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import threads, weights
+from hdrlab.errors import InputError
 from hdrlab.fast import merge as quick
 from hdrlab.radiance import merge as lesson
 from hdrlab.radiance.merge import METHODS, Quality
@@ -456,3 +457,28 @@ def test_a_response_that_ends_where_it_began_is_refused_though_it_dips_between(v
     g = np.r_[0.0, -np.ones(254), 0.0]
     with pytest.raises(ValueError, match="rise"):
         verb(np.full((2, 2, 2), 9, np.uint8), [1, 2], g)
+
+
+@pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
+@pytest.mark.parametrize(
+    ("images", "times"),
+    [
+        (np.ones((2, 4, 5)), [1, 2]),
+        (np.ones((2, 4), np.uint8), [1, 2]),
+        (np.ones((2, 4, 5, 2), np.uint8), [1, 2]),
+        (np.ones((2, 4, 5), np.uint8), [1, 0]),
+        (np.ones((2, 4, 5), np.uint8), [1, 2, 3]),
+    ],
+)
+def test_images_that_are_no_bracket_are_refused(verb, images, times):
+    with pytest.raises(InputError, match="expected"):
+        verb(images, times, FILM)
+
+
+def test_photographs_whose_memory_may_go_give_the_same_map():
+    """The pipeline lets the fast merge give the frames' memory back as it reads them."""
+    rng = np.random.default_rng(3)
+    images = rng.integers(0, 256, (4, 1100, 300, 3), dtype=np.uint8)
+    kept = quick.merge_with_quality(images.copy(), [1, 2, 4, 8], FILM)
+    released = quick.merge_with_quality(images.view(quick.Expendable), [1, 2, 4, 8], FILM)
+    assert np.array_equal(kept.E, released.E) and np.array_equal(kept.quality, released.quality)

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab.core.colour import decode_srgb, encode_srgb
+from hdrlab.errors import InputError
 from hdrlab.tonemap import brush
 
 
@@ -130,3 +131,9 @@ def test_bins_span_a_stop_at_least_and_what_is_wider_as_it_is():
     assert high / low == pytest.approx(2) and low * high == pytest.approx(9)
     wide = np.repeat(np.float32([1, 5, 50]), 200).reshape(20, 30)
     assert brush.find_range(wide) == pytest.approx((1, 50), rel=0.01)
+
+
+@pytest.mark.parametrize("centre", [(1,), (1, 2, 3), (np.nan, 2), (np.inf, 2)])
+def test_a_centre_that_is_no_place_is_refused(centre):
+    with pytest.raises(InputError, match="centre"):
+        brush.lens(np.ones((9, 9)), centre, size=4)
