@@ -17,7 +17,7 @@ from hdrlab.core.colour import luminance
 from hdrlab.core.filters import poisson
 from hdrlab.core.filters.bilateral import bilateral as by_definition
 from hdrlab.fast import bilateral, blur, brush, chiu, durand, fattal, reinhard, ward
-from hdrlab.tonemap.durand import WIDTH, logarithm
+from hdrlab.tonemap.durand import SIGMA_S_FRACTION, logarithm
 from hdrlab.tonemap.fattal import log_luminance
 
 REINHARD = "own Reinhard"
@@ -30,7 +30,7 @@ def bilateral_case(folder: Path, one: bool) -> Case:
     L = luminance(E)
     widths = (
         "--tmoDurSigmaS",
-        f"{WIDTH * max(L.shape):g}",
+        f"{SIGMA_S_FRACTION * max(L.shape):g}",
         "--tmoDurSigmaR",
         f"{0.4 * np.log(10):g}",
     )
@@ -46,7 +46,7 @@ def bilateral_case(folder: Path, one: bool) -> Case:
         if who != OURS:
             return None
         lL = logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
-        sigmas = {"sigma_s": WIDTH * max(lL.shape), "sigma_r": 0.4}
+        sigmas = {"sigma_s": SIGMA_S_FRACTION * max(lL.shape), "sigma_r": 0.4}
         exact, fast = by_definition(lL, **sigmas).mean, bilateral.bilateral(lL, **sigmas).mean
         return float(np.sqrt(np.mean((fast - exact) ** 2)))
 

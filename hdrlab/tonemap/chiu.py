@@ -3,17 +3,17 @@
 L     luminance          (H, W) >= 0, any linear unit
 s     scale              (H, W), 1 / unit of L
 k     headroom           a pixel that is k times as bright as its neighbourhood becomes white
-base  edge-aware mean    (H, W), the mean of neighbours alike: what s should have been taken from
+base  edge-aware mean    (H, W), the mean of similar neighbours, from which s should have been computed
 Ld    display luminance  s L, (H, W), 1 = white
 
-The eye does not mind a scale that varies slowly. Where L jumps, the blur begins to change before L
-does: the dark side of an edge is held back by the bright one, and the other way round. That is the
-halo.
+The eye does not notice a scale that varies slowly. Where L jumps, the blur begins to change before
+L does: the bright side of an edge darkens the dark side, and the dark side brightens the bright
+one. That is the halo.
 
-k = 8 and a blur of 15 pixels are those of [Battiato08]. So narrow a blur, some 1.6 % of a picture
-as in the published ones, follows the light so closely that a dim hall comes out as bright as its
-windows. 8 % is a choice of ours: a place keeps its brightness beside others, and the halos are
-wide, as no width removes them.
+[Battiato08] has k = 8 and a blur of 15 pixels, which is about 1.6 % of the published pictures. So
+narrow a blur follows the light so closely that a dim hall comes out as bright as its windows. The
+default here is 8 %: a dark place stays darker than a bright one. The halos are wide, and no width
+removes them.
 """
 
 from collections.abc import Iterator
@@ -28,34 +28,35 @@ from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
-# sigma of the blur, of the longer side: narrower, every place is as bright as every other
-WIDTH = 0.08
-# luminance in medians
-LIMIT = np.float32(1e30)
+# of the longer side; with a narrower blur, every place becomes as bright as every other
+SIGMA_FRACTION = 0.08
+# luminance, in medians
+MAX_RELATIVE_LUMINANCE = np.float32(1e30)
 TINY = 1e-37
 
 
 class State(NamedTuple):
-    """The scale s after a number of smoothing passes, and the luminance that it scales, each (H, W)."""
+    """The scale s after some smoothing passes, and the luminance L that it multiplies, each (H, W)."""
 
     s: F32
     L: F32
 
     @property
     def Ld(self) -> F32:
-        """The picture s L, made when it is asked for."""
+        """The display luminance s L, computed on access."""
         return self.s * self.L
 
 
 def choose_sigma(L: F32, sigma: float | None = None) -> float:
-    """Return sigma in pixels; None is 8 % of the longer side."""
-    return WIDTH * max(L.shape) if sigma is None else sigma
+    """Return sigma in pixels; the default, None, is 8 % of the longer side."""
+    return SIGMA_FRACTION * max(L.shape) if sigma is None else sigma
 
 
 def divide_by_median(L: F32) -> F32:
-    """Return L in medians of L, and what is beyond all measure like any other: so sums stay finite."""
+    """Return L divided by its median, and limited to 1e30 so that sums stay finite in float32."""
+    median = np.float32(max(extremes.positive_median(L), TINY))
     with np.errstate(over="ignore"):
-        return np.minimum(L / np.float32(max(extremes.positive_median(L), TINY)), LIMIT)
+        return np.minimum(L / median, MAX_RELATIVE_LUMINANCE)
 
 
 def scale(L: F32, *, headroom: float = 8.0, sigma: float | None = None) -> F32:
@@ -69,9 +70,9 @@ def clamp(s: F32, L: F32) -> F32:
 
 
 def smooth(s: F32, L: F32) -> F32:
-    """Return s averaged with its neighbours, weights 1 2 1 down and across, and clamped again.
+    """Return s averaged with its neighbours, with weights 1 2 1 along both axes, and clamped again.
 
-    The weights 1 2 1 are those of 1 1, twice: the sum of each pair, and of each pair of sums.
+    The weights 1 2 1 come from adding pairs twice: first neighbours, then neighbouring sums.
     """
     s = np.pad(s, 1, mode="edge") * np.float32(1 / 16)
     for _ in range(2):
@@ -83,17 +84,13 @@ def smooth(s: F32, L: F32) -> F32:
 def tonemap_steps(
     L: F32, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
 ) -> Iterator[State]:
-    """Yield the State with the clamped scale, and after each smoothing pass.
+    """Yield the State with the clamped scale, and the State after each smoothing pass.
 
-    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur
-    reaches.
+    The brightest 0.01 % of the pixels are limited to the value below them: otherwise a hot pixel
+    would darken everything that the blur reaches.
     """
-    s = clamp(
-        scale(
-            np.minimum(L, np.float32(extremes.robust_maximum(L))), headroom=headroom, sigma=sigma
-        ),
-        L,
-    )
+    limited = np.minimum(L, np.float32(extremes.robust_maximum(L)))
+    s = clamp(scale(limited, headroom=headroom, sigma=sigma), L)
     yield State(s, L)
     for _ in range(passes):
         s = smooth(s, L)
@@ -103,12 +100,13 @@ def tonemap_steps(
 def halo(
     L: F32, s: F32, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4
 ) -> F32:
-    """Return log2(s k base), in stops: how much brighter a pixel is than if its own kind alone had scaled it.
+    """Return the halo log2(s k base) in stops: the scale s relative to one without a halo, 1 / (k base).
 
-    Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the
-    blur, of neighbours that differ by about `contrast` decades.
+    A positive value is a bright halo, a negative one a dark halo. The base is a bilateral mean as
+    wide as the blur, over neighbours that differ by up to about `contrast` decades.
     """
-    lL = np.log10(np.maximum(L, 1e-6 * max(extremes.positive_median(L), TINY)))
+    floor = 1e-6 * max(extremes.positive_median(L), TINY)
+    lL = np.log10(np.maximum(L, floor))
     base = bilateral(lL, sigma_s=choose_sigma(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
 
@@ -116,13 +114,13 @@ def halo(
 def tonemap(
     L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
 ) -> F32:
-    """Return display luminance by a scale that follows the brightness of the neighbourhood.
+    """Return display luminance, scaled at each pixel by the mean luminance of its neighbourhood.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    headroom : k; 2 makes the neighbourhood's mean 0.5 and leaves little room above, 8 is the usual
-    sigma : standard deviation of the neighbourhood, pixels; None takes 8 % of the longer side
+    headroom : k; with 2 the neighbourhood's mean becomes 0.5, with little room above; 8 is usual
+    sigma : standard deviation of the blur in pixels; None takes 8 % of the longer side
     passes : smoothing passes over the clamped scale; the paper has many more
 
     Returns
@@ -132,7 +130,7 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+        For luminance that is not (H, W), finite and at least 0, and parameters out of range.
 
     References
     ----------
@@ -149,7 +147,6 @@ def tonemap(
         raise InputError(
             f"expected headroom and sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
-    state = steps.last(
-        tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes)
-    )
-    return np.clip(state.Ld, 0, 1)
+    relative = divide_by_median(L)
+    states = tonemap_steps(relative, headroom=headroom, sigma=sigma, passes=passes)
+    return np.clip(steps.last(states).Ld, 0, 1)

@@ -3,17 +3,17 @@
 L         luminance              (H, W) >= 0, any linear unit
 lL        log10 L                (H, W), decades; all logarithms here have the base 10
 base      large-scale light      (H, W), decades: lL by the bilateral filter, smooth but for its edges
-detail    lL - base               (H, W), decades [Battiato08 step 3 has the sign reversed]
-k         pixels behind a base   (H, W), 1 to 2 pi sigma_s^2
-u         certainty of a base    (H, W), log k / log root(2 pi sigma_s^2), 0 to 1
+detail    lL - base              (H, W), decades [Battiato08 step 3 has the sign reversed]
+k         sum of the weights     (H, W), 1 to 2 pi sigma_s^2: how many pixels the base comes from
+u         certainty of the base  (H, W), log k / log root(2 pi sigma_s^2), 0 to 1
 c         contrast of the base   decades, log10 of `contrast`
 m         compression            c / (range of the base), at most 1
 Ld        display luminance      10^(m base + detail), (H, W), 1 = white
 
-Light varies over decades and slowly; reflectance varies little and fast. Only the light is
-compressed. Unlike Chiu's blur the base does not cross an edge, so there is no halo. But what
-differs by less than sigma_r is no edge: beside gentle steps, as of the patches of a chart, the
-picture glows a little.
+Light varies slowly, over decades; reflectance varies fast, over much less. Only the light is
+compressed. Unlike Chiu's blur, the base does not cross an edge, so there is no halo. But a
+difference of less than sigma_r is no edge: next to gentle steps, such as the patches of a chart,
+the picture glows a little.
 """
 
 import math
@@ -28,14 +28,14 @@ from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
-# sigma_s, of the longer side
-WIDTH = 0.02
-# of the median luminance: what is darker has no more detail
-DARK = 1e-6
-# sigma in pixels of the blur that takes the place of an uncertain base
+# of the longer side
+SIGMA_S_FRACTION = 0.02
+# relative to the median luminance; darker pixels have no detail
+MIN_RELATIVE_LUMINANCE = 1e-6
+# sigma in pixels of the blur that replaces an uncertain base
 NEAR = 2
-# pixels that percentiles are taken from
-ENOUGH = 1 << 18
+# percentiles are computed from about this many pixels
+PERCENTILE_PIXELS = 2**18
 
 
 class Layers(NamedTuple):
@@ -46,8 +46,8 @@ class Layers(NamedTuple):
 
 
 def logarithm(L: F32) -> F32:
-    """Return lL = log10 L, and for black the level of a millionth of the median."""
-    floor = np.float32(max(DARK * positive_median(L), 1e-37))
+    """Return lL = log10 L, where L is at least a millionth of its median."""
+    floor = np.float32(max(MIN_RELATIVE_LUMINANCE * positive_median(L), 1e-37))
     return np.log(np.maximum(L, floor)) * np.float32(1 / math.log(10))
 
 
@@ -71,8 +71,9 @@ def layers(lL: F32, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:
 
 
 def base_range(base: F32, *, cut: float = 0.01) -> tuple[float, float]:
-    """Return the levels that a fraction `cut` of the base lies below, and above."""
-    low, high = np.quantile(base.ravel()[:: 1 + base.size // ENOUGH], [cut, 1 - cut])
+    """Return the percentiles of the base: a fraction `cut` lies below the first and above the second."""
+    every = 1 + base.size // PERCENTILE_PIXELS
+    low, high = np.quantile(base.ravel()[::every], [cut, 1 - cut])
     return float(low), float(high)
 
 
@@ -97,17 +98,16 @@ def tonemap(
     sigma_r: float = 0.4,
     cut: float = 0.01,
 ) -> F32:
-    """Return display luminance with the light's contrast compressed and all detail kept.
+    """Return display luminance with compressed contrast of the base and unchanged detail.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
     contrast : ratio that the base keeps between its percentiles, c = log10(contrast): 5 in the
-        paper, 50 in
-        Battiato et al. 2008, which is the default
-    sigma_s : how wide the base is smoothed, pixels; None takes 2 % of the longer side
-    sigma_r : what difference is an edge, decades
-    cut : fraction of the base beyond its range at either end, and of the picture that may be white
+        paper; 50 in Battiato et al. 2008, which is the default
+    sigma_s : spatial width of the bilateral filter in pixels; None takes 2 % of the longer side
+    sigma_r : its width in range, decades; a larger difference is an edge
+    cut : fraction of the base that lies beyond its range, at either end
 
     Returns
     -------
@@ -116,7 +116,7 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+        For luminance that is not (H, W), finite and at least 0, and parameters out of range.
 
     References
     ----------
@@ -130,7 +130,8 @@ def tonemap(
     array([0.02, 1.  ], dtype=float32)
     """
     L = as_luminance(L)
-    sigma_s = WIDTH * max(L.shape) if sigma_s is None else sigma_s
+    if sigma_s is None:
+        sigma_s = SIGMA_S_FRACTION * max(L.shape)
     if not (1 < contrast < np.inf and 0 <= cut < 0.5):
         raise InputError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
     base, detail = layers(logarithm(L), sigma_s=sigma_s, sigma_r=sigma_r)

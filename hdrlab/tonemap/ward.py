@@ -1,18 +1,20 @@
 """Histogram adjustment (Ward Larson, Rushmeier, Piatko, IEEE Visualization and Computer Graphics 3(4), 1997).
 
 L          luminance                (H, W) >= 0, any linear unit
-Lf         foveal image             one value per degree of view: what an eye adapts to when it looks there
-b          brightness, ln Lf        `bins` of them between Lmin and Lmax, db wide
+Lf         foveal image             one value per degree of view: the luminance that an eye adapts to there
+b          brightness, ln Lf        `bins` bins between Lmin and Lmax, each db wide
 h          histogram                (bins,) foveal pixels of each brightness; f in the paper
-T          their sum                trims end below 2.5 % of it, as in pcond; in the paper of the first T
+T          their sum                the trims end when a trim cuts off less than 2.5 % of it, as in the
+                                    program pcond; the paper compares with the first T
 P          cumulative distribution  at the edges of the bins, (bins + 1,), 1 at the last
 Ldmin ...  the display's black and white, cd/m^2;   D = ln Ldmax - ln Ldmin, its range
 Ld         display luminance        cd/m^2, Ldmin to Ldmax
 
-Equalising the histogram gives every brightness its share of the display's range, and exaggerates
-the contrast of those that fill the picture. So the histogram is trimmed until nothing is shown with
-more contrast than it has. The paper's models of the eye are not here: the ceiling from contrast
-sensitivity, veiling glare, loss of colour and of acuity in the dark.
+Histogram equalization gives each brightness a part of the display's range in proportion to its
+count. This exaggerates the contrast of brightnesses that fill the picture. So the histogram is
+trimmed until nothing is shown with more contrast than it has in the scene. The paper's models of
+the eye are left out: the ceiling from contrast sensitivity, veiling glare, and the loss of colour
+and of acuity in the dark.
 """
 
 from collections.abc import Iterator
@@ -25,7 +27,7 @@ from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
 from hdrlab.errors import InputError
 
 LAWS = ("monotone", "exposure")
-TINY = np.finfo(np.float32).tiny
+SMALLEST_FLOAT32 = np.finfo(np.float32).tiny
 
 
 class Trim(NamedTuple):
@@ -46,9 +48,10 @@ class Trim(NamedTuple):
 
 
 def foveal_image(L: F32, *, field: float = 60.0) -> F32:
-    """Return Lf, the mean of each square degree where the longer side spans `field` degrees of view.
+    """Return Lf, the mean luminance of each square degree of view.
 
-    The degrees are evenly spread over the picture's plane; a small picture is its own foveal image.
+    The longer side of the picture spans `field` degrees, spread evenly over the picture's plane. A
+    picture with less than a pixel per degree is its own foveal image.
     """
     size = max(max(L.shape) / field, 1)
     return average_rows(average_rows(L, size).T, size).T
@@ -62,7 +65,10 @@ def average_rows(L: F32, size: float) -> F32:
 
 
 def histogram(Lf: F32, *, low: float, high: float, bins: int = 100) -> tuple[F64, float]:
-    """Return h over ln L from ln Lmin to ln Lmax, and db; what is beyond counts in the bin at that end."""
+    """Return the histogram h of ln L between ln Lmin and ln Lmax, and the width db of its bins.
+
+    Pixels outside of that range count in the first or the last bin.
+    """
     b = np.log(np.clip(Lf[Lf > 0], low, high), dtype=np.float64)
     h, edges = np.histogram(b, bins, range=(np.log(low), np.log(high)))
     return h.astype(np.float64), float(edges[1] - edges[0])
@@ -95,25 +101,28 @@ def adjust_steps(h: F64, db: float, D: float, *, tolerance: float = 0.025) -> It
 
 
 def cumulative(state: Trim) -> F64:
-    """Return P(b), the share of T below each edge of the bins [Battiato08 eq. 1.22], 1 at the last edge.
+    """Return P(b), the fraction of T below each edge of the bins [Battiato08 eq. 1.22], 1 at the last.
 
-    T is that of the ceiling, so no slope exceeds 1; the last trimmings, which it still counts, lie
-    below the first edge.
+    T is the sum that the ceiling came from, so no slope exceeds 1. It still includes the last
+    trimmings; they are counted below the first edge.
     """
-    return 1 - np.append(np.cumsum(state.h[::-1])[::-1], 0) / state.T
+    above = np.append(np.cumsum(state.h[::-1])[::-1], 0)
+    return 1 - above / state.T
 
 
 def fill_gaps(state: Trim, db: float, D: float) -> F64:
-    """Return P where the trims left nothing, yet the scene's range is wider than the display's.
+    """Return P for a scene that the trims emptied although its range is wider than the display's.
 
-    So it is where few brightnesses fill the picture, as in a chart: at a slope of 1 they use less
-    than the display has. The rest goes to the gaps between, to each bin by its distance from a
-    slope of 1. The paper's linear map would show a gray chart with one lamp as black.
+    This happens where a few brightnesses fill the picture, as in a chart: with a slope of 1 they
+    use less than the display's range. The rest of the range is divided among the bins, in
+    proportion to how far each one is below a slope of 1. The paper's linear map would show a gray
+    chart with one lamp as black.
     """
     slope = state.h / state.ceiling
     room = 1 - slope
     left = D / db - slope.sum()
-    return np.append(0, np.minimum(np.cumsum(slope + room * (left / room.sum())) * (db / D), 1))
+    filled = slope + room * (left / room.sum())
+    return np.append(0, np.minimum(np.cumsum(filled) * (db / D), 1))
 
 
 def equalise(P: F64, *, black: float, white: float) -> F64:
@@ -130,10 +139,10 @@ def curve(
     field: float = 60.0,
     tolerance: float = 0.025,
 ) -> tuple[F64, F64]:
-    """Return (ln L, ln Ld), the operator's curve at the edges of the bins.
+    """Return the operator's curve at the edges of the bins as (ln L, ln Ld).
 
-    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else
-    `fill_gaps`.
+    Where the trims leave next to nothing, the curve is the linear map Ld = L Ldmax / Lmax if the
+    scene's range fits the display, and that of `fill_gaps` otherwise.
     """
     if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
         got = f"{black=}, {white=}, {bins=}, {field=}, {tolerance=}"
@@ -141,22 +150,35 @@ def curve(
             f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}"
         )
     Lf = foveal_image(L, field=field)
-    low, high = extremes.robust_minimum(Lf), extremes.robust_maximum(Lf)
-    if not low < high:
-        low, high = (high or 1.0) / np.e, high or 1.0
-    (h, db), D = histogram(Lf, low=low, high=high, bins=bins), np.log(white / black)
+    low, high = range_of_luminance(Lf)
+    h, db = histogram(Lf, low=low, high=high, bins=bins)
+    D = np.log(white / black)
     state = steps.last(adjust_steps(h, db, D, tolerance=tolerance))
-    empty = state.h.sum() <= tolerance * h.sum()
-    if empty and np.log(high / low) <= D:
-        low, P = high * black / white, np.linspace(0, 1, bins + 1)
+    is_empty = state.h.sum() <= tolerance * h.sum()
+    if not is_empty:
+        P = cumulative(state)
+    elif np.log(high / low) <= D:
+        low = high * black / white
+        P = np.linspace(0, 1, bins + 1)
     else:
-        P = fill_gaps(state, db, D) if empty else cumulative(state)
-    return np.linspace(np.log(low), np.log(high), bins + 1), equalise(P, black=black, white=white)
+        P = fill_gaps(state, db, D)
+    lnL = np.linspace(np.log(low), np.log(high), bins + 1)
+    return lnL, equalise(P, black=black, white=white)
+
+
+def range_of_luminance(Lf: F32) -> tuple[float, float]:
+    """Return Lmin and Lmax of the foveal image; for a constant image, Lmin = Lmax / e."""
+    low = extremes.robust_minimum(Lf)
+    high = extremes.robust_maximum(Lf)
+    if low < high:
+        return low, high
+    high = high or 1.0  # of a black image
+    return high / np.e, high
 
 
 def display(L: F32, lnL: F64, lnLd: F64, *, black: float, white: float) -> F32:
-    """Return (Ld - Ldmin) / (Ldmax - Ldmin) of each pixel, read from the curve."""
-    Ld = np.exp(np.interp(np.log(np.maximum(L, TINY)), lnL, lnLd))
+    """Return (Ld - Ldmin) / (Ldmax - Ldmin) of each pixel, interpolated on the curve."""
+    Ld = np.exp(np.interp(np.log(np.maximum(L, SMALLEST_FLOAT32)), lnL, lnLd))
     return np.clip((Ld - black) / (white - black), 0, 1).astype(np.float32)
 
 
@@ -169,25 +191,24 @@ def tonemap(
     field: float = 60.0,
     tolerance: float = 0.025,
 ) -> F32:
-    """Return display luminance by equalising the histogram of brightness, no contrast above the scene's.
+    """Return display luminance by histogram equalization that exaggerates no contrast of the scene.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    black, white : the display's, cd/m^2; only their ratio counts
-    bins : of the histogram
+    black, white : luminance of the display, cd/m^2; only their ratio matters
+    bins : number of bins of the histogram
     field : degrees of view that the picture's longer side spans
-    tolerance : share of the histogram; fewer trimmings end the trims
+    tolerance : fraction of the histogram; the trims end when one of them cuts off less
 
     Returns
     -------
-    (H, W) float32 in [0, 1]: (Ld - Ldmin) / (Ldmax - Ldmin), for the display adds its black by
-    itself
+    (H, W) float32 in [0, 1]: (Ld - Ldmin) / (Ldmax - Ldmin). The display itself adds its black.
 
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+        For luminance that is not (H, W), finite and at least 0, and parameters out of range.
 
     References
     ----------
