@@ -14,9 +14,9 @@ from hdrlab.course import plan, submission
 from hdrlab.course.archives import unpack
 from hdrlab.course.classroom import handins, marks, roster
 from hdrlab.course.gallery import collect, pictures, tokens
-from hdrlab.course.projects import exif, privacy, project, words
+from hdrlab.course.projects import project, words
 from hdrlab.course.reports import results
-from hdrlab.io import photos, radiance, response_files, sequence, times, web
+from hdrlab.io import metadata, photos, radiance, response_files, sequence, times, web
 from hdrlab.io.maps import exr, layers
 from hdrlab.show.describe import describe_file
 
@@ -88,13 +88,14 @@ def read_exr(path: Path) -> None:
 
 def read_photo(path: Path) -> None:
     """Read a photograph: what its header says, its pixels, and what is left of it for the class."""
-    _each(lambda: describe_file(path), lambda: privacy.clean(path.name, path.read_bytes()))
+    _each(lambda: describe_file(path), lambda: metadata.strip_metadata(path))
     photos.read_photo(path)
 
 
 def read_other(path: Path) -> None:
-    """Read a photograph of a kind that is not cleaned for the class."""
-    _each(lambda: describe_file(path), lambda: photos.read_photo(path))
+    """Read a photo of a telephone, and remove its metadata."""
+    _each(lambda: describe_file(path), lambda: metadata.strip_metadata(path))
+    photos.read_photo(path)
 
 
 def read_jxl(path: Path) -> None:
@@ -105,8 +106,7 @@ def read_jxl(path: Path) -> None:
 
 def read_exif(path: Path) -> None:
     """Read EXIF, and what it tells."""
-    _each(lambda: exif.list_personal_data(path.read_bytes()))
-    exif.cleaned(path.read_bytes())
+    metadata.keep_exposure_tags(path.read_bytes())
 
 
 def read_result(path: Path) -> None:

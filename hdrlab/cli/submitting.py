@@ -78,7 +78,7 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     )
     if removed:
         click.echo(
-            f"left out of {len(removed)} pictures: {', '.join(sorted(set().union(*removed)))}"
+            f"removed from {len(removed)} photos: {', '.join(sorted(set().union(*removed)))}"
         )
-    common.say("warning", [f"{one.name}: {one.remains}" for one in files if one.remains])
+    common.say("warning", [f"{file.name}: {file.remaining}" for file in files if file.remaining])
     click.echo(f"{out}: {len(files)} files, {out.stat().st_size / 1e6:.1f} MB, {digest[:12]}")

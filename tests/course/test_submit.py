@@ -1,5 +1,6 @@
 """A project is reported on and handed in: what is missing is said, and what is there arrives."""
 
+import io
 import json
 import os
 import re
@@ -156,6 +157,34 @@ def test_photographs_arrive_with_their_exposures_and_without_their_places(home, 
             assert bool(dict(now.getexif().get_ifd(0x8825))) == there
             assert np.array_equal(np.asarray(now), np.asarray(before))
         assert look(tmp_path / "a.jpg").exposure.seconds == pytest.approx(TIMES[0])
+
+
+@pytest.mark.parametrize("suffix", ["webp", "avif", "jpe", "jpg", "png"])
+@pytest.mark.parametrize("folder", ["figures", "photographs"])
+def test_photos_of_any_format_in_any_folder_go_without_their_location(
+    home, tmp_path, hdrlab, suffix, folder
+):
+    photograph(home / folder / f"place.{suffix}", np.full((48, 72, 3), 90, np.uint8), 0.5)
+    packed = {file.name: file for file in handing.pack(project.look(home))}
+    file = packed[f"{folder}/place.{suffix}"]
+    assert "location" in file.removed
+    with Image.open(io.BytesIO(file.data)) as image:
+        assert not dict(image.getexif().get_ifd(0x8825))
+
+
+def test_a_photo_that_cannot_be_cleaned_is_refused_by_name(home, hdrlab):
+    (home / "figures" / "place.rw2").write_bytes(b"something else")
+    code, _, errors = hdrlab("submit", home, "--force")
+    assert code == 2
+    assert "figures/place.rw2" in errors
+
+
+def test_a_film_is_packed_with_a_warning(home, hdrlab):
+    (home / "figures" / "film.mp4").write_bytes(b"\0\0\0 ftypmp42")
+    hdrlab("report", home)
+    code, _, notes = hdrlab("submit", home)
+    assert code == 0
+    assert "figures/film.mp4" in notes
 
 
 def test_the_same_project_makes_the_same_archive(home, tmp_path):

@@ -3,6 +3,5 @@
 project          the folder: words, photographs, radiance map, artifact
 words, report    what was written, and the page made of it
 review           what is missing, in plain words
-exif, privacy    photographs without places and serial numbers
-submit           the archive
+submit           the archive, photos without personal metadata
 """

@@ -1,86 +1,118 @@
-"""A project is handed in: its files, its pictures cleaned, in one archive with a description."""
+"""Pack a project into one archive for submission; its photos go without personal metadata."""
 
 import hashlib
 import json
 import zipfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple
 
 import hdrlab
 from hdrlab.course.archives.packing import packed
-from hdrlab.course.projects import privacy
 from hdrlab.course.projects.project import MANIFEST, Project
 from hdrlab.errors import InputError
-from hdrlab.io.files import write as save
+from hdrlab.io import album, files, metadata
 
-VERSION = 1
+MANIFEST_VERSION = 1
+# Media and side-car files that hdrlab does not read; they may contain a location.
+OTHER_MEDIA_SUFFIXES = frozenset(
+    {".gif", ".bmp", ".jp2", ".psd", ".pdf", ".xmp", ".mp4", ".mov", ".m4v", ".avi", ".webm"}
+)
 
 
-class Packed(NamedTuple):
-    """A file as it goes into the archive, what was left out of it, and what it may still tell."""
+@dataclass(frozen=True)
+class PackedFile:
+    """A file as it goes into the archive; what was removed from it, and what may remain."""
 
     name: str
     data: bytes
     removed: frozenset[str] = frozenset()
-    remains: str = ""
+    remaining: str = ""
 
 
-def pack(project: Project, *, keep: bool = False) -> Iterator[Packed]:
-    """Yield every file of a project, pictures without location and serial numbers unless those are kept.
-
-    Raises
-    ------
-    ValueError
-        For a picture that cannot be cleaned.
-    """
-    for path in project.files:
-        data, name = path.read_bytes(), project.name(path)
-        suffix = path.suffix.lower()
-        if keep or not (suffix in privacy.PICTURES or path in project.photographs):
-            yield Packed(name, data)
-        else:
-            yield Packed(name, *privacy.clean(name, data))
-
-
-def write(
-    project: Project, archive: Path, files: list[Packed], *, now: datetime | None = None
-) -> str:
-    """Write the archive of a project, with a description of it, and return its digest.
+def pack(project: Project, *, keep: bool = False) -> Iterator[PackedFile]:
+    """Yield every file of a project, all its photos without personal metadata.
 
     Parameters
     ----------
-    project : Project
-    archive : the .zip; what it held is replaced
-    files : what `pack` yields
-    now : the time of handing in that the description states; the course goes by the time of arrival
+    project
+        The project.
+    keep
+        Whether photos keep their metadata.
 
     Raises
     ------
-    ValueError
+    FileFormatError
+        For a photo whose metadata hdrlab cannot remove.
+    """
+    for path in project.files:
+        name = project.name(path)
+        data = path.read_bytes()
+        suffix = path.suffix.lower()
+        if keep:
+            yield PackedFile(name, data)
+        elif suffix in album.SUFFIXES or metadata.is_photo(data):
+            cleaned = metadata.strip_metadata(name, data)
+            yield PackedFile(name, cleaned.data, cleaned.removed, cleaned.remaining)
+        elif suffix in OTHER_MEDIA_SUFFIXES:
+            warning = (
+                f"hdrlab does not remove metadata from {suffix} files, check it for a location"
+            )
+            yield PackedFile(name, data, remaining=warning)
+        else:
+            yield PackedFile(name, data)
+
+
+def write(
+    project: Project,
+    archive: Path,
+    packed_files: list[PackedFile],
+    *,
+    now: datetime | None = None,
+) -> str:
+    """Write the archive of a project, with a manifest, and return the archive's SHA-256 digest.
+
+    Parameters
+    ----------
+    project
+        The project.
+    archive
+        The .zip file; an existing one is replaced.
+    packed_files
+        What `pack` yields.
+    now
+        The time that the manifest states. The course goes by the time of arrival.
+
+    Raises
+    ------
+    InputError
         For a project without an artifact.
     """
     if project.artifact is None:
-        raise InputError("expected an artifact, there is none")
-    described = {
-        "version": VERSION,
+        raise InputError("there is no artifact; save your best picture as artifact.jpg")
+    digests = {file.name: hashlib.sha256(file.data).hexdigest() for file in packed_files}
+    manifest = {
+        "version": MANIFEST_VERSION,
         "made": (now or datetime.now(UTC)).isoformat(timespec="seconds"),
         "hdrlab": hdrlab.__version__,
         **project.about._asdict(),
         "artifact": project.name(project.artifact),
         "map": project.name(project.map) if project.map else None,
         "photographs": [project.name(path) for path in project.photographs],
-        "files": {one.name: hashlib.sha256(one.data).hexdigest() for one in files},
+        "files": digests,
     }
-    manifest = (json.dumps(described, indent=1, ensure_ascii=False) + "\n").encode()
-    data = packed({MANIFEST: manifest, **{one.name: one.data for one in files}})
-    save(archive, data)
+    manifest_text = json.dumps(manifest, indent=1, ensure_ascii=False) + "\n"
+    members = {MANIFEST: manifest_text.encode()}
+    for file in packed_files:
+        members[file.name] = file.data
+    data = packed(members)
+    files.write(archive, data)
     return hashlib.sha256(data).hexdigest()
 
 
 def is_archive(path: Path) -> bool:
-    """Return whether a file is an archive that `write` has made."""
+    """Return whether a file is an archive that `hdrlab submit` has written."""
     if not zipfile.is_zipfile(path):
         return False
     with zipfile.ZipFile(path) as opened:
