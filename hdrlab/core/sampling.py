@@ -17,8 +17,10 @@ import numpy as np
 from hdrlab.core.arrays import Array, ArrayLike, Indices, Mask, as_stack, to_256
 from hdrlab.errors import InputError
 
-# an even choice of about so many ranks a frame as well as all of it
-PIXELS = 1_000_000
+# A frame with more pixels is thinned to an even grid of about this many: its ranks stay the same.
+_MAX_RANKED_PIXELS = 1_000_000
+# Nearly every bracket shows two connected exposures within its first samples.
+_FIRST_SAMPLES = 50
 
 
 def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
@@ -30,17 +32,18 @@ def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     [1, 3, 5, 7]
     """
     stack = as_stack(images)
-    step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
-    pixels = to_256(stack[:, ::step, ::step])
-    shown = np.s_[:] if valid is None else _shown_in_all(valid, stack)[::step, ::step].ravel()
-    pixels = np.moveaxis(pixels.reshape(len(stack), -1, *stack.shape[3:])[:, shown], 1, -1)
-    rank = ((np.arange(count) + 0.5) / count * pixels.shape[-1]).astype(int)
-    ranked = np.sort(np.ascontiguousarray(pixels), kind="stable")
+    step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / _MAX_RANKED_PIXELS)))
+    pixels = to_256(stack[:, ::step, ::step]).reshape(len(stack), -1, *stack.shape[3:])
+    if valid is not None:
+        shown = _shown_in_all(valid, stack)[::step, ::step]
+        pixels = pixels[:, shown.ravel()]
+    ranked = np.sort(np.ascontiguousarray(np.moveaxis(pixels, 1, -1)), kind="stable")
+    rank = ((np.arange(count) + 0.5) / count * ranked.shape[-1]).astype(int)
     return np.moveaxis(ranked[..., rank], -1, 0).astype(np.intp)
 
 
 def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
-    """Return Z (N, P[, 3]): of a grid of `count` pixels or a few fewer, those that every frame shows."""
+    """Return Z (N, P[, 3]): the pixels of an even grid of at most `count` that every frame shows."""
     stack = as_stack(images)
     height, width = stack.shape[1:3]
     rows = int(np.clip(np.sqrt(count * height / width), 1, min(height, max(count, 1))))
@@ -49,42 +52,59 @@ def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     x = ((np.arange(columns) + 0.5) * width / columns).astype(int)
     levels = to_256(stack[:, y[:, None], x]).reshape(len(stack), rows * columns, *stack.shape[3:])
     Z = levels.swapaxes(0, 1).astype(np.intp)
-    return Z if valid is None else Z[_shown_in_all(valid, stack)[y[:, None], x].ravel()]
+    if valid is None:
+        return Z
+    shown = _shown_in_all(valid, stack)[y[:, None], x]
+    return Z[shown.ravel()]
 
 
 def every_pixel(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Array:
-    """Return Z (N, P[, 3]): all pixels that every frame shows, whatever the count."""
+    """Return Z (N, P[, 3]): all pixels that every frame shows; `count` is ignored."""
     stack = as_stack(images)
     Z = to_256(stack).reshape(len(stack), -1, *stack.shape[3:]).swapaxes(0, 1)
-    return Z if valid is None else Z[_shown_in_all(valid, stack).ravel()]
+    if valid is None:
+        return Z
+    return Z[_shown_in_all(valid, stack).ravel()]
+
+
+def split_channels(Z: Array) -> Array:
+    """Return samples Z (N, P) or (N, P, C) channel by channel, (C, N, P)."""
+    return np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
 
 
 def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
-    """Raise a ValueError unless a sample has weight at two levels, at two times: such connect the levels."""
-    Z, times, has_weight = np.asarray(Z), np.asarray(times), np.asarray(w) > 0
+    """Raise a ValueError unless some sample has weight at two levels and two times.
+
+    Only such a sample connects levels of the response with each other.
+    """
+    Z = np.asarray(Z)
+    times = np.asarray(times)
+    has_weight = np.asarray(w) > 0
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or times.shape != Z.shape[1:]:
         raise InputError(
             f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}"
         )
-    for z in (Z[:50], Z):  # the first few connect levels, as a rule
-        values = [np.where(has_weight[z], one, np.nan) for one in (times, z)]
-        if np.any(
-            np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)
-        ):
+    for samples in (Z[:_FIRST_SAMPLES], Z):
+        weighted = has_weight[samples]
+        if np.any(_differ(times, weighted) & _differ(samples, weighted)):
             return
     raise InputError(
         "expected samples seen well in two exposures, which connect the levels; got none"
     )
 
 
+def _differ(values: Array, weighted: Mask) -> Mask:
+    """Return for each sample (N,) whether its values differ among the frames that have weight."""
+    kept = np.where(weighted, values, np.nan)
+    return np.asarray(np.fmax.reduce(kept, axis=1) > np.fmin.reduce(kept, axis=1))
+
+
 def _shown_in_all(valid: ArrayLike, images: Array) -> Mask:
-    """Return where every frame shows something, (H, W)."""
+    """Return the pixels (H, W) that every frame shows."""
     valid = np.asarray(valid, bool)
-    if valid.shape != images.shape[:3] or not valid.all(axis=0).any():
-        got = (
-            "but the mask leaves none" if valid.shape == images.shape[:3] else f"got {valid.shape}"
-        )
-        raise InputError(
-            f"expected a mask of shape {images.shape[:3]} with pixels that all show, {got}"
-        )
-    return np.asarray(valid.all(axis=0))
+    if valid.shape != images.shape[:3]:
+        raise InputError(f"expected a mask of shape {images.shape[:3]}, got {valid.shape}")
+    shown = np.asarray(valid.all(axis=0))
+    if not shown.any():
+        raise InputError("expected pixels that every frame shows; the masks leave none")
+    return shown

@@ -30,7 +30,10 @@ class Solution(NamedTuple):
 
 
 def samples_needed(frames: int, n: int = 256) -> int:
-    """Return the least N with N (P - 1) > Zmax - Zmin: more equations than unknowns [Debevec97 sec. 2.1]."""
+    """Return the smallest N with N (P - 1) > Zmax - Zmin [Debevec97 sec. 2.1].
+
+    With fewer samples the system has more unknowns than equations.
+    """
     return (n - 1) // (frames - 1) + 1
 
 
@@ -143,10 +146,10 @@ def recover(
     samples : int
         How many pixels to choose, N.
     w : (256,) float, optional
-        Weights; the geometric mean of hat and Gaussian, which on the worst of 201 measured curves
-        errs less than either (on half of them the hat errs least). It is cut above 0.98 of the top
-        level, where noise hides clipped pixels, and below 0.02, where noise is as large as the
-        level.
+        Weights. The default is the geometric mean of hat and Gaussian: on the worst of 201 measured
+        curves it errs less than either of them (on half of the curves the hat errs least). It is
+        cut above 0.98 of the top level, where noise hides clipped pixels, and below 0.02, where
+        noise is as large as the level.
     choose : function
         `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
     valid : (P, H, W) bool, optional
@@ -155,14 +158,14 @@ def recover(
     Returns
     -------
     (256,) or (256, 3) float64
-        g, the ln exposure of each level; g[128] = 0 in every channel, so mid gray is taken for
+        g, the ln exposure of each level; g[128] = 0 in every channel: mid gray is assumed to be
         neutral.
 
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, and photographs that hold no level seen in two
-        exposures.
+        For fewer than two photographs or two different times, and for photographs in which no
+        pixel is well exposed twice.
 
     References
     ----------
@@ -178,18 +181,19 @@ def recover(
     """
     stack = as_stack(images)
     B = np.log(as_times(times, len(stack), distinct=2))
-    cut = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
-    w = cut if w is None else np.asarray(w, np.float64)
+    if w is None:
+        w = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
+    w = np.asarray(w, np.float64)
     Z = choose(stack, samples, valid=valid)
     curves = []
-    for channel in np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0):
-        curves.append(gsolve(channel, B, smoothness, w).g)
+    for Z_channel in sampling.split_channels(Z):
+        curves.append(gsolve(Z_channel, B, smoothness, w).g)
     g = straighten_toe(np.stack(curves, axis=-1), w)
     return weights.make_monotone(g).reshape(256, *stack.shape[3:])
 
 
 def straighten_toe(g: F64, w: F64) -> F64:
-    """Return g with f^-1 in proportion to z + 1/2 below the first level that has a weight."""
+    """Return g with f^-1 proportional to z + 1/2 below the first level that has a weight."""
     first = int(np.argmax(w > 0))
     toe = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]
     return np.concatenate([toe, g[first:]])

@@ -14,8 +14,8 @@ and Malik's, and a polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a p
 order fails; from histograms, without the levels above the cut, it does not.
 """
 
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,17 @@ from hdrlab.errors import InputError
 from hdrlab.response.mitsunaga import curve, terms
 
 
-class Equations(NamedTuple):
-    """f^-1(m) = R f^-1(T), each with a weight; m (K,) levels, T (K,) between levels, R and weight (K,)."""
+@dataclass(frozen=True, kw_only=True)
+class Equations:
+    """K weighted equations f^-1(m) = R f^-1(T) between the levels of two frames.
+
+    Attributes
+    ----------
+    m : (K,) levels in the darker frame
+    T : (K,) levels in the brighter frame, between whole levels where need be
+    R : (K,) exposure ratios
+    weight : (K,) weights
+    """
 
     m: Indices
     T: F64
@@ -41,68 +50,96 @@ def comparagram(A: ArrayLike, B: ArrayLike) -> Array:
 
 
 def build_equations(h: Array, times: F64, w: F64) -> Equations:
-    """Return f^-1(m) = R f^-1(T(m)) of each two neighbours in exposure, from histograms h (P, n).
+    """Return f^-1(m) = R f^-1(T(m)) of each two neighbors in exposure, from histograms h (P, n).
 
-    An equation weighs as much as the lighter of its two levels, and as many pixels as lie at level
-    m.
+    The weight of an equation is the smaller weight of its two levels, times the square root of the
+    fraction of pixels at level m.
     """
-    rows = []
+    z = np.arange(len(w))
+    levels = []
+    transferred = []
+    ratios = []
+    equation_weights = []
     for a, b in pairwise(np.argsort(times, kind="stable")):
         T = transfer.brightness_transfer(h[a], h[b])
         m = np.flatnonzero(np.isfinite(T) & (h[a] > 0) & (times[a] < times[b]))
-        weight = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w)) * np.sqrt(
-            h[a][m] / h[a].sum()
-        )
-        rows.append((m, T[m], np.full(len(m), times[a] / times[b]), weight))
-    return Equations(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+        levels.append(m)
+        transferred.append(T[m])
+        ratios.append(np.full(len(m), times[a] / times[b]))
+        fraction = h[a][m] / h[a].sum()
+        equation_weights.append(np.minimum(w[m], np.interp(T[m], z, w)) * np.sqrt(fraction))
+    return Equations(
+        m=np.concatenate(levels),
+        T=np.concatenate(transferred),
+        R=np.concatenate(ratios),
+        weight=np.concatenate(equation_weights),
+    )
 
 
 def build_pixel_equations(Z: Array, times: F64, w: F64) -> Equations:
-    """Return the same from samples Z (N, P) of aligned frames, as both methods have it at first."""
-    a, b = np.transpose([ab for ab in pairwise(np.argsort(times)) if times[ab[0]] < times[ab[1]]])
-    m, T = Z[:, a].ravel(), Z[:, b].ravel()
-    weight = np.minimum(w[m], w[T]) / np.sqrt(len(Z))
-    return Equations(m, T.astype(np.float64), np.tile(times[a] / times[b], len(Z)), weight)
+    """Return the same equations from samples Z (N, P) of aligned frames, pixel by pixel.
+
+    Debevec and Malik, and Mitsunaga and Nayar, start from pixels; here both can be compared with
+    the equations from histograms.
+    """
+    order = np.argsort(times)
+    pairs = [(a, b) for a, b in pairwise(order) if times[a] < times[b]]
+    a, b = np.transpose(pairs)
+    m = Z[:, a].ravel()
+    T = Z[:, b].ravel()
+    return Equations(
+        m=m,
+        T=T.astype(np.float64),
+        R=np.tile(times[a] / times[b], len(Z)),
+        weight=np.minimum(w[m], w[T]) / np.sqrt(len(Z)),
+    )
 
 
 def interpolate_levels(T: F64, n: int = 256) -> F64:
-    """Return A (K, n), A @ g = g(T) for levels T between whole ones."""
+    """Return A (K, n) that interpolates: A @ g = g(T) for levels T between whole ones."""
     return np.maximum(1 - np.abs(T[:, None] - np.arange(n)), 0)
 
 
-def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
-    """Return g (n,), the least of sum weight^2 (g(T) - g(m) + ln R)^2 + sum (lambda w(z) (g - ln z)''(z))^2.
+def solve_table(equations: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
+    """Return the table g (n,) that solves the equations by least squares, with g(n // 2) = 0.
 
-    g(n // 2) = 0. The curvature is that away from a linear camera, for a logarithm has one of its
-    own. Levels that no row constrains take the value of the nearest one that is.
+    It minimizes sum weight^2 (g(T) - g(m) + ln R)^2 + sum (lambda w(z) (g - ln z)''(z))^2. The
+    curvature is measured against that of a linear camera, because a logarithm is curved itself.
+    Levels that no equation constrains take the value of the nearest level that one does.
     """
-    if not np.any(found.weight > 0) or not 0 < smoothness < np.inf:
+    if not np.any(equations.weight > 0) or not 0 < smoothness < np.inf:
         raise InputError(
             f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}"
         )
-    z = np.arange(len(w))
-    data = found.weight[:, None] * (interpolate_levels(found.T, len(w)) - np.eye(len(w))[found.m])
+    n = len(w)
+    z = np.arange(n)
+    g_T = interpolate_levels(equations.T, n)
+    g_m = np.eye(n)[equations.m]
+    data = equations.weight[:, None] * (g_T - g_m)
     penalty = weights.second_differences(w, smoothness)
-    A = np.vstack([data, penalty, z == len(w) // 2])
-    b = np.concatenate(
-        [-found.weight * np.log(found.R), penalty @ np.log(np.maximum(z, 0.25)), [0]]
-    )
-    g, constrained = np.linalg.lstsq(A, b)[0], A.any(axis=0)
+    gauge = z == n // 2
+    A = np.vstack([data, penalty, gauge])
+    b_data = -equations.weight * np.log(equations.R)
+    b_penalty = penalty @ np.log(np.maximum(z, 0.25))
+    b = np.concatenate([b_data, b_penalty, [0]])
+    g = np.linalg.lstsq(A, b)[0]
+    constrained = A.any(axis=0)
     g = np.interp(z, z[constrained], g[constrained])
-    return g - g[len(w) // 2]
+    return g - g[n // 2]
 
 
-def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
-    """Return c (N - 1,), the least of sum weight^2 (f^-1(m) - R f^-1(T))^2 [Grossberg03].
+def solve_polynomial(equations: Equations, *, order: int = 10, n: int = 256) -> F64:
+    """Return the c (N - 1,) that minimizes sum weight^2 (f^-1(m) - R f^-1(T))^2 [Grossberg03].
 
     f^-1(M) = M + sum_k c_k b_k(M) in the basis of `mitsunaga`: f^-1(0) = 0 and f^-1(1) = 1.
     """
-    if not np.any(found.weight > 0) or not 1 <= order <= 20:
+    if not np.any(equations.weight > 0) or not 1 <= order <= 20:
         raise InputError(
             f"expected an order to 20 and levels measured well in two exposures, got {order}"
         )
-    M, MT = found.m / (n - 1), found.T / (n - 1)
-    D = found.weight[:, None] * (terms(M, order) - found.R[:, None] * terms(MT, order))
+    phi_m = terms(equations.m / (n - 1), order)
+    phi_T = terms(equations.T / (n - 1), order)
+    D = equations.weight[:, None] * (phi_m - equations.R[:, None] * phi_T)
     return np.asarray(np.linalg.lstsq(D[:, 1:], -D[:, 0])[0])
 
 
@@ -111,8 +148,8 @@ def recover(
 ) -> F64:
     """Return the response g as a table, recovered from the frames' histograms, each channel by itself.
 
-    The weights are the Gaussian without the levels above 0.98 of the top one, where noise hides
-    clipped pixels, and those below 0.02; for others call `build_equations` and `solve_table`.
+    The weights are the Gaussian, cut above 0.98 of the top level, where noise hides clipped pixels,
+    and below 0.02. For other weights call `build_equations` and `solve_table`.
 
     Parameters
     ----------
@@ -152,19 +189,23 @@ def recover(
     True
     """
     stack = as_stack(images)
-    times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.gaussian(), below=0.02)
-    channels = [build_equations(h, times, w) for h in transfer.histograms(to_256(stack), valid)]
-    g = np.stack([solve_table(found, w, smoothness=smoothness) for found in channels], axis=-1)
+    times = as_times(times, len(stack), distinct=2)
+    w = weights.cut(weights.gaussian(), below=0.02)
+    curves = []
+    for h in transfer.histograms(to_256(stack), valid):
+        equations = build_equations(h, times, w)
+        curves.append(solve_table(equations, w, smoothness=smoothness))
+    g = np.stack(curves, axis=-1)
     return weights.make_monotone(g).reshape(256, *stack.shape[3:])
 
 
 def recover_polynomial(
     images: ArrayLike, times: ArrayLike, *, order: int = 10, valid: ArrayLike | None = None
 ) -> F64:
-    """Return the response g as the logarithm of a polynomial of an order 1 to 20; see `recover`.
+    """Return the response g as the logarithm of a polynomial of order 1 to 20; see `recover`.
 
-    The weights are the hat, for a polynomial needs the ends, without the levels above 0.98 of the
-    top one.
+    The weights are the hat, which keeps the levels near both ends that a polynomial needs, cut
+    above 0.98 of the top level.
 
     Raises
     ------
@@ -172,7 +213,10 @@ def recover_polynomial(
         As `recover`.
     """
     stack = as_stack(images)
-    times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.hat())
-    channels = [build_equations(h, times, w) for h in transfer.histograms(to_256(stack), valid)]
-    g = np.stack([curve(solve_polynomial(found, order=order)) for found in channels], axis=-1)
-    return g.reshape(256, *stack.shape[3:])
+    times = as_times(times, len(stack), distinct=2)
+    w = weights.cut(weights.hat())
+    curves = []
+    for h in transfer.histograms(to_256(stack), valid):
+        equations = build_equations(h, times, w)
+        curves.append(curve(solve_polynomial(equations, order=order)))
+    return np.stack(curves, axis=-1).reshape(256, *stack.shape[3:])

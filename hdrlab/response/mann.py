@@ -8,10 +8,10 @@ T       bright to dark frame      (n,), the level in the dark frame of what has 
 series  M(I), M(R I), M(R^2 I) .. (K,) levels, each R times the exposure of the one before
 
 A pixel has level M(I) in the bright frame and M(R I) in the dark one. Look for another pixel of the
-bright frame that has M(R I); in the dark one it has M(R^2 I), and so on down: a ladder of
-exposures, R apart, whatever the scene. On logarithmic paper, ln(M - alpha) against the logarithm of
-exposure, a power law is a straight line of slope gamma. Few cameras are so simple, and on others
-the line is a compromise.
+bright frame that has level M(R I). In the dark frame it has M(R^2 I), and so on down: a ladder of
+exposures, each R times the one above, whatever the scene. On logarithmic paper, ln(M - alpha)
+against the logarithm of exposure, a power law is a straight line of slope gamma. Few cameras are so
+simple; for others the line is a compromise.
 """
 
 from itertools import pairwise
@@ -22,19 +22,23 @@ from hdrlab.core.arrays import F64, Array, ArrayLike, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.errors import InputError
 
-# Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is
-# clipped.
-MIN_LEVEL, MAX_LEVEL = 12.0, 249.0
-# Levels: a smaller step is the rounding of two frames of one exposure.
-MIN_STEP = 0.5
+# Below this level rounding and noise bend a logarithm.
+MIN_LEVEL = 12.0
+# Above this level a pixel counts as clipped.
+MAX_LEVEL = 249.0
+# Two frames of equal exposure differ by rounding alone: a step of less than this is none.
+MIN_LEVEL_STEP = 0.5
+# alpha of a real camera is a few levels; a larger one leaves no range to fit.
+MAX_ALPHA = 64
 
 
 def descend(T: F64, start: float, *, low: float = MIN_LEVEL) -> F64:
-    """Return the series start, T(start), T(T(start)) ..., down to `low` or to where T is not known."""
-    known, series = np.flatnonzero(np.isfinite(T)), [float(start)]
+    """Return the series start, T(start), T(T(start)) ..., down to `low` or to where T is unknown."""
+    known = np.flatnonzero(np.isfinite(T))
+    series = [float(start)]
     while len(known) and known[0] <= series[-1] <= known[-1]:
         below = float(np.interp(series[-1], known, T[known]))
-        if not low <= below <= series[-1] - MIN_STEP:
+        if not low <= below <= series[-1] - MIN_LEVEL_STEP:
             break
         series.append(below)
     return np.array(series)
@@ -43,27 +47,32 @@ def descend(T: F64, start: float, *, low: float = MIN_LEVEL) -> F64:
 def build_ladders(
     h: Array, times: F64, *, starts: int = 8, low: float = MIN_LEVEL
 ) -> list[tuple[F64, float]]:
-    """Return (series, R) of each two neighbours in exposure, from histograms h (P, 256).
+    """Return (series, R) of each two neighbors in exposure, from histograms h (P, 256).
 
-    The paper goes down once; from other starts on the first step it goes down between those rungs.
+    The paper descends once, from the top. Further descents start between the first two levels of
+    that series, so that their levels lie between its levels.
     """
     ladders = []
     for a, b in pairwise(np.argsort(times, kind="stable")):
         T = brightness_transfer(h[b], h[a])
         top = min(MAX_LEVEL, float(np.max(np.flatnonzero(np.isfinite(T)), initial=0)))
-        if times[a] < times[b] and top >= low:
-            second = descend(T, top, low=low)[:2][-1]
-            R = float(times[a] / times[b])
-            tops = np.linspace(top, second, starts, endpoint=False)
-            ladders += [(descend(T, start, low=low), R) for start in tops]
+        if times[a] == times[b] or top < low:
+            continue
+        R = float(times[a] / times[b])
+        first_series = descend(T, top, low=low)
+        second = first_series[1] if len(first_series) > 1 else top
+        tops = np.linspace(top, second, starts, endpoint=False)
+        ladders += [(descend(T, start, low=low), R) for start in tops]
     return ladders
 
 
 def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> float:
     """Return gamma, the slope that all ladders (series, R) share: ln(M - alpha) over k ln R."""
-    xy = xx = 0.0
+    xy = 0.0
+    xx = 0.0
     for series, R in ladders:
-        x, y = np.arange(len(series)) * np.log(R), np.log(series - alpha)
+        x = np.arange(len(series)) * np.log(R)
+        y = np.log(series - alpha)
         xy += float((x - x.mean()) @ y)
         xx += float((x - x.mean()) @ x)
     if xx == 0:
@@ -74,7 +83,10 @@ def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> flo
 
 
 def power_law(gamma: float, *, alpha: float = 0.0, n: int = 256) -> F64:
-    """Return g = ln(M - alpha) / gamma, g(n // 2) = 0; below half a level above alpha, the middle of that."""
+    """Return g = ln(M - alpha) / gamma with g(n // 2) = 0.
+
+    Levels less than half a level above alpha count as a quarter: the middle of that half.
+    """
     g = np.log(np.maximum(np.arange(n) - alpha, 0.25)) / gamma
     return g - g[n // 2]
 
@@ -110,8 +122,8 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, and arrays that are
-        no bracket.
+        For photographs whose histograms do not overlap between two exposures, arrays that are no
+        bracket, and an alpha or a number of starts out of range.
 
     References
     ----------
@@ -128,10 +140,10 @@ def recover(
     """
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
-    if not 0 <= alpha <= 64 or starts < 1:
-        raise InputError(
-            f"expected alpha from 0 to 64 and at least one start, got {alpha} and {starts}"
-        )
+    if not 0 <= alpha <= MAX_ALPHA:
+        raise InputError(f"expected alpha from 0 to {MAX_ALPHA}, got {alpha}")
+    if starts < 1:
+        raise InputError(f"expected at least one start, got {starts}")
     curves = []
     for h in histograms(to_256(stack), valid):
         ladders = build_ladders(h, times, starts=starts, low=MIN_LEVEL + alpha)

@@ -24,6 +24,7 @@ import numpy as np
 
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack
+from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 
 
@@ -136,27 +137,26 @@ def recover(
     samples : int
         How many pixels to choose.
     w : (256,) float, optional
-        Weights; the Gaussian, cut below 0.02 and above 0.98 of the top level: a clipped pixel that
-        noise brought back among the others weighs little, but times the square of its time, and
-        bends the curve.
+        Weights. The default is the Gaussian, cut below 0.02 and above 0.98 of the top level. Noise
+        makes some clipped pixels look unclipped. Their weight is small, but it is multiplied by the
+        square of the time, and without the cut they bend the curve.
     choose : function
         `sampling.by_rank` (default), `by_grid`, `every_pixel`, or your own with the same signature.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
     steps : function
-        What yields the states, with the signature of `recover_steps`.
+        The iteration, with the signature of `recover_steps`; `fast.robertson` has a faster one.
 
     Returns
     -------
     (256,) or (256, 3) float64
-        g, the ln exposure of each level, never falling; g[128] = 0. Levels above the cut take its
-        value.
+        g, the ln exposure of each level, never falling; g[128] = 0. Levels above the cut have the
+        value at the cut.
 
     Raises
     ------
     ValueError
-        For photographs that hold no level seen in two exposures, and for arrays that are no
-        bracket.
+        For photographs in which no pixel is well exposed twice, and for arrays that are no bracket.
 
     References
     ----------
@@ -171,11 +171,15 @@ def recover(
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    stack, times = as_stack(images), np.asarray(times, np.float64)
+    stack = as_stack(images)
+    times = np.asarray(times, np.float64)
     if times.shape != (len(stack),) or not np.all((times > 0) & (times < np.inf)):
         raise InputError(f"expected {len(stack)} positive times in seconds, got {times}")
-    w = weights.cut(weights.gaussian(), below=0.02) if w is None else np.asarray(w, np.float64)
+    if w is None:
+        w = weights.cut(weights.gaussian(), below=0.02)
+    w = np.asarray(w, np.float64)
     Z = choose(stack, samples, valid=valid)
-    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
-    f_inv = np.stack([[*steps(Z, times, w)][-1].f_inv for Z in channels], axis=-1)
-    return weights.make_monotone(np.log(f_inv)).reshape(256, *stack.shape[3:])
+    channels = sampling.split_channels(Z)
+    curves = [last(steps(Z_channel, times, w)).f_inv for Z_channel in channels]
+    g = np.log(np.stack(curves, axis=-1))
+    return weights.make_monotone(g).reshape(256, *stack.shape[3:])
