@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common, curves
+from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 
 if TYPE_CHECKING:
@@ -174,8 +175,10 @@ def _find_list(paths: list[Path]) -> Path | None:
     from hdrlab.io.exif_exposure import Exposure
     from hdrlab.io.times import bracket_times
 
-    for file in sorted([*paths[0].parent.glob("*.csv"), *paths[0].parent.glob("*.txt")]):
-        with suppress(ValueError):
+    folder = paths[0].parent
+    for file in sorted([*folder.glob("*.csv"), *folder.glob("*.txt")]):
+        # A file that is no list of times, a folder, and a file that is not ours to read.
+        with suppress(InputError, OSError):
             bracket_times([path.name for path in paths], [Exposure()], file)
             return file
     return None

@@ -19,7 +19,7 @@ from hdrlab.core.optional import pillow_heif, tifffile
 from hdrlab.errors import InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
-from hdrlab.io.files import OtherPixels, check_size
+from hdrlab.io.files import OtherPixels, check_size, require_no_folder
 
 # what the first bytes of a file of each kind are
 MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
@@ -71,6 +71,7 @@ def look(path: str | Path, *, light: bool | None = False) -> Header:
     With `light` it is to hold floating-point samples, and with None any.
     """
     path = Path(path)
+    require_no_folder(path, "a photo")
     if path.suffix.lower() in raw.SUFFIXES:
         size, exposure = raw.look(path)
         return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)

@@ -9,7 +9,7 @@ from itertools import product
 from pathlib import Path
 from typing import BinaryIO
 
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 
 # 134 million: beyond any camera, and 1.6 GB as float32 RGB
 MAX_PIXELS = 1 << 27
@@ -102,6 +102,15 @@ def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
             f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}"
         )
     return suffix
+
+
+def require_no_folder(path: str | Path, what: str) -> None:
+    """Raise a FileFormatError if `path` is a folder where `what`, such as "a photo", is needed.
+
+    A path that does not exist passes: opening it raises FileNotFoundError.
+    """
+    if Path(path).is_dir():
+        raise FileFormatError(f"{path}: this is a folder, not {what}; give the name of a file")
 
 
 def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from hdrlab.core import arrays, gamut
 from hdrlab.errors import InputError
-from hdrlab.io.files import require_suffix
+from hdrlab.io.files import require_no_folder, require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
 SUFFIXES: dict[str, ModuleType] = {
@@ -62,7 +62,9 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> arrays.F32:
 
 def read_sanitized(path: str | Path) -> gamut.Sanitized:
     """Return the radiance map as `read_radiance` cleans it, and counts of what it repaired."""
-    E, primaries = format_of(path, READ).read(path), primaries_of(path)
+    require_no_folder(path, "a radiance map")
+    E = format_of(path, READ).read(path)
+    primaries = primaries_of(path)
     if primaries is None:
         return gamut.sanitize(E)
     found = gamut.sanitize(E, weights=gamut.xyz_matrix(primaries)[1])
@@ -71,6 +73,7 @@ def read_sanitized(path: str | Path) -> gamut.Sanitized:
 
 def read_valid(path: str | Path) -> arrays.F32:
     """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
+    require_no_folder(path, "a radiance map")
     E = format_of(path, READ).read(path)
     try:
         E = arrays.as_radiance(E)

@@ -19,7 +19,7 @@ import numpy as np
 from hdrlab.core.arrays import F64, LARGEST_LN_EXPOSURE, ArrayLike, describe
 from hdrlab.core.weights import gaussian
 from hdrlab.errors import InputError
-from hdrlab.io.files import replacing, require_suffix
+from hdrlab.io.files import replacing, require_no_folder, require_suffix
 
 # three channels of 65536 levels take 10 million
 MAX_FILE_BYTES = 32 << 20
@@ -87,6 +87,7 @@ def read_curve(path: str | Path) -> F64:
     array([-4.86 ,  0.   ,  0.685])
     """
     _, read = FORMS[suffix_of(path)]
+    require_no_folder(path, "a response curve")
     size = Path(path).stat().st_size
     if size > MAX_FILE_BYTES:
         raise InputError(

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.errors import InputError
 from hdrlab.io.exif_exposure import HINT, Exposure, equivalent, positive
+from hdrlab.io.files import require_no_folder
 
 Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Path
 
@@ -124,6 +125,7 @@ def read_times(path: str | Path) -> TimeList:
     >>> read_times(file)
     TimeList(seconds={'night.png': 0.5}, inverse=None)
     """
+    require_no_folder(path, "a list of exposure times")
     try:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:

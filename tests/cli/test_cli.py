@@ -279,6 +279,17 @@ def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
     assert code == 0 and "note: the exposure times are those of" in said and "times.txt" in said
 
 
+def test_folders_named_like_files_beside_the_photos_are_skipped(photographs, tmp_path, capsys):
+    folder, times = photographs
+    for name in ("a.csv", "old.txt", "copy.png", "x.jpg", "x.hdr", "y.dng"):
+        (folder / name).mkdir()
+    (folder / "b.txt").write_bytes(b"\xff\xfe")
+    (folder / "times.csv").write_text(times.read_text())
+    code, _, notes = hdrlab("assemble", folder, "-o", tmp_path / "x.pfm", capsys=capsys)
+    assert code == 0
+    assert "times.csv" in notes
+
+
 @pytest.mark.papers
 @pytest.mark.parametrize("form", ["{:g}", "{:g} s"])
 @pytest.mark.parametrize("power", [1, -1])

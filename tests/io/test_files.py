@@ -5,7 +5,8 @@ import stat
 
 import pytest
 
-from hdrlab.io import files
+from hdrlab.errors import FileFormatError
+from hdrlab.io import files, photos, radiance, response_files, times
 
 
 def test_a_file_takes_its_name_when_it_is_complete(tmp_path):
@@ -88,3 +89,20 @@ def test_a_full_disk_is_reported_and_a_system_that_cannot_reserve_is_not(tmp_pat
         monkeypatch.setattr(os, "posix_fallocate", refuse(28), raising=False)
         with pytest.raises(OSError, match="space"):
             files.reserve(file, 10)
+
+
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [
+        ("x.jpg", photos.read_photo),
+        ("x.dng", photos.read_photo),
+        ("x.hdr", radiance.read_radiance),
+        ("x.exr", radiance.read_radiance),
+        ("x.csv", times.read_times),
+        ("x.csv", response_files.read_curve),
+    ],
+)
+def test_a_folder_with_the_name_of_a_file_is_refused_by_name(name, read, tmp_path):
+    (tmp_path / name).mkdir()
+    with pytest.raises(FileFormatError, match=rf"{name}: this is a folder"):
+        read(tmp_path / name)
