@@ -25,7 +25,7 @@ from hdrlab.course import grading, plan
 from hdrlab.course.checks import inprocess
 from hdrlab.course.checks.subject import Subject
 from hdrlab.course.code import closure, inline
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
 
 STARTS, TRIES = 7, 50
@@ -93,7 +93,7 @@ def graded(folder: Path) -> dict[str, Any]:
     spent = []
     for (file, text), homework in zip(files.items(), (alone, both), strict=True):
         file.write_text(text)
-        act = partial(grading.grade, file, homework, Conditions(tier="practice"))
+        act = partial(grading.grade, file, homework, GradingOptions(tier="practice"))
         spent.append(
             min(_seconds(act, _of_all) for _ in range(3))
         )  # what is loaded once is not the work's

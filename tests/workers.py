@@ -47,7 +47,9 @@ class Client:
         return self.versions if function is cluster.version else self.able
 
     def submit(self, function, task, *, key, workers, pure):
-        assert function is cluster.do and key.startswith("hdrlab-grade-") and pure is False
+        assert (
+            function is cluster.run_remote_job and key.startswith("hdrlab-grade-") and pure is False
+        )
         self.sent.append((task, *workers))
         return Future()
 
@@ -69,6 +71,6 @@ def clustered(monkeypatch, **threads):
 
     monkeypatch.setattr(cluster, "time", SimpleNamespace(monotonic=lambda: clock.now, sleep=sleep))
     client = Client(**threads)
-    made = Cluster(ADDRESS, len, bool, 7.0)
+    made = Cluster(ADDRESS, len, bool, timeout=7.0)
     made._client, made.clock = client, clock
     return made, client

@@ -28,8 +28,8 @@ from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from hdrlab.course import plan
-from hdrlab.course.classroom import handins, journal, roster as lists, run as classroom
-from hdrlab.course.plan import Conditions
+from hdrlab.course.classroom import handins, jobs, roster as lists, run as classroom
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import results
 
 COUNT, SCALE = 300, 24
@@ -185,12 +185,12 @@ def _told(folder: Path, one: handed.Handed, result: results.Result, count: int) 
     ]
     place = handed.write(folder / "class", each)
     homework = plan.read().homeworks["hw2"]
-    conditions = Conditions(secret=handed.SECRET.strip(), timeout=float(TIMEOUT))
+    conditions = GradingOptions(secret=handed.SECRET.strip(), timeout=float(TIMEOUT))
     found = handins.find(place / "submissions", lists.read(place / "roster.csv"))
     (folder / "out" / "results").mkdir(parents=True)
-    for piece in classroom.pieces(found.handins, homework, conditions):
+    for piece in classroom.make_jobs(found.submissions, homework, conditions):
         data = results.to_json(result._replace(student=piece.owner))
-        journal.place(folder / "out" / "results", piece).write_bytes(data)
+        jobs.result_path(folder / "out" / "results", piece).write_bytes(data)
     return grade(place, folder / "out")
 
 

@@ -27,7 +27,7 @@ from hdrlab.course.archives.packing import packed
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 
 TESTS = ROOT / "tests"
 SHARES = {
@@ -185,7 +185,7 @@ def write(folder: Path, each: Iterable[Handed]) -> Path:
         (folder / "submissions" / one.file).write_bytes(one.data)
         students += [(who, f"Student {who}", one.team) for who in one.students]
         times.append((one.file, (due + timedelta(hours=one.hours)).isoformat()))
-    sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), students)
-    sheets.write_csv(folder / "received.csv", ("file", "received"), times)
+    csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), students)
+    csv_tables.write_csv(folder / "received.csv", ("file", "received"), times)
     (folder / "secret.txt").write_text(SECRET)
     return folder

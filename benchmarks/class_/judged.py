@@ -7,7 +7,7 @@ from pathlib import Path
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 from hdrlab.course.reports.results import Result
 
 LARGE = 50_000  # submissions
@@ -28,7 +28,9 @@ def files(out: Path, one: Handed) -> dict[str, str]:
         for file in named
         if file.is_file()
     }
-    rows = [row for row in sheets.read_csv(out / "gradebook.csv") if row["student"] in one.students]
+    rows = [
+        row for row in csv_tables.read_csv(out / "gradebook.csv") if row["student"] in one.students
+    ]
     return found | {f"row of {row['student']}": repr(row) for row in rows}
 
 

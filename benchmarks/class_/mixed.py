@@ -19,7 +19,7 @@ from typing import NamedTuple
 from benchmarks.class_ import handed
 from benchmarks.class_.handed import Handed
 from hdrlab.course import plan
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 
 Put = Callable[[Path, str], object]  # into a folder, for a student
 
@@ -88,14 +88,14 @@ def write(folder: Path, each: list[Handed], others: list[Hostile]) -> Path:
     handed.write(folder, each)
     for one in others:
         one.put(folder / "submissions", one.student)
-    rows = [tuple(row.values()) for row in sheets.read_csv(folder / "roster.csv")]
+    rows = [tuple(row.values()) for row in csv_tables.read_csv(folder / "roster.csv")]
     names = [(one.student, f"Student {one.student}", "") for one in others]
-    sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), [*rows, *names])
+    csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), [*rows, *names])
     return folder
 
 
 def untold(out: Path, others: list[Hostile]) -> list[Hostile]:
     """Return those of whom a gradebook says neither points nor why there are none."""
-    rows = {row["student"]: row for row in sheets.read_csv(out / "gradebook.csv")}
+    rows = {row["student"]: row for row in csv_tables.read_csv(out / "gradebook.csv")}
     there = {file.name.partition(".")[0] for file in (out / "results").glob("*.json")}
     return [one for one in others if one.student not in there and not rows[one.student]["note"]]

@@ -36,7 +36,7 @@ from hdrlab.course.checks.subject import TIMEOUT, NoAnswer, Subject
 from hdrlab.course.code.names import imported
 from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import causes
+from hdrlab.course.reports import scoring
 from hdrlab.course.reports.results import Check, Outcome
 from hdrlab.course.sandbox import tiers
 
@@ -110,7 +110,7 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     tests = {name: test for name, test in vars(module).items() if name.startswith("test_")}
     one_point = pytest.mark.points(1).mark  # of a check that says nothing of its weight
     marks = {name: getattr(test, "pytestmark", [one_point])[0] for name, test in tests.items()}
-    worth = causes.in_halves(
+    worth = scoring.split_points(
         Fraction(str(task.points)), [Fraction(str(one.args[0])) for one in marks.values()]
     )
     checks, calls = [], []
@@ -133,7 +133,7 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     broken = tuple(one.name for one in checks if one.outcome != "holds")
     found = misconceptions.closest(task, calls[: plugin.CALLS]) if broken else None
     needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
-    traced = causes.traced(
+    traced = scoring.attribute_failures(
         checks, needs, named=found is not None, once=found is not None and found.once
     )
     share = float(sum(one.points for one in traced) / sum(worth))

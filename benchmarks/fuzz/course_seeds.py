@@ -14,7 +14,7 @@ from hdrlab.course import plan as plans
 from hdrlab.course.classroom.marks import COLUMNS
 from hdrlab.course.gallery import tokens
 from hdrlab.course.projects.project import EXAMPLE, MANIFEST
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 from hdrlab.io import web
 
 HAT = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
@@ -34,26 +34,26 @@ def plan(folder: Path) -> None:
 
 def roster(folder: Path) -> None:
     """Write a class."""
-    rows: list[list[sheets.Cell]] = [
+    rows: list[list[csv_tables.Cell]] = [
         ["b01", "Ada", "a@x.org", "t1"],
         ["b02", "Bo Li", "", "t1"],
         ["b03", "=Cy", "", ""],
     ]
-    sheets.write_csv(folder / "a.csv", ["student", "name", "email", "team"], rows)
+    csv_tables.write_csv(folder / "a.csv", ["student", "name", "email", "team"], rows)
 
 
 def received(folder: Path) -> None:
     """Write when files came."""
-    rows: list[list[sheets.Cell]] = [
+    rows: list[list[csv_tables.Cell]] = [
         ["b01_hw2.ipynb", "2026-03-01T12:00+01:00"],
         ["./x/b03.py", "2026-03-02T12:00:30Z"],
     ]
-    sheets.write_csv(folder / "a.csv", ["file", "received"], rows)
+    csv_tables.write_csv(folder / "a.csv", ["file", "received"], rows)
 
 
 def gradebook(folder: Path) -> None:
     """Write a gradebook."""
-    row: list[sheets.Cell] = [
+    row: list[csv_tables.Cell] = [
         "b01",
         "Ada",
         "t1",
@@ -68,7 +68,7 @@ def gradebook(folder: Path) -> None:
         8,
         "",
     ]
-    sheets.write_csv(folder / "a.csv", COLUMNS, [row, row])
+    csv_tables.write_csv(folder / "a.csv", COLUMNS, [row, row])
 
 
 def project(folder: Path) -> None:

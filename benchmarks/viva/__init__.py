@@ -32,14 +32,14 @@ from hdrlab.course import grading, plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.code.closure import Cell, closed
 from hdrlab.course.code.names import imported
-from hdrlab.course.plan import Conditions, Homework
-from hdrlab.course.submission import Submission
+from hdrlab.course.plan import GradingOptions, Homework
+from hdrlab.course.submission import SubmittedCode
 from hdrlab.course.viva import examining, pages
 
 QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
-CONDITIONS = Conditions(TIER, draw=False)
+CONDITIONS = GradingOptions(TIER, draw=False)
 # questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a
 # submission
 FIVE, USUAL, MOST, LONGEST = examining.QUESTIONS, 8, 16, 36_000.0
@@ -50,7 +50,7 @@ ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of
 Question = dict[str, Any]
 
 
-def works() -> Iterator[tuple[str, Homework, Submission]]:
+def works() -> Iterator[tuple[str, Homework, SubmittedCode]]:
     """Yield the submissions that are examined, each with its name."""
     homeworks = plan.read().homeworks
     for name, homework in homeworks.items():
@@ -72,13 +72,13 @@ def solutions(homework: Homework) -> dict[str, str]:
     return closed(cells, [task.id for task in homework.tasks])[0]
 
 
-def as_submission(sources: dict[str, str] | Any) -> Submission:
+def as_submission(sources: dict[str, str] | Any) -> SubmittedCode:
     """Return sources as they are read from a file."""
-    return Submission(dict(sources), (), "", tuple(imported(sources.values())))
+    return SubmittedCode(dict(sources), (), "", tuple(imported(sources.values())))
 
 
 def examined(
-    item: tuple[str, Homework, Submission, list[int]],
+    item: tuple[str, Homework, SubmittedCode, list[int]],
     by: str = "benchmarks.viva.twice:Examining",
     most: int = 40,
 ) -> tuple[str, list[tuple[list[str], list[Question]]]]:

@@ -20,21 +20,21 @@ from hdrlab.errors import InputError
 OF_A_RUN = ("submission", "out", "only", "since", "regrade", "jobs", "cluster")
 
 if TYPE_CHECKING:
-    from hdrlab.course.classroom.handins import Found, Handin
-    from hdrlab.course.classroom.journal import Done, Executor, Piece
-    from hdrlab.course.classroom.run import Course
+    from hdrlab.course.classroom.handins import Submission, SubmissionScan
+    from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
+    from hdrlab.course.classroom.run import GradingContext
 
 
 class Class(NamedTuple):
     """A class that is graded: by what, what has come, what there is to do, and the options."""
 
-    course: "Course"
-    found: "Found"
-    pieces: "list[Piece]"
+    course: "GradingContext"
+    found: "SubmissionScan"
+    jobs: "list[GradingJob]"
     asked: Any
 
 
-def class_of(conditions: plans.Conditions, asked: Any) -> Class:
+def class_of(conditions: plans.GradingOptions, asked: Any) -> Class:
     """Return a class with what it has handed in, as the options of `hdrlab grade` name it."""
     from hdrlab.course.classroom import handins, marks, roster as lists, run as classroom
 
@@ -42,31 +42,31 @@ def class_of(conditions: plans.Conditions, asked: Any) -> Class:
         raise InputError("expected --roster, which says who is in the class")
     homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
     late, before = plans.read(asked.plan).late, marks.read(asked.before)
-    course = classroom.Course(lists.read(asked.roster), homework, conditions, late, before)
+    course = classroom.GradingContext(lists.read(asked.roster), homework, conditions, late, before)
     times = handins.read_times(asked.received) if asked.received else {}
     found = handins.find(asked.submission, course.roster, times)
-    return Class(course, found, classroom.pieces(found.handins, homework, conditions), asked)
+    return Class(course, found, classroom.make_jobs(found.submissions, homework, conditions), asked)
 
 
 def grade_folder(whole: Class) -> None:
     """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course.classroom import journal, run as classroom
+    from hdrlab.course.classroom import jobs, run as classroom
 
     course, found, pieces, asked = whole
     common.say("note", found.notes)
     options = {name: value for name, value in vars(asked).items() if name not in OF_A_RUN}
     since = asked.since.replace(tzinfo=UTC) if asked.since else None
-    wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
-    with journal.lock_folder(asked.out):
+    wanted = classroom.select_submissions(found.submissions, course.roster, asked.only, since)
+    with jobs.lock_folder(asked.out):
         text = json.dumps([asked.submission, options], default=lambda path: str(path.resolve()))
-        journal.write(asked.out / "asked.json", text.encode())
+        jobs.write_private_file(asked.out / "asked.json", text.encode())
         done = graded(whole, [piece for piece in pieces if piece.owner in wanted], asked.out)
-        lost = [f"{one.piece.owner}: {one.why}" for one in done if one.why]
+        lost = [f"{one.job.owner}: {one.problem}" for one in done if one.problem]
         common.say("warning", lost)
         page, count = write_books(whole, lost)
-        _compare(asked.out, course, found.handins)
-    fresh = sum(one.fresh for one in done if one.result)
-    click.echo(f"{page}: {count} of {len(found.handins)} graded, {fresh} of them now")
+        _compare(asked.out, course, found.submissions)
+    fresh = sum(one.is_new for one in done if one.path)
+    click.echo(f"{page}: {count} of {len(found.submissions)} graded, {fresh} of them now")
 
 
 def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
@@ -74,7 +74,7 @@ def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
     from hdrlab.course.classroom import moodle, overview, run as classroom
 
     course, found, pieces, asked = whole
-    counted = overview.tally(classroom.read(asked.out, pieces))
+    counted = overview.tally(classroom.read_results(asked.out, pieces))
     *_, page = overview.write(asked.out, course, found, counted, lost)
     if asked.moodle:
         rows = overview.marks_of(course, found, counted)
@@ -84,48 +84,47 @@ def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
     return page, len(counted.points)
 
 
-def graded(whole: Class, wanted: "Sequence[Piece]", out: Path) -> "list[Done]":
+def graded(whole: Class, wanted: "Sequence[GradingJob]", out: Path) -> "list[JobResult]":
     """Return what became of each submission; its feedback is written as soon as its result is there."""
-    from hdrlab.course.classroom import journal, run as classroom
+    from hdrlab.course.classroom import jobs, run as classroom
 
     folder, course, asked = out / "results", whole.course, whole.asked
-    before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)
+    before, rest = ([], [*wanted]) if asked.regrade else jobs.split_finished(folder, wanted)
     done = [classroom.write_feedback(out, one) for one in before]
     if before:
         click.echo(f"{len(before)} of {len(wanted)} were graded before", err=True)
     if rest:
         with _executor(course, asked) as executor:
-            journal.forget(folder, rest)
+            jobs.delete_results(folder, rest)
             steps = (
-                classroom.write_feedback(out, one)
-                for one in journal.done_steps(rest, executor, folder)
+                classroom.write_feedback(out, one) for one in jobs.run_jobs(rest, executor, folder)
             )
             done += common.progress(steps, course.homework.name, len(rest))
     return done
 
 
-def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> None:
+def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Submission]") -> None:
     """Write what is alike among all that was handed in, also what was graded before."""
     try:
         from hdrlab.course.overlap import alike
     except ImportError as error:
         click.echo(f'note: similar.html needs {error.name}: pip install "hdrlab[class]"', err=True)
         return
-    if len(handins) > alike.MOST:
+    if len(submissions) > alike.MOST:
         click.echo(f"note: no similar.html, which compares at most {alike.MOST:,} works", err=True)
         return
-    steps = alike.write_steps(out, course.homework, handins, course.conditions.secret)
-    list(common.progress(steps, "what is alike", len(handins)))
+    steps = alike.write_steps(out, course.homework, submissions, course.conditions.secret)
+    list(common.progress(steps, "what is alike", len(submissions)))
 
 
-def _executor(course: "Course", asked: Any) -> "Executor":
+def _executor(course: "GradingContext", asked: Any) -> "Executor":
     """Return those who grade: processes of this machine, or the workers of a cluster."""
     from hdrlab.course.classroom import run as classroom
     from hdrlab.course.classroom.executors import processes
     from hdrlab.course.sandbox import doctor
 
     grader = classroom.Grader(
-        course.homework, course.conditions, classroom.hidden(course.conditions.hidden)
+        course.homework, course.conditions, classroom.read_hidden_checks(course.conditions.hidden)
     )
     if asked.cluster is None:
         found = doctor.examine(
@@ -133,7 +132,7 @@ def _executor(course: "Course", asked: Any) -> "Executor":
         )  # tried once, and not missed by each submission
         if not found.works:
             raise common.no_tier(found.says)
-        return processes.Processes(grader.result, asked.jobs)
+        return processes.Processes(grader.grade, asked.jobs)
     if asked.jobs is not None:
         raise InputError(
             "expected --jobs or --cluster: a cluster grades as many at a time as it has threads"
@@ -141,7 +140,7 @@ def _executor(course: "Course", asked: Any) -> "Executor":
     common.require("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
 
-    return cluster.Cluster(asked.cluster, grader.result, grader.ready)
+    return cluster.Cluster(asked.cluster, grader.grade, grader.check_available)
 
 
 @common.command()
@@ -169,17 +168,17 @@ def regrade(
 
     RESULTS is what `hdrlab grade` has written of the class. Nothing in it changes before --apply.
     """
-    from hdrlab.course.classroom import journal, regrade as review, run
+    from hdrlab.course.classroom import jobs, regrade as review, run
     from hdrlab.course.scratch import temporary_folder
 
     whole = _as_graded(results, how)
-    course, pieces = whole.course, whole.pieces
+    course, pieces = whole.course, whole.jobs
     words = review.requests(requests, course.roster)
     listed = {course.roster.find_team(name) for name in only} | set(words)
-    with temporary_folder(), journal.lock_folder(results):
-        _, changed = journal.parted(results / "results", pieces)
+    with temporary_folder(), jobs.lock_folder(results):
+        _, changed = jobs.split_finished(results / "results", pieces)
         done = graded(whole, changed, results / "regrade")
-        common.say("warning", [f"{one.piece.owner}: {one.why}" for one in done if one.why])
+        common.say("warning", [f"{one.job.owner}: {one.problem}" for one in done if one.problem])
         moves = review.moves(results, pieces, policy, listed, words)
         click.echo(review.text(moves))
         click.echo(review.write(results, moves, course.homework.points, policy))
@@ -187,7 +186,7 @@ def regrade(
             now = datetime.now(UTC).isoformat(timespec="seconds")
             secret, why = course.conditions.secret, how["why"]
             review.apply(results, moves, pieces, secret, policy=policy, why=why, when=now)
-            for one in journal.parted(results / "results", pieces)[0]:
+            for one in jobs.split_finished(results / "results", pieces)[0]:
                 run.write_feedback(results, one)
             click.echo(write_books(whole)[0])
 
@@ -207,5 +206,5 @@ def _as_graded(results: Path, how: dict[str, Any]) -> Class:
     secret = (
         plans.read_secret(asked.secret_file.resolve(strict=True))[0] if asked.secret_file else ""
     )
-    conditions = plans.Conditions(asked.tier, "", secret, asked.hidden, asked.timeout)
+    conditions = plans.GradingOptions(asked.tier, "", secret, asked.hidden, asked.timeout)
     return class_of(conditions, asked)

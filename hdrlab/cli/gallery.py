@@ -10,8 +10,8 @@ import click
 from hdrlab.cli import common
 from hdrlab.course.classroom import roster as lists
 from hdrlab.course.gallery import store
-from hdrlab.course.reports import sheets
-from hdrlab.course.wording import plain
+from hdrlab.course.reports import csv_tables
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
 FOLDER = click.argument("folder", type=common.FILE)
@@ -37,7 +37,7 @@ def init(folder: Path, title: str, closes: str, marks: int) -> None:
     except ValueError:
         said = f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
         raise InputError(said) from None
-    store.create(folder, plain(title, 80), end, marks)
+    store.create(folder, sanitize_line(title, 80), end, marks)
     click.echo(
         f"{folder}: a gallery, open until {store.format_time(end)}, {marks} votes on a ballot"
     )
@@ -71,10 +71,10 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
                 hung += 1
                 if votes:
                     said = f"{entry.team} hung another before, whose {votes} votes do not count any longer"
-                    click.echo(f"note: {plain(f'{source.name}: {said}', 300)}", err=True)
+                    click.echo(f"note: {sanitize_line(f'{source.name}: {said}', 300)}", err=True)
             except ValueError as error:
                 refused += 1
-                click.echo(f"note: {plain(f'{source.name}: {error}', 300)}", err=True)
+                click.echo(f"note: {sanitize_line(f'{source.name}: {error}', 300)}", err=True)
     said = f", {refused} refused" if refused else ""
     click.echo(f"{folder}: {len(students.students)} voters, {hung} artifacts hung{said}")
 
@@ -115,7 +115,7 @@ def links(
         everybody = [voter.id for voter in store.voters(db)]
         wanted = list(renew) or (everybody if all_anew else without)
         rows = tokens.links(db, address, wanted, emails)
-    sheets.write_csv(out, tokens.LINKS, rows, private=True)
+    csv_tables.write_csv(out, tokens.LINKS, rows, private=True)
     click.echo(
         f"{out}: {len(rows)} personal links; who has one can vote with it, so send each to its owner"
     )
@@ -172,5 +172,5 @@ def results(folder: Path, out: Path) -> None:
             )
         rows, changes = list(ballots.gradebook(db)), store.changes(db)
     common.say("note", changes)
-    sheets.write_csv(out, ballots.GRADEBOOK, rows, private=True)
+    csv_tables.write_csv(out, ballots.GRADEBOOK, rows, private=True)
     click.echo(f"{out}: {len(rows)} students. {ballots.METHOD.format(marks=set_up.marks)}")

@@ -49,7 +49,7 @@ def check(asked: Any) -> None:
         if asked.task not in tasks:
             raise InputError(f"expected a task out of {', '.join(tasks)}, got {asked.task!r}")
         homework = homework._replace(tasks=(tasks[asked.task],))
-    conditions = plans.Conditions(tier="practice", draw=asked.page is not None)
+    conditions = plans.GradingOptions(tier="practice", draw=asked.page is not None)
     result = _graded(asked.submission, homework, conditions)
     click.echo(feedback.text(result, hints=asked.hints))
     if asked.page is not None:
@@ -114,7 +114,9 @@ def grade(asked: Any) -> None:
             "expected --secret-file with --student: else anybody could draw the same inputs"
         )
     secret, note = secret_of(asked.secret_file)
-    conditions = plans.Conditions(asked.tier, asked.student, secret, asked.hidden, asked.timeout)
+    conditions = plans.GradingOptions(
+        asked.tier, asked.student, secret, asked.hidden, asked.timeout
+    )
     if asked.submission.is_dir():
         from hdrlab.cli import classroom
 
@@ -170,7 +172,9 @@ def secret_of(file: Path | None) -> tuple[str, str]:
     )
 
 
-def _graded(submission: Path, homework: plans.Homework, conditions: plans.Conditions) -> "Result":
+def _graded(
+    submission: Path, homework: plans.Homework, conditions: plans.GradingOptions
+) -> "Result":
     """Return the Result, while a terminal shows how many checks have been answered."""
     from hdrlab.core.steps import last
     from hdrlab.course import grading

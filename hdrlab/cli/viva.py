@@ -42,7 +42,7 @@ def viva(asked: Any) -> None:
 
     homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
     secret, note = grading.secret_of(asked.secret_file)
-    conditions = plans.Conditions(asked.tier, asked.student, secret, draw=False)
+    conditions = plans.GradingOptions(asked.tier, asked.student, secret, draw=False)
     seed = (
         plans.seed(secret, asked.student, f"viva {homework.name}")
         if asked.seed is None

@@ -24,24 +24,24 @@ from hdrlab.core.steps import last
 from hdrlab.course import plan, submission, variants
 from hdrlab.course.checks import SPECIFICATION, rewording, running
 from hdrlab.course.material import handouts
-from hdrlab.course.plan import Conditions, Homework
-from hdrlab.course.reports import causes
+from hdrlab.course.plan import GradingOptions, Homework
+from hdrlab.course.reports import scoring
 from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
-from hdrlab.course.submission import Submission
-from hdrlab.course.wording import lines
+from hdrlab.course.sanitize import sanitize_text
+from hdrlab.course.submission import SubmittedCode
 from hdrlab.errors import InputError
 
 WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
-STRICT = Conditions()
+STRICT = GradingOptions()
 VERSIONS = {one.__name__: one.__version__ for one in (hdrlab, np, scipy)}
 VERSIONS["python"] = platform.python_version()
 SILENT = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
 
 
-def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Result:
+def grade(path: str | Path, homework: Homework, conditions: GradingOptions = STRICT) -> Result:
     """Return what a notebook or a Python file is worth: the last of `grade_steps`.
 
     Raises
@@ -55,15 +55,15 @@ def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT)
 
 
 def grade_steps(
-    path: str | Path, homework: Homework, conditions: Conditions = STRICT
+    path: str | Path, homework: Homework, conditions: GradingOptions = STRICT
 ) -> Iterator[Result]:
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
     yield from check_steps(*read_tasks(path, homework, conditions), conditions)
 
 
 def read_tasks(
-    path: str | Path, homework: Homework, conditions: Conditions
-) -> tuple[Submission, Homework]:
+    path: str | Path, homework: Homework, conditions: GradingOptions
+) -> tuple[SubmittedCode, Homework]:
     """Return what a file holds of a homework's tasks, and the homework as its student was given it."""
     tasks = [task.id for task in homework.tasks]
     read = submission.read(Path(path), homework.name, tasks, handouts.given_cells(homework.name))
@@ -74,7 +74,9 @@ def read_tasks(
     return read, homework
 
 
-def check_steps(read: Submission, homework: Homework, conditions: Conditions) -> Iterator[Result]:
+def check_steps(
+    read: SubmittedCode, homework: Homework, conditions: GradingOptions
+) -> Iterator[Result]:
     """Yield the Result of tasks that are read already, as it grows."""
     heard: list[dict[str, Any]] = []
     for line in heard_steps(read, homework, conditions):
@@ -85,7 +87,7 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
 
 
 def heard_steps(
-    read: Submission, homework: Homework, conditions: Conditions, **more: Any
+    read: SubmittedCode, homework: Homework, conditions: GradingOptions, **more: Any
 ) -> Iterator[Any]:
     """Yield what the checks write down as they run, and first their digest; `more` stands in the job."""
     if conditions.hidden is not None and not conditions.hidden.is_dir():
@@ -128,7 +130,7 @@ def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[P
 
 
 def _job(
-    folder: Path, read: Submission, homework: Homework, conditions: Conditions, **more: Any
+    folder: Path, read: SubmittedCode, homework: Homework, conditions: GradingOptions, **more: Any
 ) -> Path:
     job = {
         "sources": read.sources,
@@ -149,15 +151,16 @@ def _job(
     return file
 
 
-def _seeds(homework: Homework, conditions: Conditions) -> dict[str, str]:
+def _seeds(homework: Homework, conditions: GradingOptions) -> dict[str, str]:
     """Return each task's seed, as text: it has more bits than JSON's numbers."""
-    _, student, secret, *_ = conditions
+    student = conditions.student
+    secret = conditions.secret
     return {
         one.id: str(plan.seed(secret, student, one.id) if student else 0) for one in homework.tasks
     }
 
 
-def _seed_id(homework: Homework, conditions: Conditions) -> str:
+def _seed_id(homework: Homework, conditions: GradingOptions) -> str:
     """Return a digest of the seeds, or "" where anybody could draw the same inputs."""
     if not (conditions.student and conditions.secret):
         return ""
@@ -165,7 +168,7 @@ def _seed_id(homework: Homework, conditions: Conditions) -> str:
 
 
 def _result(
-    heard: Sequence[Any], read: Submission, homework: Homework, conditions: Conditions
+    heard: Sequence[Any], read: SubmittedCode, homework: Homework, conditions: GradingOptions
 ) -> Result:
     return Result(
         student=conditions.student,
@@ -229,11 +232,11 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
     for task in homework.tasks:
         own = [each for key, each in cases.items() if key[0] == task.id]
         weights = [Fraction(each[0]["points"]) for each in own]
-        shares = causes.in_halves(Fraction(str(task.points)), weights) if own else []
+        shares = scoring.split_points(Fraction(str(task.points)), weights) if own else []
         checks = [_check(each, ended, whole) for each, whole in zip(own, shares, strict=True)]
         needs = {each[0]["name"]: each[0]["needs"] for each in own}
         once = named.get(task.id, {}).get("once", False)
-        yield from causes.traced(checks, needs, named=task.id in named, once=once)
+        yield from scoring.attribute_failures(checks, needs, named=task.id in named, once=once)
 
 
 def _check(
@@ -249,10 +252,10 @@ def _check(
         points=Fraction(),
         max_points=whole,
         outcome=shown["outcome"],
-        message=lines(shown["message"], MESSAGE),
+        message=sanitize_text(shown["message"], MESSAGE),
         hints=tuple(each[0]["hints"]),
         drawing=shown.get("drawing", Drawing()),
-        said=lines(shown["said"], SAID),
+        said=sanitize_text(shown["said"], SAID),
         hidden=each[0]["hidden"],
         kind=shown.get("kind", ""),
     )

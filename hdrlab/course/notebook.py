@@ -14,7 +14,7 @@ from hdrlab.course.material import handouts
 from hdrlab.course.reports import feedback, results
 from hdrlab.errors import InputError
 
-PRACTICE = plans.Conditions(tier="practice")
+PRACTICE = plans.GradingOptions(tier="practice")
 _latest: dict[str, results.Result] = {}  # of each task in this kernel, for the homework's bar
 _plan: dict[
     str, plans.Homework
@@ -65,7 +65,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
     absent = [task for task in tasks if task not in sources]
     missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
-    read = submission.Submission(sources, missing, "", tuple(names.imported(sources.values())))
+    read = submission.SubmittedCode(sources, missing, "", tuple(names.imported(sources.values())))
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)

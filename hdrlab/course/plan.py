@@ -15,6 +15,7 @@ import secrets
 import tomllib
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from datetime import datetime
 from importlib import import_module
 from pathlib import Path
@@ -24,7 +25,7 @@ from hdrlab.course.checks import rewording
 from hdrlab.errors import InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
-PATIENCE = 10.0  # seconds for one answer
+ANSWER_TIMEOUT_SECONDS = 10.0
 
 
 class Task(NamedTuple):
@@ -55,7 +56,7 @@ class Task(NamedTuple):
         return Path(file) if file else None
 
 
-class ByHand(NamedTuple):
+class ManualTask(NamedTuple):
     """What a person judges, and a line for each number of points that says what earns them."""
 
     title: str
@@ -70,7 +71,7 @@ class Homework(NamedTuple):
     title: str
     due: datetime
     tasks: tuple[Task, ...]
-    by_hand: tuple[ByHand, ...] = ()
+    by_hand: tuple[ManualTask, ...] = ()
     at_most: float | None = None
 
     @property
@@ -101,23 +102,24 @@ class Plan(NamedTuple):
         return tasks[id]
 
 
-class Conditions(NamedTuple):
-    """Under which a submission is checked.
+@dataclass(frozen=True)
+class GradingOptions:
+    """How a submission is graded.
 
     Attributes
     ----------
     tier : "strict", "container" or "practice"
     student, secret : what the inputs are drawn from; without a student they are the public ones
-    hidden : folder with checks of the instructor's own, test_<task>.py
+    hidden : folder with the instructor's own checks, test_<task>.py
     timeout : seconds for one answer
-    draw : whether differences are drawn
+    draw : whether pictures of differences are drawn
     """
 
     tier: str = "strict"
     student: str = ""
     secret: str = ""
     hidden: Path | None = None
-    timeout: float = PATIENCE
+    timeout: float = ANSWER_TIMEOUT_SECONDS
     draw: bool = True
 
 
@@ -171,7 +173,7 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     try:
         tasks = tuple(_task(one, path) for one in sheet["tasks"])
         by_hand = tuple(
-            ByHand(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
+            ManualTask(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
             for one in sheet.get("by_hand", ())
         )
         at_most = float(sheet["at_most"]) if "at_most" in sheet else None

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 from hdrlab.course.archives import unpack
 from hdrlab.course.archives.members import Limits, Refused
-from hdrlab.course.classroom.executors import alone
+from hdrlab.course.classroom.executors import subprocess_runner
 from hdrlab.course.code import closure, names
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
 READ, PACKED = (".ipynb", ".py"), (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
@@ -41,7 +41,7 @@ VARIANT = re.compile(
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
-class Submission(NamedTuple):
+class SubmittedCode(NamedTuple):
     """The text of each task's function with all that it needs, what is wrong, a digest, and the imports.
 
     `variants` are what its sheet says that tasks ask, None of a file without a sheet's `use_plan`.
@@ -56,7 +56,7 @@ class Submission(NamedTuple):
 
 def read(
     path: Path, homework: str, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
-) -> Submission:
+) -> SubmittedCode:
     """Return what a notebook, a Python file or an archive of one holds, read in a process with limits.
 
     Raises
@@ -71,21 +71,23 @@ def read(
                 prefix="hdrlab-read-", ignore_cleanup_errors=True
             ) as scratch:
                 order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
-                said = json.loads(alone.run(_read, order, patience=PATIENCE, limits=limits))
+                said = json.loads(
+                    subprocess_runner.run(_read, order, timeout=PATIENCE, limits=limits)
+                )
             break
-        except alone.Failed as error:
-            if error.own:
+        except subprocess_runner.ProcessFailed as error:
+            if error.is_own_fault:
                 what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, as no homework does"
-                return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
-            if tried == TRIES or not error.killed:
+                return SubmittedCode({}, (f"{sanitize_line(path.name, 80)} {what}",), "")
+            if tried == TRIES or not error.was_killed:
                 raise InputError(f"it could not be read: {error}") from None
-    return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
+    return SubmittedCode(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
 
 
 def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) -> bytes:
     path, scratch, homework, tasks, given = order
     opened_path, refused = opened(path, scratch, homework)
-    found = Submission({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
+    found = SubmittedCode({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
     return json.dumps(
         found._replace(modules=tuple(names.imported(found.sources.values())))
     ).encode()
@@ -102,14 +104,14 @@ def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
     fitting = [member for member, _ in members if member.suffix.lower() in READ]
     named = [member for member in fitting if homework in member.name.lower()] or fitting
     if len(named) != 1:
-        told = ", ".join(plain(member.name, 80) for member in named[:5]) or "none"
+        told = ", ".join(sanitize_line(member.name, 80) for member in named[:5]) or "none"
         return path, f"Expected one notebook or Python file in the archive, got {told}."
     return scratch / "files" / named[0], ""
 
 
 def tasks_of(
     path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
-) -> Submission:
+) -> SubmittedCode:
     """Return what a file holds of the tasks; what cannot be read is told, and the rest is still there.
 
     Parameters
@@ -129,12 +131,14 @@ def tasks_of(
     for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
         del sources[task]
         said.append(f"{task} needs more than {MOST_SOURCE:,} characters of code")
-    problems = [plain(one, 300) for one in [*problems, *told, *said]]
+    problems = [sanitize_line(one, 300) for one in [*problems, *told, *said]]
     if len(problems) > TOLD:
         problems[TOLD:] = [f"... and {len(problems) - TOLD} more of the kind"]
     sheets = [cell.text for cell in cells if "use_plan(" in cell.text]
     variants = dict(VARIANT.findall("".join(sheets))) if sheets else None
-    return Submission(sources, tuple(problems), hashlib.sha256(data).hexdigest(), variants=variants)
+    return SubmittedCode(
+        sources, tuple(problems), hashlib.sha256(data).hexdigest(), variants=variants
+    )
 
 
 def _bytes_of(path: Path) -> tuple[bytes, list[str]]:

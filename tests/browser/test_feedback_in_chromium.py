@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hdrlab.course import grading, plan
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import feedback
 
 pytestmark = pytest.mark.browser
@@ -39,7 +39,9 @@ def report(tmp_path_factory):
     few = hw2._replace(
         tasks=tuple(one for one in hw2.tasks if one.id in ("hat", "irradiance", "update"))
     )
-    found = grading.grade(file, few, Conditions(tier="practice", student=PAYLOAD, secret="salt"))
+    found = grading.grade(
+        file, few, GradingOptions(tier="practice", student=PAYLOAD, secret="salt")
+    )
     assert "owned" in found.checks[0].message
     (folder / "feedback.html").write_text(feedback.page(found), encoding="utf8")
     return (folder / "feedback.html").as_uri()

@@ -11,7 +11,7 @@ import pytest
 
 from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION, misconceptions, plugin, rewording
-from hdrlab.course.reports import causes
+from hdrlab.course.reports import scoring
 from hdrlab.course.reports.results import Check
 
 PLAN = plan.read()
@@ -78,7 +78,7 @@ def score(task, subject, seed=0, variant=""):
         for (name, *_), points in zip(checks(task, variant), worth, strict=True)
     ]
     needs = {name: needs or "" for name, *_, needs in checks(task, variant)}
-    traced = causes.traced(
+    traced = scoring.attribute_failures(
         each, needs, named=found is not None, once=found is not None and found.once
     )
     return float(sum(one.points for one in traced) / sum(worth)), said

@@ -38,7 +38,7 @@ def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
         (place / f"{student}.py").write_text(source)
     files, told = siege.listing(place), {}
     for student in sources:
-        conditions = plan.Conditions("strict", student, "a secret", timeout=3.0, draw=False)
+        conditions = plan.GradingOptions("strict", student, "a secret", timeout=3.0, draw=False)
         try:
             told[student] = grading.grade(place / f"{student}.py", homework, conditions)
         except tiers.Unavailable as reason:

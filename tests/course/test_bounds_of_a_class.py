@@ -1,39 +1,21 @@
 """The bounds of a class's grading, to the last one that is still taken, and who is told what."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
 from small_class import CLASS, HOMEWORK, NOON, result
 
-from hdrlab.course.classroom import handins, journal, late, marks, moodle, overview, roster, run
-from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.journal import Done, Piece
-from hdrlab.course.classroom.late import Handed
-from hdrlab.course.classroom.run import Course
-from hdrlab.course.plan import Conditions, Late
-from hdrlab.course.reports import gradebook, results, sheets
-
-
-def test_the_bounds_are_those_that_the_pages_for_instructors_name():
-    assert (handins.LARGEST, handins.MOST, run.MOST, marks.LARGE) == (
-        256 << 20,
-        1000,
-        64 << 20,
-        128 << 20,
-    )
-    assert (late.GRACE, late.DAY, list(marks.DAYS), overview.BINS) == (
-        10,
-        timedelta(days=1),
-        [*range(15)],
-        10,
-    )
-    assert (roster.TEAM, roster.NAME) == (2, 80)
-    assert set(map(chr, range(32))) | set('/\\:*?"<>|') == roster.FORBIDDEN
-    assert marks.COLUMNS[-3:] == ("score", "grace left", "note") and len(marks.COLUMNS) == 13
-
+from hdrlab.course.classroom import handins, jobs, marks, moodle, overview, run
+from hdrlab.course.classroom.handins import Submission
+from hdrlab.course.classroom.jobs import GradingJob, JobResult
+from hdrlab.course.classroom.late import LateRecord
+from hdrlab.course.classroom.run import GradingContext
+from hdrlab.course.plan import GradingOptions, Late
+from hdrlab.course.reports import csv_tables, gradebook, results
 
 HANDINS = {
-    team: Handin(team, (), None, NOON + timedelta(hours=hours), team)
+    team: Submission(team, (), None, NOON + timedelta(hours=hours), team)
     for team, hours in (("t", 0), ("b3", 1))
 }
 
@@ -56,23 +38,25 @@ HANDINS = {
 )
 def test_who_is_named_and_has_come_since_a_time_is_graded(only, hours, teams, monkeypatch):
     since = None if hours is None else NOON + timedelta(hours=hours)
-    assert " ".join(run.select_handins(HANDINS, CLASS, only, since)) == teams
-    with pytest.raises(ValueError, match="expected names that have handed in, got b3$"):
-        run.select_handins({"t": HANDINS["t"]}, CLASS, ["b1", "b3"])
+    assert " ".join(run.select_submissions(HANDINS, CLASS, only, since)) == teams
+    with pytest.raises(ValueError, match="nothing was handed in by b3"):
+        run.select_submissions({"t": HANDINS["t"]}, CLASS, ["b1", "b3"])
 
 
 @pytest.fixture
 def done(tmp_path):
-    """A piece whose result is there."""
-    piece = Piece("t", "file", "key")
-    journal.make_private(tmp_path / "results")
-    journal.write(journal.place(tmp_path / "results", piece), results.to_json(result("t")))
-    return Done(piece, journal.place(tmp_path / "results", piece))
+    """A job whose result is there."""
+    job = GradingJob("t", "file", "key")
+    jobs.make_private(tmp_path / "results")
+    jobs.write_private_file(
+        jobs.result_path(tmp_path / "results", job), results.to_json(result("t"))
+    )
+    return JobResult(job, jobs.result_path(tmp_path / "results", job))
 
 
 def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(done, tmp_path):
     folder = tmp_path / "feedback" / "t"
-    shown = results.for_team(done.result.read_bytes())
+    shown = results.for_team(done.path.read_bytes())
     for spoil in (None, "result.json", "feedback.html", "result.csv"):
         if spoil:
             (folder / spoil).unlink()
@@ -90,23 +74,29 @@ def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(don
     assert (folder / "feedback.html").read_bytes() == b"kept"
     for one in (folder, folder.parent):
         assert one.stat().st_mode & 0o777 == 0o700
-    assert list(run.read(tmp_path, [done.piece, Piece("x", "file", "key")])) == [result("t")]
+    assert list(run.read_results(tmp_path, [done.job, GradingJob("x", "file", "key")])) == [
+        result("t")
+    ]
 
 
 def test_feedback_that_cannot_be_written_says_why_in_two_hundred_characters(done, tmp_path):
-    done.result.write_bytes(b"damaged")
+    done.path.write_bytes(b"damaged")
     found = run.write_feedback(tmp_path, done)
     assert (
-        found.why.startswith("its feedback could not be written: ") and found.result == done.result
+        found.problem.startswith("its feedback could not be written: ") and found.path == done.path
     )
-    missing = done._replace(result=None)
+    missing = replace(done, path=None)
     assert run.write_feedback(tmp_path, missing) is missing
-    assert list(run.read(tmp_path, [done.piece])) == []
+    assert list(run.read_results(tmp_path, [done.job])) == []
 
 
 def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
-    course = Course(CLASS, HOMEWORK, Conditions(), Late(1, 2.0), [Handed("hw1", 1, ("b3",), 5.0)])
-    came = {"t": Handin("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")}
+    course = GradingContext(
+        CLASS, HOMEWORK, GradingOptions(), Late(1, 2.0), [LateRecord("hw1", 1, ("b3",), 5.0)]
+    )
+    came = {
+        "t": Submission("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")
+    }
     first, second, third = marks.marks(course, came, {"t": 8.0}, {"b3": "refused"})
     assert first == (
         "b1",
@@ -155,7 +145,7 @@ def test_a_gradebook_is_read_by_the_next_homework(tmp_path):
     lines = ["student,homework,received,late,work,note"]
     lines += ["'=b1,hw1,2026,3,7.5,", "b2,hw1,,0,0,not handed in", "b3,hw1,2026,1,2,not graded; x"]
     (tmp_path / "a.csv").write_text("\n".join(lines), encoding="utf8")
-    assert marks.read([tmp_path / "a.csv"]) == [Handed("hw1", 3, ("=b1",), 7.5)]
+    assert marks.read([tmp_path / "a.csv"]) == [LateRecord("hw1", 3, ("=b1",), 7.5)]
 
 
 def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked():
@@ -177,18 +167,18 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
 def test_a_table_is_read_up_to_its_bound(tmp_path):
     (tmp_path / "a.csv").write_bytes(b" A ,b\n1\n\n 2 ,3\n")
     size = (tmp_path / "a.csv").stat().st_size
-    assert sheets.read_csv(tmp_path / "a.csv", most=size) == [
+    assert csv_tables.read_csv(tmp_path / "a.csv", most=size) == [
         {"a": "1", "b": ""},
         {"a": "2", "b": "3"},
     ]
     with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
-        sheets.read_csv(tmp_path / "a.csv", most=size - 1)
-    assert sheets.read_csv.__kwdefaults__ == {"most": 5_000_000}
+        csv_tables.read_csv(tmp_path / "a.csv", most=size - 1)
+    assert csv_tables.read_csv.__kwdefaults__ == {"most": 5_000_000}
 
 
 def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):
-    monkeypatch.setattr(handins, "LARGEST", 1 << 20)
-    monkeypatch.setattr(handins, "MOST", 2)
+    monkeypatch.setattr(handins, "MAX_FILE_MEGABYTES", 1)
+    monkeypatch.setattr(handins, "MAX_FILES_PER_FOLDER", 2)
     for name, size in (
         ("b1/a.py", 1 << 20),
         ("b1/b.py", 0),
@@ -200,9 +190,11 @@ def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypat
         with (tmp_path / name).open("r+b") as file:
             file.truncate(size)
     found = handins.find(tmp_path, CLASS)
-    assert set(found.handins) == {"t"} and found.refused == {
+    assert set(found.submissions) == {"t"} and found.refused == {
         "b3": "b3/a.py: expected at most 1 MB, got 1"
     }
     (tmp_path / "b1" / "c.py").touch()
     found = handins.find(tmp_path, CLASS)
-    assert found.handins == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"
+    assert (
+        found.submissions == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"
+    )

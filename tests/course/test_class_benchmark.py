@@ -22,7 +22,7 @@ from benchmarks.class_.handed import Handed
 from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom.roster import read
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 from hdrlab.course.reports.results import Check, Result
 
 pytestmark = pytest.mark.grading
@@ -56,7 +56,7 @@ def test_a_class_is_written_as_the_command_reads_it(everybody, tmp_path):
     roster = read(folder / "roster.csv")
     assert set(roster.teams()) == {one.team for one in everybody[:9]}
     assert {len(team) for team in roster.teams().values()} == {1, 2}
-    times = sheets.read_csv(folder / "received.csv")
+    times = csv_tables.read_csv(folder / "received.csv")
     assert [row["file"] for row in times] == [one.file for one in everybody[:9]]
 
 
@@ -111,12 +111,12 @@ def test_one_byte_or_one_cell_that_differs_is_found(tmp_path):
             results.to_json(one_of("a", "right")[1])
         )
         (tmp_path / out / "feedback" / "a" / "feedback.html").write_text("<p>well done")
-        sheets.write_csv(
+        csv_tables.write_csv(
             tmp_path / out / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 2)]
         )
     assert judged.differing(tmp_path / "one", tmp_path / "same", each) == 0
     (tmp_path / "other" / "feedback" / "a" / "feedback.html").write_text("<p>well gone")
-    sheets.write_csv(
+    csv_tables.write_csv(
         tmp_path / "other" / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 3)]
     )
     (tmp_path / "other" / "results" / "b.0123.json").write_text("{}")
@@ -209,7 +209,7 @@ def test_a_mixed_class_is_written_with_its_roster_and_who_is_not_told_of_is_foun
     (tmp_path / "out" / "results").mkdir(parents=True)
     (tmp_path / "out" / "results" / f"{others[0].student}.0123.json").write_text("{}")
     rows = [(one.student, "refused" if one is others[1] else "") for one in others]
-    sheets.write_csv(tmp_path / "out" / "gradebook.csv", ("student", "note"), rows)
+    csv_tables.write_csv(tmp_path / "out" / "gradebook.csv", ("student", "note"), rows)
     assert mixed.untold(tmp_path / "out", others) == others[2:]
 
 

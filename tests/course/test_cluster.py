@@ -20,7 +20,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 import hdrlab
-from hdrlab.course.classroom import journal
+from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.executors import cluster, processes
 
 pytestmark = pytest.mark.grading
@@ -76,10 +76,10 @@ def address():
 def graded(address, home, work=errands.grade, **knobs):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder = home / "results"
-    with journal.lock_folder(folder):
-        done, rest = journal.parted(folder, errands.pieces(home / "class"))
+    with jobs.lock_folder(folder):
+        done, rest = jobs.split_finished(folder, errands.make_jobs(home / "class"))
         with cluster.Cluster(address, work, **knobs) as executor:
-            done += journal.done_steps(rest, executor, folder)
+            done += jobs.run_jobs(rest, executor, folder)
     return done, contents(folder)
 
 
@@ -90,15 +90,15 @@ def contents(folder):
 def whole(home):
     """Return the results of the same class, done here."""
     with processes.Processes(errands.grade, 2) as executor:
-        list(journal.done_steps(errands.pieces(home / "class"), executor, home / "here"))
+        list(jobs.run_jobs(errands.make_jobs(home / "class"), executor, home / "here"))
     return contents(home / "here")
 
 
 def test_a_cluster_gives_the_bytes_that_this_machine_gives(address, tmp_path):
     done, results = graded(address, tmp_path)
-    assert results == whole(tmp_path) and len(results) == 5 and all(one.fresh for one in done)
+    assert results == whole(tmp_path) and len(results) == 5 and all(one.is_new for one in done)
     again, same = graded(address, tmp_path)
-    assert same == results and not any(one.fresh for one in again)
+    assert same == results and not any(one.is_new for one in again)
 
 
 def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path):
@@ -114,7 +114,7 @@ def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path
     noted = errands.begun(tmp_path / "class")
     first = [worker for owner, _, worker in noted if owner == noted[0][0]]
     assert len(noted) == 6 and len(set(first)) == 2
-    assert results == whole(tmp_path) and all(one.result for one in done)
+    assert results == whole(tmp_path) and all(one.path for one in done)
 
 
 def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_done(
@@ -122,8 +122,8 @@ def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_do
 ):
     done, results = graded(address, tmp_path, errands.deadly)
     owners = [owner for owner, *_ in errands.begun(tmp_path / "class")]
-    (lost,) = [one for one in done if one.result is None]
-    assert lost.piece.owner == "s3" and "3 times" in lost.why and "was lost" in lost.why
+    (lost,) = [one for one in done if one.path is None]
+    assert lost.job.owner == "s3" and "3 times" in lost.problem and "was lost" in lost.problem
     assert owners.count("s3") == 3 and len(owners) == 7
     assert results == {
         name: data for name, data in whole(tmp_path).items() if not name.startswith("s3.")
@@ -134,8 +134,8 @@ def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_use
     with clustered(1, 4) as running:
         assert not running.scheduler.workers
         done, results = graded(running.scheduler_address, tmp_path, errands.crowded)
-    (lost,) = [one for one in done if one.result is None]
-    assert lost.piece.owner == "s3" and len(results) == 4
+    (lost,) = [one for one in done if one.path is None]
+    assert lost.job.owner == "s3" and len(results) == 4
     assert [owner for owner, *_ in errands.begun(tmp_path / "class")].count("s3") == 4
 
 
@@ -144,10 +144,10 @@ def test_no_worker_has_more_pieces_than_threads(tmp_path):
         2, 1, at_once=2
     ) as running:  # its own: where a worker was killed, there may be one too many
         with cluster.Cluster(running.scheduler_address, errands.endless) as executor:
-            started = [executor.start(one) for one in errands.pieces(tmp_path / "class")]
+            started = [executor.start(one) for one in errands.make_jobs(tmp_path / "class")]
             assert started == [True, True, False, False, False]
             while len(errands.begun(tmp_path / "class")) < 2:
-                assert not executor.endings()
+                assert not executor.wait_for_attempts()
         until = time.monotonic() + 300
         while any(
             map(alive, errands.begun(tmp_path / "class"))
@@ -172,20 +172,20 @@ def test_a_run_that_is_killed_is_finished_by_the_next_and_its_pieces_are_ended(a
     run.kill()
     run.wait()
     done, results = graded(address, tmp_path)
-    assert results == whole(tmp_path) and 1 <= sum(not one.fresh for one in done) < 5
+    assert results == whole(tmp_path) and 1 <= sum(not one.is_new for one in done) < 5
     assert not any(map(alive, errands.begun(tmp_path / "class")))
 
 
 def test_a_submission_that_never_ends_is_ended(address, tmp_path):
-    (one,) = errands.pieces(tmp_path / "class", 1)
-    with cluster.Cluster(address, errands.endless, patience=0.5) as executor:
-        (done,) = journal.done_steps([one], executor, tmp_path / "results")
-    assert done.result is None and "3 times" in done.why and "too long" in done.why
+    (one,) = errands.make_jobs(tmp_path / "class", 1)
+    with cluster.Cluster(address, errands.endless, timeout=0.5) as executor:
+        (done,) = jobs.run_jobs([one], executor, tmp_path / "results")
+    assert done.path is None and "3 times" in done.problem and "too long" in done.problem
 
 
 @pytest.mark.parametrize("nowhere", ["tcp://127.0.0.1:1", "nowhere", "http://a:1"])
 def test_where_there_is_no_cluster_it_says_so(nowhere, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "CONNECT", 1.0)  # it is not asked again and again
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)  # it is not asked again and again
     with pytest.raises(ValueError, match="expected a Dask cluster at"):
         graded(nowhere, tmp_path)
 
@@ -193,7 +193,7 @@ def test_where_there_is_no_cluster_it_says_so(nowhere, tmp_path, monkeypatch):
 def test_a_cluster_that_is_lost_is_told_of(tmp_path):
     with (
         clustered(0, 1) as running,
-        pytest.raises(ValueError, match="is lost; what is graded stays"),
+        pytest.raises(ValueError, match="is lost"),
     ):
         threading.Timer(2, running.close).start()
         graded(running.scheduler_address, tmp_path, errands.endless)
@@ -217,17 +217,17 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
             assert hdrlab.__version__ in str(told.value)
         finally:
             client.run(rename, hdrlab.__version__)
-    piece = errands.pieces(tmp_path / "class", 1)[0]
-    task = cluster.Task(errands.grade, cluster.version, piece, b"", 1.0, "0.0.7 (of another)")
+    job = errands.make_jobs(tmp_path / "class", 1)[0]
+    task = cluster.RemoteJob(errands.grade, cluster.version, job, b"", 1.0, "0.0.7 (of another)")
     with pytest.raises(
         ValueError, match=r"expected 0\.0\.7 \(of another\)"
     ):  # of a worker that joins later
-        cluster.do(task)
+        cluster.run_remote_job(task)
 
 
 def test_a_worker_that_cannot_do_the_work_is_named(address, tmp_path):
-    with pytest.raises(ValueError, match="tcp://.* cannot do it: no strict tier here"):
-        graded(address, tmp_path, ready=unable)
+    with pytest.raises(ValueError, match="tcp://.* cannot do the work: no strict tier here"):
+        graded(address, tmp_path, check_available=unable)
 
 
 def die_once(mark):
@@ -239,6 +239,6 @@ def die_once(mark):
 def test_a_worker_that_is_lost_while_it_is_asked_ends_no_run(tmp_path):
     with clustered(2, 1, at_once=2) as running:
         ready = partial(die_once, tmp_path / "died")
-        done, results = graded(running.scheduler_address, tmp_path, ready=ready)
+        done, results = graded(running.scheduler_address, tmp_path, check_available=ready)
     assert (tmp_path / "died").exists()
-    assert results == whole(tmp_path) and not any(one.why for one in done)
+    assert results == whole(tmp_path) and not any(one.problem for one in done)

@@ -70,8 +70,8 @@ def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
     )
     homework = whole_sheet._replace(tasks=(task,))
     source = solutions.texts(homework, [way])["hat"]
-    conditions = plan.Conditions("practice", "student 1", "fairness", draw=False)
-    read = submission.Submission({"hat": source}, (), "", ())
+    conditions = plan.GradingOptions("practice", "student 1", "fairness", draw=False)
+    read = submission.SubmittedCode({"hat": source}, (), "", ())
     *_, result = grading.check_steps(read, homework, conditions)
     _, second = fairness.graded((homework, {"hat": (way, source)}, 2))
     earned, whole = results.points(result.of("hat"))

@@ -33,7 +33,7 @@ from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import ballots, collect, pictures, store, tokens
 from hdrlab.course.gallery.web import app, guard, serve
 from hdrlab.course.gallery.web.writer import Writer
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 
 pytestmark = pytest.mark.grading
 
@@ -763,7 +763,7 @@ def test_formulas_in_a_table(tmp_path):
     room = small.make(tmp_path, names={"ann": "=cmd|' /C calc'!A0"}, title="@SUM(A1)")
     with closing(store.connect(room.folder)) as db:
         rows = list(ballots.gradebook(db))
-    text = sheets.csv_text(ballots.GRADEBOOK, rows)
+    text = csv_tables.csv_text(ballots.GRADEBOOK, rows)
     assert "'=cmd|" in text and "'@SUM(A1)" in text and not re.search(r"(^|,)\"?[=@]", text, re.M)
 
 

@@ -9,12 +9,12 @@ import scoring
 from hdrlab.capture import responses
 from hdrlab.course import grading, plan
 from hdrlab.course.checks import inprocess
-from hdrlab.course.plan import Conditions
-from hdrlab.course.submission import Submission
+from hdrlab.course.plan import GradingOptions
+from hdrlab.course.submission import SubmittedCode
 
 PLAN = plan.read()
-NOTHING = Submission({}, (), "")
-WITH, WITHOUT = Conditions("strict", "ada", "salt"), Conditions("strict", "ada")
+NOTHING = SubmittedCode({}, (), "")
+WITH, WITHOUT = GradingOptions("strict", "ada", "salt"), GradingOptions("strict", "ada")
 IDS = [task.id for homework in PLAN.homeworks.values() for task in homework.tasks]
 # a constant answer may divide by 0
 pytestmark = [pytest.mark.grading, pytest.mark.filterwarnings("ignore")]
@@ -139,8 +139,8 @@ def test_the_library_finds_the_curve_of_any_students_camera(task):
 def test_a_table_of_public_inputs_is_not_for_credit():
     homework = PLAN.homeworks["hw2"]._replace(tasks=(PLAN.task("hat"),))
     for student, secret in (("", ""), ("ada", ""), ("", "salt")):
-        assert grading._seed_id(homework, Conditions("strict", student, secret)) == ""
-    assert grading._seed_id(homework, Conditions("strict", "ada", "salt"))
+        assert grading._seed_id(homework, GradingOptions("strict", student, secret)) == ""
+    assert grading._seed_id(homework, GradingOptions("strict", "ada", "salt"))
     heard = [{"specification": ""}]
     drawn, public = (grading._result(heard, NOTHING, homework, one) for one in (WITH, WITHOUT))
     assert drawn.for_credit and not public.for_credit and "without a secret" in public.why_practice
@@ -152,7 +152,7 @@ def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):
         "def scale(L, headroom=8.0, sigma=1.0):\n    return 1 / (headroom * L)\n"
     )
     result = grading.grade(
-        tmp_path / "hw4.py", homework, Conditions("practice", "ada", "salt", draw=False)
+        tmp_path / "hw4.py", homework, GradingOptions("practice", "ada", "salt", draw=False)
     )
     of = {one.name: one for one in result.checks}
     unit = of["test_the_unit_of_luminance_cancels_in_the_picture"]

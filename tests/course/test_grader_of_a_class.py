@@ -6,9 +6,9 @@ import pytest
 from small_class import HOMEWORK, result
 
 from hdrlab.course.classroom import run
-from hdrlab.course.classroom.journal import Piece
+from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.run import Grader
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import results
 from hdrlab.course.sandbox.running import Unavailable
 
@@ -31,10 +31,10 @@ def grader(monkeypatch, *each, **knobs):
         return left.pop(0)
 
     monkeypatch.setattr(run.grading, "grade", grade)
-    return Grader(HOMEWORK, Conditions(**knobs.pop("conditions", {})), **knobs), asked
+    return Grader(HOMEWORK, GradingOptions(**knobs.pop("conditions", {})), **knobs), asked
 
 
-PIECE = Piece("t", "file", "key")
+JOB = GradingJob("t", "file", "key")
 
 
 @pytest.mark.parametrize(
@@ -55,9 +55,9 @@ def test_a_function_that_was_killed_is_asked_again_and_believed_when_it_is_so_ea
     made, asked = grader(monkeypatch, *(result("x", *kinds) for kinds in tries))
     if counts is None:
         with pytest.raises(ValueError, match="ended without an answer, each time at another check"):
-            made.result(PIECE)
+            made.grade(JOB)
     else:
-        assert made.result(PIECE) == results.to_json(result("t", *tries[counts]))
+        assert made.grade(JOB) == results.to_json(result("t", *tries[counts]))
     assert len(asked) == tried
 
 
@@ -67,10 +67,10 @@ def test_inputs_are_a_students_own_where_there_is_a_secret_and_hidden_checks_are
 ):
     files = [("test_a.py", b"1"), ("data/b/x.npy", b"2"), ("data/b/y.npy", b"3")]
     made, asked = grader(monkeypatch, result("x"), conditions={"secret": secret}, hidden=files)
-    made.result(PIECE)
+    made.grade(JOB)
     assert asked == [("file", student, dict(files))]
     made, asked = grader(monkeypatch, result("x"))
-    made.result(PIECE)
+    made.grade(JOB)
     assert asked == [("file", "", {})]
 
 
@@ -81,28 +81,28 @@ def test_a_machine_without_the_tier_says_so_once(monkeypatch):
         "examine",
         lambda tier: asked.append(tier) or SimpleNamespace(works=tier != "none", says="no walls"),
     )
-    run._ready.cache_clear()
+    run._check_tier_available.cache_clear()
     for tier in ("some", "some", "none"):
-        made = Grader(HOMEWORK, Conditions(tier))
+        made = Grader(HOMEWORK, GradingOptions(tier))
         if tier == "none":
             with pytest.raises(Unavailable, match="no walls"):
-                made.ready()
+                made.check_available()
         else:
-            made.ready()
-    run._ready.cache_clear()
+            made.check_available()
+    run._check_tier_available.cache_clear()
     assert asked == ["some", "none"]
 
 
 def test_hidden_checks_travel_by_name_up_to_their_bound(tmp_path, monkeypatch):
-    assert run.hidden(None) == []
+    assert run.read_hidden_checks(None) == []
     for name in ("b.py", "a/c.npy", "a/__pycache__/c.pyc"):
         (tmp_path / "h" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "h" / name).write_bytes(name.encode())
     whole = [("a/c.npy", b"a/c.npy"), ("b.py", b"b.py")]
-    monkeypatch.setattr(run, "MOST", 11)
-    assert run.hidden(tmp_path / "h") == whole
-    monkeypatch.setattr(run, "MOST", 10)
+    monkeypatch.setattr(run, "MAX_HIDDEN_CHECKS_BYTES", 11)
+    assert run.read_hidden_checks(tmp_path / "h") == whole
+    monkeypatch.setattr(run, "MAX_HIDDEN_CHECKS_BYTES", 10)
     with pytest.raises(ValueError, match="expected hidden checks of at most 10 bytes, got 11"):
-        run.hidden(tmp_path / "h")
+        run.read_hidden_checks(tmp_path / "h")
     with pytest.raises(ValueError, match="expected a folder with hidden checks, got"):
-        run.hidden(tmp_path / "h" / "b.py")
+        run.read_hidden_checks(tmp_path / "h" / "b.py")

@@ -5,6 +5,7 @@ The strict tier, and what it keeps out, have tests of their own.
 
 import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import pytest
 from hdrlab.course import grading, plan
 from hdrlab.course.code import inline
 from hdrlab.course.material import handouts, materials, solutions
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import feedback, gradebook, results
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
@@ -22,7 +23,7 @@ from hdrlab.course.sandbox.running import Unavailable
 pytestmark = pytest.mark.grading
 
 HOMEWORKS = plan.read().homeworks
-PRACTICE = Conditions(tier="practice")
+PRACTICE = GradingOptions(tier="practice")
 
 RIGHT = """import numpy as np
 
@@ -93,7 +94,7 @@ def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
     assert any("Yours: shape (256,), dtype float64, values " in one.message for one in found.checks)
     assert not any(
         one.drawing.frames
-        for one in graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False)).checks
+        for one in graded(wrong, of("hw2", "gsolve"), replace(PRACTICE, draw=False)).checks
     )
 
 
@@ -120,7 +121,7 @@ def test_a_difference_of_pictures_is_drawn_three_times(graded):
 )
 def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, said):
     text = f"import numpy as np\ndef hat(n=256):\n    {body}\n"
-    found = graded(text, conditions=PRACTICE._replace(timeout=1.0))
+    found = graded(text, conditions=replace(PRACTICE, timeout=1.0))
     assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[
         0
     ].message
@@ -128,7 +129,7 @@ def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, sai
 
 def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_other_task(graded):
     endless = RIGHT + "def irradiance(*given):\n    while True: pass\n"
-    found = graded(endless, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=1.0))
+    found = graded(endless, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=1.0))
     first, *others = found.of("irradiance")
     assert "took longer than" in first.message and results.points(found.of("hat")) == (10, 10)
     assert all(
@@ -151,7 +152,7 @@ def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
 
 def test_lambda_read_as_1_costs_half_and_is_told_once(graded):
     wrong = solutions.texts(of("hw2", "gsolve"), ["gsolve_lambda_read_as_1"])["gsolve"]
-    found = graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False))
+    found = graded(wrong, of("hw2", "gsolve"), replace(PRACTICE, draw=False))
     assert 15 <= found.score < 20
     assert [one.follows for one in found.checks if one.outcome != "holds"].count("") == 1
 
@@ -185,7 +186,7 @@ def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_
         "import pytest\nfrom hdrlab.course.checks.compare import Different\n\n@pytest.mark.points(5)\n"
         'def test_it_is_blue(subject):\n    """A secret hint."""\n    raise Different("the secret")\n'
     )
-    found = graded(RIGHT, conditions=PRACTICE._replace(hidden=hidden))
+    found = graded(RIGHT, conditions=replace(PRACTICE, hidden=hidden))
     (own,) = (one for one in found.checks if one.hidden)
     assert (
         own.outcome == "fails" and own.max_points > 0 and found.max_score == 10 and found.score < 10
@@ -197,10 +198,10 @@ def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_
 
 def test_grading_again_gives_the_same_bytes_and_another_student_other_inputs(graded):
     wrong = RIGHT + "\ndef irradiance(Z, t, f, w):\n    return (w[Z] * f[Z]) @ t\n"
-    conditions = PRACTICE._replace(student="ada", secret="salt")
+    conditions = replace(PRACTICE, student="ada", secret="salt")
     first, again = (graded(wrong, of("hw2", "hat", "irradiance"), conditions) for _ in range(2))
     assert results.to_json(first) == results.to_json(again)
-    other = graded(wrong, of("hw2", "hat", "irradiance"), conditions._replace(student="bob"))
+    other = graded(wrong, of("hw2", "hat", "irradiance"), replace(conditions, student="bob"))
     assert [one.message for one in other.checks] != [one.message for one in first.checks]
     assert other.seed != first.seed and other.score == first.score
 
@@ -223,7 +224,7 @@ def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(scratch))
     file = tmp_path / "hw2.py"
     file.write_text(RIGHT + "def irradiance(*given):\n    while True: pass\n")
-    steps = grading.grade_steps(file, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=60))
+    steps = grading.grade_steps(file, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=60))
     next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
     time.sleep(2)
     assert processes.of(scratch) and list(scratch.iterdir())
@@ -240,7 +241,7 @@ def test_a_tier_that_cannot_be_had_is_an_error_and_no_other_takes_its_place(grad
 
     monkeypatch.setattr("hdrlab.course.sandbox.tiers.choose", refuse)
     with pytest.raises(Unavailable, match="strict cannot be had"):
-        graded(RIGHT, conditions=Conditions())
+        graded(RIGHT, conditions=GradingOptions())
 
 
 def test_what_stands_around_has_no_say(graded, tmp_path, monkeypatch):
@@ -258,7 +259,7 @@ def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(g
     with pytest.raises(ValueError, match="expected checks for hw2"):
         graded(RIGHT, unknown)
     with pytest.raises(ValueError, match="expected a folder with hidden checks"):
-        graded(RIGHT, conditions=PRACTICE._replace(hidden=tmp_path / "missing"))
+        graded(RIGHT, conditions=replace(PRACTICE, hidden=tmp_path / "missing"))
 
 
 def test_what_a_sheet_gives_is_known_to_the_grader():
@@ -290,7 +291,7 @@ def test_in_a_sandbox_the_library_has_all_points_and_a_blank_none(name, tmp_path
     homework, file = HOMEWORKS[name], tmp_path / f"{name}.py"
     blocks = inline.inlined({task.id: task.function for task in homework.tasks})
     file.write_text("\n\n".join(block.text for block in blocks.values()))
-    strict = Conditions(student="ada", secret="salt")
+    strict = GradingOptions(student="ada", secret="salt")
     right = grading.grade(file, homework, strict)
     assert right.score == right.max_score == homework.points, [
         one for one in right.checks if one.message

@@ -43,14 +43,14 @@ def find(tmp_path):
 
 
 def came(found):
-    return {team: one.received for team, one in found.handins.items()}
+    return {team: one.received for team, one in found.submissions.items()}
 
 
 def test_a_late_file_in_a_folder_does_not_get_the_time_of_the_name_it_bears(find):
     found = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
     assert came(found) == {"b05": NOON, "b06": LATE}
-    assert any("b06/b05_hw2.ipynb" in note and "no row" in note for note in found.notes)
-    assert "no row" in found.handins["b06"].note and not found.handins["b05"].note
+    assert any("b06/b05_hw2.ipynb" in note and "not in the table" in note for note in found.notes)
+    assert "not in the table" in found.submissions["b06"].note and not found.submissions["b05"].note
 
 
 @pytest.mark.parametrize("name", ["b05/hw2.ipynb", "./b05/hw2.ipynb", "b05\\hw2.ipynb"])
@@ -77,7 +77,7 @@ def test_a_row_without_a_file_and_a_file_without_a_row_are_noted(find):
     found = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
     assert any(note.startswith("b02.py") and "no such file" in note for note in found.notes)
     assert (
-        any(note.startswith("b06.py") and "no row" in note for note in found.notes)
+        any(note.startswith("b06.py") and "not in the table" in note for note in found.notes)
         and len(found.notes) == 2
     )
 
@@ -100,7 +100,7 @@ def test_a_composed_name_finds_its_row_in_the_other_form(find):
 @pytest.mark.parametrize("name", ["b05", "B05", "\uff22\uff10\uff15"])
 @pytest.mark.parametrize("rest", ["_hw2.py", "-b06.py", ".py", " (1).py", "/b06.py", "/t1_hw2.py"])
 def test_a_file_is_of_the_name_that_it_begins_with_or_of_its_folder(find, name, rest):
-    assert set(find({f"{name}{rest}": "x"}).handins) == {"b05"}
+    assert set(find({f"{name}{rest}": "x"}).submissions) == {"b05"}
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_a_file_is_of_the_name_that_it_begins_with_or_of_its_folder(find, name, 
 )
 def test_a_name_that_is_not_quite_a_students_is_nobodys(find, name):
     found = find({name: "x"})
-    assert found.handins == {} and "knows nobody" in found.notes[0]
+    assert found.submissions == {} and "no student or team" in found.notes[0]
 
 
 def awkward(kind, path):
@@ -136,17 +136,17 @@ def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, ki
     odd.parent.mkdir(parents=True)
     awkward(kind, odd)
     found = find({"b06.py": "y"})
-    assert set(found.handins) == {"b06"} and set(found.refused) == {"b05"}
+    assert set(found.submissions) == {"b06"} and set(found.refused) == {"b05"}
     assert found.refused["b05"] == found.notes[0] and found.notes[0].startswith("b05/hw2")
 
 
 def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
-    for k in range(handins.MOST + 1):
+    for k in range(handins.MAX_FILES_PER_FOLDER + 1):
         (tmp_path / "in" / "b05" / f"{k}.py").touch()
     found = find({"b06.py": "y"})
     assert found.notes == ("b05: expected at most 1000 files in a folder",)
-    assert set(found.handins) == {"b06"} and found.refused == {"b05": found.notes[0]}
+    assert set(found.submissions) == {"b06"} and found.refused == {"b05": found.notes[0]}
 
 
 def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
@@ -156,7 +156,7 @@ def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
     )
     found = find({"b05.py": "x", "b06.py": "y"})
     assert found.refused == {"b05": "b05.py: a file that cannot be read"} and set(
-        found.handins
+        found.submissions
     ) == {"b06"}
 
 
@@ -172,7 +172,7 @@ def test_a_time_that_no_calendar_has_is_noted(seconds, monkeypatch):
     status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
     monkeypatch.setattr(os, "access", lambda *asked: True)
     odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
-    assert "before the year 10000" in handins._why_not(odd)
+    assert "before the year 10000" in handins.find_problem(odd)
 
 
 def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):
@@ -180,5 +180,7 @@ def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):
     awkward("link", tmp_path / "in" / "b05" / "later.py")
     found = find({"b05/hw2.py": "x"})
     assert (
-        found.handins["b05"].path.name == "hw2.py" and found.refused == {} and len(found.notes) == 1
+        found.submissions["b05"].path.name == "hw2.py"
+        and found.refused == {}
+        and len(found.notes) == 1
     )

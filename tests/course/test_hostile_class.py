@@ -7,7 +7,7 @@ import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 from hdrlab.course.sandbox import doctor
 
 pytestmark = pytest.mark.grading
@@ -72,7 +72,7 @@ def grade(tmp_path, monkeypatch):
             path: path.read_bytes()
             for path in (tmp_path / f"{folder}-out" / "feedback").rglob("*.*")
         }
-        rows = sheets.read_csv(tmp_path / f"{folder}-out" / "gradebook.csv")
+        rows = csv_tables.read_csv(tmp_path / f"{folder}-out" / "gradebook.csv")
         return {row["student"]: row for row in rows}, {
             str(path.relative_to(tmp_path / f"{folder}-out")): data for path, data in files.items()
         }

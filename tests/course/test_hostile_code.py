@@ -13,12 +13,12 @@ import pytest
 from hdrlab.course import grading, plan
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.classroom.journal import Done, Piece
+from hdrlab.course.classroom.jobs import GradingJob, JobResult
 from hdrlab.course.reports import feedback, gradebook, results
 from hdrlab.course.reports.results import Check, Result
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import channel
-from hdrlab.course.wording import lines, plain
+from hdrlab.course.sanitize import sanitize_line, sanitize_text
 
 pytestmark = pytest.mark.grading
 
@@ -145,8 +145,8 @@ def test_the_words_of_the_grader_in_an_exception_buy_no_second_try(tmp_path, mon
         return result(message=message, kind="raised" if len(tries) < 9 else "")
 
     monkeypatch.setattr(grading, "grade", graded)
-    grader = classroom.Grader(None, plan.Conditions("practice"))
-    grader.result(Piece("b1", tmp_path / "b1.py", "key"))
+    grader = classroom.Grader(None, plan.GradingOptions("practice"))
+    grader.grade(GradingJob("b1", tmp_path / "b1.py", "key"))
     assert len(tries) == 1
 
 
@@ -186,26 +186,30 @@ def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, s
 @pytest.mark.parametrize("name", hostile.NASTY)
 def test_the_one_gate_takes_out_what_escaping_does_not_mend(name):
     text = hostile.NASTY[name]
-    for once in (lines(text, 4000), plain(text, 80), plain("a" + text + "b", 80)):
+    for once in (
+        sanitize_text(text, 4000),
+        sanitize_line(text, 80),
+        sanitize_line("a" + text + "b", 80),
+    ):
         assert shown(once) and once.encode().decode() == once
-        assert lines(once, 4000) == once
-    assert len(plain(text * 100, 80)) <= 80
+        assert sanitize_text(once, 4000) == once
+    assert len(sanitize_line(text * 100, 80)) <= 80
 
 
 def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path, monkeypatch):
     monkeypatch.setattr(feedback, "page", lambda _: "\ud800")
     (tmp_path / "b1.json").write_bytes(results.to_json(result()))
     done = classroom.write_feedback(
-        tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json")
+        tmp_path, JobResult(GradingJob("b1", tmp_path, "key"), tmp_path / "b1.json")
     )
-    assert done.result and done.why.startswith(
+    assert done.path and done.problem.startswith(
         "its feedback could not be written: UnicodeEncodeError"
     )
     (tmp_path / "b1.json").write_text("half a res")
     done = classroom.write_feedback(
-        tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json")
+        tmp_path, JobResult(GradingJob("b1", tmp_path, "key"), tmp_path / "b1.json")
     )
-    assert "its feedback could not be written" in done.why
+    assert "its feedback could not be written" in done.problem
 
 
 def test_values_outside_of_arrays_are_counted_on_both_sides():

@@ -151,14 +151,14 @@ def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_pa
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
     found = handins.find(tmp_path, ROSTER)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
-    assert "b2" in found.handins and all(
+    assert "b2" in found.submissions and all(
         note.isprintable() and len(note) < 250 for note in found.notes
     )
     if name in ("an empty file", "a notebook of 60 MB"):
-        read = submission.tasks_of(found.handins["b1"].path, ["hat"])
+        read = submission.tasks_of(found.submissions["b1"].path, ["hat"])
         assert "is empty" in read.problems[0] or "has more than 50 MB" in read.problems[0]
     else:
-        assert "b1" not in found.handins and found.refused["b1"] in found.notes
+        assert "b1" not in found.submissions and found.refused["b1"] in found.notes
 
 
 def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
@@ -166,7 +166,7 @@ def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
     hostile.sparse(tmp_path / "b1_later.ipynb")
     found = handins.find(tmp_path, ROSTER)
-    assert found.handins["b1"].path.name == "b1_hw2.py"
+    assert found.submissions["b1"].path.name == "b1_hw2.py"
     assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
 
 

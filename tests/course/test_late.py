@@ -5,13 +5,13 @@ from datetime import datetime, timedelta
 import pytest
 from hypothesis import given, strategies as st
 
-from hdrlab.course.classroom.late import Handed, accounts, lateness, what_if
+from hdrlab.course.classroom.late import LateRecord, accounts, lateness, what_if
 
 ANNA, BEN, CY = "anna", "ben", "cy"
 days, points = st.integers(0, 40), st.floats(0, 100)
 terms = st.lists(
     st.tuples(days, st.sampled_from([(ANNA,), (BEN,), (ANNA, BEN), (ANNA, CY)]), points), max_size=6
-).map(lambda rows: [Handed(f"hw{k}", *row) for k, row in enumerate(rows)])
+).map(lambda rows: [LateRecord(f"hw{k}", *row) for k, row in enumerate(rows)])
 
 
 def costs(handed, **knobs):
@@ -21,9 +21,9 @@ def costs(handed, **knobs):
 def test_ten_days_in_all_are_free_and_the_eleventh_costs_a_point():
     found = costs(
         [
-            Handed("hw1", 4, (ANNA,), 100),
-            Handed("hw2", 6, (ANNA,), 100),
-            Handed("hw3", 1, (ANNA,), 100),
+            LateRecord("hw1", 4, (ANNA,), 100),
+            LateRecord("hw2", 6, (ANNA,), 100),
+            LateRecord("hw3", 1, (ANNA,), 100),
         ]
     )
     assert [found[ANNA, f"hw{k}"].penalty for k in (1, 2, 3)] == [0, 0, 1]
@@ -31,17 +31,17 @@ def test_ten_days_in_all_are_free_and_the_eleventh_costs_a_point():
 
 
 def test_a_project_costs_no_more_than_it_is_worth():
-    one = costs([Handed("hw1", 500, (ANNA,), 87.5)])[ANNA, "hw1"]
+    one = costs([LateRecord("hw1", 500, (ANNA,), 87.5)])[ANNA, "hw1"]
     assert (one.penalty, one.score) == (87.5, 0)
 
 
 def test_a_project_at_zero_does_not_eat_into_another():
-    found = costs([Handed("hw1", 500, (ANNA,), 80), Handed("hw2", 3, (ANNA,), 90)])
+    found = costs([LateRecord("hw1", 500, (ANNA,), 80), LateRecord("hw2", 3, (ANNA,), 90)])
     assert (found[ANNA, "hw1"].score, found[ANNA, "hw2"].score) == (0, 87)
 
 
 def test_in_a_team_each_pays_with_their_own_days():
-    found = costs([Handed("hw1", 9, (ANNA,), 100), Handed("project", 3, (ANNA, BEN), 100)])
+    found = costs([LateRecord("hw1", 9, (ANNA,), 100), LateRecord("project", 3, (ANNA, BEN), 100)])
     assert (found[ANNA, "project"].penalty, found[BEN, "project"].penalty) == (2, 0)
     assert (found[ANNA, "project"].left, found[BEN, "project"].left) == (0, 7)
 
@@ -68,7 +68,7 @@ def test_nobody_spends_more_grace_than_there_is_and_every_late_day_is_accounted_
 @given(terms, days, points)
 def test_a_later_project_does_not_change_an_earlier_one(term, late, worth):
     before = costs(term)
-    after = costs([*term, Handed("last", late, (ANNA, BEN), worth)])
+    after = costs([*term, LateRecord("last", late, (ANNA, BEN), worth)])
     assert {key: after[key] for key in before} == before
 
 
@@ -81,7 +81,7 @@ def test_another_day_late_never_raises_a_score(term, late):
 
 
 def test_the_what_if_table_holds_what_would_come_of_it():
-    term = [Handed("hw1", 7, (ANNA,), 100), Handed("project", 0, (ANNA, BEN), 90)]
+    term = [LateRecord("hw1", 7, (ANNA,), 100), LateRecord("project", 0, (ANNA, BEN), 90)]
     for late, rows in what_if(term, "project"):
         assert rows == {
             who: costs([term[0], term[1]._replace(late=late)])[who, "project"]
@@ -106,9 +106,9 @@ def test_times_without_a_zone_are_refused():
 @pytest.mark.parametrize(
     ("handed", "said"),
     [
-        ([Handed("hw1", -1, (ANNA,), 9)], "late days"),
-        ([Handed("hw1", 0, (ANNA, ANNA), 9)], "twice"),
-        ([Handed("hw1", 0, (ANNA,), 9), Handed("hw1", 1, (ANNA,), 9)], "twice"),
+        ([LateRecord("hw1", -1, (ANNA,), 9)], "late days"),
+        ([LateRecord("hw1", 0, (ANNA, ANNA), 9)], "twice"),
+        ([LateRecord("hw1", 0, (ANNA,), 9), LateRecord("hw1", 1, (ANNA,), 9)], "twice"),
     ],
 )
 def test_what_makes_no_sense_is_refused(handed, said):
@@ -120,7 +120,7 @@ def test_what_makes_no_sense_is_refused(handed, said):
 
 @pytest.mark.parametrize("terms", [{"grace": -1}, {"per_day": -0.5}])
 def test_days_and_points_below_zero_are_refused_and_none_of_both_is_not(terms):
-    handed = [Handed("hw1", 2, (ANNA,), 9)]
+    handed = [LateRecord("hw1", 2, (ANNA,), 9)]
     with pytest.raises(ValueError, match="at least 0"):
         list(accounts(handed, **terms))
     (account,) = accounts(handed, **dict.fromkeys(terms, 0))

@@ -10,17 +10,17 @@ import pytest
 
 from hdrlab.course import grading, plan
 from hdrlab.course.checks import SPECIFICATION, running
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports.results import Drawing
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
-from hdrlab.course.submission import Submission
+from hdrlab.course.submission import SubmittedCode
 
 HW2 = plan.read().homeworks["hw2"]
 HOMEWORK = HW2._replace(
     tasks=tuple(one for one in HW2.tasks if one.id in ("hat", "gsolve")), at_most=None
 )
-READ = Submission({"hat": "def hat(): ..."}, ("a problem",), "digest", ("numpy",))
+READ = SubmittedCode({"hat": "def hat(): ..."}, ("a problem",), "digest", ("numpy",))
 
 
 def check(name, task="hat", *, points="1", needs="", case="", hidden=False, hints=("h",)):
@@ -68,7 +68,7 @@ def heard(monkeypatch):
 
 
 def test_a_result_says_what_was_checked_of_whom_and_how(heard):
-    conditions = Conditions("container", "ada", "secret")
+    conditions = GradingOptions("container", "ada", "secret")
     (found,) = heard(check("hold"), conditions=conditions, homework=HOMEWORK._replace(at_most=7.0))
     assert found[:4] == ("ada", "hw2", HOMEWORK.title, "container")
     assert (found.problems, found.submission, found.at_most) == (("a problem",), "digest", 7.0)
@@ -81,7 +81,7 @@ def test_a_result_says_what_was_checked_of_whom_and_how(heard):
 
 
 def test_the_job_holds_all_that_the_checks_are_to_know(heard):
-    heard(conditions=Conditions("strict", "ada", "secret", None, 3.0, False))
+    heard(conditions=GradingOptions("strict", "ada", "secret", None, 3.0, False))
     ((folder, job, files, patience, told, _, lines),) = heard.jobs
     assert (job, patience, lines, heard.chosen) == (folder / "job.json", 240, b"", ["strict"])
     assert files == [SPECIFICATION / f"test_{one.id}.py" for one in HOMEWORK.tasks]
@@ -106,7 +106,7 @@ def test_the_job_holds_all_that_the_checks_are_to_know(heard):
 def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is_a_secret(
     student, secret, seeded, heard
 ):
-    (found,) = heard(conditions=Conditions("strict", student, secret))
+    (found,) = heard(conditions=GradingOptions("strict", student, secret))
     seeds = heard.jobs[0][4]["seeds"]
     assert (set(seeds.values()) == {"0"}) is (seeded == 0)
     assert len(found.seed) == (16 if seeded == 2 else 0)
@@ -114,14 +114,14 @@ def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is
 
 def test_more_of_a_job_stands_beside_the_rest(heard, monkeypatch):
     heard()
-    list(grading.heard_steps(READ, HOMEWORK, Conditions(), by="other", asked=[1]))
+    list(grading.heard_steps(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
     assert heard.jobs[1][4]["by"] == "other" and heard.jobs[1][4]["asked"] == [1]
 
 
 def test_hidden_checks_stand_after_each_tasks_own(heard, tmp_path):
     for name in ("test_hat.py", "test_other.py"):
         (tmp_path / name).write_text("", encoding="utf8")
-    heard(conditions=Conditions(hidden=tmp_path))
+    heard(conditions=GradingOptions(hidden=tmp_path))
     _, _, files, _, told, *_ = heard.jobs[0]
     own = {one.id: [SPECIFICATION / f"test_{one.id}.py"] for one in HOMEWORK.tasks}
     own["hat"].append(tmp_path / "test_hat.py")
@@ -129,7 +129,7 @@ def test_hidden_checks_stand_after_each_tasks_own(heard, tmp_path):
     assert told["hidden"] == str(tmp_path)
     for missing in (tmp_path / "none", tmp_path / "test_hat.py"):
         with pytest.raises(ValueError, match="expected a folder with hidden checks, got"):
-            heard(conditions=Conditions(hidden=missing))
+            heard(conditions=GradingOptions(hidden=missing))
 
 
 def test_the_checks_of_a_variant_are_reworded_and_those_of_ones_own_folder_are_not(heard, tmp_path):
@@ -137,7 +137,7 @@ def test_the_checks_of_a_variant_are_reworded_and_those_of_ones_own_folder_are_n
     (task,) = [one for one in hw1.tasks if one.id == "exclusion"]
     homework = hw1._replace(tasks=(task._replace(variant="compared/above/six"), *HOMEWORK.tasks))
     (tmp_path / "test_exclusion.py").write_text("hidden", encoding="utf8")
-    heard(homework=homework, conditions=Conditions(hidden=tmp_path))
+    heard(homework=homework, conditions=GradingOptions(hidden=tmp_path))
     folder, _, files, *_, texts, _ = heard.jobs[0]
     assert files[:2] == [folder / "test_exclusion.py", tmp_path / "test_exclusion.py"]
     assert files[2:] == [SPECIFICATION / f"test_{one.id}.py" for one in HOMEWORK.tasks]

@@ -8,10 +8,10 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from hdrlab.course.classroom import marks, moodle, run as classroom
-from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.plan import Conditions, Homework, Late, Task
-from hdrlab.course.reports import sheets
+from hdrlab.course.plan import GradingOptions, Homework, Late, Task
+from hdrlab.course.reports import csv_tables
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework("hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 100),))
@@ -58,10 +58,10 @@ WORKSHEET = [
 
 @pytest.fixture
 def rows():
-    course = classroom.Course(ROSTER, HOMEWORK, Conditions(), Late(0, 1.0))
+    course = classroom.GradingContext(ROSTER, HOMEWORK, GradingOptions(), Late(0, 1.0))
     came = {
-        "t": Handin("t", ("b1", "b2"), None, DUE + timedelta(days=2), "digest"),
-        "b3": Handin("b3", ("b3",), None, DUE, "digest"),
+        "t": Submission("t", ("b1", "b2"), None, DUE + timedelta(days=2), "digest"),
+        "b3": Submission("b3", ("b3",), None, DUE, "digest"),
     }
     return marks.marks(course, came, {"t": 90.5})
 
@@ -72,7 +72,7 @@ def write(tmp_path, rows):
     (tmp_path / "feedback" / "t" / "feedback.html").write_text("<p>of t")
 
     def written(lines=WORKSHEET, header=HEADER):
-        sheets.write_csv(tmp_path / "sheet.csv", header, lines)
+        csv_tables.write_csv(tmp_path / "sheet.csv", header, lines)
         return moodle.write(tmp_path, tmp_path / "sheet.csv", rows, ROSTER, HOMEWORK)
 
     return written
@@ -88,7 +88,7 @@ def importer(name):
 
 def test_the_gradebook_s_table_says_who_in_three_ways_and_the_score_after_its_penalty(rows):
     header, lines = moodle.gradebook(rows, ROSTER, HOMEWORK)
-    read = list(csv.reader(io.StringIO(sheets.csv_text(header, lines))))
+    read = list(csv.reader(io.StringIO(csv_tables.csv_text(header, lines))))
     assert read[0] == ["ID number", "Username", "Email address", "hw2: The response curve"]
     assert read[1] == ["b1", "b1", "ada@example.edu", "88.5"]
     assert [line[3] for line in read[1:]] == ["88.5", "88.5", "0.0", "0.0"]

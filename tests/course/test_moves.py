@@ -2,18 +2,19 @@
 
 import json
 import os
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
-from hdrlab.course.classroom import journal, regrade
-from hdrlab.course.classroom.journal import Piece
-from hdrlab.course.classroom.regrade import Move
+from hdrlab.course.classroom import jobs, regrade
+from hdrlab.course.classroom.jobs import GradingJob
+from hdrlab.course.classroom.regrade import ScoreChange
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.reports import results
 from hdrlab.course.reports.results import Check, Result
 
-PIECE = Piece("t", "file", "new")
+JOB = GradingJob("t", "file", "new")
 CLASS = Roster((Student("b1", "Ada", "t"), Student("=b2", "Bo", "u")))
 
 
@@ -35,14 +36,16 @@ def folder(tmp_path):
             (tmp_path / place).mkdir(parents=True, exist_ok=True)
             if found is not None:
                 data = found if isinstance(found, bytes) else results.to_json(found)
-                journal.write(journal.place(tmp_path / place, PIECE._replace(key=key)), data)
+                jobs.write_private_file(
+                    jobs.result_path(tmp_path / place, replace(JOB, key=key)), data
+                )
         return tmp_path
 
     return written
 
 
 def moves(out, policy="replace", listed=(), asked=None):
-    return regrade.moves(out, [PIECE], policy, listed, asked or {})
+    return regrade.moves(out, [JOB], policy, listed, asked or {})
 
 
 @pytest.mark.parametrize(
@@ -67,7 +70,7 @@ def test_which_result_counts_is_for_the_policy_to_say(
 ):
     standing = None if before is None else result(before)
     (move,) = moves(folder(standing, result(after, submission)), policy, listed)
-    assert move[:6] == (PIECE, before, after, counts, counts - (before or 0), taken)
+    assert move[:6] == (JOB, before, after, counts, counts - (before or 0), taken)
     same = before is None or before == after
     assert move.changes == (
         () if same else (("a", "It ps", f"holds, {before} of 10 \u2192 holds, {after} of 10"),)
@@ -78,7 +81,9 @@ def test_which_result_counts_is_for_the_policy_to_say(
 def test_who_asks_is_answered_also_where_nothing_changes(folder):
     out = folder(here=result(5))
     assert moves(out) == [] and moves(out, asked={"u": ["x"]}) == []
-    assert moves(out, asked={"t": ["x", "y"]}) == [Move(PIECE, 5, 5, 5, 0, True, (), ("x", "y"))]
+    assert moves(out, asked={"t": ["x", "y"]}) == [
+        ScoreChange(JOB, 5, 5, 5, 0, True, (), ("x", "y"))
+    ]
 
 
 def test_what_could_not_be_graded_anew_keeps_what_it_has_and_what_never_was_is_no_move(folder):
@@ -104,8 +109,8 @@ def test_promises_that_come_and_go_are_told_too(folder):
 
 def test_of_two_results_of_a_team_the_later_one_stands(folder):
     out = folder(result(5))
-    older = journal.place(out / "results", PIECE._replace(key="older"))
-    journal.write(older, results.to_json(result(1)))
+    older = jobs.result_path(out / "results", replace(JOB, key="older"))
+    jobs.write_private_file(older, results.to_json(result(1)))
     for when, points in ((1, 5), (2_000_000_000, 1)):
         os.utime(older, (when, when))
         assert moves(out and folder(staged=result(7)))[0].before == points
@@ -127,7 +132,7 @@ def test_requests_are_a_teams_in_four_hundred_characters(tmp_path):
 
 
 def applied(out, *found, secret="secret", **said):
-    regrade.apply(out, found, [PIECE], secret, **said)
+    regrade.apply(out, found, [JOB], secret, **said)
     return [json.loads(one) for one in (out / "journal.jsonl").read_text("utf8").splitlines()]
 
 
@@ -142,15 +147,15 @@ def test_what_counts_is_copied_the_old_goes_into_history_and_the_journal_grows_b
         and lines[0]["why"] == "a bug"
     )
     assert lines[0]["moved"] == {"t": [5.0, 7.0]} and len(lines[0]["signature"]) == 64
-    assert regrade._read(journal.place(out / "results", PIECE)) == result(7)
-    old = journal.place(out / "history" / "1", PIECE._replace(key="old"))
+    assert regrade._read(jobs.result_path(out / "results", JOB)) == result(7)
+    old = jobs.result_path(out / "history" / "1", replace(JOB, key="old"))
     assert regrade._read(old) == result(5) and old.parent.stat().st_mode & 0o777 == 0o700
-    again = applied(out, Move(PIECE, 7, 6, 7, 0, False, ()))
+    again = applied(out, ScoreChange(JOB, 7, 6, 7, 0, False, ()))
     assert [line["number"] for line in again] == [1, 2] and again[1]["before"] == lines[0][
         "signature"
     ]
     assert again[1]["moved"] == {} and regrade._read(
-        journal.place(out / "results", PIECE)
+        jobs.result_path(out / "results", JOB)
     ) == result(7)
     assert regrade.signed_lines(out, "secret") == again and applied(out) == again
     for secret in ("other", ""):
@@ -167,7 +172,7 @@ def test_a_line_that_was_changed_is_found(change, folder):
     out = folder(result(5), result(7))
     assert regrade.signed_lines(out, "secret") == []
     first, second = applied(out, *moves(out), why="a") and applied(
-        out, Move(PIECE, 7, 7, 7, 0, False, ()), why="b"
+        out, ScoreChange(JOB, 7, 7, 7, 0, False, ()), why="b"
     )
     text = "".join(json.dumps(line) + "\n" for line in (first, second | change))
     (out / "journal.jsonl").write_text(text, "utf8")
@@ -183,8 +188,8 @@ def test_a_line_that_was_changed_is_found(change, folder):
 def test_a_result_that_is_kept_stays_under_the_new_key(folder):
     out = folder(result(5), result(3))
     applied(out, *moves(out, "never-lower"))
-    assert regrade._read(journal.place(out / "results", PIECE)) == result(5)
-    assert not journal.place(out / "results", PIECE._replace(key="old")).exists()
+    assert regrade._read(jobs.result_path(out / "results", JOB)) == result(5)
+    assert not jobs.result_path(out / "results", replace(JOB, key="old")).exists()
 
 
 def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monkeypatch):
@@ -194,8 +199,8 @@ def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monk
     )
     change = ("a", "It ps", "fails \u2192 holds")
     found = [
-        Move(PIECE, 0.5, 9, 9, 8.5, True, (change,)),
-        Move(PIECE, None, 3, 3, 3, True, (change,)),
+        ScoreChange(JOB, 0.5, 9, 9, 8.5, True, (change,)),
+        ScoreChange(JOB, None, 3, 3, 3, True, (change,)),
     ]
     page = regrade.write(tmp_path, found, 10, "replace")
     assert page == tmp_path / "regrade" / "regrade.html" and page.read_text("utf8") == "a page"
@@ -212,7 +217,9 @@ def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monk
 
 
 def test_a_teams_name_may_have_dots(tmp_path):
-    piece = Piece("t.1", "file", "new")
+    piece = GradingJob("t.1", "file", "new")
     (tmp_path / "results").mkdir()
-    journal.write(journal.place(tmp_path / "results", piece), results.to_json(result(5)))
+    jobs.write_private_file(
+        jobs.result_path(tmp_path / "results", piece), results.to_json(result(5))
+    )
     assert regrade._standing(tmp_path) == {"t.1": tmp_path / "results" / "t.1.new.json"}

@@ -1,5 +1,6 @@
-"""A piece on a worker of a cluster: what it is done from, what it answers, and when it is let go."""
+"""A job on a worker of a cluster: what it is done from, what it answers, and when it is let go."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -7,9 +8,9 @@ import pytest
 
 from hdrlab.course import grading
 from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.classroom.executors import alone, cluster
-from hdrlab.course.classroom.executors.cluster import Task
-from hdrlab.course.classroom.journal import Piece
+from hdrlab.course.classroom.executors import cluster, subprocess_runner
+from hdrlab.course.classroom.executors.cluster import RemoteJob
+from hdrlab.course.classroom.jobs import GradingJob
 
 
 def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_path):
@@ -22,29 +23,27 @@ def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_pat
 def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monkeypatch):
     seen = []
 
-    def run(work, piece, *, patience, stopped):
-        seen.append(
-            (work, piece.owner, piece.path.name, piece.path.read_bytes(), patience, stopped)
-        )
+    def run(work, job, *, timeout, is_stopped):
+        seen.append((work, job.owner, job.path.name, job.path.read_bytes(), timeout, is_stopped))
         if fails:
-            raise alone.Failed("it fails")
+            raise subprocess_runner.ProcessFailed("it fails")
         return b"result"
 
-    monkeypatch.setattr(cluster.process, "run", run)
-    monkeypatch.setattr(cluster, "_watch", lambda: "watched")
+    monkeypatch.setattr(cluster.subprocess_runner, "run", run)
+    monkeypatch.setattr(cluster, "_watch_cancellation", lambda: "watched")
     ready = []
-    task = Task(
+    task = RemoteJob(
         len,
         lambda: ready.append(1),
-        Piece("ada", Path("/far/hw.py"), "k"),
+        GradingJob("ada", Path("/far/hw.py"), "k"),
         b"x",
         3.0,
         cluster.version(),
     )
-    assert cluster.do(task) == (b"-it fails" if fails else b"+result")
+    assert cluster.run_remote_job(task) == (b"-it fails" if fails else b"+result")
     assert seen == [(len, "ada", "hw.py", b"x", 3.0, "watched")] and ready == [1]
     with pytest.raises(ValueError, match="its hdrlab is .*, expected other"):
-        cluster.do(task._replace(version="other"))
+        cluster.run_remote_job(replace(task, version="other"))
     assert len(seen) == 1
 
 
@@ -55,7 +54,7 @@ def test_a_task_is_no_longer_wanted_when_it_is_forgotten_or_cancelled(monkeypatc
     }
     worker = SimpleNamespace(get_current_task=lambda: "mine", state=SimpleNamespace(tasks=tasks))
     monkeypatch.setattr(cluster.distributed, "get_worker", lambda: worker)
-    stopped = cluster._watch()
+    stopped = cluster._watch_cancellation()
     assert stopped() is False
     tasks["mine"].state = "cancelled"
     assert stopped() is True

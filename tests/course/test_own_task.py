@@ -15,7 +15,7 @@ from hdrlab.course.checks.plugin import Checking
 from hdrlab.course.code import inline
 from hdrlab.course.export import gradescope
 from hdrlab.course.material import handouts, own_task, stubs
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 
 WRONG = "def flat_field(Z, flat):\n    return Z / flat\n"
 FILE = "flat_field.py:flat_field"
@@ -91,7 +91,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
 @pytest.mark.grading
 def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
     (tmp_path / "extra.py").write_text(WRONG)
-    conditions = Conditions("practice", hidden=folder / "hidden")
+    conditions = GradingOptions("practice", hidden=folder / "hidden")
     found = grading.grade(tmp_path / "extra.py", extra(folder), conditions)
     (task,) = extra(folder).tasks
     says = {one.name: one.sentence for one in misconceptions.of_task(task)}
@@ -117,7 +117,7 @@ def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(fold
     (task,) = extra(folder).tasks
     task.own.unlink()
     (tmp_path / "extra.py").write_text(WRONG)
-    found = grading.grade(tmp_path / "extra.py", extra(folder), Conditions("practice"))
+    found = grading.grade(tmp_path / "extra.py", extra(folder), GradingOptions("practice"))
     assert found.misconceptions == {} and found.score < 10
     assert any("the corrected wall: expected" in one.message for one in found.checks)
 

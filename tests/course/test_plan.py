@@ -5,7 +5,7 @@ import stat
 import pytest
 
 from hdrlab.course import grading, plan
-from hdrlab.course.plan import ByHand, Conditions, Homework, Late, Task
+from hdrlab.course.plan import GradingOptions, Homework, Late, ManualTask, Task
 from hdrlab.response.debevec import gsolve
 
 TASK = 'id = "gsolve", function = "response.debevec.gsolve"'
@@ -23,10 +23,9 @@ def read(tmp_path):
     return read
 
 
-def test_what_is_not_said_is_nothing_and_the_strict_tier():
-    assert Task("a", "b.a", 1.0) == ("a", "b.a", 1.0, False, (), "")
-    assert Late() == (0, 0.0) and ByHand("a", 1.0) == ("a", 1.0, ())
-    assert Conditions() == ("strict", "", "", None, 10.0, True)
+def test_grading_is_strict_and_lateness_costs_nothing_by_default():
+    assert GradingOptions().tier == "strict"
+    assert Late() == (0, 0.0)
 
 
 def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp_path):
@@ -42,7 +41,7 @@ def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp
 @pytest.mark.parametrize(("at_most", "points"), [(None, 12), (20.0, 12), (12.0, 12), (7.0, 7)])
 def test_a_homework_is_worth_its_tasks_or_what_counts_at_most(at_most, points):
     tasks = (Task("a", "b.a", 5.0), Task("c", "b.c", 7.0))
-    assert Homework("hw", "", None, tasks, (ByHand("x", 3.0),), at_most).points == points
+    assert Homework("hw", "", None, tasks, (ManualTask("x", 3.0),), at_most).points == points
 
 
 def test_a_solution_is_the_librarys_a_variants_or_ones_own(tmp_path):
@@ -117,7 +116,7 @@ def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
     else:
         found = read(lines, f"{{ {TASK}, points = {points} }}").homeworks["hw9"]
         assert found.points == float(points)
-        assert found.by_hand == ((ByHand("T", 0.0, ("a", "1")),) if by_hand else ())
+        assert found.by_hand == ((ManualTask("T", 0.0, ("a", "1")),) if by_hand else ())
 
 
 @pytest.mark.parametrize(

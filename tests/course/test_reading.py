@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from hdrlab.course import submission
-from hdrlab.course.classroom.executors import alone
+from hdrlab.course.classroom.executors import subprocess_runner
 from hdrlab.course.code.closure import Cell
-from hdrlab.course.submission import Submission
+from hdrlab.course.submission import SubmittedCode
 
 SAID = [{"f": "text"}, ["a problem"], "digest", ["numpy"], {"f": "a/b"}]
 
@@ -22,23 +22,24 @@ def tried(monkeypatch):
     def tried(*endings):
         left, asked = list(endings), []
 
-        def run(work, order, *, patience, limits):
+        def run(work, order, *, timeout, limits):
             assert work is submission._read and Path(order[1]).is_dir()
-            asked.append((order[0], *order[2:], patience, limits))
+            asked.append((order[0], *order[2:], timeout, limits))
             end = left.pop(0)
             if isinstance(end, Exception):
                 raise end
             return json.dumps(end).encode()
 
-        monkeypatch.setattr(alone, "run", run)
+        monkeypatch.setattr(subprocess_runner, "run", run)
         return asked
 
     return tried
 
 
 def failed(own=False, killed=False):
-    made = alone.Failed("it was ended")
-    made.own, made.killed = own, killed
+    made = subprocess_runner.ProcessFailed("it was ended")
+    made.is_own_fault = own
+    made.was_killed = killed
     return made
 
 
@@ -60,7 +61,7 @@ def test_the_bounds_of_a_submission_are_those_that_the_pages_name():
 def test_a_file_is_read_in_two_seconds_and_an_archive_in_five(name, seconds, tried):
     asked = tried(SAID)
     found = submission.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
-    assert found == Submission({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
+    assert found == SubmittedCode({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
     limits = {"CPU": seconds, "AS": 500 << 20}
     assert asked == [(Path(name), "hw2", ("f", "g"), (Cell("x = 1"),), 25.0, limits)]
 
@@ -69,7 +70,8 @@ def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
     asked = tried(failed(own=True))
     said = "a.zip takes more than 5 s or 500 MB to read, as no homework does"
     assert (
-        submission.read(Path("a.zip"), "hw2", []) == Submission({}, (said,), "") and len(asked) == 1
+        submission.read(Path("a.zip"), "hw2", []) == SubmittedCode({}, (said,), "")
+        and len(asked) == 1
     )
 
 

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from hdrlab.course.classroom import roster
-from hdrlab.course.reports import sheets
-from hdrlab.course.wording import plain
+from hdrlab.course.reports import csv_tables
+from hdrlab.course.sanitize import sanitize_line
+from hdrlab.errors import InputError
 
 
 @pytest.fixture
@@ -23,7 +24,7 @@ def test_students_and_teams_are_recognised(listed):
         "7": ["b1", "b2"],
         "b3": ["b3"],
     }
-    assert found.find(" B2 ").name == "Bo" and found.team_of(["b2", "b1"]) == "7"
+    assert found.find(" B2 ").name == "Bo" and found.find_team("b2") == "7"
 
 
 @pytest.mark.parametrize(
@@ -101,12 +102,24 @@ def test_of_a_roster_that_is_taken_each_file_has_one_owner(tmp_path_factory, ids
             assert found.owner(name) == id
 
 
-def test_a_stranger_and_a_mixed_team_are_told(listed):
+def test_a_stranger_is_reported(listed):
     found = listed("student,team\nb1,7\nb2,8\n")
     with pytest.raises(ValueError, match="student of the roster"):
         found.find("b9")
-    with pytest.raises(ValueError, match="one team"):
-        found.team_of(["b1", "b2"])
+
+
+def test_a_team_is_found_by_its_name_or_a_member_in_any_case():
+    found = roster.Roster((roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "t1")))
+    for name in ("t1", "T1", "b1", " B2 "):
+        assert found.find_team(name) == "t1"
+    with pytest.raises(InputError, match="t9"):
+        found.find_team("t9")
+
+
+def test_a_name_that_could_mean_two_teams_is_refused():
+    found = roster.Roster((roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "T1")))
+    with pytest.raises(InputError, match="T1, t1"):
+        found.find_team("t1")
 
 
 @pytest.mark.parametrize(
@@ -124,8 +137,8 @@ def test_a_stranger_and_a_mixed_team_are_told(listed):
     ],
 )
 def test_no_cell_is_a_formula(cell):
-    assert sheets.safe(cell).startswith("'")
-    assert "\n" not in sheets.safe(cell) and "\r" not in sheets.safe(cell)
+    assert csv_tables.safe(cell).startswith("'")
+    assert "\n" not in csv_tables.safe(cell) and "\r" not in csv_tables.safe(cell)
 
 
 @given(st.text(max_size=40))
@@ -133,24 +146,24 @@ def test_whatever_a_name_holds_a_table_has_one_cell_of_it(text):
     import csv
     import io
 
-    rows = list(csv.reader(io.StringIO(sheets.csv_text(["name", "points"], [[text, -3]]))))
+    rows = list(csv.reader(io.StringIO(csv_tables.csv_text(["name", "points"], [[text, -3]]))))
     assert len(rows) == 2 and len(rows[1]) == 2 and rows[1][1] == "-3"
 
 
 def test_a_private_table_is_for_its_owner_alone(tmp_path):
-    path = sheets.write_csv(tmp_path / "links.csv", ["a"], [["b"]], private=True)
+    path = csv_tables.write_csv(tmp_path / "links.csv", ["a"], [["b"]], private=True)
     assert path.stat().st_mode & 0o077 == 0
-    assert sheets.read_csv(path) == [{"a": "b"}]
+    assert csv_tables.read_csv(path) == [{"a": "b"}]
 
 
 @given(st.text(max_size=200), st.integers(2, 40))
 def test_what_is_shown_is_one_line_without_marks_that_turn_text_around(text, most):
-    shown = plain(text, most)
+    shown = sanitize_line(text, most)
     assert len(shown) <= most and shown == shown.strip()
     assert all(letter.isprintable() for letter in shown)
-    assert plain(shown, most) == shown
+    assert sanitize_line(shown, most) == shown
 
 
 def test_accents_do_not_pile_up():
-    assert len(plain("a" + "\u0301" * 100, 50)) <= 3
-    assert plain("Nguy\u1ec5n \u05d0\u05d1 \u5f35", 40) == "Nguy\u1ec5n \u05d0\u05d1 \u5f35"
+    assert len(sanitize_line("a" + "\u0301" * 100, 50)) <= 3
+    assert sanitize_line("Nguy\u1ec5n \u05d0\u05d1 \u5f35", 40) == "Nguy\u1ec5n \u05d0\u05d1 \u5f35"

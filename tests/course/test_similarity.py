@@ -17,14 +17,14 @@ from copydetect import compare_files
 from hdrlab.cli import classroom as commands
 from hdrlab.course import plan
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.code import closure, inline
 from hdrlab.course.material import materials
 from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.overlap.authored import Work
-from hdrlab.course.plan import Conditions
-from hdrlab.course.reports import sheets
+from hdrlab.course.plan import GradingOptions
+from hdrlab.course.reports import csv_tables
 
 pytestmark = pytest.mark.grading
 
@@ -84,9 +84,9 @@ def written(folder, texts):
     for n, (team, text) in enumerate(texts.items()):
         path = folder / f"{n}_hw2.py"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        handins[team] = Handin(team, (team,), path, NOW, "digest")
+        handins[team] = Submission(team, (team,), path, NOW, "digest")
     assert list(alike.write_steps(folder, HW2, handins)) == sorted(texts)
-    return (folder / "similar.html").read_text(), sheets.read_csv(folder / "similar.csv")
+    return (folder / "similar.html").read_text(), csv_tables.read_csv(folder / "similar.csv")
 
 
 def tags(text):
@@ -303,7 +303,7 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
     program = (
         "import sys; from pathlib import Path; from hdrlab.course import plan\n"
         "from hdrlab.course.overlap import alike\n"
-        "from hdrlab.course.classroom.handins import Handin\n"
+        "from hdrlab.course.classroom.handins import Submission\n"
         "out, *files = map(Path, sys.argv[1:]); out.mkdir()\n"
         "handins = {f'{k}{n}': Handin('', (), f, None, '') for k in 'ba' for n, f in enumerate(files)}\n"
         "list(alike.write_steps(out, plan.read().homeworks['hw2'], handins))\n"
@@ -345,8 +345,8 @@ def test_an_empty_class_and_works_with_nothing_in_common_make_a_page(tmp_path):
 def compared(folder, capsys):
     """Return what the command says when a class of two is compared."""
     (folder / "a.py").write_text(LOOPS)
-    handins = {team: Handin(team, (team,), folder / "a.py", NOW, "digest") for team in "ab"}
-    course = classroom.Course(Roster(()), HW2, Conditions())
+    handins = {team: Submission(team, (team,), folder / "a.py", NOW, "digest") for team in "ab"}
+    course = classroom.GradingContext(Roster(()), HW2, GradingOptions())
     commands._compare(folder, course, handins)
     return capsys.readouterr().err
 

@@ -13,7 +13,7 @@ from hdrlab import cli
 from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom import toy
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 from hdrlab.course.sandbox import tiers
 
 pytestmark = pytest.mark.grading
@@ -57,7 +57,9 @@ def graded(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def rows(graded):
-    return {row["student"]: row for row in sheets.read_csv(graded / "results" / "gradebook.csv")}
+    return {
+        row["student"]: row for row in csv_tables.read_csv(graded / "results" / "gradebook.csv")
+    }
 
 
 def read(graded, team):

@@ -6,7 +6,7 @@ from traps import TRAPS, zipped
 
 from hdrlab import cli
 from hdrlab.course import submission
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 
 pytestmark = pytest.mark.grading
 
@@ -52,7 +52,7 @@ def test_a_class_with_traps_is_graded_and_each_is_told(tmp_path, monkeypatch):
     with pytest.raises(SystemExit) as ended:  # nothing of an archive runs before it is judged
         cli.run([*words, "--tier", "practice", "-o", "out", "--jobs", "2"])
     assert not ended.value.code
-    rows = {row["student"]: row for row in sheets.read_csv(tmp_path / "out" / "gradebook.csv")}
+    rows = {row["student"]: row for row in csv_tables.read_csv(tmp_path / "out" / "gradebook.csv")}
     assert {student: float(row["work"]) for student, row in rows.items()} == dict(
         zip(who, (0, 0, 10, 10), strict=True)
     )

@@ -15,12 +15,12 @@ from hdrlab import cli
 from hdrlab.course import grading, notebook, plan, submission, variants
 from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions, rewording
 from hdrlab.course.classroom import roster
-from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.export import autograder
 from hdrlab.course.material import handouts, materials, solutions
 from hdrlab.course.overlap import alike, authored, similarity
-from hdrlab.course.plan import Conditions
-from hdrlab.course.reports import sheets
+from hdrlab.course.plan import GradingOptions
+from hdrlab.course.reports import csv_tables
 
 pytestmark = pytest.mark.grading
 
@@ -138,7 +138,7 @@ def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(ta
     for variant in rewording.every(task):
         homework = homework_of(task, variant)
         heard = grading.heard_steps(
-            submission.Submission({}, (), ""), homework, Conditions(tier="practice")
+            submission.SubmittedCode({}, (), ""), homework, GradingOptions(tier="practice")
         )
         digests.add(next(heard)["specification"])
         heard.close()
@@ -408,7 +408,7 @@ def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, mon
     plain = course.homeworks["hw1"]._replace(
         tasks=tuple(one._replace(parameters=()) for one in course.homeworks["hw1"].tasks)
     )
-    result = grading.grade(path, plain, Conditions("practice"))
+    result = grading.grade(path, plain, GradingOptions("practice"))
     assert result.score == 25 and not result.problems
     (cell,) = (
         one
@@ -426,8 +426,8 @@ def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(cours
     homework = course.homeworks["hw1"]
     theirs = variants.draw(homework, "b7", SECRET)
     path = filled(theirs, tmp_path / "hw1.ipynb")
-    own = grading.grade(path, homework, Conditions("practice", "b7", SECRET))
-    other = grading.grade(path, homework, Conditions("practice", "pair", SECRET))
+    own = grading.grade(path, homework, GradingOptions("practice", "b7", SECRET))
+    other = grading.grade(path, homework, GradingOptions("practice", "pair", SECRET))
     assert own.score == 25 and not own.problems
     assert other.score <= 0.75 * 25 and other.specification != own.specification
     assert other.problems == (
@@ -469,7 +469,9 @@ def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
         "practice",
     )
     run("grade", "in", *words, "--secret-file", "secret.txt", "-o", "out")
-    points = {row["student"]: float(row["score"]) for row in sheets.read_csv("out/gradebook.csv")}
+    points = {
+        row["student"]: float(row["score"]) for row in csv_tables.read_csv("out/gradebook.csv")
+    }
     assert points["b2"] == points["b3"] == 25 and points["b1"] <= 0.75 * 25
     page = Path("out/similar.html").read_text()
     assert "Sheets of another variant" in page and "<b>b1</b>: exclusion, shift" in page
@@ -507,9 +509,9 @@ def written(folder, texts, course):
     handins = {}
     for team, text in texts.items():
         (folder / f"{team}.py").write_text(text)
-        handins[team] = Handin(team, (team,), folder / f"{team}.py", NOW, "digest")
+        handins[team] = Submission(team, (team,), folder / f"{team}.py", NOW, "digest")
     list(alike.write_steps(folder, homework, handins, SECRET))
-    return (folder / "similar.html").read_text(), sheets.read_csv(folder / "similar.csv")
+    return (folder / "similar.html").read_text(), csv_tables.read_csv(folder / "similar.csv")
 
 
 def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sheet_it_is(

@@ -17,7 +17,7 @@ from click.testing import CliRunner
 from benchmarks import viva as bench
 from hdrlab.cli import main
 from hdrlab.course import grading, plan
-from hdrlab.course.plan import Conditions
+from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
 from hdrlab.course.viva import changed, examining, inputs, pages
@@ -390,7 +390,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     sources["ev"] = siege.armed(name, place, 9) + begin + sources["ev"]
     homework = HOMEWORKS["hw1"]
     homework = homework._replace(tasks=tuple(one for one in homework.tasks if one.id in sources))
-    conditions = Conditions("strict", timeout=5.0, draw=False)
+    conditions = GradingOptions("strict", timeout=5.0, draw=False)
     more = {"seed": "3", "photographs": pages.photographs([])}
     more["by"] = THERE
     found = [*grading.heard_steps(bench.as_submission(sources), homework, conditions, **more)]

@@ -8,7 +8,7 @@ from distributed import KilledWorker
 from workers import ADDRESS
 
 from hdrlab.course.classroom.executors import cluster
-from hdrlab.course.classroom.journal import Ending, Piece
+from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
 
 
 @pytest.fixture
@@ -18,70 +18,65 @@ def clustered(monkeypatch):
 
 
 @pytest.fixture
-def piece(tmp_path):
-    """piece(owner) -> a Piece whose file is there."""
+def job(tmp_path):
+    """job(owner) -> a Piece whose file is there."""
 
-    def piece(owner="ada"):
+    def job(owner="ada"):
         (tmp_path / f"{owner}.py").write_bytes(owner.encode())
-        return Piece(owner, tmp_path / f"{owner}.py", "key")
+        return GradingJob(owner, tmp_path / f"{owner}.py", "key")
 
-    return piece
-
-
-def test_the_seconds_are_those_that_a_network_needs():
-    assert (cluster.CONNECT, cluster.LONELY, cluster.TICK, cluster.LOOK) == (5, 120, 0.05, 0.5)
-    assert cluster.PATIENCE == 1800
+    return job
 
 
 # Who gets which
 
 
-def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered, piece):
+def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered, job):
     made, client = clustered(a=1, b=3)
-    begun = [made.start(piece(f"p{k}")) for k in range(5)]
+    begun = [made.start(job(f"p{k}")) for k in range(5)]
     assert begun == [True] * 4 + [False]
     assert [worker for _, worker in client.sent] == ["b", "b", "a", "b"]
     task = client.sent[0][0]
-    assert task == (len, bool, piece("p0"), b"p0", 7.0, cluster.version())
+    assert task == cluster.RemoteJob(len, bool, job("p0"), b"p0", 7.0, cluster.version())
 
 
 def test_a_piece_that_is_to_be_alone_waits_for_a_worker_without_any_and_has_it_to_itself(
-    clustered, piece
+    clustered, job
 ):
     made, client = clustered(a=2)
-    assert made.start(piece("first")) and not made.start(piece("doubted"), alone=True)
+    assert made.start(job("first")) and not made.start(job("doubted"), alone=True)
     (future,) = made._running
     future.status, future.answer = "finished", b"+1"
-    assert made.endings() == [Ending(piece("first"), b"1")]
-    assert made.start(piece("doubted"), alone=True) and not made.start(piece("next"))
+    assert made.wait_for_attempts() == [JobAttempt(job("first"), b"1")]
+    assert made.start(job("doubted"), alone=True) and not made.start(job("next"))
     client.threads["b"] = 1
-    assert made.start(piece("next")) and [worker for _, worker in client.sent] == ["a", "a", "b"]
+    assert made.start(job("next")) and [worker for _, worker in client.sent] == ["a", "a", "b"]
     (future, _) = made._running
     future.status, future.answer = "finished", b"+1"
-    made.endings()
-    assert made.start(piece("more")) and client.sent[-1][1] == "a"
+    made.wait_for_attempts()
+    assert made.start(job("more")) and client.sent[-1][1] == "a"
 
 
-def test_without_workers_for_two_minutes_the_run_ends(clustered, piece):
+def test_without_workers_for_two_minutes_the_run_ends(clustered, job):
     made, client = clustered()
-    made._met = 1000.0
+    made._last_worker_time = 1000.0
     made.clock.now = 1120.0
-    assert not made.start(piece())
+    assert not made.start(job())
     client.threads["a"] = 1
-    assert made.start(piece())
+    assert made.start(job())
     client.threads.clear()
     made.clock.now = 1240.0
-    assert not made.start(piece())
+    assert not made.start(job())
     made.clock.now = 1240.1
     with pytest.raises(ValueError, match=f"the cluster at {ADDRESS} has had no worker for 120 s"):
-        made.start(piece())
+        made.start(job())
 
 
-def test_a_cluster_that_is_lost_is_told_in_words(clustered, piece):
+def test_a_cluster_that_is_lost_is_told_in_words(clustered, job):
     made, client = clustered(a=1)
     client.threads = OSError("the  line\nis cut")
-    with pytest.raises(ValueError, match="is lost; what is graded stays graded: the line is cut$"):
-        made.start(piece())
+    with pytest.raises(ValueError, match="is lost; finished results are kept: the line is cut$"):
+        made.start(job())
 
 
 # How they end
@@ -90,7 +85,7 @@ def test_a_cluster_that_is_lost_is_told_in_words(clustered, piece):
 def ended(made, status, answer=None, which=0):
     future = list(made._running)[which]
     future.status, future.answer = status, answer
-    return made.endings()
+    return made.wait_for_attempts()
 
 
 @pytest.mark.parametrize(
@@ -99,63 +94,65 @@ def ended(made, status, answer=None, which=0):
         ("finished", b"+result", (b"result", "", True)),
         ("finished", b"+", (b"", "", True)),
         ("finished", b"-it fails", (None, "it fails", True)),
-        ("cancelled", None, (None, "it was cancelled", False)),
-        ("lost", None, (None, "it was cancelled", False)),
+        ("cancelled", None, (None, "it was canceled", False)),
+        ("lost", None, (None, "it was canceled", False)),
         ("error", KilledWorker("task", None, 3), (None, "its worker a was lost", True)),
     ],
 )
 def test_a_piece_ends_with_its_result_or_with_why_there_is_none(
-    status, answer, ending, clustered, piece
+    status, answer, ending, clustered, job
 ):
     made, client = clustered(a=2)
-    made.start(piece(), alone=True)
-    assert made.endings() == [] and set(made.clock.slept) == {0.05}
+    made.start(job(), alone=True)
+    assert made.wait_for_attempts() == [] and set(made.clock.slept) == {0.05}
     waited = len(made.clock.slept)
     assert 10 <= waited <= 11
-    assert ended(made, status, answer) == [Ending(piece(), *ending)]
-    assert not made._running and not made._taken and len(made.clock.slept) == waited
+    assert ended(made, status, answer) == [JobAttempt(job(), *ending)]
+    assert not made._running and not made._reserved_workers and len(made.clock.slept) == waited
     assert client.cancelled[-1] == []
 
 
-def test_while_a_result_is_on_its_way_the_piece_runs(clustered, piece):
+def test_while_a_result_is_on_its_way_the_piece_runs(clustered, job):
     made, _ = clustered(a=1)
-    made.start(piece())
+    made.start(job())
     assert ended(made, "finished", TimeoutError()) == [] and len(made._running) == 1
     assert ended(made, "of its own") == []
-    assert ended(made, "finished", b"+1") == [Ending(piece(), b"1")]
+    assert ended(made, "finished", b"+1") == [JobAttempt(job(), b"1")]
 
 
-def test_an_error_over_there_that_is_no_loss_ends_the_run(clustered, piece):
+def test_an_error_over_there_that_is_no_loss_ends_the_run(clustered, job):
     made, _ = clustered(a=1)
-    made.start(piece())
-    with pytest.raises(ValueError, match="a of the cluster cannot do it: no walls"):
+    made.start(job())
+    with pytest.raises(ValueError, match="a of the cluster cannot do the work: no walls"):
         ended(made, "error", RuntimeError("no walls"))
 
 
-def test_a_worker_that_is_gone_is_blamed_on_a_piece_that_was_alone_there(clustered, piece):
+def test_a_worker_that_is_gone_is_blamed_on_a_piece_that_was_alone_there(clustered, job):
     made, client = clustered(a=2, b=1, c=1)
     for owner in ("p", "q", "r", "s"):
-        made.start(piece(owner))
-    places = {task.piece.owner: worker for task, worker in client.sent}
+        made.start(job(owner))
+    places = {task.job.owner: worker for task, worker in client.sent}
     assert sorted(places.values()) == ["a", "a", "b", "c"]
-    gone = [future for future, (_, worker) in made._running.items() if worker in "ab"]
+    gone = [future for future, running in made._running.items() if running.worker in "ab"]
     del client.threads["a"], client.threads["b"]
-    found = made.endings()
-    assert {one.piece.owner: (one.result, one.why, one.blamed) for one in found} == {
+    found = made.wait_for_attempts()
+    assert {one.job.owner: (one.result, one.problem, one.counts) for one in found} == {
         owner: (None, f"its worker {worker} was lost", worker == "b")
         for owner, worker in places.items()
         if worker != "c"
     }
-    assert client.cancelled == [gone] and [worker for _, worker in made._running.values()] == ["c"]
+    assert client.cancelled == [gone] and [
+        running.worker for running in made._running.values()
+    ] == ["c"]
 
 
-def test_of_a_worker_killed_again_and_again_one_piece_is_lost_and_the_others_run(clustered, piece):
+def test_of_a_worker_killed_again_and_again_one_piece_is_lost_and_the_others_run(clustered, job):
     made, client = clustered(a=2)
-    made.start(piece("p"))
-    made.start(piece("q"))
+    made.start(job("p"))
+    made.start(job("q"))
     first = next(iter(made._running))
     assert ended(made, "error", KilledWorker("task", None, 3)) == [
-        Ending(piece("p"), None, "its worker a was lost", False)
+        JobAttempt(job("p"), None, "its worker a was lost", False)
     ]
     assert client.cancelled[0] == [first] and len(made._running) == 1
 
@@ -184,10 +181,10 @@ def entered(clustered, monkeypatch):
     return entered
 
 
-def test_a_run_that_ends_takes_back_what_runs(entered, piece):
+def test_a_run_that_ends_takes_back_what_runs(entered, job):
     made, client = entered()
     with made:
-        made.start(piece())
+        made.start(job())
         assert client.closed == 0
     assert client.cancelled == [list(made._running)] and client.closed == 1
 
@@ -197,7 +194,10 @@ def test_a_run_that_ends_takes_back_what_runs(entered, piece):
     [
         ({"scheduler": "0.1"}, "the scheduler of the cluster has hdrlab 0.1, expected"),
         ({"versions": {"w": "0.2"}}, "w of the cluster has hdrlab 0.2, expected"),
-        ({"able": {"w": RuntimeError("no walls")}}, "w of the cluster cannot do it: no walls"),
+        (
+            {"able": {"w": RuntimeError("no walls")}},
+            "w of the cluster cannot do the work: no walls",
+        ),
         ({"versions": {"w": OSError()}, "able": {"v": None, "w": OSError()}}, ""),
     ],
 )

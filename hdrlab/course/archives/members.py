@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import IO, NamedTuple
 
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
 DEVICES = {
@@ -88,7 +88,7 @@ def _path(name: str, limits: Limits) -> PurePosixPath:
 
 def quote_name(name: str) -> str:
     """Return a member's name as a message can show it."""
-    return repr(plain(name.encode("utf8", "replace").decode("utf8"), 60))
+    return repr(sanitize_line(name.encode("utf8", "replace").decode("utf8"), 60))
 
 
 def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:

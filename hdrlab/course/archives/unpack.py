@@ -20,7 +20,7 @@ from pathlib import Path
 
 from hdrlab.course.archives import members, tarball
 from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, quote_name
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 
 DAMAGE = (
     OSError,
@@ -76,7 +76,7 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
                 errno.EINVAL,
             ):
                 raise
-            why = plain(str(error) or type(error).__name__, 80)
+            why = sanitize_line(str(error) or type(error).__name__, 80)
             raise Refused(f"it is damaged, or no .zip or .tar archive ({why})") from None
         os.rename(fresh, target)
     return found

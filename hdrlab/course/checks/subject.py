@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, NoReturn, Self
 
-from hdrlab.course import wording
+from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.running import Running, Sandbox
@@ -178,7 +178,7 @@ class Subject:
             self._spend(time.monotonic() - begun)
             self._explain_silence(task, error)
         self._spend(time.monotonic() - begun)
-        self.said += wording.lines(output, OUTPUT - len(self.said))
+        self.said += sanitize.sanitize_text(output, OUTPUT - len(self.said))
         return kind, value
 
     def _spend(self, seconds: float) -> None:
@@ -247,10 +247,11 @@ def _checked(kind: str, value: Any) -> tuple[str, Any]:
 def _explain(task: str, kind: str, value: Any) -> NoReturn:
     """Raise the NoAnswer of a call that raised, or whose answer cannot travel."""
     if kind == "refused":
-        says = f"{task} answered with something that is no array: it contains {wording.lines(value, 300)}"
+        content = sanitize.sanitize_text(value, 300)
+        says = f"{task} answered with something that is no array: it contains {content}"
         raise NoAnswer(says, "refused")
     error, message, text = (
-        wording.lines(value[word], 2000) for word in ("error", "message", "text")
+        sanitize.sanitize_text(value[word], 2000) for word in ("error", "message", "text")
     )
     where = f" (line {value['line']}: {text})" if value["line"] is not None else ""
     raise NoAnswer(

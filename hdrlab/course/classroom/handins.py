@@ -1,9 +1,9 @@
-"""What a class has handed in: which files are whose, and which of a team's counts.
+"""Find the submissions of a class: which file belongs to which team, and which one counts.
 
-A file or folder is a team's where its name begins with the team or one of its students, and then
-ends or goes on with a sign: b0123.ipynb, b0123_hw2.py, team7-hw2.zip. In a folder, the folder's
-name says whose a file is, and the file's own name says nothing. Of several the last that came
-counts.
+A file or folder belongs to a team if its name starts with the team's name or a student's id,
+followed by nothing or by a character other than a letter or digit: b0123.ipynb, b0123_hw2.py,
+team7-hw2.zip. A file in a folder belongs to the team that the folder's name gives, whatever the
+file's own name. If a team has several files, the one that was received last counts.
 """
 
 import hashlib
@@ -11,25 +11,35 @@ import os
 import stat
 import unicodedata
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
 
 from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.reports import sheets
-from hdrlab.course.wording import plain
+from hdrlab.course.reports import csv_tables
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
-KINDS = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
-# bytes of a file: what an archive of one may hold
-LARGEST = 1 << 28
-MOST = 1000  # files in a folder
-NO_ROW = "the table of times has no row for it, so the file's own time counts"
+SUFFIXES = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
+MAX_FILE_MEGABYTES = 256  # as much as an archive may unpack to
+MAX_FILES_PER_FOLDER = 1000
+MAX_NAME_LENGTH = 80
+NOT_IN_TABLE = "not in the table of received times, so the file's own time counts"
 
 
-class Handin(NamedTuple):
-    """What counts of a team: the file, when it came, a digest of its bytes, and what is to be said of it."""
+@dataclass(frozen=True)
+class Submission:
+    """The file of a team that counts.
+
+    Attributes
+    ----------
+    team, students : whose it is
+    path : the file
+    received : when it was received
+    digest : SHA-256 of its bytes
+    note : what the gradebook says about it
+    """
 
     team: str
     students: tuple[str, ...]
@@ -39,99 +49,157 @@ class Handin(NamedTuple):
     note: str = ""
 
 
-class Found(NamedTuple):
-    """What counts, by team; what is to be said of the rest; why nothing counts of teams that handed in."""
+@dataclass(frozen=True)
+class SubmissionScan:
+    """What was found in a folder of submissions.
 
-    handins: dict[str, Handin]
+    Attributes
+    ----------
+    submissions : the submission of each team that counts
+    notes : about files that do not count, and other things to report
+    refused : for each team that handed in files none of which can count, why
+    """
+
+    submissions: dict[str, Submission]
     notes: tuple[str, ...]
     refused: dict[str, str]
 
 
 def find(
     folder: str | Path, roster: Roster, received: Mapping[str, datetime] | None = None
-) -> Found:
-    """Return what a class has handed in.
+) -> SubmissionScan:
+    """Find the submissions of a class in a folder and its subfolders. Links are not followed.
 
     Parameters
     ----------
-    folder : where the files lie, or folders of them; links in it are not followed
+    folder : contains the files, or a folder for each team or student
     roster : the class
-    received : when a file came, by its path in the folder; else the time of the file itself
+    received : when each file was received, by its path in the folder; the modification time of the
+        file counts where there is no entry
 
     Raises
     ------
-    ValueError
-        For what is no folder.
+    InputError
+        If it is not a folder.
     """
-    folder, teams = Path(folder), roster.teams()
+    folder = Path(folder)
     if not folder.is_dir():
-        raise InputError(f"{folder}: expected the folder of what was handed in")
-    rows, notes = dict(received or {}), []
-    handins: dict[str, Handin] = {}
-    refused: dict[str, str] = {}
-    for path, why in _files(folder):
-        name = path.relative_to(folder).as_posix()
-        team, when = roster.owner(name.partition("/")[0]), rows.pop(_key(name), None)
-        if team is None and not name.lower().endswith(KINDS):
-            continue
-        if why or team is None:
-            notes.append(f"{plain(name, 80)}: {why or 'the roster knows nobody of that name'}")
-            refused |= {team: notes[-1]} if team else {}
-            continue
-        if when is None and roster.owner(path.name) == team:  # a row with the file's bare name
-            when = rows.pop(_key(path.name), None) if not (folder / path.name).exists() else None
-        unknown = NO_ROW if received and when is None else ""
-        notes += [f"{plain(name, 80)}: {unknown}"] if unknown else []
-        when = when or datetime.fromtimestamp(path.stat().st_mtime, UTC)
-        students = tuple(one.id for one in teams[team])
-        fresh = Handin(team, students, path, when, "", unknown)
-        if team in handins:
-            older, fresh = sorted(
-                (handins[team], fresh), key=lambda one: (one.received, one.path.name)
+        raise InputError(f"{folder}: expected a folder with submissions")
+    scanner = _Scanner(folder, roster, received or {})
+    for path, problem in _list_files(folder):
+        scanner.add(path, problem)
+    return scanner.finish()
+
+
+class _Scanner:
+    """Collects the files of a folder, and decides which count."""
+
+    def __init__(self, folder: Path, roster: Roster, received: Mapping[str, datetime]) -> None:
+        self._folder = folder
+        self._roster = roster
+        self._teams = roster.teams()
+        self._has_table = bool(received)
+        self._unused_times = dict(received)
+        self._submissions: dict[str, Submission] = {}
+        self._notes: list[str] = []
+        self._refused: dict[str, str] = {}
+
+    def add(self, path: Path, problem: str) -> None:
+        """Take a file as the submission of its team, or note why it does not count."""
+        name = path.relative_to(self._folder).as_posix()
+        team = self._roster.owner(name.partition("/")[0])
+        received = self._unused_times.pop(_table_key(name), None)
+        if team is None and not name.lower().endswith(SUFFIXES):
+            return
+        if team is None:
+            self._note(name, problem or "no student or team of the roster has this name")
+            return
+        if problem:
+            self._refused[team] = self._note(name, problem)
+            return
+        if received is None:
+            received = self._received_by_bare_name(path, team)
+        note = ""
+        if received is None:
+            received = datetime.fromtimestamp(path.stat().st_mtime, UTC)
+            if self._has_table:
+                note = NOT_IN_TABLE
+                self._note(name, note)
+        students = tuple(student.id for student in self._teams[team])
+        self._keep_later(Submission(team, students, path, received, digest="", note=note))
+
+    def finish(self) -> SubmissionScan:
+        """Return what was found."""
+        for name in self._unused_times:
+            self._note(name, "the table of received times lists it, but there is no such file")
+        submissions = {
+            team: replace(submission, digest=_digest(submission.path))
+            for team, submission in self._submissions.items()
+        }
+        refused = {
+            team: reason for team, reason in self._refused.items() if team not in submissions
+        }
+        return SubmissionScan(submissions, tuple(self._notes), refused)
+
+    def _received_by_bare_name(self, path: Path, team: str) -> datetime | None:
+        """Return the time that the table gives for a file in a subfolder by its name alone."""
+        is_clear = self._roster.owner(path.name) == team
+        if not is_clear or (self._folder / path.name).exists():
+            return None
+        return self._unused_times.pop(_table_key(path.name), None)
+
+    def _keep_later(self, submission: Submission) -> None:
+        team = submission.team
+        if team in self._submissions:
+            earlier, submission = sorted(
+                (self._submissions[team], submission),
+                key=lambda either: (either.received, either.path.name),
             )
-            notes.append(f"{plain(older.path.name, 80)}: {team} has handed in another, later")
-        handins[team] = fresh
-    notes += [
-        f"{plain(name, 80)}: the table of times names it, there is no such file" for name in rows
-    ]
-    handins = {team: one._replace(digest=_digest(one.path)) for team, one in handins.items()}
-    return Found(
-        handins, tuple(notes), {team: why for team, why in refused.items() if team not in handins}
-    )
+            self._note(earlier.path.name, f"{team} has handed in another file later")
+        self._submissions[team] = submission
+
+    def _note(self, name: str, text: str) -> str:
+        note = f"{sanitize_line(name, MAX_NAME_LENGTH)}: {text}"
+        self._notes.append(note)
+        return note
 
 
-def _files(folder: Path) -> Iterator[tuple[Path, str]]:
-    """Yield what lies in a folder and one below it, by name, and why it cannot count, or ""."""
-    for path in sorted(folder.iterdir()):
-        inside = [path]
-        if path.is_dir() and not path.is_symlink():
+def _list_files(folder: Path) -> Iterator[tuple[Path, str]]:
+    """Yield the files of a folder and its subfolders, each with why it cannot count, or ""."""
+    for entry in sorted(folder.iterdir()):
+        if not entry.is_dir() or entry.is_symlink():
+            paths = [entry]
+        else:
             try:
-                inside = sorted(islice(path.iterdir(), MOST + 1))
+                paths = sorted(islice(entry.iterdir(), MAX_FILES_PER_FOLDER + 1))
             except OSError:
-                yield path, "a folder that cannot be read"
-        if len(inside) > MOST:
-            yield path, f"expected at most {MOST} files in a folder"
+                yield entry, "a folder that cannot be read"
+                continue
+        if len(paths) > MAX_FILES_PER_FOLDER:
+            yield entry, f"expected at most {MAX_FILES_PER_FOLDER} files in a folder"
             continue
-        yield from ((one, _why_not(one)) for one in inside if not one.name.startswith("."))
+        for path in paths:
+            if not path.name.startswith("."):
+                yield path, find_problem(path)
 
 
-def _why_not(path: Path) -> str:
+def find_problem(path: Path) -> str:
     """Return why a file cannot count, or ""."""
-    found = path.lstat()
-    if stat.S_ISDIR(found.st_mode):
+    status = path.lstat()
+    if stat.S_ISDIR(status.st_mode):
         return "a folder in a folder, which is not opened"
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         return "expected a plain file, got a link, a pipe or a device"
     if not os.access(path, os.R_OK):
         return "a file that cannot be read"
-    if not path.name.lower().endswith(KINDS):
+    if not path.name.lower().endswith(SUFFIXES):
         return "expected a notebook, a Python file or an archive"
-    if found.st_size > LARGEST:
-        return f"expected at most {LARGEST >> 20} MB, got {found.st_size >> 20}"
+    if status.st_size > MAX_FILE_MEGABYTES * 2**20:
+        return f"expected at most {MAX_FILE_MEGABYTES} MB, got {status.st_size >> 20}"
     try:
-        datetime.fromtimestamp(found.st_mtime, UTC)
+        datetime.fromtimestamp(status.st_mtime, UTC)
     except (ValueError, OverflowError, OSError):
-        return "expected a time before the year 10000"
+        return "expected a modification time before the year 10000"
     return ""
 
 
@@ -140,29 +208,33 @@ def _digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _key(name: str) -> str:
-    """Return the path of a file as a table of times is searched for it."""
+def _table_key(name: str) -> str:
+    """Return a path in the form in which the table of received times is searched for it."""
     return unicodedata.normalize("NFC", name.replace("\\", "/").removeprefix("./"))
 
 
 def read_times(path: Path) -> dict[str, datetime]:
-    """Return when files came, from a table with the columns file and received.
+    """Read when files were received, from a table with the columns file and received.
 
     Raises
     ------
-    ValueError
-        For another table, a time without a zone, and a file with two rows.
+    InputError
+        For another table, a time without a time zone, or a file with two rows.
     """
-    came: dict[str, datetime] = {}
-    for row in sheets.read_csv(path):
+    times: dict[str, datetime] = {}
+    for row in csv_tables.read_csv(path):
         try:
-            name, when = _key(row["file"]), datetime.fromisoformat(row["received"])
+            name = _table_key(row["file"])
+            received = datetime.fromisoformat(row["received"])
         except (KeyError, ValueError):
-            says = f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
-            raise InputError(says) from None
-        if when.tzinfo is None:
-            raise InputError(f"{path}: expected times with a zone, got {row['received']}")
-        if name in came:
-            raise InputError(f"{path}: expected each file once, got {plain(name, 80)} twice")
-        came[name] = when
-    return came
+            raise InputError(
+                f"{path}: expected the columns file and received, "
+                f"with times such as 2026-03-01T12:00+01:00"
+            ) from None
+        if received.tzinfo is None:
+            raise InputError(f"{path}: expected times with a time zone, got {row['received']}")
+        if name in times:
+            shown_name = sanitize_line(name, MAX_NAME_LENGTH)
+            raise InputError(f"{path}: expected each file once, got {shown_name} twice")
+        times[name] = received
+    return times

@@ -20,7 +20,7 @@ GRACE = 10
 DAY = timedelta(days=1)
 
 
-class Handed(NamedTuple):
+class LateRecord(NamedTuple):
     """A project as it came in: how late, by whom, and the points of the work."""
 
     project: str
@@ -29,7 +29,7 @@ class Handed(NamedTuple):
     points: float
 
 
-class Account(NamedTuple):
+class LateDayCharge(NamedTuple):
     """What a student's late days came to in one project; `left` is the grace that remains after it."""
 
     student: str
@@ -73,8 +73,8 @@ def penalty(late: int, left: int, points: float, *, per_day: float = 1.0) -> tup
 
 
 def accounts(
-    handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1.0
-) -> Iterator[Account]:
+    handed: Iterable[LateRecord], *, grace: int = GRACE, per_day: float = 1.0
+) -> Iterator[LateDayCharge]:
     """Yield what each project costs each of its students, with the projects in the order they were due.
 
     Parameters
@@ -105,12 +105,12 @@ def accounts(
             before = left.get(student, grace)
             excused, lost = penalty(late, before, points, per_day=per_day)
             left[student] = before - excused
-            yield Account(student, project, late, excused, lost, points - lost, left[student])
+            yield LateDayCharge(student, project, late, excused, lost, points - lost, left[student])
 
 
 def what_if(
-    handed: Sequence[Handed], project: str, days: Iterable[int] = range(15), **terms: Any
-) -> list[tuple[int, dict[str, Account]]]:
+    handed: Sequence[LateRecord], project: str, days: Iterable[int] = range(15), **terms: Any
+) -> list[tuple[int, dict[str, LateDayCharge]]]:
     """Return what `project` would cost each of its students were it so many days late, and else all as it is.
 
     `terms` are those of `accounts`.

@@ -8,11 +8,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.late import Account, Handed, accounts, lateness, what_if as late_days
-from hdrlab.course.classroom.run import Course
+from hdrlab.course.classroom.handins import Submission
+from hdrlab.course.classroom.late import (
+    LateDayCharge,
+    LateRecord,
+    accounts,
+    lateness,
+    what_if as late_days,
+)
+from hdrlab.course.classroom.run import GradingContext
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 from hdrlab.errors import InputError
 
 NOT_GRADED = "not graded"
@@ -20,7 +26,7 @@ LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
 DAYS = range(15)  # of the what-if table
 
 
-class Mark(NamedTuple):
+class GradebookRow(NamedTuple):
     """A student's row: `work` are the points before the penalty, `score` those after it."""
 
     student: str
@@ -38,15 +44,15 @@ class Mark(NamedTuple):
     note: str = ""
 
 
-COLUMNS = (*Mark._fields[:-2], "grace left", "note")
+COLUMNS = (*GradebookRow._fields[:-2], "grace left", "note")
 
 
 def marks(
-    course: Course,
-    handins: Mapping[str, Handin],
+    course: GradingContext,
+    handins: Mapping[str, Submission],
     points: Mapping[str, float],
     remarks: Mapping[str, str] = MappingProxyType({}),
-) -> list[Mark]:
+) -> list[GradebookRow]:
     """Return a row for each student of the roster.
 
     Parameters
@@ -60,13 +66,13 @@ def marks(
     handed = [*course.before]
     for team, one in handins.items():
         days = lateness(homework.due, one.received)
-        handed.append(Handed(homework.name, days, one.students, points.get(team, 0.0)))
+        handed.append(LateRecord(homework.name, days, one.students, points.get(team, 0.0)))
     bills = list(accounts(handed, grace=late.free_days, per_day=late.points_a_day))
     left = {bill.student: bill.left for bill in bills}
     mine, rows = {bill.student: bill for bill in bills if bill.project == homework.name}, []
     for id, name, team, _ in course.roster.students:
         bill = mine.get(
-            id, Account(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days))
+            id, LateDayCharge(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days))
         )
         received, work, notes = "", 0.0, ["not handed in"]
         if id in mine:
@@ -77,13 +83,15 @@ def marks(
             notes = ["" if team in points else NOT_GRADED, handins[team].note]
         note = "; ".join(filter(None, (*notes, remarks.get(team, ""))))
         earned = (work, homework.points, bill.penalty, bill.score, bill.left, note)
-        rows.append(Mark(id, name, team, homework.name, received, bill.late, bill.excused, *earned))
+        rows.append(
+            GradebookRow(id, name, team, homework.name, received, bill.late, bill.excused, *earned)
+        )
     return rows
 
 
 def what_if(
-    course: Course, points: Mapping[str, float]
-) -> tuple[list[str], list[list[sheets.Cell]]]:
+    course: GradingContext, points: Mapping[str, float]
+) -> tuple[list[str], list[list[csv_tables.Cell]]]:
     """Return header and rows of a table: each student's score, had the work come so many days late.
 
     Work that has not come, or is not graded, is taken for one that earns all points. The parameters
@@ -94,11 +102,13 @@ def what_if(
         team: tuple(one.id for one in members) for team, members in course.roster.teams().items()
     }
     work = {team: points.get(team, homework.points) for team in teams}
-    supposed = [Handed(homework.name, 0, members, work[team]) for team, members in teams.items()]
+    supposed = [
+        LateRecord(homework.name, 0, members, work[team]) for team, members in teams.items()
+    ]
     handed = [*course.before, *supposed]
     table = late_days(handed, homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day)
     header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
-    rows: list[list[sheets.Cell]] = [
+    rows: list[list[csv_tables.Cell]] = [
         [
             one.id,
             one.name,
@@ -112,16 +122,16 @@ def what_if(
     return header, rows
 
 
-def read(paths: Sequence[Path]) -> list[Handed]:
+def read(paths: Sequence[Path]) -> list[LateRecord]:
     """Return what gradebooks of earlier homeworks tell, in the order of the files."""
     handed = []
     for path in paths:
-        for row in sheets.read_csv(path, most=LARGE):
+        for row in csv_tables.read_csv(path, most=LARGE):
             try:
                 if row["received"] and not row["note"].startswith(NOT_GRADED):
                     student = (row["student"].removeprefix("'"),)
                     handed.append(
-                        Handed(row["homework"], int(row["late"]), student, float(row["work"]))
+                        LateRecord(row["homework"], int(row["late"]), student, float(row["work"]))
                     )
             except (KeyError, ValueError):
                 raise InputError(
@@ -130,12 +140,14 @@ def read(paths: Sequence[Path]) -> list[Handed]:
     return handed
 
 
-def canvas(rows: Sequence[Mark], homework: Homework) -> tuple[list[str], list[list[sheets.Cell]]]:
+def canvas(
+    rows: Sequence[GradebookRow], homework: Homework
+) -> tuple[list[str], list[list[csv_tables.Cell]]]:
     """Return header and rows of the table that Canvas imports: the second line holds the points possible."""
     title = f"{homework.name}: {homework.title}"
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title]
-    possible: list[sheets.Cell] = ["    Points Possible", "", "", "", "", homework.points]
-    lines: list[list[sheets.Cell]] = [
+    possible: list[csv_tables.Cell] = ["    Points Possible", "", "", "", "", homework.points]
+    lines: list[list[csv_tables.Cell]] = [
         [one.name, "", one.student, one.student, "", one.score] for one in rows
     ]
     return header, [possible, *lines]

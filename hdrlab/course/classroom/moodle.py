@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hdrlab.course.archives.packing import packed
-from hdrlab.course.classroom import journal
-from hdrlab.course.classroom.marks import NOT_GRADED, Mark
+from hdrlab.course.classroom import jobs
+from hdrlab.course.classroom.marks import NOT_GRADED, GradebookRow
 from hdrlab.course.classroom.roster import Roster, fold
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 from hdrlab.errors import InputError
 
 WHO = ("id number", "username", "email address")  # columns of a worksheet that may say who it is
@@ -26,8 +26,8 @@ FEEDBACK = "Participant_{}_assignsubmission_file_feedback.html"
 
 
 def gradebook(
-    rows: Sequence[Mark], roster: Roster, homework: Homework
-) -> tuple[list[str], list[list[sheets.Cell]]]:
+    rows: Sequence[GradebookRow], roster: Roster, homework: Homework
+) -> tuple[list[str], list[list[csv_tables.Cell]]]:
     """Return header and rows of the table that Moodle's gradebook imports."""
     header = ["ID number", "Username", "Email address", f"{homework.name}: {homework.title}"]
     emails = {one.id: one.email for one in roster.students}
@@ -35,7 +35,7 @@ def gradebook(
 
 
 def write(
-    out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, homework: Homework
+    out: Path, worksheet: Path, rows: Sequence[GradebookRow], roster: Roster, homework: Homework
 ) -> list[str]:
     """Write moodle_worksheet.csv and moodle_feedback.zip, and return notes on whom the roster does not know.
 
@@ -47,9 +47,12 @@ def write(
         For another table, and where the assignment gives another number of points than the
         homework.
     """
-    listed, both = sheets.read_csv(worksheet, most=1 << 27), zip(rows, roster.students, strict=True)
+    listed, both = (
+        csv_tables.read_csv(worksheet, most=1 << 27),
+        zip(rows, roster.students, strict=True),
+    )
     known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}
-    lines: list[list[sheets.Cell]] = []
+    lines: list[list[csv_tables.Cell]] = []
     files, lost = {}, []
     for line in listed:
         if missing := [name for name in NEEDED if name not in line]:
@@ -66,7 +69,7 @@ def write(
         row = next(
             (known[fold(line[name])] for name in WHO if fold(line.get(name, "")) in known), None
         )
-        grade: sheets.Cell = line["grade"]
+        grade: csv_tables.Cell = line["grade"]
         if row is None:
             lost.append(
                 f"{worksheet.name}: the roster knows nobody of {line.get('full name', '')!r}"
@@ -79,6 +82,6 @@ def write(
         lines.append(
             [line["identifier"], line.get("full name", ""), grade, line["last modified (grade)"]]
         )
-    sheets.write_csv(out / "moodle_worksheet.csv", COLUMNS, lines, private=True)
-    journal.write(out / "moodle_feedback.zip", packed(files))
+    csv_tables.write_csv(out / "moodle_worksheet.csv", COLUMNS, lines, private=True)
+    jobs.write_private_file(out / "moodle_feedback.zip", packed(files))
     return lost

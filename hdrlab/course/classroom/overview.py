@@ -12,19 +12,19 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course.classroom import journal, marks, moodle
-from hdrlab.course.classroom.handins import Found
-from hdrlab.course.classroom.marks import Mark
-from hdrlab.course.classroom.run import Course
+from hdrlab.course.classroom import jobs, marks, moodle
+from hdrlab.course.classroom.handins import SubmissionScan
+from hdrlab.course.classroom.marks import GradebookRow
+from hdrlab.course.classroom.run import GradingContext
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports import csv_tables, results
 from hdrlab.show.pages.templates import render_page
 
 PAGE = "class_page.html"
 BINS = 10  # of the scores, each a tenth of the points
 
 
-class Tally(NamedTuple):
+class ClassStatistics(NamedTuple):
     """What counts of a class's results.
 
     Attributes
@@ -42,9 +42,9 @@ class Tally(NamedTuple):
     refused: dict[str, str] = {}
 
 
-def tally(each: Iterable[results.Result]) -> Tally:
+def tally(each: Iterable[results.Result]) -> ClassStatistics:
     """Return what counts of results, each of which is looked at once and let go."""
-    found = Tally({}, {}, Counter(), {})
+    found = ClassStatistics({}, {}, Counter(), {})
     for result in each:
         found.points[result.student] = result.score
         if result.problems and all(one.kind == "missing" for one in result.checks):
@@ -55,13 +55,21 @@ def tally(each: Iterable[results.Result]) -> Tally:
     return found
 
 
-def marks_of(course: Course, found: Found, counted: Tally) -> list[Mark]:
+def marks_of(
+    course: GradingContext, found: SubmissionScan, counted: ClassStatistics
+) -> list[GradebookRow]:
     """Return the gradebook's rows, with why a file was refused."""
-    return marks.marks(course, found.handins, counted.points, {**counted.refused, **found.refused})
+    return marks.marks(
+        course, found.submissions, counted.points, {**counted.refused, **found.refused}
+    )
 
 
 def write(
-    out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()
+    out: Path,
+    course: GradingContext,
+    found: SubmissionScan,
+    counted: ClassStatistics,
+    lost: Sequence[str] = (),
 ) -> list[Path]:
     """Write all that is about the whole class, and return the files; a new one has its line here.
 
@@ -72,15 +80,17 @@ def write(
     lost : what could not be graded
     """
     rows = marks_of(course, found, counted)
-    tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
+    tables: dict[str, tuple[Sequence[str], Sequence[Sequence[csv_tables.Cell]]]] = {
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
         "moodle.csv": moodle.gradebook(rows, course.roster, course.homework),
         "what_if.csv": marks.what_if(course, counted.points),
     }
-    files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
+    files = [
+        csv_tables.write_csv(out / name, *table, private=True) for name, table in tables.items()
+    ]
     text = page(course.homework, counted, [*found.notes, *lost], rows)
-    journal.write(out / "class.html", text.encode())
+    jobs.write_private_file(out / "class.html", text.encode())
     return [*files, out / "class.html"]
 
 
@@ -91,7 +101,10 @@ def histogram(scores: Iterable[float], whole: float) -> list[tuple[int, int]]:
 
 
 def page(
-    homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()
+    homework: Homework,
+    counted: ClassStatistics,
+    notes: Iterable[str] = (),
+    rows: Sequence[GradebookRow] = (),
 ) -> str:
     """Return the class page; each row of the gradebook leads to what its student reads."""
     scores = counted.points.values()

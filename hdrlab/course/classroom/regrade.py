@@ -18,24 +18,24 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.classroom import journal
-from hdrlab.course.classroom.journal import Piece
+from hdrlab.course.classroom import jobs
+from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.overview import histogram
 from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.reports import results, sheets
-from hdrlab.course.wording import plain
+from hdrlab.course.reports import csv_tables, results
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
 LOG = "journal.jsonl"
 
 
-class Move(NamedTuple):
+class ScoreChange(NamedTuple):
     """What a regrade does to a team's work.
 
     Attributes
     ----------
-    piece : the submission
+    job : the submission
     before, after : points that counted so far, None where it had none, and points under the new
         checks
     counts, moves : points that are to count, and by how many it moves
@@ -44,7 +44,7 @@ class Move(NamedTuple):
     asked : what the team asked for, in its words
     """
 
-    piece: Piece
+    job: GradingJob
     before: float | None
     after: float
     counts: float
@@ -64,23 +64,23 @@ def requests(paths: Sequence[Path], roster: Roster) -> dict[str, list[str]]:
     """
     found: dict[str, list[str]] = {}
     for path in paths:
-        for row in sheets.read_csv(path):
+        for row in csv_tables.read_csv(path):
             if not {"student", "task", "words"} <= set(row):
                 raise InputError(
                     f"{path}: expected the columns student, task, words, got {', '.join(row)}"
                 )
-            said = plain(f"{row['task']}: {row['words']}", 400)
-            found.setdefault(roster.team_of([row["student"].removeprefix("'")]), []).append(said)
+            said = sanitize_line(f"{row['task']}: {row['words']}", 400)
+            found.setdefault(roster.find(row["student"].removeprefix("'")).team, []).append(said)
     return found
 
 
 def moves(
     out: Path,
-    pieces: Sequence[Piece],
+    pieces: Sequence[GradingJob],
     policy: str,
     listed: Collection[str],
     asked: Mapping[str, list[str]],
-) -> list[Move]:
+) -> list[ScoreChange]:
     """Return what new results would change, for each team whose checks have changed, or that asked.
 
     Parameters
@@ -93,8 +93,11 @@ def moves(
     """
     standing, found = _standing(out), []
     for piece in pieces:
-        was, old = _read(standing.get(piece.owner)), journal.place(out / "results", piece).exists()
-        new = None if old else _read(journal.place(out / "regrade" / "results", piece))
+        was, old = (
+            _read(standing.get(piece.owner)),
+            jobs.result_path(out / "results", piece).exists(),
+        )
+        new = None if old else _read(jobs.result_path(out / "regrade" / "results", piece))
         now: Any = new or was  # what could not be graded anew keeps what it has
         if now is None or (old and piece.owner not in asked):
             continue
@@ -104,7 +107,9 @@ def moves(
         kept = same and {"never-lower": lower, "only-listed": unlisted}.get(policy, False)
         counts = now.score if before is None or not kept else before
         points = before, now.score, counts, counts - (before or 0)
-        found.append(Move(piece, *points, not kept, changes, tuple(asked.get(piece.owner, ()))))
+        found.append(
+            ScoreChange(piece, *points, not kept, changes, tuple(asked.get(piece.owner, ())))
+        )
     return found
 
 
@@ -141,14 +146,14 @@ def _changes(was: results.Result, now: results.Result) -> Iterator[tuple[str, st
             yield *key, f"{before.get(key, 'not asked')} → {after.get(key, 'not asked')}"
 
 
-def text(found: Sequence[Move]) -> str:
+def text(found: Sequence[ScoreChange]) -> str:
     """Return whose points the checks have changed, and why, as lines for a terminal."""
     return render_page(Path(__file__).parent, "regrade.plain", found=found).rstrip()
 
 
-def write(out: Path, found: Sequence[Move], whole: float, policy: str) -> Path:
+def write(out: Path, found: Sequence[ScoreChange], whole: float, policy: str) -> Path:
     """Write what a regrade would change as a page, and return it."""
-    folder = journal.make_private(out / "regrade")
+    folder = jobs.make_private(out / "regrade")
     scores = (
         [one.before for one in found if one.before is not None],
         [one.counts for one in found],
@@ -157,12 +162,16 @@ def write(out: Path, found: Sequence[Move], whole: float, policy: str) -> Path:
     promises = Counter(change for one in found for change in one.changes).most_common()
     words = {"found": found, "whole": whole, "policy": policy, "bins": bins, "promises": promises}
     page = render_page(Path(__file__).parent, "regrade_page.html", **words)
-    journal.write(folder / "regrade.html", page.encode())
+    jobs.write_private_file(folder / "regrade.html", page.encode())
     return folder / "regrade.html"
 
 
 def apply(
-    out: Path, found: Sequence[Move], pieces: Sequence[Piece], secret: str, **said: object
+    out: Path,
+    found: Sequence[ScoreChange],
+    pieces: Sequence[GradingJob],
+    secret: str,
+    **said: object,
 ) -> None:
     """Let a regrade count: a line in the journal, who moves and what else is `said`, and then team by team.
 
@@ -176,20 +185,22 @@ def apply(
     """
     lines, standing = signed_lines(out, secret), _standing(out)
     if found:
-        moved = {one.piece.owner: [one.before, one.counts] for one in found if one.moves}
+        moved = {one.job.owner: [one.before, one.counts] for one in found if one.moves}
         before = lines[-1]["signature"] if lines else ""
         line = {"number": len(lines) + 1, **said, "moved": moved, "before": before}
         lines.append(line | {"signature": _signature(line, secret)})
-        journal.write(out / LOG, "".join(json.dumps(one) + "\n" for one in lines).encode())
+        jobs.write_private_file(
+            out / LOG, "".join(json.dumps(one) + "\n" for one in lines).encode()
+        )
     for one in found:
         staged, target = (
-            journal.place(out / part, one.piece) for part in ("regrade/results", "results")
+            jobs.result_path(out / part, one.job) for part in ("regrade/results", "results")
         )
-        source = staged if one.taken and staged.is_file() else standing[one.piece.owner]
-        journal.write(target, source.read_bytes())
-    there = [piece for piece in pieces if journal.place(out / "results", piece).is_file()]
-    for path in chain.from_iterable(journal.older(out / "results", there).values()):
-        os.replace(path, journal.make_private(out / "history" / str(len(lines))) / path.name)
+        source = staged if one.taken and staged.is_file() else standing[one.job.owner]
+        jobs.write_private_file(target, source.read_bytes())
+    there = [piece for piece in pieces if jobs.result_path(out / "results", piece).is_file()]
+    for path in chain.from_iterable(jobs.find_outdated_results(out / "results", there).values()):
+        os.replace(path, jobs.make_private(out / "history" / str(len(lines))) / path.name)
 
 
 def signed_lines(out: Path, secret: str) -> list[dict[str, Any]]:

@@ -6,12 +6,12 @@ where wanted, `name`, `email` and `team`. Who has no team works alone.
 
 import unicodedata
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course.reports import sheets
-from hdrlab.course.wording import plain
+from hdrlab.course.reports import csv_tables
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
 TEAM = 2  # students at most
@@ -62,11 +62,11 @@ class Roster(NamedTuple):
 
     def find(self, id: str) -> Student:
         """Return a student by id, whatever its case, or raise a ValueError."""
-        wanted = fold(plain(id, NAME))
+        wanted = fold(sanitize_line(id, NAME))
         for one in self.students:
             if fold(one.id) == wanted:
                 return one
-        raise InputError(f"expected a student of the roster, got {plain(id, NAME)!r}")
+        raise InputError(f"expected a student of the roster, got {sanitize_line(id, NAME)!r}")
 
     def teams(self) -> dict[str, tuple[Student, ...]]:
         """Return who is in each team, in the order of the roster."""
@@ -87,38 +87,34 @@ class Roster(NamedTuple):
         teams = {fold(name): one.team for one in self.students for name in (one.team, one.id)}
         return next((teams[one] for one in _beginnings(fold(file)) if one in teams), None)
 
-    def team_of(self, ids: Iterable[str]) -> str:
-        """Return the team that a submission's students are; all of them must be of one.
-
-        Examples
-        --------
-        >>> roster = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
-        >>> roster.team_of(["b2"]), roster.team_of(["b1", "B2"])
-        ('t', 't')
-        >>> roster.team_of(["b1", "b3"])
-        Traceback (most recent call last):
-        hdrlab.errors.InputError: expected students of one team, got b1 of t, b3 of b3
-        """
-        students = [self.find(id) for id in ids]
-        if len({one.team for one in students}) != 1:
-            said = ", ".join(f"{one.id} of {one.team}" for one in students)
-            raise InputError(f"expected students of one team, got {said or 'none'}")
-        return students[0].team
-
     def find_team(self, name: str) -> str:
-        """Return the team of this name, or the team of the student of this name, in any case.
+        """Return the team with this name, or of the student with this id, in upper or lower case.
 
         Examples
         --------
         >>> roster = Roster((Student("b1", "Ada", "t1"), Student("b2", "Bo", "t1")))
         >>> roster.find_team("T1"), roster.find_team("B2")
         ('t1', 't1')
+
+        Raises
+        ------
+        InputError
+            For a name that the roster does not have, and for one that could mean two teams.
         """
-        key = fold(name)
-        for student in self.students:
-            if fold(student.team) == key:
-                return student.team
-        return self.find(name).team
+        shown_name = sanitize_line(name, NAME)
+        wanted = fold(shown_name)
+        teams = {
+            student.team
+            for student in self.students
+            if wanted in (fold(student.id), fold(student.team))
+        }
+        if not teams:
+            raise InputError(f"no student or team of the roster is called {shown_name!r}")
+        if len(teams) > 1:
+            choices = ", ".join(sorted(teams))
+            raise InputError(f"{shown_name!r} could mean any of {choices}; use the student's id")
+        (team,) = teams
+        return team
 
 
 def read(path: str | Path) -> Roster:
@@ -130,19 +126,21 @@ def read(path: str | Path) -> Roster:
         Where an id or a team cannot name a file, a team is of three, or a name could be taken for another's:
         both lines are named.
     """
-    rows = sheets.read_csv(path)
+    rows = csv_tables.read_csv(path)
     if not rows or "student" not in rows[0]:
         raise InputError(f"{path}: expected the column student, and name, email, team where wanted")
     students = []
     names: list[Name] = []
     for line, row in enumerate(rows, 2):
         id, team, name = (
-            plain(row.get(column, ""), NAME) for column in ("student", "team", "name")
+            sanitize_line(row.get(column, ""), NAME) for column in ("student", "team", "name")
         )
         owner = f"team {team}" if team else f"line {line}"
         names.append(Name(id, "student's id", line, owner))
         names += [Name(team, "team's name", line, owner)] if team else []
-        students.append(Student(id, name or id, team or id, plain(row.get("email", ""), 200)))
+        students.append(
+            Student(id, name or id, team or id, sanitize_line(row.get("email", ""), 200))
+        )
     _check_names(path, names)
     large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
     if large:

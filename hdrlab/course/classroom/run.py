@@ -1,210 +1,242 @@
-"""A class's submissions are graded, one by one: what there is to do, and how one of them is done.
+"""Grade all submissions of a class, one job for each submission.
 
 RESULTS/
-  results/      a file for each submission, of which everything else is made
-  feedback/     for each team, a page, and what other systems read
-  and what is written about the whole class: see `overview`
+  results/      one file for each submission; everything else is made from these
+  feedback/     for each team, a page and the files that other systems read
+  and the files about the whole class: see `overview`
 """
 
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 from hdrlab.course import grading
 from hdrlab.course.checks import rewording
-from hdrlab.course.classroom import journal
-from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.journal import Done, Piece
-from hdrlab.course.classroom.late import Handed
+from hdrlab.course.classroom import jobs
+from hdrlab.course.classroom.handins import Submission
+from hdrlab.course.classroom.jobs import GradingJob, JobResult
+from hdrlab.course.classroom.late import LateRecord
 from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.plan import Conditions, Homework, Late
+from hdrlab.course.plan import GradingOptions, Homework, Late
 from hdrlab.course.reports import gradebook, results
 from hdrlab.course.sandbox import doctor, running
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
-MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
+# They are copied into each grading job.
+MAX_HIDDEN_CHECKS_BYTES = 64 * 2**20
+MAX_ATTEMPTS = 3
 
 
-class Course(NamedTuple):
+@dataclass(frozen=True)
+class GradingContext:
     """What a class is graded by.
 
     Attributes
     ----------
-    roster : who is in it
-    homework, conditions : what is checked, and under which conditions
-    late : the rule for what comes late
-    before : what was handed in for earlier homeworks, in the order they were due
+    roster : the students and their teams
+    homework, conditions : what is checked, and with which options
+    late : the rule for late submissions
+    before : late records of earlier homeworks, in the order of their due dates
     """
 
     roster: Roster
     homework: Homework
-    conditions: Conditions
+    conditions: GradingOptions
     late: Late = Late()
-    before: Sequence[Handed] = ()
+    before: Sequence[LateRecord] = ()
 
 
-class Grader(NamedTuple):
-    """Grades one submission; it can be sent to another process, and to a machine without this one's files.
+@dataclass(frozen=True)
+class Grader:
+    """Grade one submission. A Grader can be pickled and sent to another process or machine.
 
     Attributes
     ----------
-    homework, conditions : what is checked, and how
-    hidden : the instructor's own checks and what stands beside them, by name; see `hidden`
+    homework, conditions : what is checked, and with which options
+    hidden : the instructor's own checks and their files, by name; see `read_hidden_checks`
     """
 
     homework: Homework
-    conditions: Conditions
+    conditions: GradingOptions
     hidden: Sequence[tuple[str, bytes]] = ()
 
-    def ready(self) -> None:
-        """Raise Unavailable on a machine that cannot give the tier: said once, and not by each submission."""
-        _ready(self.conditions.tier)
+    def check_available(self) -> None:
+        """Raise Unavailable if this machine cannot run the sandbox tier."""
+        _check_tier_available(self.conditions.tier)
 
-    def result(self, piece: Piece) -> bytes:
+    def grade(self, job: GradingJob) -> bytes:
         """Return the result of a submission as JSON.
 
-        A function whose process was killed is asked again: a tier for credit lets none kill itself,
-        so it was somebody else, or a system out of memory. Such a result is believed when it comes
-        each time.
+        If the process of a student's function was killed, the submission is graded again: in a tier
+        for credit a function cannot kill itself, so something else did, such as a system out of
+        memory. The same result each time is accepted.
 
         Raises
         ------
-        ValueError
-            Where it never does.
+        InputError
+            If the process was killed each time, but not at the same check.
         """
-        each: list[results.Result] = []
-        while len(each) < journal.TRIES:
-            each.append(self._result(piece))
-            if all(one.kind != "killed" for one in each[-1].checks):
-                return results.to_json(each[-1])
-        if each.count(each[0]) == len(each):
-            return results.to_json(each[0])
+        attempts: list[results.Result] = []
+        for _ in range(MAX_ATTEMPTS):
+            result = self._grade_once(job)
+            if all(check.kind != "killed" for check in result.checks):
+                return results.to_json(result)
+            attempts.append(result)
+        if all(result == attempts[0] for result in attempts):
+            return results.to_json(attempts[0])
         raise InputError(
             "its functions' process ended without an answer, each time at another check"
         )
 
-    def _result(self, piece: Piece) -> results.Result:
-        """Grade a submission."""
-        student = piece.owner if self.conditions.secret else ""
+    def _grade_once(self, job: GradingJob) -> results.Result:
+        student = job.owner if self.conditions.secret else ""
         with tempfile.TemporaryDirectory(prefix="hdrlab-class-") as scratch:
-            hidden = _laid(self.hidden, Path(scratch) / "hidden") if self.hidden else None
-            conditions = self.conditions._replace(student=student, hidden=hidden)
-            result = grading.grade(piece.path, self.homework, conditions)
-        return result._replace(student=piece.owner)
+            hidden_folder = None
+            if self.hidden:
+                hidden_folder = Path(scratch) / "hidden"
+                write_files(hidden_folder, self.hidden)
+            conditions = replace(self.conditions, student=student, hidden=hidden_folder)
+            result = grading.grade(job.path, self.homework, conditions)
+        return result._replace(student=job.owner)
 
 
 @cache
-def _ready(tier: str) -> None:
-    """Raise Unavailable where a tier cannot be had; a process asks once."""
-    found = doctor.examine(tier)
-    if not found.works:
-        raise running.Unavailable(found.says)
+def _check_tier_available(tier: str) -> None:
+    """Raise Unavailable if this machine cannot run the tier. The check is cached per process."""
+    examination = doctor.examine(tier)
+    if not examination.works:
+        raise running.Unavailable(examination.says)
 
 
-def hidden(folder: Path | None) -> list[tuple[str, bytes]]:
-    """Return the instructor's own checks, which travel with the work.
+def read_hidden_checks(folder: Path | None) -> list[tuple[str, bytes]]:
+    """Read the instructor's own checks and their data files, by path in the folder.
 
     Raises
     ------
-    ValueError
-        For what is no folder, or holds more than a submission can carry along.
+    InputError
+        If it is not a folder, or holds more than `MAX_HIDDEN_CHECKS_BYTES`.
     """
     if folder is None:
         return []
     if not folder.is_dir():
         raise InputError(f"expected a folder with hidden checks, got {folder}")
-    files = [
+    paths = [
         path
         for path in sorted(folder.rglob("*"))
         if path.is_file() and "__pycache__" not in path.parts
     ]
-    if (size := sum(path.stat().st_size for path in files)) > MOST:
-        raise InputError(f"{folder}: expected hidden checks of at most {MOST} bytes, got {size}")
-    return [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
+    size = sum(path.stat().st_size for path in paths)
+    if size > MAX_HIDDEN_CHECKS_BYTES:
+        raise InputError(
+            f"{folder}: expected hidden checks of at most {MAX_HIDDEN_CHECKS_BYTES} bytes, "
+            f"got {size}"
+        )
+    return [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in paths]
 
 
-def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
-    """Write files into a new folder, and return it."""
+def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write files into a folder, which is created if it does not exist."""
     for name, data in files:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(data)
-    return folder
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
 
 
-def pieces(
-    handins: Mapping[str, Handin], homework: Homework, conditions: Conditions
-) -> list[Piece]:
-    """Return what there is to do: a key holds the submission, the specification and the conditions."""
-    words = [rewording.FOLDER / f"{task.id}.toml" for task in homework.tasks if task.parameters]
-    files = grading.specification([*grading.files_of(homework, conditions.hidden), *words])
-    asked = repr(
+def make_jobs(
+    submissions: Mapping[str, Submission], homework: Homework, conditions: GradingOptions
+) -> list[GradingJob]:
+    """Return one job for each submission.
+
+    Its key is a digest of the submission, the checks and the options: if one of them changes, the
+    submission is graded again.
+    """
+    variants = [rewording.FOLDER / f"{task.id}.toml" for task in homework.tasks if task.parameters]
+    checks = [*grading.files_of(homework, conditions.hidden), *variants]
+    checks_digest = grading.specification(checks)
+    settings = repr(
         [homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout]
     )
     return [
-        Piece(team, one.path, journal.key(one.digest, files, asked))
-        for team, one in handins.items()
+        GradingJob(team, submission.path, jobs.make_key(submission.digest, checks_digest, settings))
+        for team, submission in submissions.items()
     ]
 
 
-def select_handins(
-    handins: Mapping[str, Handin],
+def select_submissions(
+    submissions: Mapping[str, Submission],
     roster: Roster,
     only: Collection[str] = (),
     since: datetime | None = None,
-) -> dict[str, Handin]:
-    """Return the submissions of some students or teams, received at or after a time.
+) -> dict[str, Submission]:
+    """Return the submissions of some students or teams, or those received since some time.
 
-    Names match in any case, as everywhere in a class: "T1" is the team t1. Without `only`, all
-    students count.
+    Parameters
+    ----------
+    submissions : by team
+    roster : the class
+    only : names of students or teams, in upper or lower case; all if it is empty
+    since : earlier submissions are left out
 
     Raises
     ------
     InputError
-        For a name that the roster does not know, or from whom there is no submission.
+        For a name that is not in the roster, or without a submission.
     """
     teams = {roster.find_team(name) for name in only}
-    missing = sorted(teams - set(handins))
+    missing = sorted(teams - set(submissions))
     if missing:
-        raise InputError(f"expected names that have handed in, got {', '.join(missing)}")
-    return {
-        team: handin
-        for team, handin in handins.items()
-        if (not only or team in teams) and (since is None or handin.received >= since)
-    }
+        raise InputError(f"nothing was handed in by {', '.join(missing)}; check --only")
+    selected = {}
+    for team, submission in submissions.items():
+        is_wanted = not only or team in teams
+        is_recent = since is None or submission.received >= since
+        if is_wanted and is_recent:
+            selected[team] = submission
+    return selected
 
 
-def write_feedback(out: Path, done: Done) -> Done:
-    """Write a team's feedback, unless all of it is there and of this result; return what was `done`.
+def write_feedback(out: Path, result: JobResult) -> JobResult:
+    """Write the feedback of a team, unless it exists and belongs to this result.
 
-    It is of this result where its JSON is, which is removed first and written last. What fails is
-    `why`.
+    The team's copy of the result, result.json, is deleted first and written last: while it exists
+    and is equal, the feedback is complete. If writing fails, the returned JobResult has a `problem`,
+    and the other teams still get their feedback.
     """
-    if done.result is None:
-        return done
+    if result.path is None:
+        return result
     try:
-        folder, data = out / "feedback" / done.piece.owner, done.result.read_bytes()
-        whole, shown = folder / "result.json", results.for_team(data)
-        missing = [name for name in gradebook.FILES if not (folder / name).is_file()]
-        if missing or whole.read_bytes() != shown:
-            for one in (folder.parent, folder):
-                journal.make_private(one)
-            whole.unlink(missing_ok=True)
-            gradebook.write_results(folder, results.from_json(data), shown)
-    except Exception as error:  # whatever it is: the others are to be told theirs
-        why = plain(f"{type(error).__name__}: {error}", 200)
-        return done._replace(why=f"its feedback could not be written: {why}")
-    return done
+        _write_team_folder(out / "feedback" / result.job.owner, result.path.read_bytes())
+    except Exception as error:
+        problem = sanitize_line(f"{type(error).__name__}: {error}", 200)
+        return replace(result, problem=f"its feedback could not be written: {problem}")
+    return result
 
 
-def read(out: Path, everything: Sequence[Piece]) -> Iterator[results.Result]:
-    """Yield the results that are there, one at a time: a large class has more pictures than memory."""
-    for piece in everything:
-        path = journal.place(out / "results", piece)
+def _write_team_folder(folder: Path, data: bytes) -> None:
+    """Write all feedback files of a team from the JSON of its result, unless they are current."""
+    team_json = folder / "result.json"
+    team_data = results.for_team(data)
+    is_complete = all((folder / name).is_file() for name in gradebook.FILES)
+    if is_complete and team_json.read_bytes() == team_data:
+        return
+    jobs.make_private(folder.parent)
+    jobs.make_private(folder)
+    team_json.unlink(missing_ok=True)
+    gradebook.write_results(folder, results.from_json(data), team_data)
+
+
+def read_results(out: Path, all_jobs: Sequence[GradingJob]) -> Iterator[results.Result]:
+    """Yield the existing results one at a time: all pictures of a large class fill the memory.
+
+    A damaged result is skipped; `write_feedback` reports it.
+    """
+    for job in all_jobs:
+        path = jobs.result_path(out / "results", job)
         if path.is_file():
-            with suppress(ValueError):  # a damaged one is not graded, of which write_feedback tells
+            with suppress(InputError):
                 yield results.from_json(path.read_bytes())

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.material import solutions
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
@@ -71,8 +71,8 @@ def write(folder: Path) -> list[Path]:
     for one in each:
         (folder / "submissions" / one.name).write_bytes(one.data)
     roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]
-    sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
-    sheets.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
+    csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
+    csv_tables.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
     text = render_page(
         Path(__file__).parent, "toy.plain", command=COMMAND.format(folder=folder), each=each
     )

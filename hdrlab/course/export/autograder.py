@@ -8,7 +8,7 @@ import json
 import sys
 from pathlib import Path
 
-from hdrlab.course import grading, plan, wording
+from hdrlab.course import grading, plan, sanitize
 from hdrlab.course.reports import gradebook
 from hdrlab.errors import InputError
 
@@ -22,7 +22,7 @@ def main(root: Path = ROOT, tier: str = "container") -> None:
     except (
         Exception
     ) as error:  # whatever it is: student and instructor are told, and the queue goes on
-        said = wording.plain(
+        said = sanitize.sanitize_line(
             f"The autograder could not grade this: {type(error).__name__}: {error}", 500
         )
         data = (json.dumps({"score": 0, "output": said, "output_format": "text"}) + "\n").encode()
@@ -37,7 +37,7 @@ def graded(root: Path, tier: str) -> bytes:
     homework = plan.read(source / "plan.toml").homeworks[settings["homework"]]
     hidden, secret = source / "hidden", settings["secret"]
     who = student(root) if secret else ""
-    conditions = plan.Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
+    conditions = plan.GradingOptions(tier, who, secret, hidden if hidden.is_dir() else None)
     return gradebook.gradescope(grading.grade(handed_in(root / "submission"), homework, conditions))
 
 

@@ -19,7 +19,7 @@ from hdrlab.course.archives import unpack
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.gallery import pictures, store
 from hdrlab.course.projects.project import MANIFEST
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
 # characters
@@ -91,7 +91,7 @@ def hang(db: sqlite3.Connection, folder: Path, one: Entry, source: str = "") -> 
     pictures.keep(folder / store.PICTURES, id, prepared)
     with store.transaction(db):
         made = store.Artifact(id, one.team, one.title, one.caption, prepared.width, prepared.height)
-        return store.hang(db, made, plain(source, 80))
+        return store.hang(db, made, sanitize_line(source, 80))
 
 
 def _picture(source: Path, team: str) -> Entry:
@@ -120,10 +120,12 @@ def _archive(folder: Path, team: str) -> Entry:
     }
     if artifact not in inside:
         raise InputError(
-            f"expected an artifact in the archive, got the name {plain(artifact, 40)!r}"
+            f"expected an artifact in the archive, got the name {sanitize_line(artifact, 40)!r}"
         )
     return _described(team, title, caption, inside[artifact])
 
 
 def _described(team: str, title: str, caption: str, picture: Path) -> Entry:
-    return Entry(team, plain(title, TITLE) or "Untitled", plain(caption, CAPTION), picture)
+    return Entry(
+        team, sanitize_line(title, TITLE) or "Untitled", sanitize_line(caption, CAPTION), picture
+    )

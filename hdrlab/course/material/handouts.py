@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 from hdrlab.course.checks import rewording
 from hdrlab.course.code import closure, inline
 from hdrlab.course.material import materials, stubs
-from hdrlab.course.plan import ByHand, Homework, Plan, Task
+from hdrlab.course.plan import Homework, ManualTask, Plan, Task
 from hdrlab.course.submission import cells_of
 from hdrlab.errors import InputError
 from hdrlab.io.files import write
@@ -140,7 +140,7 @@ def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
     return text
 
 
-def _judged(one: ByHand) -> str:
+def _judged(one: ManualTask) -> str:
     """Return what a person judges as an item of a list, and what earns how many points below it."""
     return "\n  - ".join([f"- **{one.title}** ({one.points:g} points)", *one.rubric])
 

@@ -16,10 +16,10 @@ from copydetect import compare_files
 
 from hdrlab.course import plan, variants
 from hdrlab.course.checks import rewording
-from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.code import inline
 from hdrlab.course.overlap import authored, similarity
-from hdrlab.course.reports import sheets
+from hdrlab.course.reports import csv_tables
 from hdrlab.io.files import write
 from hdrlab.show.pages.templates import templates
 
@@ -46,7 +46,7 @@ class Row(NamedTuple):
 
 
 def write_steps(
-    out: Path, homework: plan.Homework, handins: Mapping[str, Handin], secret: str = ""
+    out: Path, homework: plan.Homework, handins: Mapping[str, Submission], secret: str = ""
 ) -> Iterator[str]:
     """Write page and table of a class; yield each team when its work is read, the files are there at the end.
 
@@ -69,7 +69,7 @@ def write_steps(
         (*both, *map("{:.3f}".format, shares), str(exchanged(*(asked[team] for team in both))))
         for both, shares in pairs
     ]
-    sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
+    csv_tables.write_csv(out / "similar.csv", COLUMNS, table, private=True)
     write(out / "similar.html", page(homework, each, found, asked), private=True)
 
 
@@ -107,7 +107,7 @@ def library(homework: plan.Homework) -> str:
     return "\n".join(authored.own(text, homework.name, {*alone} - {name}) for name, text in texts)
 
 
-def works(homework: plan.Homework, handins: Mapping[str, Handin]) -> Iterator[authored.Work]:
+def works(homework: plan.Homework, handins: Mapping[str, Submission]) -> Iterator[authored.Work]:
     """Yield what each team wrote itself, by the teams' names; an archive is unpacked for it."""
     tasks = [task.id for task in homework.tasks]
     for team, one in sorted(handins.items()):

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 from hdrlab.io import response_files
 from hdrlab.io.album import SUFFIXES
@@ -126,6 +126,7 @@ def _about(path: Path) -> About:
     if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
         raise InputError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
     title, caption = (
-        plain(str(said.get(key, "")), most) for key, most in (("title", 60), ("caption", 280))
+        sanitize_line(str(said.get(key, "")), most)
+        for key, most in (("title", 60), ("caption", 280))
     )
-    return About(tuple(plain(one, 80) for one in students), title, caption)
+    return About(tuple(sanitize_line(one, 80) for one in students), title, caption)

@@ -18,7 +18,7 @@ from markdown_it.token import Token
 from markupsafe import Markup, escape
 
 from hdrlab.core.arrays import to_256
-from hdrlab.course.wording import plain
+from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 from hdrlab.io import photos, web
 from hdrlab.show.plots import figures
@@ -89,7 +89,7 @@ def notebook(text: str) -> tuple[str, Pictures]:
                     name = f"cell-{number}-{len(pictures)}"
                     pictures[name] = base64.b64decode("".join(data[kind]))
                     alt = "".join(data.get("text/plain", f"Picture of cell {number}"))
-                    said = re.sub(r"[^\w .,:()-]", " ", plain(alt, 120))
+                    said = re.sub(r"[^\w .,:()-]", " ", sanitize_line(alt, 120))
                     parts.append(f"![{said}]({name})")
                     break
     return "\n\n".join(parts), pictures
@@ -128,7 +128,7 @@ def _html(parser: MarkdownIt, tokens: Sequence[Token], top: int) -> Markup:
 
 
 def _text(inline: Token) -> str:
-    return plain("".join(one.content for one in inline.children or ()), 200)
+    return sanitize_line("".join(one.content for one in inline.children or ()), 200)
 
 
 def _lowered(tokens: Sequence[Token], top: int) -> Sequence[Token]:
@@ -144,15 +144,19 @@ def _drawing(folder: Path, pictures: Pictures, notes: list[str]) -> Callable[...
 
     def draw(self: Any, tokens: Sequence[Token], at: int, options: Any, env: Any) -> str:
         source = unquote(str(tokens[at].attrs["src"]))
-        alt = plain(tokens[at].content, 300)
+        alt = sanitize_line(tokens[at].content, 300)
         try:
             image = _decoded(source, folder, pictures)
         except Exception as error:  # on damaged pictures the codecs raise what they like
-            notes.append(f"the picture {plain(source, 60)!r} is left out: {plain(str(error), 160)}")
-            return str(escape(f"[{alt or plain(source, 60)}]"))
+            notes.append(
+                f"the picture {sanitize_line(source, 60)!r} is left out: {sanitize_line(str(error), 160)}"
+            )
+            return str(escape(f"[{alt or sanitize_line(source, 60)}]"))
         if not alt:
             said = "says nothing to those who do not see it; the words go here: ![words]"
-            notes.append(f"the picture {plain(source, 60)!r} {said}({plain(source, 40)})")
+            notes.append(
+                f"the picture {sanitize_line(source, 60)!r} {said}({sanitize_line(source, 40)})"
+            )
         shown = figures.photograph(image, SIDE, alt)
         return f'<img src="{shown.src}" alt="{escape(alt)}" width="{shown.width}" height="{shown.height}">'
 

@@ -6,7 +6,7 @@ formula.
 
 from pathlib import Path
 
-from hdrlab.course.reports import feedback, results, sheets
+from hdrlab.course.reports import csv_tables, feedback, results
 from hdrlab.io.files import write
 
 COLUMNS = ("student", "homework", "tier", "score", "max_score")
@@ -30,7 +30,7 @@ def table(result: results.Result) -> str:
     """Return a Result as CSV, a header and a row: who, what, and the points of each task."""
     earned = [results.points(result.of(task))[0] for task in result.tasks]
     row = [*(getattr(result, name) for name in COLUMNS), *earned]
-    return sheets.csv_text([*COLUMNS, *result.tasks], [row])
+    return csv_tables.csv_text([*COLUMNS, *result.tasks], [row])
 
 
 def write_results(folder: Path, result: results.Result, shown: bytes | None = None) -> list[Path]:

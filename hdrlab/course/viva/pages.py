@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hdrlab import scenes
-from hdrlab.course.wording import lines
+from hdrlab.course.sanitize import sanitize_text
 from hdrlab.io import photos
 from hdrlab.show.pages.templates import templates
 
@@ -35,7 +35,7 @@ def pages(found: Sequence[dict[str, Any]], **words: Any) -> Iterator[tuple[str, 
         "passed": next(one["passed"] for one in found if "passed" in one),
     }
     made = templates(Path(__file__).parent)
-    made.filters["tidy"] = partial(lines, most=20_000)
+    made.filters["tidy"] = partial(sanitize_text, max_length=20_000)
     made.filters["base64"] = lambda text: base64.b64encode(str(text).encode()).decode()
     made.filters["digest"] = lambda text: sha256(text.encode()).hexdigest()
     for sheet in ("viva", "quiz", "oral", "examiner"):

@@ -1,1 +1,1 @@
-"""Who does the work of grading a class: processes of this machine, or a Dask cluster."""
+"""Where grading jobs run: in processes on this machine, or on the workers of a Dask cluster."""

@@ -1,60 +1,75 @@
-"""An executor on this machine: so many processes at a time, one for each piece."""
+"""An executor that runs each job in its own process on this machine."""
 
 import os
 import threading
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Self
 
-from hdrlab.course.classroom.executors import alone as process
-from hdrlab.course.classroom.journal import Ending, Piece, Work
+from hdrlab.course.classroom.executors import subprocess_runner
+from hdrlab.course.classroom.executors.subprocess_runner import ProcessFailed
+from hdrlab.course.classroom.jobs import GradingJob, JobAttempt, Work
 
-PATIENCE = 1800.0  # seconds for one try of a piece
-LOOK = 0.5  # seconds to wait for an ending
+JOB_TIMEOUT_SECONDS = 1800.0
+WAIT_SECONDS = 0.5
 
 
 class Processes:
-    """A `journal.Executor` of processes on this machine.
+    """A `jobs.Executor` that runs jobs in processes on this machine.
 
     Parameters
     ----------
     work : returns the bytes of a result; it can be pickled
-    jobs : processes at a time; as many as there are processors, unless told
-    patience : seconds for one try
+    max_processes : how many run at a time; by default, the number of processors
+    timeout : seconds for one attempt at a job
     """
 
-    def __init__(self, work: Work, jobs: int | None = None, patience: float = PATIENCE) -> None:
-        self._work, self._patience = work, patience
-        self._jobs = jobs or os.cpu_count() or 1
-        self._running: dict[Future[bytes], Piece] = {}
-        self._stopped = threading.Event()
+    def __init__(
+        self,
+        work: Work,
+        max_processes: int | None = None,
+        *,
+        timeout: float = JOB_TIMEOUT_SECONDS,
+    ) -> None:
+        self._work = work
+        self._max_processes = max_processes or os.cpu_count() or 1
+        self._timeout = timeout
+        self._running: dict[Future[bytes], GradingJob] = {}
+        self._stop = threading.Event()
 
     def __enter__(self) -> Self:
-        self._threads = ThreadPoolExecutor(self._jobs, "hdrlab-grade")
+        self._threads = ThreadPoolExecutor(self._max_processes, "hdrlab-grade")
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._stopped.set()  # an error, or Ctrl-C: what runs will be done again by the next run
+        # After an error or Ctrl-C, jobs are still running. The next run does them again.
+        self._stop.set()
         self._threads.shutdown(cancel_futures=True)
 
-    def start(self, piece: Piece, *, alone: bool = False) -> bool:
-        """Begin a piece if there is room; each has a process to itself anyway."""
-        if len(self._running) == self._jobs:
+    def start(self, job: GradingJob, *, alone: bool = False) -> bool:
+        """Start a job if fewer than `max_processes` are running; return whether it was started.
+
+        `alone` changes nothing: a process that dies takes no other job with it.
+        """
+        if len(self._running) == self._max_processes:
             return False
-        patience, stopped = self._patience, self._stopped.is_set
         future = self._threads.submit(
-            process.run, self._work, piece, patience=patience, stopped=stopped
+            subprocess_runner.run,
+            self._work,
+            job,
+            timeout=self._timeout,
+            is_stopped=self._stop.is_set,
         )
-        self._running[future] = piece
+        self._running[future] = job
         return True
 
-    def endings(self) -> list[Ending]:
-        """Wait a little, and return what has ended."""
-        ended, _ = wait(self._running, LOOK, FIRST_COMPLETED)
-        return [_ending(self._running.pop(future), future) for future in ended]
+    def wait_for_attempts(self) -> list[JobAttempt]:
+        """Wait up to half a second, and return the attempts that have ended."""
+        ended, _ = wait(self._running, WAIT_SECONDS, FIRST_COMPLETED)
+        return [_attempt(self._running.pop(future), future) for future in ended]
 
 
-def _ending(piece: Piece, future: Future[bytes]) -> Ending:
+def _attempt(job: GradingJob, future: Future[bytes]) -> JobAttempt:
     try:
-        return Ending(piece, future.result())
-    except process.Failed as error:
-        return Ending(piece, None, str(error))
+        return JobAttempt(job, future.result())
+    except ProcessFailed as error:
+        return JobAttempt(job, None, str(error))

@@ -17,7 +17,7 @@ from math import floor
 from hdrlab.course.reports.results import Check
 
 
-def in_halves(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
+def split_points(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
     """Return points shared out by weights, in whole and half points that sum to them.
 
     The halves that are left over go to the largest remainders, and what is less than a half to the
@@ -25,7 +25,7 @@ def in_halves(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
 
     Examples
     --------
-    >>> [float(one) for one in in_halves(Fraction(10), [Fraction(n) for n in (1, 4, 3, 3)])]
+    >>> [float(one) for one in split_points(Fraction(10), [Fraction(n) for n in (1, 4, 3, 3)])]
     [1.0, 3.5, 3.0, 2.5]
     """
     exact = [2 * points * weight / (sum(weights) or 1) for weight in weights]
@@ -36,7 +36,7 @@ def in_halves(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
     return shares
 
 
-def traced(
+def attribute_failures(
     checks: Sequence[Check], needs: Mapping[str, str], *, named: bool = False, once: bool = False
 ) -> list[Check]:
     """Return a task's checks with what they earn, and what each failure follows from.

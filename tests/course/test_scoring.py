@@ -6,8 +6,9 @@ import pytest
 import scoring
 
 from hdrlab.course import plan
-from hdrlab.course.reports import causes, feedback
+from hdrlab.course.reports import feedback
 from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.reports.scoring import attribute_failures, split_points
 
 
 def checks(*outcomes, points=4, **more):
@@ -25,7 +26,7 @@ def earned(found):
 @pytest.mark.parametrize("points", ["10", "7.5", "1", "7.25", "0"])
 @pytest.mark.parametrize("weights", [(1, 4, 3, 3), (1, 1, 1), (14, 6, 6, 2, 3, 1), (5,)])
 def test_shares_sum_to_the_points_and_are_whole_or_half_where_these_are(points, weights):
-    shares = causes.in_halves(Fraction(points), [Fraction(one) for one in weights])
+    shares = split_points(Fraction(points), [Fraction(one) for one in weights])
     assert sum(shares) == Fraction(points) and min(shares) >= 0
     assert sum(2 * one != int(2 * one) for one in shares) <= (points == "7.25")
 
@@ -34,27 +35,31 @@ def test_every_promise_of_the_plan_is_worth_something():
     for homework in plan.read().homeworks.values():
         for task in homework.tasks:
             weights = [Fraction(points) for _, _, points, *_ in scoring.checks(task.id)]
-            assert min(causes.in_halves(Fraction(task.points), weights)) >= Fraction(1, 2), task.id
+            assert min(split_points(Fraction(task.points), weights)) >= Fraction(1, 2), task.id
 
 
 def test_a_named_mistake_costs_half_at_most_and_the_rest_follows_from_the_first():
-    found = causes.traced(checks("holds", "fails", "fails", "fails"), {}, named=True, once=True)
+    found = attribute_failures(
+        checks("holds", "fails", "fails", "fails"), {}, named=True, once=True
+    )
     assert earned(found) == [4, 0, 0, 4]
     assert [one.follows for one in found] == ["", "", "Promise b", "Promise b"]
 
 
 def test_one_that_misses_what_the_task_is_about_costs_all_that_fails():
-    found = causes.traced(checks("holds", "fails", "fails"), {}, named=True)
+    found = attribute_failures(checks("holds", "fails", "fails"), {}, named=True)
     assert earned(found) == [4, 0, 0] and found[2].follows == "Promise b"
 
 
 def test_half_of_an_odd_number_of_points_is_half_a_point():
-    found = causes.traced(checks("fails", "fails", "fails", points=5), {}, named=True, once=True)
+    found = attribute_failures(
+        checks("fails", "fails", "fails", points=5), {}, named=True, once=True
+    )
     assert sum(earned(found)) == 7.5
 
 
 def test_what_needs_a_failed_promise_follows_from_it_or_holds_without_points():
-    found = causes.traced(
+    found = attribute_failures(
         checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"}
     )
     assert [one.follows for one in found] == ["", "Promise a", "", "Promise a"]
@@ -66,15 +71,17 @@ def test_calls_that_end_in_the_same_words_are_told_once():
     each = [
         one._replace(**words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
     ]
-    assert [one.follows for one in causes.traced(each, {})] == ["", "Promise a", ""]
+    assert [one.follows for one in attribute_failures(each, {})] == ["", "Promise a", ""]
 
 
 def test_failures_without_a_common_cause_are_told_each():
-    assert not any(one.follows for one in causes.traced(checks("fails", "fails"), {}))
+    assert not any(one.follows for one in attribute_failures(checks("fails", "fails"), {}))
 
 
 def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
-    found = causes.traced(checks("fails", "fails", message="It is 3"), {}, named=True, once=True)
+    found = attribute_failures(
+        checks("fails", "fails", message="It is 3"), {}, named=True, once=True
+    )
     result = Result(
         "", "hw2", "", "practice", tuple(found), {"hat": "A wrong hat."}, (), "", "", "", {}
     )
@@ -101,7 +108,7 @@ def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
     ],
 )
 def test_the_halves_that_are_left_over_go_to_the_largest_remainders(points, weights, shares):
-    found = causes.in_halves(Fraction(points), [Fraction(one) for one in weights])
+    found = split_points(Fraction(points), [Fraction(one) for one in weights])
     assert [float(one) for one in found] == list(shares)
 
 
@@ -119,7 +126,7 @@ def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(
     outcomes, knobs, earnings, follows
 ):
     words = {"h": "holds", "f": "fails"}
-    found = causes.traced(checks(*(words[one] for one in outcomes)), {}, **knobs)
+    found = attribute_failures(checks(*(words[one] for one in outcomes)), {}, **knobs)
     assert tuple(earned(found)) == earnings
     assert tuple(one.follows.removeprefix("Promise ") for one in found) == follows
 
@@ -127,11 +134,11 @@ def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(
 def test_of_a_hidden_check_nothing_follows_and_it_follows_from_nothing():
     a, b, c = checks("fails", "fails", "holds")
     hidden = [a._replace(hidden=True), b, c]
-    found = causes.traced(hidden, {"c": "a", "b": "a"}, named=True)
+    found = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
     assert [one.follows for one in found] == ["", "", ""] and earned(found) == [0, 0, 4]
     assert found[2].message == ""
     same = [one._replace(kind="late") for one in (a._replace(hidden=True), b)]
-    assert [one.follows for one in causes.traced(same, {})] == ["", ""]
+    assert [one.follows for one in attribute_failures(same, {})] == ["", ""]
 
 
 @pytest.mark.parametrize(
@@ -152,4 +159,7 @@ def test_two_calls_have_one_cause_where_both_were_late_or_ended_in_the_same_word
         one._replace(kind=kind, message=said)
         for one, (kind, said) in zip(checks("fails", "fails"), (first, second), strict=True)
     ]
-    assert [one.follows for one in causes.traced(each, {})] == ["", "Promise a" if follows else ""]
+    assert [one.follows for one in attribute_failures(each, {})] == [
+        "",
+        "Promise a" if follows else "",
+    ]

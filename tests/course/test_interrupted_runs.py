@@ -13,7 +13,7 @@ from pathlib import Path
 import errands
 import pytest
 
-from hdrlab.course.classroom import handins, journal
+from hdrlab.course.classroom import handins, jobs
 from hdrlab.course.classroom.executors import processes
 from hdrlab.course.classroom.roster import Roster, Student
 
@@ -26,20 +26,20 @@ RUN = """
 import sys
 from pathlib import Path
 sys.path.insert(0, {tests!r})
-import test_journal
-test_journal.graded(Path({folder!r}))
+import test_interrupted_runs
+test_interrupted_runs.graded(Path({folder!r}))
 """
 
 
 def graded(home, work=errands.grade, again=False):
     """Grade the class of a folder, and return what was done and what the results are."""
-    folder, wanted = home / "results", errands.pieces(home / "class")
+    folder, wanted = home / "results", errands.make_jobs(home / "class")
     if again:
-        journal.forget(folder, wanted)
-    with journal.lock_folder(folder):
-        done, rest = journal.parted(folder, wanted)
+        jobs.delete_results(folder, wanted)
+    with jobs.lock_folder(folder):
+        done, rest = jobs.split_finished(folder, wanted)
         with processes.Processes(work, 2) as executor:
-            done += journal.done_steps(rest, executor, folder)
+            done += jobs.run_jobs(rest, executor, folder)
     return done, {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
@@ -47,7 +47,9 @@ def test_nothing_is_graded_twice(tmp_path):
     first, results = graded(tmp_path)
     again, same = graded(tmp_path)
     assert (
-        all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
+        all(one.is_new for one in first)
+        and not any(one.is_new for one in again)
+        and results == same
     )
     assert len(errands.begun(tmp_path / "class")) == len(results) == 5
 
@@ -56,8 +58,8 @@ def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
     graded(tmp_path)
     (tmp_path / "class" / "s4.py").write_text(f"{tmp_path / 'class' / 'begun'}\nother")
     again, results = graded(tmp_path)
-    assert [one.piece.owner for one in again if one.fresh] == ["s4"] and len(results) == 5
-    assert sum(one.fresh for one in graded(tmp_path, again=True)[0]) == 5
+    assert [one.job.owner for one in again if one.is_new] == ["s4"] and len(results) == 5
+    assert sum(one.is_new for one in graded(tmp_path, again=True)[0]) == 5
 
 
 class AtOnce:
@@ -66,11 +68,11 @@ class AtOnce:
     def __init__(self, after):
         self.after, self.ended = after, []
 
-    def start(self, piece, *, alone=False):
-        self.ended.append(journal.Ending(piece, b"{}"))
+    def start(self, job, *, alone=False):
+        self.ended.append(jobs.JobAttempt(job, b"{}"))
         return True
 
-    def endings(self):
+    def wait_for_attempts(self):
         self.after()
         ended, self.ended = self.ended, []
         return ended
@@ -78,36 +80,36 @@ class AtOnce:
 
 @pytest.mark.quick
 def test_an_older_result_that_somebody_removes_meanwhile_is_not_missed(tmp_path):
-    former, *pieces = (journal.Piece("s0", tmp_path, key) for key in ("old", "new"))
-    journal.write(old := journal.place(tmp_path, former), b"{}")
-    (done,) = journal.done_steps(pieces, AtOnce(old.unlink), tmp_path)
-    assert list(tmp_path.iterdir()) == [done.result] and done.fresh
+    former, *pieces = (jobs.GradingJob("s0", tmp_path, key) for key in ("old", "new"))
+    jobs.write_private_file(old := jobs.result_path(tmp_path, former), b"{}")
+    (done,) = jobs.run_jobs(pieces, AtOnce(old.unlink), tmp_path)
+    assert list(tmp_path.iterdir()) == [done.path] and done.is_new
 
 
 def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
     done, results = graded(tmp_path, errands.fatal)
-    lost = [one for one in done if one.result is None]
+    lost = [one for one in done if one.path is None]
     assert (
-        [one.piece.owner for one in lost] == ["s3"]
-        and "3 times" in lost[0].why
-        and "(-9)" in lost[0].why
+        [one.job.owner for one in lost] == ["s3"]
+        and "3 times" in lost[0].problem
+        and "(-9)" in lost[0].problem
     )
     assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
 
 
 def test_a_submission_that_never_ends_is_ended(tmp_path):
-    one = errands.pieces(tmp_path / "class", 1)
-    with processes.Processes(errands.endless, 1, patience=0.5) as executor:
-        (done,) = journal.done_steps(one, executor, tmp_path / "results")
-    assert done.result is None and "too long" in done.why
+    one = errands.make_jobs(tmp_path / "class", 1)
+    with processes.Processes(errands.endless, 1, timeout=0.5) as executor:
+        (done,) = jobs.run_jobs(one, executor, tmp_path / "results")
+    assert done.path is None and "too long" in done.problem
     assert list((tmp_path / "results").iterdir()) == []
 
 
 def test_an_error_is_told_of_in_a_line(tmp_path):
     done, results = graded(tmp_path, errands.failing)
-    assert {one.why for one in done} == {
+    assert {one.problem for one in done} == {
         "it ended 3 times without a result: ValueError: expected this, got that"
     }
     assert not results
@@ -118,20 +120,20 @@ def test_two_runs_do_not_write_to_one_folder(tmp_path):
     (tmp_path / "feedback" / ".hdrlab-1234.html").write_text(
         "half of a page, by a run that was killed"
     )
-    with journal.lock_folder(tmp_path):
-        with pytest.raises(ValueError, match="another run"), journal.lock_folder(tmp_path):
+    with jobs.lock_folder(tmp_path):
+        with pytest.raises(ValueError, match="another run"), jobs.lock_folder(tmp_path):
             pass
         assert not list((tmp_path / "feedback").iterdir())
-    with journal.lock_folder(tmp_path):
+    with jobs.lock_folder(tmp_path):
         pass
 
 
 def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
     with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as executor:
-        for one in errands.pieces(tmp_path / "class", 2):
+        for one in errands.make_jobs(tmp_path / "class", 2):
             assert executor.start(one)
         while len(errands.begun(tmp_path / "class")) < 2:
-            assert not executor.endings()
+            assert not executor.wait_for_attempts()
         raise KeyboardInterrupt
     for _, process, _ in errands.begun(tmp_path / "class"):
         with pytest.raises(ProcessLookupError):
@@ -157,7 +159,7 @@ def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
         run.wait()
     done, results = graded(home)
     assert results == whole
-    assert len(done) == 5 and all(one.result for one in done)
+    assert len(done) == 5 and all(one.path for one in done)
 
 
 def test_files_find_their_owners(tmp_path):
@@ -178,10 +180,10 @@ def test_files_find_their_owners(tmp_path):
     noon = datetime(2026, 3, 1, 12, tzinfo=UTC)
     times = {"B2_hw2.ipynb": noon, "team1-late.ipynb": noon + timedelta(hours=1)}
     found = handins.find(tmp_path, roster, times)
-    assert {team: one.path.name for team, one in found.handins.items()} == {
+    assert {team: one.path.name for team, one in found.submissions.items()} == {
         "team1": "team1-late.ipynb",
         "b12": "b12.py",
         "b3": "hw2.ipynb",
     }
-    assert found.handins["team1"].students == ("b1", "b2")
+    assert found.submissions["team1"].students == ("b1", "b2")
     assert len(found.notes) == 6 and any("B2_hw2" in note for note in found.notes)

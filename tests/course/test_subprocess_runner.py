@@ -13,9 +13,9 @@ from types import SimpleNamespace
 import pytest
 
 from hdrlab.course.checks.running import import_path
-from hdrlab.course.classroom.executors import alone, processes
-from hdrlab.course.classroom.executors.alone import Failed
-from hdrlab.course.classroom.journal import Ending, Piece
+from hdrlab.course.classroom.executors import processes, subprocess_runner
+from hdrlab.course.classroom.executors.subprocess_runner import ProcessFailed
+from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
 
 
 @pytest.fixture
@@ -49,31 +49,30 @@ def ended(monkeypatch):
             def kill(self):
                 told.done.append("kill")
 
-        monkeypatch.setattr(alone.subprocess, "Popen", Process)
-        monkeypatch.setattr(alone, "time", SimpleNamespace(monotonic=lambda: told.now))
+        monkeypatch.setattr(subprocess_runner.subprocess, "Popen", Process)
+        monkeypatch.setattr(subprocess_runner, "time", SimpleNamespace(monotonic=lambda: told.now))
         return told
 
     return ended
 
 
 def failed(**knobs):
-    with pytest.raises(Failed) as raised:
-        alone.run(len, "piece", patience=1.0, **knobs)
-    return str(raised.value), raised.value.own, raised.value.killed
+    with pytest.raises(ProcessFailed) as raised:
+        subprocess_runner.run(len, "piece", timeout=1.0, **knobs)
+    return str(raised.value), raised.value.is_own_fault, raised.value.was_killed
 
 
 def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ended, monkeypatch):
-    assert (alone.TICK, alone.KILLED, alone.LAST, Failed.own, Failed.killed) == (
-        0.2,
-        9,
-        300,
-        False,
-        False,
-    )
     monkeypatch.setenv("OF_THE_GRADER", "1")
     told = ended(0, b"++answer")
-    assert alone.run(len, "piece", patience=1.0) == b"+answer"
-    assert told.command == [sys.executable, "-P", "-m", alone.__name__, str(os.getpid())]
+    assert subprocess_runner.run(len, "piece", timeout=1.0) == b"+answer"
+    assert told.command == [
+        sys.executable,
+        "-P",
+        "-m",
+        subprocess_runner.__name__,
+        str(os.getpid()),
+    ]
     environment = told.knobs["env"]
     assert (environment["PYTHONPATH"], environment["OF_THE_GRADER"]) == (import_path(), "1")
     ((order, tick),) = told.asked
@@ -82,7 +81,7 @@ def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ende
     assert pickle.load(stream) == ({}, len, "piece") and tick == 0.2
     assert told.done == ["kill", "left"] and not told.scratch.exists()
     told = ended()
-    assert alone.run(len, "piece", patience=1.0, limits={"CPU": 3}) == b""
+    assert subprocess_runner.run(len, "piece", timeout=1.0, limits={"CPU": 3}) == b""
     stream = io.BytesIO(told.asked[0][0])
     pickle.load(stream)
     assert pickle.load(stream)[0] == {"CPU": 3}
@@ -114,7 +113,7 @@ def test_a_failure_is_told_by_its_last_line_and_whose_doing_it_was(code, answer,
 
 def test_a_process_is_told_once_and_waited_for_until_its_time_is_over(ended):
     told = ended(0, b"+x", waits=4)
-    assert alone.run(len, "piece", patience=0.81) == b"x"
+    assert subprocess_runner.run(len, "piece", timeout=0.81) == b"x"
     assert [given is None for given, _ in told.asked] == [False, True, True, True, True]
     told = ended(0, b"+x", waits=99)
     assert failed() == ("it took too long", False, False)
@@ -124,7 +123,7 @@ def test_a_process_is_told_once_and_waited_for_until_its_time_is_over(ended):
 def test_a_process_that_is_stopped_is_ended(ended):
     stops = iter((False, False, True))
     told = ended(0, b"+x", waits=99)
-    assert failed(stopped=lambda: next(stops)) == ("it was stopped", False, False)
+    assert failed(is_stopped=lambda: next(stops)) == ("it was stopped", False, False)
     assert len(told.asked) == 3 and told.done == ["kill", "left"]
 
 
@@ -136,7 +135,9 @@ def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
     asked = f"{limited}, __import__('tempfile').gettempdir()"
     piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({asked})).encode()"
     limits = {"CPU": 50, "NOFILE": 40, "OF_NO_KIND": 1}
-    found, scratch = ast.literal_eval(alone.run(eval, piece, patience=60, limits=limits).decode())
+    found, scratch = ast.literal_eval(
+        subprocess_runner.run(eval, piece, timeout=60, limits=limits).decode()
+    )
     assert found == [(50, 51), (40, 40)]
     assert Path(scratch).name.startswith("hdrlab-piece-") and not Path(scratch).exists()
 
@@ -157,21 +158,21 @@ def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
     ],
 )
 def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
-    with pytest.raises(Failed) as raised:
-        alone.run(eval, piece, patience=60)
+    with pytest.raises(ProcessFailed) as raised:
+        subprocess_runner.run(eval, piece, timeout=60)
     said = str(raised.value)
     assert (
         said if why[0] else None,
-        raised.value.own,
-        raised.value.killed,
+        raised.value.is_own_fault,
+        raised.value.was_killed,
     ) == why and "\n" not in said
 
 
 def test_who_was_started_by_one_that_has_died_does_nothing(monkeypatch):
     asked = []
-    monkeypatch.setattr(alone.system, "end_with", lambda parent: asked.append(parent))
-    monkeypatch.setattr(alone.os, "dup", lambda descriptor: pytest.fail("it begins"))
-    alone.main("17")
+    monkeypatch.setattr(subprocess_runner.system, "end_with", lambda parent: asked.append(parent))
+    monkeypatch.setattr(subprocess_runner.os, "dup", lambda descriptor: pytest.fail("it begins"))
+    subprocess_runner.main("17")
     assert asked == [17]
 
 
@@ -201,31 +202,32 @@ def threads(monkeypatch):
     """The pools that were made."""
     monkeypatch.setattr(processes, "ThreadPoolExecutor", Threads)
     monkeypatch.setattr(Threads, "made", [])
-    monkeypatch.setattr(processes, "LOOK", 0.01)
+    monkeypatch.setattr(processes, "WAIT_SECONDS", 0.01)
     return Threads.made
 
 
 @pytest.mark.parametrize(
-    ("jobs", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)]
+    ("max_processes", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)]
 )
 def test_as_many_run_at_a_time_as_are_asked_for_or_have_a_processor(
-    jobs, processors, count, threads, monkeypatch
+    max_processes, processors, count, threads, monkeypatch
 ):
     monkeypatch.setattr(os, "cpu_count", lambda: processors)
-    with processes.Processes(len, jobs) as executor:
-        pieces = [Piece(f"p{k}", Path(f"p{k}"), "key") for k in range(count + 1)]
-        assert [executor.start(one) for one in pieces] == [True] * count + [False]
-        assert executor.endings() == []
+    with processes.Processes(len, max_processes) as executor:
+        jobs = [GradingJob(f"p{k}", Path(f"p{k}"), "key") for k in range(count + 1)]
+        assert [executor.start(one) for one in jobs] == [True] * count + [False]
+        assert executor.wait_for_attempts() == []
         ((function, work, piece, knobs, future), *_) = threads[0].begun
-        assert (function, work, piece, threads[0].count) == (alone.run, len, pieces[0], count)
-        assert knobs["patience"] == 1800 and knobs["stopped"]() is False
+        assert (function, work, piece, threads[0].count) == (
+            subprocess_runner.run,
+            len,
+            jobs[0],
+            count,
+        )
+        assert knobs["timeout"] == 1800 and knobs["is_stopped"]() is False
         future.set_result(b"result")
-        assert executor.endings() == [Ending(pieces[0], b"result")]
-        assert executor.start(pieces[-1], alone=True) and not executor.start(pieces[0])
-        threads[0].begun[-1][-1].set_exception(Failed("no"))
-        assert executor.endings() == [Ending(pieces[-1], None, "no")]
-    assert knobs["stopped"]() is True and threads[0].ended == {"cancel_futures": True}
-
-
-def test_half_an_hour_is_given_to_a_try_and_half_a_second_to_a_look():
-    assert (processes.PATIENCE, processes.LOOK) == (1800, 0.5)
+        assert executor.wait_for_attempts() == [JobAttempt(jobs[0], b"result")]
+        assert executor.start(jobs[-1], alone=True) and not executor.start(jobs[0])
+        threads[0].begun[-1][-1].set_exception(ProcessFailed("no"))
+        assert executor.wait_for_attempts() == [JobAttempt(jobs[-1], None, "no")]
+    assert knobs["is_stopped"]() is True and threads[0].ended == {"cancel_futures": True}
