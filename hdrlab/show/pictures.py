@@ -1,7 +1,7 @@
-"""Pictures for a page, each with alt text: a reader who cannot see one still learns what it shows.
+"""Figures of notebooks and pages, each with alt text for readers who cannot see it.
 
-drawn  what a draw function returns: a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure
-alt    alt text: what is in the picture, in a sentence
+drawn  the result of a draw function: a uint8 image (H, W) or (H, W, 3), an Axes or a Figure
+alt    alt text: what the figure shows, in one sentence
 """
 
 import sys
@@ -20,38 +20,61 @@ from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 from hdrlab.show.plots import figures, reuse
 
-SIDE = 1000  # pixels
-SHARP = 2  # pixels of a plot along a pixel of the page, which many screens show
-COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
-FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
-# of a plot's pixels, and of those at its edges, how many are white at least
-PAPER = 0.72
-MARGIN = 0.93
-DECADE = float(np.log10(2))  # of a stop
-SIGNS = dict(alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ")
+MAX_MAP_PIXELS = 1000  # along the longer side of a radiance map in false color
+PLOT_PIXEL_DENSITY = 2  # pixels of a plot per CSS pixel, for high-density screens
+PAGE_COLUMN_PIXELS = 640  # a smaller image is stretched to this width
+# below this fraction of changed pixels a photo is stored as a lossless difference
+MAX_CHANGED_FRACTION = 1 / 8
+# a plot has at least this fraction of white pixels, over all and at its edges
+MIN_WHITE_FRACTION = 0.72
+MIN_WHITE_EDGE_FRACTION = 0.93
+DECADES_PER_STOP = float(np.log10(2))
+PARAMETER_SYMBOLS = dict(
+    alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ"
+)
 
 
 class Picture(NamedTuple):
-    """Pictures side by side, as a notebook and its exported page show them; as text, their alt texts."""
+    """Images side by side, as a notebook and its exported page show them.
+
+    Attributes
+    ----------
+    frames : the encoded images
+    alts, captions : one of each per image
+    scales : color scales below the images, in stops and in decades
+    density : pixels of an image per CSS pixel
+    areas : boxes of each image that keep their colors on a dark page, see `picture_areas`
+    """
 
     frames: tuple[bytes, ...]
     alts: tuple[str, ...]
     captions: tuple[str, ...]
-    # of the colours, below the pictures: in stops and in decades
     scales: tuple[figures.Scale, ...] = ()
-    density: int = 1  # pixels of a frame along a pixel of the page
-    areas: tuple[list[list[float]], ...] = ()  # of each frame, what `pictured` says
+    density: int = 1
+    areas: tuple[list[list[float]], ...] = ()
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
-        images = [web.decode_picture(one) for one in self.frames]
-        areas: Iterable[list[list[float]]] = self.areas or [[] for _ in images]
-        told = (self.alts, self.captions, images, map(is_ink, images), areas)
-        each = zip(map(web.data_uri, self.frames), *told, strict=True)
+        figures_on_page = []
+        for index, frame in enumerate(self.frames):
+            image = web.decode_picture(frame)
+            figures_on_page.append(
+                {
+                    "src": web.data_uri(frame),
+                    "alt": self.alts[index],
+                    "caption": self.captions[index],
+                    "image": image,
+                    "ink": is_ink(image),
+                    "areas": self.areas[index] if self.areas else [],
+                }
+            )
         return _template().render(
-            each=list(each), scales=self.scales, density=self.density, column=COLUMN
+            figures=figures_on_page,
+            scales=self.scales,
+            density=self.density,
+            column=PAGE_COLUMN_PIXELS,
         )
 
 
@@ -62,10 +85,13 @@ def _template() -> jinja2.Template:
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     """Return `drawn` as a Picture, for the last line of a notebook's cell."""
-    frame = encode(drawn, SHARP)
-    density = _density(drawn)
-    areas = (pictured(drawn),)
-    return Picture((frame,), (require_alt(alt),), (caption,), density=density, areas=areas)
+    return Picture(
+        frames=(encode(drawn, PLOT_PIXEL_DENSITY),),
+        alts=(require_alt(alt),),
+        captions=(caption,),
+        density=_density(drawn),
+        areas=(picture_areas(drawn),),
+    )
 
 
 def radiance(E: ArrayLike, *, alt: str) -> Picture:
@@ -91,15 +117,16 @@ def radiance(E: ArrayLike, *, alt: str) -> Picture:
     """
     ev = figures.stops(E)
     low, high = figures.limits(ev)
-    frame = encode(figures.false_colour(figures.fit(ev, SIDE), low, high))
-    reach = f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest"
-    return Picture((frame,), (f"{require_alt(alt)}, {reach}",), ("",), _scales(low, high))
+    frame = encode(figures.false_colour(figures.fit(ev, MAX_MAP_PIXELS), low, high))
+    dynamic_range = np.nanmax(ev) - np.nanmin(ev)
+    alt = f"{require_alt(alt)}, {dynamic_range:.1f} stops from the darkest to the brightest"
+    return Picture((frame,), (alt,), ("",), _scales(low, high))
 
 
 def strip(
     f: Callable[..., Any], draw: Callable[[Any], object], /, *, alt: str, **values: Iterable[Any]
 ) -> Picture:
-    """Return draw(f(name=value)) for a few values of one parameter, side by side: a slider on paper.
+    """Return draw(f(name=value)) for several values of one parameter, side by side, as a printed slider.
 
     Parameters
     ----------
@@ -129,39 +156,54 @@ def strip(
         raise InputError(
             f"expected one parameter with its values, got {len(values)}: {', '.join(values)}"
         )
-    ((name, each),) = values.items()
-    each = list(each)
-    if not each:
+    [name] = values
+    frames = []
+    densities = []
+    areas = []
+    captions = []
+    for value in values[name]:
+        drawn = draw(f(**{name: value}))
+        frames.append(encode(drawn, PLOT_PIXEL_DENSITY))
+        densities.append(_density(drawn))
+        areas.append(picture_areas(drawn))
+        captions.append(in_words(name, value))
+    if not frames:
         raise InputError(f"expected at least one value for {name}, got none")
-    drawn = (draw(f(**{name: value})) for value in each)
-    each_one = ((encode(one, SHARP), _density(one), pictured(one)) for one in drawn)
-    frames, densities, areas = zip(*each_one, strict=True)
-    captions = tuple(in_words(name, value) for value in each)
-    alts = tuple(f"{require_alt(alt)}, {caption}" for caption in captions)
-    return Picture(frames, alts, captions, density=max(densities), areas=areas)
+    return Picture(
+        frames=tuple(frames),
+        alts=tuple(f"{require_alt(alt)}, {caption}" for caption in captions),
+        captions=tuple(captions),
+        density=max(densities),
+        areas=tuple(areas),
+    )
 
 
 def encode(drawn: object, density: int = 1) -> bytes:
-    """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo.
+    """Encode the result of a draw function as WebP: plots without loss, photos with loss.
 
-    A map, whose pixels are squares of one colour each, is like a photo where that takes half of the
-    bytes.
+    A plot is also stored with loss where that takes less than half of the bytes, as for a map of
+    many colored squares.
     """
     image = render(drawn, density)
-    drawing = not isinstance(drawn, np.ndarray)
-    small = web.encode_webp(image, quality=80 - 30 * drawing)
-    exact = web.encode_webp(image, lossless=True) if drawing and _is_drawing(image) else b""
-    return exact if 0 < len(exact) < 2 * len(small) else small
+    is_plot = not isinstance(drawn, np.ndarray)
+    if not is_plot:
+        return web.encode_webp(image, quality=80)
+    lossy = web.encode_webp(image, quality=50)
+    if not _is_drawing(image):
+        return lossy
+    lossless = web.encode_webp(image, lossless=True)
+    return lossless if len(lossless) < 2 * len(lossy) else lossy
 
 
 def _density(drawn: object) -> int:
-    return 1 if isinstance(drawn, np.ndarray) else SHARP
+    return 1 if isinstance(drawn, np.ndarray) else PLOT_PIXEL_DENSITY
 
 
 def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
-    """Return `image` as WebP that is painted over `first`: without loss, or in small what is a photograph.
+    """Encode `image` as WebP that is painted over the image `first`.
 
-    Without loss it is what differs from the first picture, and transparent elsewhere.
+    A drawing, or a photo of which little changed, becomes a lossless image of the changed pixels,
+    transparent elsewhere. Other photos are stored whole, with loss.
 
     Examples
     --------
@@ -169,69 +211,75 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     >>> len(encode_change(page, page)) < 100
     True
     """
-    over = web.as_rgb(image)
-    lossless = _is_drawing(image)
+    pixels = web.as_rgb(image)
+    is_lossless = _is_drawing(image)
     if first is not None and first.shape == image.shape:
-        changed = (over != web.as_rgb(first)).any(axis=-1)
-        over = np.dstack([over, np.uint8(255) * changed])
-        lossless = lossless or changed.mean() < FEW_CHANGED
-    return web.encode_webp(over, lossless=True) if lossless else web.encode_webp(image, quality=75)
+        changed = (pixels != web.as_rgb(first)).any(axis=-1)
+        pixels = np.dstack([pixels, np.uint8(255) * changed])
+        is_lossless = is_lossless or changed.mean() < MAX_CHANGED_FRACTION
+    if is_lossless:
+        return web.encode_webp(pixels, lossless=True)
+    return web.encode_webp(image, quality=75)
 
 
 def _is_drawing(image: web.Image) -> bool:
-    """Tell a plot, whose rows are a few runs of one colour each, from a photograph or a map like one."""
+    """Return whether an image is a drawing: its rows are a few runs of one color each."""
     return len(web.encode_runs(image)) <= web.MAX_RUN_BYTES * image.shape[0] * image.shape[1]
 
 
 def is_ink(image: web.Image) -> bool:
-    """Tell a plot, lines on white paper: a dark page turns its ink into chalk.
+    """Return whether an image is lines on white paper, which a dark page may invert.
 
-    The colours of a picture, or of a map, mean something.
+    Photos and maps keep their colors.
     """
     white = (image == 255).all(axis=-1)
     edges = np.concatenate([white[[0, -1]].ravel(), white[:, [0, -1]].ravel()])
-    return bool(white.mean() > PAPER and edges.mean() > MARGIN)
+    return bool(white.mean() > MIN_WHITE_FRACTION and edges.mean() > MIN_WHITE_EDGE_FRACTION)
 
 
 def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
-    """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError.
+    """Render the result of a draw function as an image (H, W) or (H, W, 3) uint8.
 
-    A plot has `density` times as many pixels along a side.
+    A plot has `density` times as many pixels along a side. Raises InputError for other types.
     """
     figure = getattr(drawn, "figure", None)
     if hasattr(figure, "savefig"):
         return _pixels(figure, density)
-    pixels = isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and drawn.size > 0
-    if isinstance(drawn, np.ndarray) and pixels and (drawn.ndim == 2 or drawn.shape[2:] == (3,)):
-        return drawn
-    came = (
-        f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
-    )
-    raise InputError(
-        f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}"
-    )
+    if not isinstance(drawn, np.ndarray):
+        raise InputError(
+            "expected draw to return a uint8 image (H, W[, 3]), an Axes or a Figure, "
+            f"got {type(drawn).__name__}"
+        )
+    has_image_shape = drawn.ndim == 2 or drawn.shape[2:] == (3,)
+    if drawn.dtype != np.uint8 or drawn.size == 0 or not has_image_shape:
+        raise InputError(
+            "expected draw to return a uint8 image (H, W[, 3]), an Axes or a Figure, "
+            f"got an array of {describe(drawn)}"
+        )
+    return drawn
 
 
-def pictured(drawn: object) -> list[list[float]]:
-    """Return left, top, width and height, as shares of what was rendered, of its Axes that hold pictures.
+def picture_areas(drawn: object) -> list[list[float]]:
+    """Return the boxes of a figure that keep their colors on a dark page.
 
-    Where none does, those of its first Axes; none for a picture. A dark page leaves them their
-    colours.
+    Each box is left, top, width and height as fractions of the figure: the Axes that show images,
+    or the first Axes where none does. An image has no boxes.
     """
     axes = getattr(getattr(drawn, "figure", None), "axes", [])
-    boxes = [ax.get_position() for ax in [ax for ax in axes if ax.images] or axes[:1]]
+    with_images = [ax for ax in axes if ax.images]
+    boxes = [ax.get_position() for ax in with_images or axes[:1]]
     return [[box.x0, 1 - box.y1, box.width, box.height] for box in boxes]
 
 
 def require_alt(alt: str) -> str:
-    """Return the alt text, or raise a ValueError where it says nothing."""
+    """Return the alt text; raise InputError if it is empty."""
     if not isinstance(alt, str) or not alt.strip():
         raise InputError(f"expected an alt text that says what the picture shows, got {alt!r}")
     return alt
 
 
 def short(value: object) -> str:
-    """Return a value as a reader wants it beside a slider: numbers to four digits."""
+    """Return a value as the text beside a slider, numbers with four digits."""
     return f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)
 
 
@@ -246,32 +294,39 @@ def in_words(name: str, value: object) -> str:
     ['α = 2', 'σᵣ = 0.05']
     """
     words = name.replace("_", " ")
-    said = short(value)
-    if isinstance(value, str | bool):
-        return said if isinstance(value, str) else f"{'with' if value else 'without'} {words}"
-    if letter := SIGNS.get(name, name if len(name) <= 2 else ""):
-        return f"{letter} = {said}"
-    if not name.endswith("s") or name.endswith(("ss", "us")):
-        return f"{words} {said}"
-    return f"{said} {words[:-1] if said == '1' else words}"
+    text = short(value)
+    if isinstance(value, str):
+        return text
+    if isinstance(value, bool):
+        return f"with {words}" if value else f"without {words}"
+    symbol = PARAMETER_SYMBOLS.get(name, name if len(name) <= 2 else "")
+    if symbol:
+        return f"{symbol} = {text}"
+    is_plural = name.endswith("s") and not name.endswith(("ss", "us"))
+    if not is_plural:
+        return f"{words} {text}"
+    return f"1 {words[:-1]}" if text == "1" else f"{text} {words}"
 
 
 def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:
     dpi = figure.dpi
     figure.set_dpi(density * dpi)
-    # which knows the widths of words from the picture before
-    known = type(figure.canvas) is FigureCanvasAgg
-    canvas = figure.canvas if known else FigureCanvasAgg(figure)
+    # a canvas that is used again remembers the widths of its texts
+    has_agg_canvas = type(figure.canvas) is FigureCanvasAgg
+    canvas = figure.canvas if has_agg_canvas else FigureCanvasAgg(figure)
     reuse.paint(canvas)
     figure.set_dpi(dpi)
-    # else a figure of pyplot's is shown once more, below the cell
+    # pyplot would show its figure a second time below the cell
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.array(canvas.buffer_rgba())[..., :3]
 
 
 def _scales(low: int, high: int) -> tuple[figures.Scale, figures.Scale]:
-    """Return the ticks in stops, and those in decades."""
-    few = (high - low) * DECADE <= 3
-    decades = figures.scale(low * DECADE, high * DECADE, digits=int(few))
-    return figures.scale(low, high, digits=int(high - low < 4)), decades
+    """Return the color scale in stops and the one in decades."""
+    low_decade = low * DECADES_PER_STOP
+    high_decade = high * DECADES_PER_STOP
+    decade_digits = 1 if high_decade - low_decade <= 3 else 0
+    stop_digits = 1 if high - low < 4 else 0
+    stops = figures.scale(low, high, digits=stop_digits)
+    return stops, figures.scale(low_decade, high_decade, digits=decade_digits)

@@ -39,10 +39,10 @@ def test_a_value_that_is_no_number_is_the_worst_and_does_not_hide_the_rest(odd):
     assert "at 19 they differ by" in curve.alts[0]
 
 
-def test_light_over_many_decades_is_drawn_by_logarithms():
+def test_light_over_many_decades_is_drawn_on_a_logarithmic_scale():
     light = np.geomspace(1e-3, 1e3, 48).reshape(6, 8)
     shown = differences.image(light, light * 1.1)
-    assert "by logarithms" in shown.alts[0]
+    assert "logarithmic" in shown.alts[0]
     assert (
         np.std(web.decode_picture(shown.frames[0])[..., 0].mean(axis=1)) > 20
     )  # else all but the last row is black
@@ -64,7 +64,7 @@ def test_an_even_picture_and_nothing_but_nan_are_drawn_too():
 
 def test_a_large_picture_is_made_small():
     shown = differences.image(np.zeros((900, 1200)), np.ones((900, 1200)))
-    assert max(web.decode_picture(shown.frames[0]).shape) <= differences.MOST
+    assert max(web.decode_picture(shown.frames[0]).shape) < 900
 
 
 def test_two_curves_that_coincide_to_the_eye_are_told_apart_below_them():

@@ -202,9 +202,7 @@ def test_a_picture_without_alt_text_is_refused(alt):
     ],
 )
 def test_a_drawing_that_is_no_picture_is_refused_with_what_came(drawn, came):
-    with pytest.raises(
-        ValueError, match=f"expected draw to return a uint8 picture .* got .*{came}"
-    ):
+    with pytest.raises(ValueError, match=f"draw.*{came}"):
         pictures.render(drawn)
 
 

@@ -123,7 +123,7 @@ def test_play_and_tune_refuse_a_draw_that_returns_something_else():
         lambda: widgets.play([1], lambda _: [1, 2], alt="A list"),
         lambda: widgets.tune(square, lambda _: [1, 2], alt="A list", level=(0, 9)),
     ):
-        with pytest.raises(ValueError, match="expected draw to return a uint8 picture .* got list"):
+        with pytest.raises(ValueError, match="draw.*list"):
             make()
 
 
@@ -514,7 +514,7 @@ def test_large_pictures_are_compared_by_means_of_their_pixels_and_values_too():
             "expected values for each of 2 pictures, or one array, got 3",
         ),
         ({"alt": ""}, "expected an alt text"),
-        ({"a": np.zeros((24, 36))}, "expected draw to return a uint8 picture"),
+        ({"a": np.zeros((24, 36))}, "draw.*float64"),
     ],
 )
 @pytest.mark.parametrize("compare", [widgets.wipe, widgets.blink])

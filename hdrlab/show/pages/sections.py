@@ -1,4 +1,4 @@
-"""What a report says, a function per section: numbers as a reader wants them, pictures with alt texts.
+"""The sections of a report, a function each: rounded numbers, and figures with alt texts.
 
 The letters are those of `pipeline.Assembly`; the template `report.html` calls these functions.
 """
@@ -19,7 +19,7 @@ from hdrlab.show.plots import figures
 
 
 def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
-    """Return each photograph as a thumbnail with its name, its time and where it was moved."""
+    """Return a thumbnail, the name, the exposure time and the offset of each photo."""
     images, times, names, *_ = photographs
     frames = []
     for image, time, name, moved in zip(
@@ -45,7 +45,7 @@ def response(g: F64, truth: metrics.Truth | None) -> dict[str, Any]:
     low, high = (
         curves[round(z / 255 * (len(g) - 1))] for z in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL)
     )
-    reach = ", ".join(f"{one:.1f}" for one in (high - low) / np.log(2))
+    reach = ", ".join(f"{stops:.1f}" for stops in (high - low) / np.log(2))
     alt = f"Response, pixel level over ln exposure: from level 10 to level 250 it rises over {reach} stops"
     return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}
 
@@ -69,7 +69,7 @@ def _coloured(
 
 
 def known(quality: Flags, picture: Image) -> dict[str, Any]:
-    """Return how many pixels are known in which way, and where those stand that were not measured."""
+    """Return the pixels of each quality flag, and a figure of the pixels that were not measured."""
     masks = {flag: quality == flag for flag in (Quality.MEASURED, *figures.KNOWN)}
     met = {flag: mask for flag, mask in masks.items() if flag == Quality.MEASURED or mask.any()}
     alt = "The picture in pale gray, with dots where a pixel was not measured"
@@ -78,7 +78,7 @@ def known(quality: Flags, picture: Image) -> dict[str, Any]:
 
 
 def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
-    """Return how sure each pixel is, as words and in false colour; None where nobody asked."""
+    """Return the standard deviation of the pixels as text and in false color, or None without one."""
     if s is None:
         return None
     stops = wording.deviation(E, s)
@@ -87,7 +87,7 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
     if not np.isfinite(stops).any():
         return {"said": said, "picture": None}
     low, high = np.nanpercentile(stops, [1, 99]).tolist()
-    low = min(low, 0.9 * high)  # lest what is even looks uneven
+    low = min(low, 0.9 * high)  # a nearly uniform map must not look uneven
     ends = f"from ± {low:.2g} to ± {high:.2g} stops; gray where it is not known"
     shown = _coloured(
         stops, low, high, f"How sure each pixel is, in false colour, {ends}", digits=3
@@ -97,7 +97,7 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
 
 
 def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
-    """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
+    """Return the regions that moved and a figure of them, or None if nothing moved."""
     if labels is None or not labels.any():
         return None
     count = int(labels.max())
@@ -109,7 +109,7 @@ def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
 
 
 def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
-    """Return how far each frame departs from what all say, as numbers and as bars."""
+    """Return how far each frame deviates from the consensus of all frames, as numbers and bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])
     shared &= shared.sum(axis=0) >= 2
     spread = consistency.measure_spread(medians)
@@ -126,7 +126,7 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
 def against(
     truth: metrics.Truth, photographs: Bracket, offsets: Array, g: F64, E: Array
 ) -> dict[str, Any]:
-    """Return how far radiance, response and offsets lie from the truth."""
+    """Return the errors of radiance, response and offsets against the truth."""
     well = metrics.well_exposed(photographs.images, photographs.valid)
     apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
     rmse = metrics.response_rmse(g, truth.g)
@@ -138,7 +138,9 @@ def against(
         "most": f"{100 * np.nanpercentile(apart, 95):.2f} %",
         "well": wording.share(well),
         **error_map(truth, E, well),
-        "rmse": [(channel, f"{one:.2f} %") for channel, one in zip(channels, rmse, strict=True)],
+        "rmse": [
+            (channel, f"{percent:.2f} %") for channel, percent in zip(channels, rmse, strict=True)
+        ],
         "offsets": [(name, *map(wording.offset, three)) for name, *three in columns],
         "furthest": int(np.abs(off).max()),
     }

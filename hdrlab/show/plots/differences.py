@@ -1,9 +1,9 @@
-"""What was expected, what came, and their difference: pictures for a check that failed.
+"""Figures for a failed check: the expected answer, the student's answer, and their difference.
 
-expected  (H, W), (H, W, 3) image, or (n,) curve
-came      the same shape, or another; its numbers may be of any size, and NaN or infinite
+expected  (H, W) or (H, W, 3) image, or (n,) curve
+came      the student's answer; its numbers may be of any size, NaN or infinite
 
-Light goes over more than a screen can show: an image whose range is wide is drawn by logarithms.
+An image with a wide range of values is drawn on a logarithmic scale.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ from hdrlab.errors import InputError
 from hdrlab.show import pictures, plots
 from hdrlab.show.plots import figures
 
-LEAST = 200  # pixels: a smaller picture is shown with larger pixels
-MOST = 480
-WIDE = 300.0  # expected's largest over its smallest: beyond this logarithms are drawn
-MISSING = 128
-LEVELS = 256
-LONGEST = 28  # letters beside an axis
+MIN_SIDE_PIXELS = 200  # a smaller image is enlarged, so that single pixels can be seen
+MAX_SIDE_PIXELS = 480
+MAX_LINEAR_RATIO = 300.0  # beyond this ratio of largest to smallest the scale is logarithmic
+MISSING_GRAY = 128
+PIXEL_LEVELS = 256
+MAX_AXIS_LABEL_LENGTH = 28
 
 
 def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
@@ -34,15 +34,16 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         raise InputError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
     place, error = _worst(off)
-    shown = [drawn(one, truth) for one in (truth, answer)]
-    label = "by logarithms" if _wide(truth) else ""
+    scale = ", on a logarithmic scale" if _wide(truth) else ""
     reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
     colours = figures.false_colour(
         np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r"
     )
-    frames = [pictures.encode(_large(one)) for one in shown] + [
-        pictures.encode(_ringed(colours, place))
-    ]
+    frames = (
+        pictures.encode(_large(drawn(truth, truth))),
+        pictures.encode(_large(drawn(answer, truth))),
+        pictures.encode(_ringed(colours, place)),
+    )
     span = f"from {-reach:.2g} (purple) to {reach:.2g} (orange)"
     captions = (
         "expected",
@@ -50,11 +51,11 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         f"difference {span}: worst at row {place[0]}, column {place[1]}",
     )
     alts = (
-        ", ".join(filter(None, (f"{what}, expected", label, _range(truth)))),
-        ", ".join(filter(None, (f"{what}, yours", label, _range(answer)))),
+        f"{what}, expected{scale}, {_range(truth)}",
+        f"{what}, yours{scale}, {_range(answer)}",
         f"{what}, difference: the worst pixel is row {place[0]}, column {place[1]}, off by {error:.4g}",
     )
-    return pictures.Picture(tuple(frames), alts, captions)
+    return pictures.Picture(frames, alts, captions)
 
 
 def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
@@ -69,7 +70,7 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     (k, _), error = _worst((answer - truth)[:, None])
     seen = np.where(np.isfinite(answer), answer, np.nan)
     reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)
-    # else one spike hides all else
+    # a single spike would hide everything else
     seen = np.clip(seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach)
     figure = Figure(figsize=(5.4, 4.6), dpi=100, layout="constrained")
     x = np.arange(len(truth))
@@ -85,17 +86,19 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         markerfacecolor="none",
         label="furthest apart",
     )
-    plots.with_legend(ax, "best").set(ylabel=what if len(what) < LONGEST else "value")
+    plots.with_legend(ax, "best").set(ylabel=what if len(what) < MAX_AXIS_LABEL_LENGTH else "value")
     below.axhline(0, color="#B0B0B0", linewidth=1)
     below.plot(x, seen - truth, "-", color="#D55E00", linewidth=1.6)
-    below.set(xlabel="level z" if len(truth) == LEVELS else "index", ylabel="yours - expected")
+    below.set(
+        xlabel="level z" if len(truth) == PIXEL_LEVELS else "index", ylabel="yours - expected"
+    )
     alt = f"{what}, expected {_range(truth)} and yours {_range(answer)}; at {k} they differ by {error:.4g}"
     caption = f"expected and yours, and below their difference; furthest apart at {k}"
     return pictures.Picture((pictures.encode(figure),), (alt,), (caption,))
 
 
 def _worst_channel(off: Array) -> Array:
-    """Return of each pixel the channel that is off the most, (H, W)."""
+    """Return the error of each pixel's worst channel, (H, W)."""
     if off.ndim == 2:
         return off
     size = np.where(np.isfinite(off), np.abs(off), np.inf)
@@ -103,7 +106,7 @@ def _worst_channel(off: Array) -> Array:
 
 
 def _worst(off: Array) -> tuple[tuple[int, int], float]:
-    """Return the place of what is off the most, first of all what is no number, and by how much."""
+    """Return the place and the size of the largest error; NaN and infinity count as the largest."""
     size = np.where(np.isfinite(off), np.abs(off), np.inf)
     row, column = np.unravel_index(int(np.argmax(size)), size.shape)
     return (int(row), int(column)), float(size[row, column])
@@ -111,25 +114,28 @@ def _worst(off: Array) -> tuple[tuple[int, int], float]:
 
 def _wide(truth: Array) -> bool:
     light = truth[np.isfinite(truth) & (truth > 0)]
-    return bool(light.size and np.nanmin(truth) >= 0 and light.max() > WIDE * light.min())
+    return bool(
+        light.size and np.nanmin(truth) >= 0 and light.max() > MAX_LINEAR_RATIO * light.min()
+    )
 
 
 def drawn(values: Array, truth: Array) -> figures.Image:
-    """Return values as gray or colours, black and white where they are in `truth`."""
+    """Return values as a gray or color image, with the black and white levels of `truth`."""
     if _wide(truth):
         floor = truth[truth > 0].min()
-        values, truth = (np.log2(np.where(one > 0, one, floor)) for one in (values, truth))
+        values = np.log2(np.where(values > 0, values, floor))
+        truth = np.log2(np.where(truth > 0, truth, floor))
     low = np.nanmin(truth)
     high = np.nanmax(truth)
     with np.errstate(invalid="ignore", over="ignore"):
         levels = 255 * (values - low) / (high - low if high > low else 1)
-    return np.where(np.isfinite(levels), np.clip(levels, 0, 255), MISSING).astype(np.uint8)
+    return np.where(np.isfinite(levels), np.clip(levels, 0, 255), MISSING_GRAY).astype(np.uint8)
 
 
 def _large(drawn: figures.Image) -> figures.Image:
     """Return a picture with pixels large enough to be seen one by one, and not too many of them."""
-    k = max(1, LEAST // max(drawn.shape[:2]))
-    return figures.fit(drawn.repeat(k, axis=0).repeat(k, axis=1), MOST)
+    k = max(1, MIN_SIDE_PIXELS // max(drawn.shape[:2]))
+    return figures.fit(drawn.repeat(k, axis=0).repeat(k, axis=1), MAX_SIDE_PIXELS)
 
 
 def _ringed(colours: figures.Image, place: tuple[int, int]) -> figures.Image:
@@ -148,5 +154,5 @@ def _range(values: Array) -> str:
     if known.size == 0:
         return "no numbers"
     missing = values.size - known.size
-    said = f"from {known.min():.4g} to {known.max():.4g}"
-    return f"{said}, {missing} not finite" if missing else said
+    text = f"from {known.min():.4g} to {known.max():.4g}"
+    return f"{text}, {missing} not finite" if missing else text

@@ -29,7 +29,7 @@ from hdrlab.show.pictures import (
     Picture,
     encode,
     encode_change,
-    pictured,
+    picture_areas,
     render,
     require_alt,
     short,
@@ -70,7 +70,7 @@ class Player(Widget):
     alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
     name = traitlets.Unicode("step").tag(sync=True)
     index = traitlets.Int(0).tag(sync=True)
-    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
+    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # see picture_areas
 
     def still(self) -> Picture:
         """Return the first frame."""
@@ -116,7 +116,7 @@ def play(
     areas = list[list[float]]()
     for k, state in enumerate(islice(states, MOST + 1)):
         frame, areas = reuse.draw_reusing(
-            draw, state, lambda drawn: (encode(drawn), pictured(drawn)), kept
+            draw, state, lambda drawn: (encode(drawn), picture_areas(drawn)), kept
         )
         frames.append(frame)
         alts.append(
@@ -147,7 +147,7 @@ class Tuner(Widget):
     # WebP; each is painted over the first
     stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
-    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
+    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # see picture_areas
 
     def __init__(
         self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any
@@ -255,7 +255,7 @@ def tune(
 
     at = positions.start(f, grids)
     most = int(os.environ.get("HDRLAB_STORED", stored))
-    first, areas = picture(at, lambda drawn: (render(drawn), pictured(drawn)))
+    first, areas = picture(at, lambda drawn: (render(drawn), picture_areas(drawn)))
     stored_at = [at]
     frames = [encode_change(first)]
     for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:

@@ -1,7 +1,7 @@
-"""Where sliders can stand: every range becomes a list of values, and a position is an index into each list.
+"""Slider positions: every range becomes a list of values, and a position is an index into each list.
 
-grids  name -> the values of one parameter, in the order of its slider
-at     one index per parameter
+grids      name -> the values of one parameter, in the order of its slider
+position   one index per parameter
 """
 
 import inspect
@@ -17,31 +17,41 @@ from hdrlab.errors import InputError
 Grids = dict[str, list[Any]]
 
 
-def values(grids: Grids, at: Sequence[int]) -> dict[str, Any]:
+def values(grids: Grids, position: Sequence[int]) -> dict[str, Any]:
     """Return each parameter's value at a position."""
-    return {name: each[k] for (name, each), k in zip(grids.items(), at, strict=True)}
+    pairs = zip(grids.items(), position, strict=True)
+    return {name: grid_values[index] for (name, grid_values), index in pairs}
 
 
-def grid(name: str, given: Any) -> list[Any]:
-    """Return the positions of one slider: the values of a list, or the steps of a range."""
-    if not isinstance(given, tuple):
-        each = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
-        if len(each) < 2:
-            raise InputError(
-                f"expected {name} as (low, high[, step]) or a list of values, got {given!r}"
-            )
-        return each
-    low, high, step = (
-        given if len(given) == 3 else (*given, None) if len(given) == 2 else (0, 0, None)
-    )
-    whole = all(isinstance(end, int | np.integer) for end in (low, high))
-    step = step if step is not None else 1 if whole else (high - low) / 100
-    if not (np.isfinite([low, high, step]).all() and low < high and 0 < step <= high - low):
+def grid(name: str, choices: Any) -> list[Any]:
+    """Return the values of one slider: those of a list, or the steps of a range (low, high[, step])."""
+    if isinstance(choices, tuple):
+        return _steps_of_range(name, choices)
+    is_list = isinstance(choices, Iterable) and not isinstance(choices, str)
+    slider_values = list(choices) if is_list else []
+    if len(slider_values) < 2:
         raise InputError(
-            f"expected {name} as a range (low, high[, step]) with low < high, got {given!r}"
+            f"expected {name} as (low, high[, step]) or a list of values, got {choices!r}"
         )
-    count = int(np.floor((high - low) / step + 1e-9)) + 1
-    return [low + k * step for k in range(count)]
+    return slider_values
+
+
+def _steps_of_range(name: str, ends: tuple[Any, ...]) -> list[Any]:
+    """Return the steps of a range (low, high) or (low, high, step), both ends included."""
+    wrong = f"expected {name} as a range (low, high[, step]) with low < high, got {ends!r}"
+    if len(ends) not in (2, 3):
+        raise InputError(wrong)
+    low, high = ends[:2]
+    step = ends[2] if len(ends) == 3 else None
+    if step is None:
+        has_whole_ends = all(isinstance(end, int | np.integer) for end in (low, high))
+        step = 1 if has_whole_ends else (high - low) / 100
+    is_finite = np.isfinite([low, high, step]).all()
+    if not (is_finite and low < high and 0 < step <= high - low):
+        raise InputError(wrong)
+    rounding = 1e-9  # (high - low) / step may come out slightly below a whole number
+    count = int(np.floor((high - low) / step + rounding)) + 1
+    return [low + index * step for index in range(count)]
 
 
 def start(f: Callable[..., Any], grids: Grids) -> list[int]:
@@ -61,31 +71,38 @@ def start(f: Callable[..., Any], grids: Grids) -> list[int]:
 def _nearest(grid: list[Any], value: Any) -> int:
     if value in grid:
         return grid.index(value)
-    numbers = all(isinstance(each, int | float | np.number) for each in [*grid, value])
-    return int(np.argmin(np.abs(np.array(grid) - value))) if numbers else len(grid) // 2
+    has_numbers = all(isinstance(item, int | float | np.number) for item in [*grid, value])
+    if not has_numbers:
+        return len(grid) // 2
+    return int(np.argmin(np.abs(np.array(grid) - value)))
 
 
-def beforehand(grids: Grids, at: list[int], most: int) -> list[list[int]]:
-    """Return the start, then every other position, or those of an even grid where they are more than `most`.
+def beforehand(grids: Grids, start: list[int], max_positions: int) -> list[list[int]]:
+    """Return the positions whose figures are computed in advance, `start` first.
 
-    A grid has the ends of each range; of the sliders the longest is thinned out first, and words
-    last.
+    These are all positions, or an even grid of at most `max_positions` that includes the ends of
+    each range. The longest slider is thinned out first, sliders with words last.
     """
-    counts = list(map(len, grids.values()))
-    words = [isinstance(each[0], str) for each in grids.values()]
-    while math.prod(counts) > max(most, 1):
-        counts[
-            max(range(len(counts)), key=lambda k: (min(counts[k], 3), not words[k], counts[k]))
-        ] -= 1
+    lengths = [len(grid_values) for grid_values in grids.values()]
+    has_words = [isinstance(grid_values[0], str) for grid_values in grids.values()]
+    counts = lengths.copy()
+
+    def thinning_order(slider: int) -> tuple[int, bool, int]:
+        return min(counts[slider], 3), not has_words[slider], counts[slider]
+
+    while math.prod(counts) > max(max_positions, 1):
+        longest = max(range(len(counts)), key=thinning_order)
+        counts[longest] -= 1
     axes = [
-        _even(len(each), count, k)
-        for each, count, k in zip(grids.values(), counts, at, strict=True)
+        _even_indices(length, count, index)
+        for length, count, index in zip(lengths, counts, start, strict=True)
     ]
-    return sorted(map(list, itertools.product(*axes)), key=lambda position: position != at)
+    positions = [list(position) for position in itertools.product(*axes)]
+    return sorted(positions, key=lambda position: position != start)
 
 
-def _even(length: int, count: int, here: int) -> list[int]:
-    """Return `count` positions from end to end, of which the one nearest to `here` is `here`."""
-    chosen = np.linspace(0, length - 1, count).round().astype(int)
-    chosen[np.argmin(np.abs(chosen - here))] = here
-    return chosen.tolist()
+def _even_indices(length: int, count: int, included: int) -> list[int]:
+    """Return `count` indices from end to end; the nearest to `included` is replaced by it."""
+    indices = np.linspace(0, length - 1, count).round().astype(int)
+    indices[np.argmin(np.abs(indices - included))] = included
+    return indices.tolist()
