@@ -35,7 +35,7 @@ IN = (
     "hdrlab/scenes/tripod/img-1.jpeg",
     "hdrlab/course/plan.toml",
     "hdrlab/course/checks/specification/test_gsolve.py",
-    "hdrlab/course/checks/mistakes/changes.toml",
+    "hdrlab/course/checks/mistakes/gsolve.py",
     "hdrlab/course/checks/parameters/shift.toml",
     "hdrlab/course/gallery/web/templates/base.html",
     "hdrlab/show/widgets/blink.js",

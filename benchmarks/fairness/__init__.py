@@ -134,7 +134,7 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     found = misconceptions.closest(task, calls[: plugin.CALLS]) if broken else None
     needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
     traced = scoring.attribute_failures(
-        checks, needs, named=found is not None, once=found is not None and found.once
+        checks, needs, named=found is not None, once=found is not None and found.costs_half_at_most
     )
     share = float(sum(one.points for one in traced) / sum(worth))
     return Score(task.id, way, share, broken, found.name if found else "")
@@ -210,7 +210,7 @@ def named(_: Path) -> dict[str, Any]:
     """Return what the named mistakes get, and how many are named."""
     found = scores(mistakes(), SEEDS)
     print(table(found))
-    method = [one.name for one in misconceptions.known() if not one.once]
+    method = [one.name for one in misconceptions.known() if one.misses_method]
     print(f"  of these miss what their task is about: {', '.join(method)}")
     return {
         "answers with a mistake": len(found),

@@ -79,6 +79,6 @@ def score(task, subject, seed=0, variant=""):
     ]
     needs = {name: needs or "" for name, *_, needs in checks(task, variant)}
     traced = scoring.attribute_failures(
-        each, needs, named=found is not None, once=found is not None and found.once
+        each, needs, named=found is not None, once=found is not None and found.costs_half_at_most
     )
     return float(sum(one.points for one in traced) / sum(worth)), said

@@ -11,6 +11,7 @@ from checked import Asked, item
 
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.compare import Different
+from hdrlab.course.checks.mistakes import KnownMistake
 from hdrlab.course.checks.subject import NoAnswer
 from hdrlab.course.sandbox.running import Unavailable
 
@@ -147,7 +148,9 @@ def test_at_the_end_the_mistakes_of_what_failed_are_named_and_an_error_there_cos
         if task.id == "gsolve":
             raise ValueError
         assert (task.function, task.points, calls) == ("core.weights.hat", 1.0, [((0,), {}, 5)])
-        return misconceptions.Misconception("hat_x", "hat", "A sentence.", len, once=False)
+        return KnownMistake(
+            name="hat_x", task="hat", sentence="A sentence.", function=len, misses_method=True
+        )
 
     monkeypatch.setattr(misconceptions, "closest", closest)
     checking._ended(item(subject=Asked(5)), AssertionError())

@@ -1,4 +1,4 @@
-"""How near an answer must be to a known mistake's, in numbers, and where a mistake's function comes from."""
+"""How near an answer must be to a known mistake's answer, and where the wrong functions come from."""
 
 import warnings
 
@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.checks import MISTAKES, misconceptions
-from hdrlab.course.checks.misconceptions import MOST, Misconception, closest, difference, in_gauge
+from hdrlab.course.checks import misconceptions
+from hdrlab.course.checks.misconceptions import MAX_DIFFERENCE, closest, difference, in_gauge
+from hdrlab.course.checks.mistakes import KnownMistake, mistake
+from hdrlab.course.material import solutions
 
 NAN, INF = np.nan, np.inf
-
-
-def test_what_counts_as_the_same_is_a_thousandth_and_a_mistake_explains_nine_tenths():
-    assert (misconceptions.ROUNDING, misconceptions.NEARER, MOST) == (1e-3, 0.1, 1e3)
-    assert Misconception("a", "b", "c", len).once is True
 
 
 @pytest.mark.parametrize(
@@ -24,40 +21,40 @@ def test_what_counts_as_the_same_is_a_thousandth_and_a_mistake_explains_nine_ten
         (3, 2, 0.5),
         (-2, 2, 2),
         ([1, 2, 2], (1, 2, 2), 0),
-        (np.array([3, 4]), np.array([0, 0]), MOST),
+        (np.array([3, 4]), np.array([0, 0]), MAX_DIFFERENCE),
         (np.zeros(2), np.zeros(2), 0),
         (np.array([4.0, 4.0]), np.array([3.0, 5.0]), (2 / 34) ** 0.5),
         (np.array([0.0, 5.0]), np.array([3.0, 1.0]), (25 / 10) ** 0.5),
-        (np.full(2, 1e-9), np.full(2, 1e-13), MOST),
+        (np.full(2, 1e-9), np.full(2, 1e-13), MAX_DIFFERENCE),
         (np.full(2, 500.0), np.ones(2), 499),
-        (np.full(2, 3000.0), np.ones(2), MOST),
+        (np.full(2, 3000.0), np.ones(2), MAX_DIFFERENCE),
         (np.array([NAN, 2.0]), np.array([NAN, 1.0]), 1),
         (np.array([INF, 2.0]), np.array([NAN, 1.0]), 1),
-        (np.array([1.0, NAN]), np.array([NAN, 1.0]), MOST),
+        (np.array([1.0, NAN]), np.array([NAN, 1.0]), MAX_DIFFERENCE),
         (np.array([NAN]), np.array([NAN]), 0),
         (np.array([]), np.array([]), 0),
         (np.ones((1, 2)), np.ones((2, 1)), 0),
-        (np.ones(2), np.ones(3), MOST),
-        (np.ones(2), np.array(["a", "b"]), MOST),
-        (np.array(["a", "b"]), np.ones(2), MOST),
+        (np.ones(2), np.ones(3), MAX_DIFFERENCE),
+        (np.ones(2), np.array(["a", "b"]), MAX_DIFFERENCE),
+        (np.array(["a", "b"]), np.ones(2), MAX_DIFFERENCE),
         (np.array([True, False]), np.array([1, 0]), 0),
         (None, None, 0),
-        (None, 1, MOST),
-        (1, None, MOST),
+        (None, 1, MAX_DIFFERENCE),
+        (1, None, MAX_DIFFERENCE),
         ("a", "a", 0),
-        ("a", "b", MOST),
+        ("a", "b", MAX_DIFFERENCE),
         (b"a", b"a", 0),
-        (b"a", "a", MOST),
-        (1, "a", MOST),
-        ({}, 1, MOST),
-        ([1, [2]], np.ones(2), MOST),
-        ([], np.ones(2), MOST),
+        (b"a", "a", MAX_DIFFERENCE),
+        (1, "a", MAX_DIFFERENCE),
+        ({}, 1, MAX_DIFFERENCE),
+        ([1, [2]], np.ones(2), MAX_DIFFERENCE),
+        ([], np.ones(2), MAX_DIFFERENCE),
         ([1, 3], np.array([1, 1]), 2**0.5),
         ((1, 3), np.array([1, 1]), 2**0.5),
         ((), (), 0),
-        ((1, 2), (1,), MOST),
-        (1, (1,), MOST),
-        ("ab", ("a", "b"), MOST),
+        ((1, 2), (1,), MAX_DIFFERENCE),
+        (1, (1,), MAX_DIFFERENCE),
+        ("ab", ("a", "b"), MAX_DIFFERENCE),
         ((1, 3), (1, 2), 0.5),
         ([4, 3], [2, 2], 1),
     ],
@@ -118,7 +115,7 @@ def named(monkeypatch):
 
     def named(answers, *came, right=1.0):
         mistakes = [
-            Misconception(name, "merge", "", lambda k, one=one: one)
+            KnownMistake(name=name, task="merge", sentence="", function=lambda k, one=one: one)
             for name, one in answers.items()
         ]
         monkeypatch.setattr(misconceptions, "of_task", lambda task: mistakes)
@@ -201,39 +198,36 @@ def test_the_mistakes_of_a_task_are_its_own_and_those_in_method_miss_what_it_is_
         text = f'"""Mistake\n\nnumber {value}."""\ndef vignette():\n    return {value}\n'
         (tmp_path / "mistakes" / place).write_text(text, encoding="utf8")
     found = misconceptions.of_task(plan.Task("vignette", f"{tmp_path / 'vignette.py'}:vignette", 1))
-    told = [(one.name, one.task, one.sentence, one.function(), one.once) for one in found]
+    told = [(one.name, one.task, one.sentence, one.function(), one.misses_method) for one in found]
     assert told == [
-        ("vignette_a", "vignette", "Mistake number 1.", 1, False),
-        ("vignette_b", "vignette", "Mistake number 2.", 2, True),
+        ("vignette_a", "vignette", "Mistake number 1.", 1, True),
+        ("vignette_b", "vignette", "Mistake number 2.", 2, False),
     ]
 
 
-def test_of_the_librarys_tasks_each_has_the_changes_that_begin_with_its_name():
-    for task in plan.read().homeworks["hw2"].tasks:
-        names = [one.name for one in misconceptions.of_task(task)]
-        expected = [one for one in misconceptions.CHANGES if misconceptions.task_of(one) == task.id]
-        assert names == sorted(expected) and names
-    once = {one.name: one.once for one in misconceptions.known()}
-    assert once == {
-        name: "misses" not in one for name, one in sorted(misconceptions.CHANGES.items())
-    }
-    assert (MISTAKES / "changes.toml").is_file() and set(once.values()) == {True, False}
+def test_the_name_of_a_mistake_begins_with_its_task_and_is_not_taken():
+    def gsolve_halved(Z):
+        return Z / 2
+
+    gsolve_halved.__module__ = "a.package.of_mistakes"
+    with pytest.raises(ValueError, match="of_mistakes_"):
+        mistake("gsolve_halved", says="A sentence.")(gsolve_halved)
+    mistake("of_mistakes_halved", says="A sentence.")(gsolve_halved)
+    with pytest.raises(ValueError, match="of_mistakes_halved"):
+        mistake("of_mistakes_halved", says="Another sentence.")(gsolve_halved)
 
 
-def test_a_change_must_stand_once_in_the_solution(monkeypatch):
-    change = {"says": "", "changes": [["old", "new"], ["more", "less"]]}
-    monkeypatch.setitem(misconceptions.CHANGES, "merge_x", change)
-    cells = {"hat": "old", "merge": "old and more"}
-    assert misconceptions.put_in(cells, "merge_x") == {"hat": "old", "merge": "new and less"}
-    assert cells["merge"] == "old and more"
-    for text in ("more", "old old more"):
-        with pytest.raises(
-            ValueError, match="expected once in the solution of merge, for merge_x: old"
-        ):
-            misconceptions.put_in({"merge": text}, "merge_x")
+def test_a_mistake_replaces_the_solution_of_its_task_alone():
+    homework = plan.read().homeworks["hw2"]
+    right = solutions.texts(homework)
+    wrong = solutions.texts(homework, ["hat_ends_count"])
+    assert [task for task in right if right[task] != wrong[task]] == ["hat"]
+    scope = {}
+    exec("\n\n".join(wrong.values()), scope)
+    assert scope["hat"]()[0] > 0 and "ends_count" not in wrong["hat"]
 
 
-def test_a_changed_solution_is_run_among_those_of_its_homework():
+def test_a_wrong_hat_answers_in_the_form_of_the_right_one():
     hat = [one for one in misconceptions.known() if one.task == "hat"]
     right = plan.function(plan.read().task("hat"))()
     assert hat and all(np.shape(one.function()) == right.shape for one in hat)

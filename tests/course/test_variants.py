@@ -158,7 +158,9 @@ def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
     used = set()
     texts = [*about(task, "").values()]
     texts += [
-        text for one in misconceptions.known() if one.task == task for text in changes_of(one.name)
+        solutions.texts(homework_of(task, ""), [one.name])[task]
+        for one in misconceptions.known()
+        if one.task == task
     ]
     for variant in rewording.every(task):
         for text in texts:
@@ -175,10 +177,6 @@ def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
         for was, _ in each
     }
     assert pairs - used == set()
-
-
-def changes_of(name):
-    return [text for change in misconceptions.CHANGES[name]["changes"] for text in change]
 
 
 @pytest.mark.parametrize(("task", "variant"), EVERY)
@@ -289,7 +287,7 @@ def test_each_named_mistake_is_named_for_every_variant_and_costs_points_but_not_
             share, _ = scoring.score(task, wrong, plan.seed("x", "ada", task), variant)
             found = misconceptions.closest(asked(task, variant), wrong.calls[:20])
             assert found is not None and found.name == one.name, variant
-            assert 0 < share < 1 and (share >= 0.5 or not one.once), variant
+            assert 0 < share < 1 and (share >= 0.5 or one.misses_method), variant
 
 
 @pytest.mark.parametrize("task", TASKS)

@@ -1,8 +1,6 @@
-"""The checks: the specification, the well-known mistakes, and what runs them against a student's code."""
+"""The checks of the course, the known mistakes, and what runs the checks against a student's code."""
 
 from pathlib import Path
 
-SPECIFICATION = Path(__file__).parent / "specification"  # test_<task>.py, the promises of a task
-# <task>_<mistake>.py, the wrong function and a sentence; in method/ those that miss what the task
-# is about
-MISTAKES = Path(__file__).parent / "mistakes"
+# test_<task>.py holds the promises of a task
+SPECIFICATION = Path(__file__).parent / "specification"

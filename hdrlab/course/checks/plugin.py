@@ -144,7 +144,9 @@ class Checking:
             ):  # whatever was answered costs this task its sentence, and no other
                 (asked,) = (plan.Task(*one) for one in self.job["tasks"] if one[0] == task)
                 if found := misconceptions.closest(asked, self.calls.get(task, [])):
-                    self._write(recognised=task, sentence=found.sentence, once=found.once)
+                    self._write(
+                        recognised=task, sentence=found.sentence, once=found.costs_half_at_most
+                    )
 
     def pytest_unconfigure(self) -> None:
         """Close the sandbox."""

@@ -100,9 +100,16 @@ def on_the_board(text: str) -> str:
     guards = {one for node in functions for one in node.body if _is_guard(one)}
     fields = {one for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for one in node.body}
     typed = [one for one in ast.walk(tree) if isinstance(one, ast.AnnAssign)]
-    for node in sorted([*functions, *guards, *typed], key=lambda one: one.lineno, reverse=True):
+    registrations = {
+        decorator
+        for node in functions
+        for decorator in node.decorator_list
+        if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "mistake"
+    }
+    parts = [*functions, *guards, *typed, *registrations]
+    for node in sorted(parts, key=lambda one: one.lineno, reverse=True):
         line, start = lines[node.lineno - 1], node.lineno - 1
-        if node in guards:
+        if node in guards or node in registrations:
             del lines[start : node.end_lineno]
         elif isinstance(node, ast.FunctionDef):
             body = node.body[0]

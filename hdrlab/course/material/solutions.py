@@ -6,13 +6,12 @@ changes it. Neither the wheel nor the source distribution holds the pack.
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from functools import reduce
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from hdrlab.course import variants
-from hdrlab.course.checks.misconceptions import put_in, solutions, task_of
+from hdrlab.course.checks import misconceptions
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework, Plan
 from hdrlab.errors import InputError
@@ -22,12 +21,12 @@ HEAD = Path(__file__).with_name("solutions_head.md")  # of the table of what is 
 
 
 def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
-    """Return what stands in the cell of each task.
+    """Return the text of the cell of each task.
 
     Parameters
     ----------
-    homework : whose tasks
-    mistakes : names of mistakes, at most one for each task; the other tasks are right
+    homework : the homework whose tasks are solved
+    mistakes : names of known mistakes, at most one for each task; all other tasks are right
 
     Examples
     --------
@@ -36,11 +35,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    variant, cells = (
-        {task.id: task.variant for task in homework.tasks},
-        dict(solutions(homework.tasks)),
-    )
-    return reduce(lambda cells, name: put_in(cells, name, variant[task_of(name)]), mistakes, cells)
+    return dict(misconceptions.solutions(homework.tasks, mistakes))
 
 
 def notebook(homework: Homework, cells: Mapping[str, str] | None = None) -> str:

@@ -1,0 +1,62 @@
+"""Known mistakes in `adjust_steps`, the task of hdrlab.tonemap.ward.adjust_steps."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.ward import Trim, ceiling, trim
+
+
+@mistake(
+    "adjust_steps_trimmings_redistributed",
+    says="You put the trimmings back into other bins: that raises their slopes above 1. What "
+    "is cut off is gone.",
+)
+def trimmings_redistributed(h, db, D, *, tolerance=0.025):
+    def trim(h, db, D):
+        T = float(h.sum())
+        top = ceiling(T, db, D)
+        cut, room = float(np.maximum(h - top, 0).sum()), h < top
+        return Trim(np.minimum(h, top) + np.where(room, cut / max(room.sum(), 1), 0), top, T, cut)
+
+    state = Trim(h, np.inf, float(h.sum()), np.inf)
+    yield state
+    for _ in range(40):
+        state = trim(state.h, db, D)
+        yield state
+        if state.trimmings < tolerance * state.T:
+            return
+
+
+@mistake(
+    "adjust_steps_decades",
+    says="The display's range is a natural logarithm, like db; you took it for decades, and "
+    "the ceiling is 2.3 times too high or too low.",
+)
+def decades(h, db, D, *, tolerance=0.025):
+    def ceiling(T, db, D):
+        return T * db * np.log(10) / D
+
+    def trim(h, db, D):
+        T = float(h.sum())
+        top = ceiling(T, db, D)
+        return Trim(np.minimum(h, top), top, T, float(np.maximum(h - top, 0).sum()))
+
+    state = Trim(h, np.inf, float(h.sum()), np.inf)
+    yield state
+    while state.trimmings >= tolerance * state.T and state.h.sum() > tolerance * h.sum():
+        state = trim(state.h, db, D)
+        yield state
+
+
+@mistake(
+    "adjust_steps_once",
+    says="You applied the ceiling once. The trim made T less, and the ceiling with it: trim "
+    "again until hardly anything is cut.",
+    misses_method=True,
+)
+def once(h, db, D, *, tolerance=0.025):
+    state = Trim(h, np.inf, float(h.sum()), np.inf)
+    yield state
+    if state.trimmings >= tolerance * state.T and state.h.sum() > tolerance * h.sum():
+        state = trim(state.h, db, D)
+        yield state

@@ -1,0 +1,209 @@
+"""Known mistakes in `align`, the task of hdrlab.align.mtb.align."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from hdrlab.align.mtb import (
+    NINE,
+    SMALLEST,
+    State,
+    align_steps,
+    bitmaps,
+    by_brightness,
+    chain_offsets,
+    gray,
+    shrink,
+    step,
+)
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "align_not_doubled",
+    says="A pixel of a level is two of the next finer one: double the offset before you look "
+    "around it.",
+)
+def not_doubled(images, *, bits=6, luma=False):
+    def search(fixed, moving, *, bits=6, q=0.5):
+        pyramid = [(fixed, moving)]
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+            pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+        offset = (0, 0)
+        for level in reversed(range(len(pyramid))):
+            A, B = (bitmaps(Y, q) for Y in pyramid[level])
+            errors = step(A, B, offset)
+            offset = min(errors, key=errors.__getitem__)
+            yield State(level, A, B, errors, offset)
+
+    def align_steps(images, *, bits=6, luma=False):
+        images = np.asarray(images)
+        for moving, fixed in pairwise(by_brightness(images)):
+            yield from search(
+                gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+            )
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_ties_from_the_corner",
+    says="Where all nine candidates are equally good you take the first, in the corner, and "
+    "walk off a pixel a level: begin with the centre.",
+)
+def ties_from_the_corner(images, *, bits=6, luma=False):
+    def search(fixed, moving, *, bits=6, q=0.5):
+        pyramid = [(fixed, moving)]
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+            pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+        offset = (0, 0)
+        for level in reversed(range(len(pyramid))):
+            A, B = (bitmaps(Y, q) for Y in pyramid[level])
+            errors = step(A, B, (2 * offset[0], 2 * offset[1]))
+            offset = min(sorted(errors), key=errors.__getitem__)
+            yield State(level, A, B, errors, offset)
+
+    def align_steps(images, *, bits=6, luma=False):
+        images = np.asarray(images)
+        for moving, fixed in pairwise(by_brightness(images)):
+            yield from search(
+                gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+            )
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_bitmap_made_small",
+    says="You make the bitmap of the whole picture small, instead of the picture: at the "
+    "coarse levels fine texture is noise then.",
+)
+def bitmap_made_small(images, *, bits=6, luma=False):
+    def search(fixed, moving, *, bits=6, q=0.5):
+        pyramid = [(fixed, moving)]
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+            pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+        offset = (0, 0)
+        for level in reversed(range(len(pyramid))):
+            A, B = (bitmaps(Y, q)[:, :: 2**level, :: 2**level] for Y in pyramid[0])
+            errors = step(A, B, (2 * offset[0], 2 * offset[1]))
+            offset = min(errors, key=errors.__getitem__)
+            yield State(level, A, B, errors, offset)
+
+    def align_steps(images, *, bits=6, luma=False):
+        images = np.asarray(images)
+        for moving, fixed in pairwise(by_brightness(images)):
+            yield from search(
+                gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+            )
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_coarsest_level_forgotten",
+    says="Your pyramid has a level too few: with `bits` levels an offset reaches 2^bits - 1 "
+    "pixels.",
+)
+def coarsest_level_forgotten(images, *, bits=6, luma=False):
+    def search(fixed, moving, *, bits=6, q=0.5):
+        pyramid = [(fixed, moving)]
+        while len(pyramid) < bits - 1 and min(pyramid[-1][0].shape) >= SMALLEST:
+            pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+        offset = (0, 0)
+        for level in reversed(range(len(pyramid))):
+            A, B = (bitmaps(Y, q) for Y in pyramid[level])
+            errors = step(A, B, (2 * offset[0], 2 * offset[1]))
+            offset = min(errors, key=errors.__getitem__)
+            yield State(level, A, B, errors, offset)
+
+    def align_steps(images, *, bits=6, luma=False):
+        images = np.asarray(images)
+        for moving, fixed in pairwise(by_brightness(images)):
+            yield from search(
+                gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+            )
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_nothing_excluded",
+    says="You count pixels near the median, too, whose bits are noise: AND the differences "
+    "with both exclusion bitmaps.",
+)
+def nothing_excluded(images, *, bits=6, luma=False):
+    def error(fixed, moving, offset):
+        (dy, dx), (H, W) = offset, fixed.shape[1:]
+        A, A_kept = fixed[:, max(dy, 0) : max(H + dy, 0), max(dx, 0) : max(W + dx, 0)]
+        B, B_kept = moving[:, max(-dy, 0) : max(H - dy, 0), max(-dx, 0) : max(W - dx, 0)]
+        return float((A ^ B).mean())
+
+    def step(fixed, moving, offset):
+        near = [(offset[0] + dy, offset[1] + dx) for dy, dx in NINE]
+        return {one: error(fixed, moving, one) for one in near}
+
+    def search(fixed, moving, *, bits=6, q=0.5):
+        pyramid = [(fixed, moving)]
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+            pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+        offset = (0, 0)
+        for level in reversed(range(len(pyramid))):
+            A, B = (bitmaps(Y, q) for Y in pyramid[level])
+            errors = step(A, B, (2 * offset[0], 2 * offset[1]))
+            offset = min(errors, key=errors.__getitem__)
+            yield State(level, A, B, errors, offset)
+
+    def align_steps(images, *, bits=6, luma=False):
+        images = np.asarray(images)
+        for moving, fixed in pairwise(by_brightness(images)):
+            yield from search(
+                gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
+            )
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_to_the_first",
+    says="Your offsets lay the images on the first one; the one in the middle of their "
+    "brightness is to stay.",
+)
+def to_the_first(images, *, bits=6, luma=False):
+    def chain_offsets(order, steps):
+        sums = np.cumsum(np.reshape(steps, (-1, 2))[::-1], axis=0)[::-1]  # onto the brightest
+        offsets = np.zeros((len(order), 2), np.int64)
+        offsets[order[:-1]] = sums
+        return offsets - offsets[0]
+
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return chain_offsets(by_brightness(np.asarray(images)), found)
+
+
+@mistake(
+    "align_wrong_way",
+    says="Your offsets say where the images have moved to; asked is where they must move to "
+    "lie on the one in the middle: change the sign.",
+)
+def wrong_way(images, *, bits=6, luma=False):
+    found = [
+        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
+    ]
+    return -chain_offsets(by_brightness(np.asarray(images)), found)

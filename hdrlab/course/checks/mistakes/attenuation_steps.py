@@ -1,0 +1,77 @@
+"""Known mistakes in `attenuation_steps`, the task of hdrlab.tonemap.fattal.attenuation_steps."""
+
+import numpy as np
+
+from hdrlab.core.filters.pyramid import depth, gaussian, interpolate
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.fattal import SMALLEST, Level, attenuation, slope
+
+
+@mistake(
+    "attenuation_steps_power_inverted",
+    says="Your phi grows with the slope: steep slopes are made steeper. The power is beta - 1, "
+    "which is negative.",
+)
+def power_inverted(lL, *, alpha=0.1, beta=0.9, noise=0.01):
+    def attenuation(slope, mean, *, alpha, beta, noise):
+        return (np.maximum(slope / (mean or 1), noise) / alpha) ** (1 - beta)
+
+    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    Phi = np.ones_like(levels[-1][::2, ::2])
+    for k, lL in reversed(list(enumerate(levels))):
+        steepness = slope(lL, k)
+        phi = attenuation(steepness, float(steepness.mean()), alpha=alpha, beta=beta, noise=noise)
+        Phi = interpolate(Phi, lL.shape) * phi
+        yield Level(k, lL, steepness, phi, Phi)
+
+
+@mistake(
+    "attenuation_steps_mean_of_the_finest",
+    says="alpha is a tenth of the mean slope at each level; you took the mean of the finest "
+    "level for all.",
+)
+def mean_of_the_finest(lL, *, alpha=0.1, beta=0.9, noise=0.01):
+    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    Phi = np.ones_like(levels[-1][::2, ::2])
+    for k, lL in reversed(list(enumerate(levels))):
+        steepness = slope(lL, k)
+        phi = attenuation(
+            steepness, 4 * float(slope(levels[0]).mean()), alpha=alpha, beta=beta, noise=noise
+        )
+        Phi = interpolate(Phi, lL.shape) * phi
+        yield Level(k, lL, steepness, phi, Phi)
+
+
+@mistake(
+    "attenuation_steps_finest_alone",
+    says="You attenuate by the finest level alone: a soft edge of a large contrast has gentle "
+    "slopes there, and comes through.",
+)
+def finest_alone(lL, *, alpha=0.1, beta=0.9, noise=0.01):
+    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    Phi = np.ones_like(levels[-1][::2, ::2])
+    for k, lL in reversed(list(enumerate(levels))):
+        steepness = slope(lL, k)
+        phi = attenuation(steepness, float(steepness.mean()), alpha=alpha, beta=beta, noise=noise)
+        Phi = phi
+        yield Level(k, lL, steepness, phi, Phi)
+
+
+@mistake(
+    "attenuation_steps_phi_of_the_coarser",
+    says="Your phi comes from the wrong level: Phi_k takes the phi of level k itself, and you "
+    "took that of the next coarser one again.",
+)
+def phi_of_the_coarser(lL, *, alpha=0.1, beta=0.9, noise=0.01):
+    coarser_phi = None
+    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    Phi = np.ones_like(levels[-1][::2, ::2])
+    for k, lL in reversed(list(enumerate(levels))):
+        steepness = slope(lL, k)
+        phi = attenuation(steepness, float(steepness.mean()), alpha=alpha, beta=beta, noise=noise)
+        own_phi = phi
+        if coarser_phi is not None:
+            phi = interpolate(coarser_phi, lL.shape)
+        coarser_phi = own_phi
+        Phi = interpolate(Phi, lL.shape) * phi
+        yield Level(k, lL, steepness, phi, Phi)

@@ -1,0 +1,81 @@
+"""Known mistakes in `bound`, the task of hdrlab.radiance.merge.bound."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "bound_loosest",
+    says="Several frames bound the pixel, and you take the loosest bound: the shortest clipped "
+    "frame says most, and the longest dark one.",
+)
+def loosest(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, np.inf).min(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, -np.inf).max(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
+    flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_middle_of_radiance",
+    says="Between two bounds you take the mean of the radiances, which is nearly the upper "
+    "one: take the middle of their logarithms.",
+)
+def middle_of_radiance(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = np.log(
+        (np.where(low, np.exp(lower), 0) + np.where(high, np.exp(upper), 0))
+        / np.maximum(1.0 * low + high, 1)
+    )
+    flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_clipped_alone",
+    says="You think of clipped pixels alone: one that is dark in all frames is bounded from "
+    "above, by the longest of them.",
+)
+def clipped_alone(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = lower
+    flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_flags_swapped",
+    says="Your flags are swapped: CLIPPED is 1, and DARK is 2.",
+)
+def flags_swapped(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
+    flags = 2 * low + 1 * high + 8 * ~(low | high)  # Quality
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_hidden_frames_count",
+    says="You ask frames that do not show the pixel: `shown` says which do.",
+)
+def hidden_frames_count(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(Z >= top, g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(Z == 0, g[1] - B, np.inf).min(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
+    flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)

@@ -1,0 +1,38 @@
+"""Known mistakes in `divergence`, the task of hdrlab.core.filters.poisson.divergence."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "divergence_forward",
+    says="Your differences look forward, like those of the gradient: the divergence looks "
+    "back, or the picture drifts by a pixel.",
+    misses_method=True,
+)
+def forward(G):
+    Gy = np.pad(G[0], ((0, 1), (0, 0)))
+    Gx = np.pad(G[1], ((0, 0), (0, 1)))
+    return np.diff(Gy, axis=0) + np.diff(Gx, axis=1)
+
+
+@mistake(
+    "divergence_rolls_around",
+    says="np.roll lets light flow from one edge of the picture into the other: before the "
+    "first row and column there is nothing.",
+)
+def rolls_around(G):
+    Gy = np.vstack([G[0, -2:-1], G[0, :-1], G[0, -2:-1]])
+    Gx = np.hstack([G[1, :, -2:-1], G[1, :, :-1], G[1, :, -2:-1]])
+    return np.diff(Gy, axis=0) + np.diff(Gx, axis=1)
+
+
+@mistake(
+    "divergence_wrong_sign",
+    says="Your divergence has the opposite sign: it is what flows out of a pixel, G(x) - G(x - 1).",
+)
+def wrong_sign(G):
+    Gy = np.pad(G[0, :-1], ((1, 1), (0, 0)))
+    Gx = np.pad(G[1, :, :-1], ((0, 0), (1, 1)))
+    return -np.diff(Gy, axis=0) - np.diff(Gx, axis=1)

@@ -1,0 +1,48 @@
+"""Known mistakes in `from_bytes`, the task of hdrlab.io.maps.pfm.from_bytes."""
+
+from math import prod
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.io.maps.pfm import HEADER
+
+
+@mistake(
+    "from_bytes_always_little_endian",
+    says="You read every file as little endian; the sign of the scale says which it is, and "
+    "positive is big endian.",
+)
+def always_little_endian(data):
+    match = HEADER.match(data)
+    kind, width, height, scale = match.groups()
+    shape = (int(height), int(width), 3)[: 3 if kind == b"PF" else 2]
+    order = "<f4"
+    E = np.frombuffer(data, order, prod(shape), match.end()).reshape(shape)
+    return E[::-1].astype(np.float32)
+
+
+@mistake(
+    "from_bytes_strips_the_values",
+    says="You strip white space before the values; a value's own bytes may look like white space.",
+)
+def strips_the_values(data):
+    match = HEADER.match(data)
+    kind, width, height, scale = match.groups()
+    shape = (int(height), int(width), 3)[: 3 if kind == b"PF" else 2]
+    order = "<f4" if float(scale) < 0 else ">f4"
+    E = np.frombuffer(data[match.end() :].lstrip(), order, prod(shape)).reshape(shape)
+    return E[::-1].astype(np.float32)
+
+
+@mistake(
+    "from_bytes_upside_down",
+    says="Your picture is upside down: the first row in the file is the lowest one.",
+)
+def upside_down(data):
+    match = HEADER.match(data)
+    kind, width, height, scale = match.groups()
+    shape = (int(height), int(width), 3)[: 3 if kind == b"PF" else 2]
+    order = "<f4" if float(scale) < 0 else ">f4"
+    E = np.frombuffer(data, order, prod(shape), match.end()).reshape(shape)
+    return E.astype(np.float32)

@@ -1,0 +1,206 @@
+"""Known mistakes in `gsolve`, the task of hdrlab.response.debevec.gsolve."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.response.debevec import Solution
+
+
+@mistake(
+    "gsolve_weight_of_the_neighbour",
+    says="The smoothness row of level z is weighted by w(z), the level in its middle; you took "
+    "the weight of a neighbour.",
+)
+def weight_of_the_neighbour(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness * w[z + 1] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_smoothness_not_weighted",
+    says="The smoothness rows have a weight too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). "
+    "Without w(z) the ends are as stiff as the middle.",
+)
+def smoothness_not_weighted(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_right_side_not_weighted",
+    says="The weight multiplies the whole row: w (g - lE) = w B. Your right-hand side has no "
+    "weight.",
+)
+def right_side_not_weighted(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_not_weighted",
+    says="The data rows have no weight: clipped pixels, which say only at least or at most, "
+    "bend your curve.",
+)
+def not_weighted(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = 1
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_lambda_inverted",
+    says="Your curve becomes rougher where lambda grows: the smoothness rows are multiplied by "
+    "lambda, and you divide.",
+)
+def lambda_inverted(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = 1 / smoothness * w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_lambda_read_as_1",
+    says="The listing's digit 1 is a letter: lambda. Your smoothness rows do not hold it, so "
+    "the knob does nothing.",
+)
+def lambda_read_as_1(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_log2_of_the_times",
+    says="B is the natural logarithm of the times; you took the one to the base 2, and every "
+    "stop is 1.44 times too long.",
+)
+def log2_of_the_times(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j] / np.log(2)
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_root_of_lambda",
+    says="Your smoothness rows hold the square root of lambda: in the sum lambda stands within "
+    "the square, so the row holds lambda itself.",
+)
+def root_of_lambda(Z, B, smoothness, w):
+    def system(Z, B, smoothness, w):
+        (N, P), n = Z.shape, len(w)
+        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        for k, (i, j) in enumerate(np.ndindex(N, P)):
+            wij = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[N * P, n // 2] = 1
+        for z in range(1, n - 1):
+            A[N * P + z, z - 1 : z + 2] = smoothness**0.5 * w[z] * np.array([1, -2, 1])
+        return A, b
+
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))

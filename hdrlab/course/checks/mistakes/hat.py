@@ -1,0 +1,56 @@
+"""Known mistakes in `hat`, the task of hdrlab.core.weights.hat."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "hat_ends_count",
+    says="You added 1, so that clipped levels still count: a pixel of level 255 says only that "
+    "there was at least so much light.",
+)
+def ends_count(n=256):
+    z = np.arange(n)
+    return np.minimum(z + 1, n - z) / (n // 2)
+
+
+@mistake(
+    "hat_half_at_the_ends",
+    says="You take the distance from the middle off 1 in shares of the whole range, so that "
+    "the ends keep half the weight. They keep none: divide by half the range.",
+)
+def half_at_the_ends(n=256):
+    z = np.arange(n)
+    return 1 - np.abs(z / (n - 1) - 0.5)
+
+
+@mistake(
+    "hat_of_256_levels",
+    says="Your table has 256 levels whatever n says; photographs of 16 bits have 65536.",
+)
+def of_256_levels(n=256):
+    z = np.arange(n)
+    return np.minimum(z, 255 - z).clip(0) / 127
+
+
+@mistake(
+    "hat_ramp",
+    says="Your weight is a ramp up to the top, so levels that are nearly clipped are trusted "
+    "most. A hat falls to both sides.",
+    misses_method=True,
+)
+def ramp(n=256):
+    z = np.arange(n)
+    return z / (n - 1)
+
+
+@mistake(
+    "hat_zero_in_the_middle",
+    says="Your hat stands on its head: it is 0 in the middle, where a photograph tells most, "
+    "and largest where it is clipped.",
+    misses_method=True,
+)
+def zero_in_the_middle(n=256):
+    z = np.arange(n)
+    return np.abs(z - (n - 1) / 2) / ((n - 1) / 2)

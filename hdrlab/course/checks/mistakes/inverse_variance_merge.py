@@ -1,0 +1,125 @@
+"""Known mistakes in the task `inverse_variance_merge`."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.radiance.uncertainty import ROUNDS, variance
+
+
+@mistake(
+    "inverse_variance_merge_by_what_was_counted",
+    says="You take V from what each photograph counted: one with too few photons, by chance, "
+    "counts too much. Take it from E t, once E is known.",
+)
+def by_what_was_counted(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_times_forgotten",
+    says="You weigh by the variance of X. What is averaged is X / t, and the variance of that "
+    "is V / t^2.",
+)
+def times_forgotten(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R), np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_time_once",
+    says="The variance of X / t is that of X over t squared; you divide by t once.",
+)
+def time_once(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_inverse_deviation",
+    says="You weigh by the inverse of the standard deviation. Of all weights the inverse of "
+    "the variance leaves the least doubt.",
+)
+def inverse_deviation(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / np.sqrt(V), axis=0) / np.sum(1 / np.sqrt(V), axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_root_forgotten",
+    says="You return the variance. s is a standard deviation, its root: 1 / sqrt(sum 1 / V).",
+)
+def root_forgotten(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sum(1 / V, axis=0)
+
+
+@mistake(
+    "inverse_variance_merge_clipped_count",
+    says="You count photographs that do not measure the pixel: where `measured` is False, 1 / "
+    "V is 0.",
+)
+def clipped_count(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = variance(E * t, D, N, R) / t**2
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_best_alone",
+    says="Your s is that of the surest photograph alone. All of them together know more: s^2 = "
+    "1 / sum (1 / V).",
+)
+def best_alone(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, np.sqrt(np.min(V, axis=0))
+
+
+@mistake(
+    "inverse_variance_merge_plain_mean",
+    says="You take the plain mean: each answer counts the same. Count each by the inverse of "
+    "its variance, 1 / V.",
+    misses_method=True,
+)
+def plain_mean(X, D, measured, t, N, R):
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(np.where(measured, X / t, 0), axis=0) / measured.sum(axis=0)
+        return E, np.sqrt(np.sum(np.where(measured, V, 0), axis=0)) / measured.sum(axis=0)

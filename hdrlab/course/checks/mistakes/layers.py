@@ -1,0 +1,51 @@
+"""Known mistakes in `layers`, the task of hdrlab.tonemap.durand.layers."""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.core.filters.bilateral import bilateral
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.durand import Layers, fix_uncertain
+
+
+@mistake(
+    "layers_plain_blur",
+    says="Your base is a plain blur: it crosses the edges, and leaves halos. Weight each "
+    "neighbour by its difference in lL too.",
+    misses_method=True,
+)
+def plain_blur(lL, *, sigma_s, sigma_r=0.4):
+    base = gaussian_filter(lL, sigma_s)
+    return Layers(base, lL - base)
+
+
+@mistake(
+    "layers_sigma_not_squared",
+    says="The exponent of a Gaussian is -d^2 / (2 sigma^2); yours has sigma where its square "
+    "belongs, so the widths are not those asked for.",
+)
+def sigma_not_squared(lL, *, sigma_s, sigma_r=0.4):
+    base = bilateral(lL, sigma_s=sigma_s**0.5, sigma_r=sigma_r**0.5).mean
+    return Layers(base, lL - base)
+
+
+@mistake(
+    "layers_weights_not_divided",
+    says="You did not divide by the sum of the weights: where few neighbours are alike the "
+    "base is too small.",
+)
+def weights_not_divided(lL, *, sigma_s, sigma_r=0.4):
+    base = np.prod(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), axis=0) / (
+        2 * np.pi * sigma_s**2
+    )
+    return Layers(base, lL - base)
+
+
+@mistake(
+    "layers_detail_sign",
+    says="Your detail has the sign reversed, as one lecture prints it: detail = lL - base, so "
+    "that both add up to the picture.",
+)
+def detail_sign(lL, *, sigma_s, sigma_r=0.4):
+    base = fix_uncertain(*bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
+    return Layers(base, base - lL)

@@ -1,0 +1,45 @@
+"""Known mistakes in `log_average`, the task of hdrlab.tonemap.reinhard.log_average."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "log_average_base_2",
+    says="You took the logarithm to one base and the power of another: exp belongs to the "
+    "natural logarithm.",
+)
+def base_2(L, *, delta=1e-06):
+    median = np.median(L[L > 0]) if np.any(L) else 1.0
+    return float(np.exp(np.log2(L + delta * float(median)).mean(dtype=np.float64)))
+
+
+@mistake(
+    "log_average_black_left_out",
+    says="You take the mean of log L where L is above 0 alone: black pixels are part of the "
+    "scene, and the delta is there for them.",
+)
+def black_left_out(L, *, delta=1e-06):
+    return float(np.exp(np.log(L[L > 0]).mean(dtype=np.float64)))
+
+
+@mistake(
+    "log_average_stays_a_logarithm",
+    says="You stopped at the mean of the logarithms: take exp of it, so that Lav has the unit "
+    "of L.",
+)
+def stays_a_logarithm(L, *, delta=1e-06):
+    median = np.median(L[L > 0]) if np.any(L) else 1.0
+    return float(np.log(L + delta * float(median)).mean(dtype=np.float64))
+
+
+@mistake(
+    "log_average_linear",
+    says="This is the mean of L itself: one lamp decides how bright the whole scene counts. "
+    "Take the mean of the logarithms.",
+    misses_method=True,
+)
+def linear(L, *, delta=1e-06):
+    median = np.median(L[L > 0]) if np.any(L) else 1.0
+    return float(np.mean(L + delta * float(median)))

@@ -1,0 +1,145 @@
+"""Known mistakes in `merge`, the task of hdrlab.radiance.merge.merge."""
+
+import numpy as np
+
+from hdrlab.core.weights import hat
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.radiance.merge import TOP, bound, weigh
+
+
+@mistake(
+    "merge_mean_of_radiance",
+    says="You average the radiances; asked is the mean of their logarithms, which one bright "
+    "outlier moves less.",
+    misses_method=True,
+)
+def mean_of_radiance(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.log(
+        np.sum(W * np.exp(g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    )
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_by_the_number_of_frames",
+    says="You divide by the number of frames. Divide by the sum of the weights: a pixel that "
+    "is trusted in one frame alone has its value from that one.",
+)
+def by_the_number_of_frames(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / len(images)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_always_the_hat",
+    says="You use the hat whatever w is given; look the weights up in w, and take the hat "
+    "where it is None.",
+)
+def always_the_hat(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_green_curve_for_all",
+    says="You read every channel by the curve of green; g[:, c] belongs to channel c.",
+)
+def green_curve_for_all(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1))[:, g.ndim - 1, None], (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_log2_of_the_times",
+    says="g holds natural logarithms, and you subtract the logarithm to the base 2 of the "
+    "times: take ln of both.",
+)
+def log2_of_the_times(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log2(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_power_of_two",
+    says="g holds natural logarithms, so the way back from ln E is exp; you took the power of 2.",
+)
+def power_of_two(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp2(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_times_forgotten",
+    says="exp(g) is the exposure, light times time: you forgot to divide by each frame's time, "
+    "so frames of one scene disagree.",
+)
+def times_forgotten(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), 0 * t
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_not_weighted",
+    says="All frames count the same in your mean: noise of dark levels, and levels that are "
+    "nearly clipped, enter in full.",
+    misses_method=True,
+)
+def not_weighted(images, times, g, w=None):
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, np.ones(n), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)

@@ -1,0 +1,33 @@
+"""Known mistakes in `optimum`, the task of hdrlab.capture.metering.optimum."""
+
+import numpy as np
+
+from hdrlab.capture.metering import MIDDLE_GRAY
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "optimum_wrong_way",
+    says="A picture that is too bright needs a higher exposure value, which lets less light "
+    "in: yours goes down.",
+)
+def wrong_way(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
+    return EV_pre - np.log2(B_pre) + np.log2(B_opt)
+
+
+@mistake(
+    "optimum_natural_logarithm",
+    says="Stops are powers of two: take the logarithm to the base 2, where you took the "
+    "natural one for B.",
+)
+def natural_logarithm(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
+    return EV_pre + np.log(B_pre) - np.log(B_opt)
+
+
+@mistake(
+    "optimum_always_middle_gray",
+    says="You bring every reading to 0.18, whatever B_opt says: it is 0.18 only where nothing "
+    "else is asked.",
+)
+def always_middle_gray(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
+    return EV_pre + np.log2(B_pre) - np.log2(0.18)

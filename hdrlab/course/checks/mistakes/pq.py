@@ -1,0 +1,25 @@
+"""Known mistakes in `pq`, the task of hdrlab.tonemap.transfer.pq."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.transfer import BRIGHTEST, C1, C2, C3, M1, M2, within
+
+
+@mistake(
+    "pq_inverted_first_power",
+    says="Your Y is raised to 1 / m1, as in the inverse. From luminance to signal it is Y^m1.",
+)
+def inverted_first_power(FD):
+    Ym = (within(FD, BRIGHTEST) / BRIGHTEST) ** (1 / M1)
+    return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2
+
+
+@mistake(
+    "pq_over_the_brightest_of_the_picture",
+    says="You divide by the largest luminance that came. PQ is absolute: Y is FD over 10,000 "
+    "cd/m2, whatever else there is.",
+)
+def over_the_brightest_of_the_picture(FD):
+    Ym = (within(FD, BRIGHTEST) / np.max(FD)) ** M1
+    return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2

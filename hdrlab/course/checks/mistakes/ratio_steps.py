@@ -1,0 +1,64 @@
+"""Known mistakes in `ratio_steps`, the task of hdrlab.radiance.ratios.ratio_steps."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.radiance.ratios import State, solve_ratio, square_errors
+
+
+@mistake(
+    "ratio_steps_weights_once",
+    says="Your sums have the weight v once: in a sum of (v (y - k x))^2 it is squared, so k = "
+    "sum v^2 x y / sum v^2 x^2.",
+)
+def weights_once(found, *, limit=9.0, tolerance=1e-06, rounds=100):
+    def solve_ratio(found, used):
+        x, y, v = (part[used] for part in found)
+        return float(np.sum(v * x * y) / np.sum(v * x**2))
+
+    used = np.ones(len(found[0]), bool)
+    k = solve_ratio(found, used)
+    yield State(k, used, float(np.mean(square_errors(found, k))))
+    for _ in range(rounds):
+        errors = square_errors(found, k)
+        used = errors <= limit * np.mean(errors[used])
+        k, before = solve_ratio(found, used), k
+        yield State(k, used, float(np.mean(square_errors(found, k)[used])))
+        if abs(k - before) < tolerance:
+            return
+
+
+@mistake(
+    "ratio_steps_never_back",
+    says="A pair that is out once stays out in your rounds: ask all of them in each, for the "
+    "first k may have been drawn aside.",
+)
+def never_back(found, *, limit=9.0, tolerance=1e-06, rounds=100):
+    used = np.ones(len(found[0]), bool)
+    k = solve_ratio(found, used)
+    yield State(k, used, float(np.mean(square_errors(found, k))))
+    for _ in range(rounds):
+        errors = square_errors(found, k)
+        used = used & (errors <= limit * np.mean(errors[used]))
+        k, before = solve_ratio(found, used), k
+        yield State(k, used, float(np.mean(square_errors(found, k)[used])))
+        if abs(k - before) < tolerance:
+            return
+
+
+@mistake(
+    "ratio_steps_mean_of_all",
+    says="Your V is the mean over all pairs, outliers too, and leaves out too few: take it "
+    "over those in use.",
+)
+def mean_of_all(found, *, limit=9.0, tolerance=1e-06, rounds=100):
+    used = np.ones(len(found[0]), bool)
+    k = solve_ratio(found, used)
+    yield State(k, used, float(np.mean(square_errors(found, k))))
+    for _ in range(rounds):
+        errors = square_errors(found, k)
+        used = errors <= limit * np.mean(errors)
+        k, before = solve_ratio(found, used), k
+        yield State(k, used, float(np.mean(square_errors(found, k)[used])))
+        if abs(k - before) < tolerance:
+            return

@@ -1,0 +1,94 @@
+"""Known mistakes in `recover`, the task of hdrlab.response.mitsunaga.recover."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.response.mitsunaga import (
+    Fit,
+    coefficients,
+    curve,
+    fit_steps,
+    gram,
+    neighbours,
+    terms,
+    value,
+)
+
+
+@mistake(
+    "recover_one_curve_for_all",
+    says="Each channel has a curve of its own: g of colour photographs is (256, 3), and yours "
+    "is that of green alone.",
+)
+def one_curve_for_all(images, times, *, order=5, eps=0.001):
+    images, t = (
+        np.asarray(images if np.ndim(images) == 3 else images[..., 1]),
+        np.asarray(times, np.float64),
+    )
+    images, t = images[np.argsort(t)], np.sort(t)
+    every = max(
+        1, int(np.sqrt(images.size / len(t) / 12_000))
+    )  # an even grid of some thousand pixels
+    M = (
+        images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
+        / np.iinfo(images.dtype).max
+    )
+    *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
+    return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])
+
+
+@mistake(
+    "recover_times_believed",
+    says="You believe the times that were given: after each fit the ratios are to be taken "
+    "anew from the curve, R = sum f^-1(M_q) / sum f^-1(M_q+1).",
+)
+def times_believed(images, times, *, order=5, eps=0.001):
+    def fit_steps(M, R, order, *, eps=0.001, max_iterations=30):
+        channels = [neighbours(own, order) for own in M]
+        levels, R, before = (
+            terms(np.linspace(0, 1, 256), order)[:, 1:],
+            np.asarray(R),
+            np.full(256, np.inf),
+        )
+        for _ in range(max_iterations):
+            c = np.stack([coefficients(gram(*one, R)) for one in channels])
+            curves = c @ levels.T
+            change, before = float(np.max(np.abs(curves - before))), curves
+            yield Fit(c, R, change)
+            if change < eps:
+                return
+
+    images, t = np.asarray(images), np.asarray(times, np.float64)
+    images, t = images[np.argsort(t)], np.sort(t)
+    every = max(
+        1, int(np.sqrt(images.size / len(t) / 12_000))
+    )  # an even grid of some thousand pixels
+    M = (
+        images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
+        / np.iinfo(images.dtype).max
+    )
+    *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
+    return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])
+
+
+@mistake(
+    "recover_response_not_inverse",
+    says="You answer f^-1, the exposure of each level; asked is its logarithm, g = ln f^-1.",
+)
+def response_not_inverse(images, times, *, order=5, eps=0.001):
+    def curve(c, n=256, *, least=0.0001):
+        increments = np.maximum(np.diff(value(np.linspace(0, 1, n), c)), least / (n - 1))
+        f_inv = np.cumsum(np.append(increments[0] / 4, [0.75 * increments[0], *increments[1:]]))
+        return f_inv / f_inv[n // 2]
+
+    images, t = np.asarray(images), np.asarray(times, np.float64)
+    images, t = images[np.argsort(t)], np.sort(t)
+    every = max(
+        1, int(np.sqrt(images.size / len(t) / 12_000))
+    )  # an even grid of some thousand pixels
+    M = (
+        images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
+        / np.iinfo(images.dtype).max
+    )
+    *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
+    return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])

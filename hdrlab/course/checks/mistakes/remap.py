@@ -1,0 +1,51 @@
+"""Known mistakes in `remap`, the task of hdrlab.tonemap.local_laplacian.remap."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "remap_not_in_sigmas",
+    says="Your power is of d itself. Divide by sigma before you raise it to alpha, so that "
+    "sigma stays sigma.",
+)
+def not_in_sigmas(lL, g, *, sigma, alpha, beta):
+    d = np.abs(lL - g)
+    detail, edge = np.minimum(d, sigma) ** alpha, beta * np.maximum(d - sigma, 0)
+    return g + np.sign(lL - g) * (detail + edge)
+
+
+@mistake(
+    "remap_edges_jump",
+    says="Beyond sigma you leave out the first sigma of the edge: r jumps back to g there. Add "
+    "it to beta (d - sigma).",
+)
+def edges_jump(lL, g, *, sigma, alpha, beta):
+    d = np.abs(lL - g)
+    detail, edge = (
+        sigma * np.where(d <= sigma, d / sigma, 0) ** alpha,
+        beta * np.maximum(d - sigma, 0),
+    )
+    return g + np.sign(lL - g) * (detail + edge)
+
+
+@mistake(
+    "remap_beta_of_the_whole",
+    says="You take beta of the whole difference. Only what is beyond sigma shrinks: beta (d - "
+    "sigma).",
+)
+def beta_of_the_whole(lL, g, *, sigma, alpha, beta):
+    d = np.abs(lL - g)
+    detail, edge = sigma * np.minimum(d / sigma, 1) ** alpha, np.where(d > sigma, beta * d, 0)
+    return g + np.sign(lL - g) * (detail + edge)
+
+
+@mistake(
+    "remap_alpha_inverted",
+    says="Your details grow where they should shrink: the power is alpha, not 1 / alpha.",
+)
+def alpha_inverted(lL, g, *, sigma, alpha, beta):
+    d = np.abs(lL - g)
+    detail, edge = sigma * np.minimum(d / sigma, 1) ** (1 / alpha), beta * np.maximum(d - sigma, 0)
+    return g + np.sign(lL - g) * (detail + edge)

@@ -1,0 +1,43 @@
+"""Known mistakes in `scale`, the task of hdrlab.tonemap.chiu.scale."""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.chiu import TINY, choose_sigma
+
+
+@mistake(
+    "scale_blur_of_the_inverse",
+    says="You blurred 1 / L: dark pixels count most in that mean. Blur L, and divide then.",
+)
+def blur_of_the_inverse(L, *, headroom=8.0, sigma=None):
+    return gaussian_filter(1 / L, choose_sigma(L, sigma)) / headroom
+
+
+@mistake(
+    "scale_headroom_above",
+    says="k belongs below the fraction: with more headroom the picture becomes darker, so that "
+    "bright pixels find room.",
+)
+def headroom_above(L, *, headroom=8.0, sigma=None):
+    return headroom / np.maximum(gaussian_filter(L, choose_sigma(L, sigma)), TINY)
+
+
+@mistake(
+    "scale_times_luminance",
+    says="You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. A further "
+    "factor L, where it is printed, is a misprint, and makes L^2 of the picture.",
+)
+def times_luminance(L, *, headroom=8.0, sigma=None):
+    return L / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), TINY)
+
+
+@mistake(
+    "scale_not_blurred",
+    says="You divided by L itself: every pixel of the picture becomes 1 / k. The scale follows "
+    "the neighbourhood, not the pixel.",
+    misses_method=True,
+)
+def not_blurred(L, *, headroom=8.0, sigma=None):
+    return 1 / np.maximum(headroom * L, TINY)

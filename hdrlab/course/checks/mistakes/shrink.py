@@ -1,0 +1,48 @@
+"""Known mistakes in `shrink`, the task of hdrlab.align.mtb.shrink."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "shrink_cuts_fractions",
+    says="Cutting off the fraction makes every level three eighths of a code darker on the "
+    "average: round instead.",
+)
+def cuts_fractions(Y):
+    Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)
+    return ((Y[::2, ::2] + Y[1::2, ::2] + Y[::2, 1::2] + Y[1::2, 1::2]) // 4).astype(np.uint8)
+
+
+@mistake(
+    "shrink_cuts_fractions_twice",
+    says="You average pairs, then pairs of pairs, and cut the fraction off each time: every "
+    "level is darker than the last. Add all four, and round once.",
+)
+def cuts_fractions_twice(Y):
+    Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)
+    return (((Y[::2, ::2] + Y[1::2, ::2]) // 2 + (Y[::2, 1::2] + Y[1::2, 1::2]) // 2) // 2).astype(
+        np.uint8
+    )
+
+
+@mistake(
+    "shrink_overflows",
+    says="The sum of four bytes does not fit into a byte, and wraps around: bright places turn "
+    "dark. Use a wider type.",
+)
+def overflows(Y):
+    Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2]
+    return ((Y[::2, ::2] + Y[1::2, ::2] + Y[::2, 1::2] + Y[1::2, 1::2] + 2) // 4).astype(np.uint8)
+
+
+@mistake(
+    "shrink_skips_pixels",
+    says="You take every second pixel and drop the others: noise stays, and fine texture turns "
+    "into patterns. Average four.",
+    misses_method=True,
+)
+def skips_pixels(Y):
+    Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)
+    return Y[::2, ::2].astype(np.uint8)

@@ -1,0 +1,80 @@
+"""Known mistakes in `snr`, the task of hdrlab.core.weights.snr."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "snr_upside_down",
+    says="Your weight is upside down: the signal f stands above the fraction, and the slope "
+    "f', which makes noise of it, below.",
+)
+def upside_down(g, *, least=0.01, span=4):
+    g = np.asarray(g, dtype=np.float64)
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    z = np.arange(len(g))
+    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
+    w = np.maximum(slope, least) / f
+    w[[0, -1]] = 0
+    return w / w[len(g) // 2]
+
+
+@mistake(
+    "snr_signal_alone",
+    says="You weight by the signal alone: divide by the slope f', by which the noise of the "
+    "levels enters the exposure.",
+)
+def signal_alone(g, *, least=0.01, span=4):
+    g = np.asarray(g, dtype=np.float64)
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    w = 1.0 * f
+    w[[0, -1]] = 0
+    return w / w[len(g) // 2]
+
+
+@mistake(
+    "snr_ends_count",
+    says="The lowest and the highest level are bounds, and measure nothing: their weight is 0.",
+)
+def ends_count(g, *, least=0.01, span=4):
+    g = np.asarray(g, dtype=np.float64)
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    z = np.arange(len(g))
+    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
+    w = f / np.maximum(slope, least)
+    return w / w[len(g) // 2]
+
+
+@mistake(
+    "snr_span_ignored",
+    says="You take the slope between neighbours, where ripples of a recovered curve are as "
+    "steep as it: take it over `span` levels on either side.",
+)
+def span_ignored(g, *, least=0.01, span=4):
+    g = np.asarray(g, dtype=np.float64)
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    z = np.arange(len(g))
+    low, high = np.maximum(z - 1, 0), np.minimum(z + 1, len(g) - 1)
+    slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
+    w = f / np.maximum(slope, least)
+    w[[0, -1]] = 0
+    return w / w[len(g) // 2]
+
+
+@mistake(
+    "snr_slope_not_bounded",
+    says="Where the curve is level your weight has no bound: a slope below `least` of the mean "
+    "slope counts as `least`.",
+)
+def slope_not_bounded(g, *, least=0.01, span=4):
+    g = np.asarray(g, dtype=np.float64)
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    z = np.arange(len(g))
+    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
+    w = f / np.maximum(slope, 1e-6)
+    w[[0, -1]] = 0
+    return w / w[len(g) // 2]

@@ -1,0 +1,38 @@
+"""Known mistakes in `solve_by_svd`, the task of hdrlab.response.debevec.solve_by_svd."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "solve_by_svd_nothing_left_out",
+    says="You divide by singular values that are rounding alone, and x is beyond all measure: "
+    "leave out what is at most rtol times the largest.",
+)
+def nothing_left_out(A, b, *, rtol=1e-10):
+    U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
+    kept = sigma > 0
+    return Vt[kept].T @ (U[:, kept].T @ b / sigma[kept])
+
+
+@mistake(
+    "solve_by_svd_v_not_transposed",
+    says="You take the columns of what numpy calls Vh: it is V transposed, so the v_i are its "
+    "rows.",
+)
+def v_not_transposed(A, b, *, rtol=1e-10):
+    U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
+    kept = sigma > rtol * sigma[0]
+    return Vt[:, kept] @ (U[:, kept].T @ b / sigma[kept])
+
+
+@mistake(
+    "solve_by_svd_limit_absolute",
+    says="You compare the singular values with rtol itself: compare them with rtol times the "
+    "largest, so that no unit matters.",
+)
+def limit_absolute(A, b, *, rtol=1e-10):
+    U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
+    kept = sigma > rtol
+    return Vt[kept].T @ (U[:, kept].T @ b / sigma[kept])

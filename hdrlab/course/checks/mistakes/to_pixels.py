@@ -1,0 +1,59 @@
+"""Known mistakes in `to_pixels`, the task of hdrlab.io.maps.rgbe.to_pixels."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "to_pixels_exponent_of_red",
+    says="You take the exponent of the red channel; it must be that of the brightest one, or "
+    "the others overflow.",
+)
+def exponent_of_red(E):
+    brightest = E.max(axis=-1, keepdims=True)
+    _, exponent = np.frexp(E[..., :1])
+    mantissa = np.minimum(np.ldexp(E, 8 - exponent), 255)
+    pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
+
+
+@mistake(
+    "to_pixels_exponent_too_large",
+    says="Your exponent is one too large, as from ceil(log2 E) + 1: the largest mantissa is "
+    "below 128, and half of the precision is gone.",
+)
+def exponent_too_large(E):
+    brightest = E.max(axis=-1, keepdims=True)
+    _, exponent = np.frexp(brightest)
+    mantissa = np.ldexp(E, 7 - exponent)
+    pixels = np.concatenate([mantissa, exponent + 129], axis=-1)
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
+
+
+@mistake(
+    "to_pixels_mantissa_rounds_to_256",
+    says="You round a mantissa of 255.6 to 256, which no byte holds: it becomes 0. Cut the "
+    "fraction off, or clip at 255.",
+)
+def mantissa_rounds_to_256(E):
+    brightest = E.max(axis=-1, keepdims=True)
+    _, exponent = np.frexp(brightest)
+    mantissa = np.round(np.ldexp(E, 8 - exponent))
+    pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
+    return (
+        np.where(brightest < 1e-32, 0, pixels).astype(np.int64).astype(np.uint8)
+    )  # Ward's limit: below it, black
+
+
+@mistake(
+    "to_pixels_not_times_256",
+    says="Your mantissas are fractions cut to 0: multiply them by 256 before you make bytes of "
+    "them.",
+)
+def not_times_256(E):
+    brightest = E.max(axis=-1, keepdims=True)
+    _, exponent = np.frexp(brightest)
+    mantissa = np.ldexp(E, -exponent)
+    pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black

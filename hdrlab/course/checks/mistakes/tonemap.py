@@ -1,0 +1,62 @@
+"""Known mistakes in `tonemap`, the task of hdrlab.tonemap.reinhard.tonemap."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+from hdrlab.tonemap.reinhard import (
+    as_light,
+    automatic_key,
+    display,
+    local_adaptation,
+    scale_to_key,
+    white_point,
+)
+
+
+@mistake(
+    "tonemap_absolute_unit",
+    says="Your curve takes L for a number without a unit: the same scene in other units gives "
+    "another picture. Scale it by its log average first.",
+    misses_method=True,
+)
+def absolute_unit(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
+    L = as_light(L)
+    return L / (1 + L)
+
+
+@mistake(
+    "tonemap_divided_by_the_maximum",
+    says="You divide by the brightest pixel: one hot pixel darkens the whole picture. Take a "
+    "percentile, or a curve.",
+    misses_method=True,
+)
+def divided_by_the_maximum(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
+    L = as_light(L)
+    return (L / max(float(L.max()), 1e-30)) ** (1 / 2.2)
+
+
+@mistake(
+    "tonemap_negative",
+    says="Bright places come out dark: somewhere a sign or a quotient is upside down.",
+    misses_method=True,
+)
+def negative(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
+    L = as_light(L)
+    a = automatic_key(L) if key == "auto" else key
+    Lm = scale_to_key(L, key=a)
+    white = white_point(Lm) if white is None else white
+    V1 = local_adaptation(Lm, key=a, phi=phi, threshold=threshold) if local else Lm
+    return 1 - np.asarray(display(Lm, V1, white), np.float32)
+
+
+@mistake(
+    "tonemap_not_clipped",
+    says="Your picture leaves 0 ... 1: a display cannot show that, and files wrap around. Clip it.",
+)
+def not_clipped(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
+    L = as_light(L)
+    a = automatic_key(L) if key == "auto" else key
+    Lm = scale_to_key(L, key=a)
+    white = white_point(Lm) if white is None else white
+    V1 = local_adaptation(Lm, key=a, phi=phi, threshold=threshold) if local else Lm
+    return 1.5 * np.asarray(display(Lm, V1, white), np.float32)

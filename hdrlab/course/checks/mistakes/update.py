@@ -1,0 +1,60 @@
+"""Known mistakes in `update`, the task of hdrlab.response.robertson.update."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "update_weighted",
+    says="The update of f^-1 is a plain mean over the pixels of a level; with the times as "
+    "weights it rests on another curve.",
+)
+def weighted(Z, t, E, n=256):
+    known = ~np.isnan(E)
+    X = E[known, None] * t
+    with np.errstate(invalid="ignore"):
+        return np.bincount(Z[known].ravel(), (X * t).ravel(), n) / np.bincount(
+            Z[known].ravel(), np.broadcast_to(t, X.shape).ravel(), n
+        )
+
+
+@mistake(
+    "update_by_all_samples",
+    says="Divide each level's sum by how many pixels have that level, not by the number of all "
+    "samples.",
+)
+def by_all_samples(Z, t, E, n=256):
+    known = ~np.isnan(E)
+    X = E[known, None] * t
+    with np.errstate(invalid="ignore"):
+        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.where(
+            np.bincount(Z[known].ravel(), minlength=n) > 0, len(Z), 0
+        )
+
+
+@mistake(
+    "update_nan_taken_for_0",
+    says="A sample whose irradiance is not known is left out; you count it as 0, and draw its "
+    "levels down.",
+)
+def nan_taken_for_0(Z, t, E, n=256):
+    known, E = np.ones(len(E), bool), np.nan_to_num(E)
+    X = E[known, None] * t
+    with np.errstate(invalid="ignore"):
+        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(
+            Z[known].ravel(), minlength=n
+        )
+
+
+@mistake(
+    "update_time_forgotten",
+    says="What a pixel of level m received is E t: the exposure time is missing from your mean.",
+)
+def time_forgotten(Z, t, E, n=256):
+    known = ~np.isnan(E)
+    X = E[known, None] + 0 * t
+    with np.errstate(invalid="ignore"):
+        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(
+            Z[known].ravel(), minlength=n
+        )

@@ -1,0 +1,52 @@
+"""Known mistakes in `variance`, the task of hdrlab.radiance.uncertainty.variance."""
+
+import numpy as np
+
+from hdrlab.course.checks.mistakes import mistake
+
+
+@mistake(
+    "variance_read_noise_in_electrons",
+    says="R is in electrons, and V is that of the exposure: divide R by N before you square it.",
+)
+def read_noise_in_electrons(X, D, N, R):
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X / N + R**2 + D**2 / 12
+
+
+@mistake(
+    "variance_read_noise_not_squared",
+    says="R is a standard deviation. What adds up are variances: square R / N.",
+)
+def read_noise_not_squared(X, D, N, R):
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X / N + R / N + D**2 / 12
+
+
+@mistake(
+    "variance_photons_not_divided_twice",
+    says="X N is the variance of the count. That of the exposure, the count over N, is X N / "
+    "N^2: divide by N twice.",
+)
+def photons_not_divided_twice(X, D, N, R):
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X + (R / N) ** 2 + D**2 / 12
+
+
+@mistake(
+    "variance_rounding_of_a_whole_step",
+    says="Rounding errs by half a step at most. The variance of what is spread evenly over a "
+    "step is D^2 / 12.",
+)
+def rounding_of_a_whole_step(X, D, N, R):
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X / N + (R / N) ** 2 + D**2
+
+
+@mistake(
+    "variance_rounding_once",
+    says="The step is not squared in your variance: rounding adds D^2 / 12.",
+)
+def rounding_once(X, D, N, R):
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X / N + (R / N) ** 2 + D / 12
