@@ -1,16 +1,17 @@
-"""Ultra HDR: a JPEG for any screen, with a gain map from which a bright screen makes more of it.
+"""Ultra HDR: a JPEG with a gain map, from which a bright screen shows more light.
 
-The file is two JPEGs, one behind the other. The first is the picture that every program shows, the
-second the gain map of `core.gainmap`, gray or RGB, often smaller. An index in the first says where
-the second is (MPF, CIPA DC-007). What the gains mean stands in the second: in binary, as ISO
-21496-1 has it, and in XMP, as telephones had it before. Apple's own gain maps are others, and are
-not read.
+The file is two JPEGs, one behind the other. The first is the picture that every program shows. The
+second is the gain map of `core.gainmap`, gray or RGB, often smaller. An index in the first says
+where the second is (MPF, CIPA DC-007). The second states its metadata twice: in binary [ISO 21496-1]
+and in XMP (Adobe's `hdrgm`), which older phones wrote alone. Apple's own gain maps are a different
+format, which hdrlab does not read.
 """
 
 import io
 import re
 import struct
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,31 +19,71 @@ import numpy as np
 from PIL import Image
 
 from hdrlab.core import colour, gainmap
-from hdrlab.core.arrays import F32, Array, ArrayLike, as_picture, as_radiance, describe
-from hdrlab.errors import FileFormatError
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radiance, describe
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, web
 from hdrlab.io.codecs import DECODERS, jpeg_end
 from hdrlab.io.photos import PICTURES, read_photo
 
-ISO, ADOBE, INDEX = b"urn:iso:std:iso:ts:21496:-1\0", b"http://ns.adobe.com/xap/1.0/\0", b"MPF\0"
-# of XMP, in the order of ISO, and what they are where nothing is said: headrooms, then of each
-# channel
-NAMES = {"HDRCapacityMin": 0.0, "HDRCapacityMax": np.nan, "GainMapMin": 0.0, "GainMapMax": np.nan}
-NAMES |= {"Gamma": 1.0, "OffsetSDR": 1 / 64, "OffsetHDR": 1 / 64}
-# flags: three channels, gains of the picture's own primaries, and one denominator as libultrahdr
-# writes it
-THREE, OWN, ONE = 0x80, 0x40, 0x08
-UNIT = 1 << 20  # of the fractions that are written
-STOPS = 64.0  # the largest gain
-FINEST = {
-    "quality": 100,
-    "subsampling": 0,
-    "keep_rgb": True,
-}  # as YCbCr gains would be rounded once more
+# What the segments of a JPEG begin with: binary metadata, XMP, and the index.
+ISO = b"urn:iso:std:iso:ts:21496:-1\0"
+ADOBE = b"http://ns.adobe.com/xap/1.0/\0"
+MPF = b"MPF\0"
+APP1 = b"\xe1"
+APP2 = b"\xe2"
+
+# The flags of ISO 21496-1, by the standard's names.
+FLAG_MULTICHANNEL = 0x80
+FLAG_USE_BASE_COLOR_SPACE = 0x40
+# libultrahdr's extension: one denominator serves all fractions.
+FLAG_COMMON_DENOMINATOR = 0x08
+# Two headrooms, and for each channel min, max, gamma and two offsets.
+HEADROOMS = 2
+VALUES_PER_CHANNEL = 5
+DENOMINATOR = 2**20
+
+# The properties of `hdrgm` in the order of ISO 21496-1, with their defaults; NaN has none.
+XMP_HEADROOMS = {"HDRCapacityMin": 0.0, "HDRCapacityMax": np.nan}
+XMP_CHANNEL_VALUES = {
+    "GainMapMin": 0.0,
+    "GainMapMax": np.nan,
+    "Gamma": 1.0,
+    "OffsetSDR": 1 / 64,
+    "OffsetHDR": 1 / 64,
+}
+
+MAX_GAIN_STOPS = 64.0
+MAX_HEADROOM = 2**16
+# How the gain map is coded: as RGB, because a conversion to YCbCr would round it once more.
+GAIN_MAP_ENCODING = {"quality": 100, "subsampling": 0, "keep_rgb": True}
+
+# The index of two images: a TIFF block with three tags, then an entry for each image.
+MPF_TAG_VERSION = 0xB000
+MPF_TAG_NUMBER_OF_IMAGES = 0xB001
+MPF_TAG_ENTRIES = 0xB002
+MPF_ENTRIES_OFFSET = 50
+MPF_ENTRIES_SIZE = 2 * 16
+MPF_PRIMARY_IMAGE = 0x030000
+TIFF_LONG = 4
+TIFF_UNDEFINED = 7
+
+
+@dataclass(frozen=True)
+class GainMapMetadata:
+    """What the values of a gain map mean; each field is a number for each channel, or for all.
+
+    `low` and `high` are the gains of 0 and 1, in stops; `gamma` is the exponent of the values.
+    """
+
+    low: F32
+    high: F32
+    gamma: F32
+    offset_sdr: F32
+    offset_hdr: F32
 
 
 def read(path: str | Path) -> F32:
-    """Read what the brightest screen shows of an Ultra HDR picture: radiance, in units of white.
+    """Read an Ultra HDR picture as the brightest screen shows it: radiance, in units of white.
 
     Parameters
     ----------
@@ -54,7 +95,7 @@ def read(path: str | Path) -> F32:
 
     Raises
     ------
-    ValueError
+    FileFormatError
         For a file that is no JPEG, is damaged, or has no gain map.
 
     Examples
@@ -65,34 +106,41 @@ def read(path: str | Path) -> F32:
     >>> read(file).round(2)[0, 0].tolist()
     [0.5, 0.5, 0.5]
     """
-    sdr, header = colour.decode_srgb(read_photo(path) / np.float32(255)), decode.look(path)
+    header = decode.look(path)
+    sdr = colour.decode_srgb(read_photo(path) / np.float32(255))
     try:
-        part = _find(Path(path).read_bytes())
-        return np.maximum(gainmap.apply_gain(sdr, _decode(header, part), **_meaning(part)), 0)
-    except Exception as error:  # on damaged files the codecs raise what they like
+        second_jpeg = _find_gain_map_jpeg(Path(path).read_bytes())
+        metadata = _read_metadata(second_jpeg)
+        gains = _decode_gain_map(header, second_jpeg)
+    except Exception as error:  # on damaged files the codecs raise exceptions of any type
         raise FileFormatError(
             f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})"
         ) from None
+    offsets = (metadata.offset_sdr, metadata.offset_hdr)
+    hdr = gainmap.apply_gain(
+        sdr, gains, metadata.low, metadata.high, gamma=metadata.gamma, k=offsets
+    )
+    return np.maximum(hdr, 0)
 
 
 def write_picture(
     path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroom: float = 8.0
 ) -> None:
-    """Write a picture as JPEG with the gains that lead from it to the scene, whole or not at all.
+    """Write a tone-mapped picture as JPEG with the gain map from which its radiance can be restored.
 
     Parameters
     ----------
     path : a .jpg or .jpeg file; what it held is replaced
-    picture : (H, W) or (H, W, 3) uint8, by any operator: what is shown where gains are not known;
-        gray becomes RGB, for other decoders refuse gray
-    E : same shape, the radiance of which the picture was made
-    headroom : the brightest light that is kept, over white; a screen that has less shows a part of
-        the gains
+    picture : (H, W) or (H, W, 3) uint8, tone-mapped by any operator: what programs show that do not
+        know gain maps; gray becomes RGB, because other decoders refuse gray
+    E : same shape, the radiance map from which the picture was made
+    headroom : the brightest light that is kept, relative to white; a screen with less headroom
+        applies a part of the gains
 
     Raises
     ------
-    ValueError
-        For another suffix, shapes that do not fit together, or a headroom that is not above 1.
+    InputError
+        For another suffix, shapes that differ, or a headroom that is not above 1.
 
     Examples
     --------
@@ -102,117 +150,173 @@ def write_picture(
     >>> read_photo(file).shape
     (4, 6, 3)
     """
-    how = PICTURES[files.require_suffix(path, (".jpg", ".jpeg"), "an Ultra HDR picture")]
-    picture, E = web.as_rgb(as_picture(picture)), web.as_rgb(as_radiance(E))
-    if picture.shape != E.shape or not 1 < headroom <= 2**16:
-        got = f"{describe(picture)}, {describe(E)} and {headroom}"
-        raise FileFormatError(
-            f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}"
+    encoding = PICTURES[files.require_suffix(path, (".jpg", ".jpeg"), "an Ultra HDR picture")]
+    picture = web.as_rgb(as_picture(picture))
+    E = web.as_rgb(as_radiance(E))
+    if picture.shape != E.shape:
+        raise InputError(
+            f"expected picture and radiance of one shape, got {describe(picture)}, {describe(E)}"
         )
-    sdr = colour.decode_srgb(DECODERS["JPEG"](_jpeg(picture, how), None) / np.float32(255))
+    if not 1 < headroom <= MAX_HEADROOM:
+        raise InputError(f"expected a headroom of 1 to {MAX_HEADROOM}, got {headroom}")
+    # The gains lead from the picture as it is decoded, with what JPEG has changed in it.
+    decoded_picture = DECODERS["JPEG"](_encode_jpeg(picture, encoding), None)
+    sdr = colour.decode_srgb(decoded_picture / np.float32(255))
     hdr = gainmap.expose(E, sdr, headroom)
     low, high = gainmap.find_range(gainmap.log_gain(sdr, hdr))
-    g = np.rint(255 * gainmap.gain_map(sdr, hdr, low, high)).astype(np.uint8)
-    channels = np.vstack(np.broadcast_arrays(low, high, 1, *gainmap.OFFSETS))
-    gains = _jpeg(g, FINEST, _tell(np.log2(headroom), channels))
-    said = _segment(b"\xe1", ADOBE + _xmp("picture", length=len(gains))) + _segment(
-        b"\xe2", ISO + bytes(4)
-    )
-    first = _jpeg(picture, how, said + _segment(b"\xe2", INDEX + _index(0, 0, 0)))
-    at = first.index(INDEX) + len(INDEX)
-    files.write(path, first.replace(_index(0, 0, 0), _index(len(first), len(gains), at)) + gains)
+    gains = np.rint(255 * gainmap.gain_map(sdr, hdr, low, high)).astype(np.uint8)
+    channel_values = np.vstack(np.broadcast_arrays(low, high, 1, *gainmap.OFFSETS))
+    metadata = _metadata_segments(np.log2(headroom), channel_values)
+    second_jpeg = _encode_jpeg(gains, GAIN_MAP_ENCODING, metadata)
+
+    segments = _segment(APP1, ADOBE + _format_xmp("picture", length=len(second_jpeg)))
+    segments += _segment(APP2, ISO + bytes(4))
+    # The index has the length of the first JPEG, so it is filled in when that is known.
+    placeholder = _mpf_index(0, 0, 0)
+    segments += _segment(APP2, MPF + placeholder)
+    first_jpeg = _encode_jpeg(picture, encoding, segments)
+    index_offset = first_jpeg.index(MPF) + len(MPF)
+    index = _mpf_index(len(first_jpeg), len(second_jpeg), index_offset)
+    files.write(path, first_jpeg.replace(placeholder, index) + second_jpeg)
 
 
-def _jpeg(image: Array, how: dict[str, Any], segments: bytes = b"") -> bytes:
+def _encode_jpeg(image: Array, encoding: dict[str, Any], segments: bytes = b"") -> bytes:
     file = io.BytesIO()
-    Image.fromarray(image).save(file, "JPEG", extra=segments, **how)
+    Image.fromarray(image).save(file, "JPEG", extra=segments, **encoding)
     return file.getvalue()
 
 
 def _segment(marker: bytes, body: bytes) -> bytes:
+    """Return a segment of a JPEG."""
     return b"\xff" + marker + struct.pack(">H", len(body) + 2) + body
 
 
-def _xmp(what: str, **values: object) -> bytes:
-    return (
-        Path(__file__).with_name(f"ultrahdr_{what}.xmp").read_text("utf8").format(**values).encode()
+def _format_xmp(name: str, **values: object) -> bytes:
+    """Return XMP by the template of that name, with its values filled in."""
+    template = Path(__file__).with_name(f"ultrahdr_{name}.xmp").read_text("utf8")
+    return template.format(**values).encode()
+
+
+def _metadata_segments(headroom_stops: float, channel_values: Array) -> bytes:
+    """Return the metadata of a gain map, in XMP and in binary.
+
+    `channel_values` is (5, 3): min, max, gamma and two offsets of red, green and blue.
+    """
+    lists = {}
+    for name, values in zip(XMP_CHANNEL_VALUES, channel_values, strict=True):
+        lists[name] = "".join(f"<rdf:li>{value:.6f}</rdf:li>" for value in values)
+    xmp = _format_xmp("gains", headroom=f"{headroom_stops:.6f}", **lists)
+
+    numbers = np.concatenate([[0, headroom_stops], channel_values.T.ravel()])
+    fractions = np.empty((len(numbers), 2), ">i4")
+    fractions[:, 0] = np.rint(numbers * DENOMINATOR)
+    fractions[:, 1] = DENOMINATOR
+    minimum_version = 0
+    writer_version = 0
+    flags = FLAG_MULTICHANNEL | FLAG_USE_BASE_COLOR_SPACE
+    binary = struct.pack(">2HB", minimum_version, writer_version, flags) + fractions.tobytes()
+    return _segment(APP1, ADOBE + xmp) + _segment(APP2, ISO + binary)
+
+
+def _mpf_index(first_size: int, second_size: int, index_offset: int) -> bytes:
+    """Return the index of two JPEGs; its offsets count from itself [CIPA DC-007, 5.2]."""
+    tag_count = 3
+    no_next_directory = 0
+    header = struct.pack(">2sHL", b"MM", 42, 8)
+    directory = struct.pack(">H", tag_count)
+    directory += struct.pack(">2HL4s", MPF_TAG_VERSION, TIFF_UNDEFINED, 4, b"0100")
+    directory += struct.pack(">2H2L", MPF_TAG_NUMBER_OF_IMAGES, TIFF_LONG, 1, 2)
+    directory += struct.pack(
+        ">2H2L", MPF_TAG_ENTRIES, TIFF_UNDEFINED, MPF_ENTRIES_SIZE, MPF_ENTRIES_OFFSET
     )
+    directory += struct.pack(">L", no_next_directory)
+    # Attributes, size, offset, and two dependent images, of which there are none.
+    first = struct.pack(">3L4x", MPF_PRIMARY_IMAGE, first_size, 0)
+    second = struct.pack(">3L4x", 0, second_size, first_size - index_offset)
+    return header + directory + first + second
 
 
-def _tell(headroom: float, channels: Array) -> bytes:
-    """Return the segments that say what gains mean: headroom in stops; low, high, gamma and k, (5, 3)."""
-    numbers = np.concatenate([[0, headroom], channels.T.ravel()])
-    fractions = np.stack([np.rint(numbers * UNIT), np.full(len(numbers), UNIT)], axis=-1).astype(
-        ">i4"
-    )
-    seqs = ["".join(f"<rdf:li>{one:.6f}</rdf:li>" for one in row) for row in channels]
-    text = _xmp("gains", headroom=f"{headroom:.6f}", **dict(zip([*NAMES][2:], seqs, strict=True)))
-    binary = struct.pack(">2HB", 0, 0, OWN | THREE) + fractions.tobytes()
-    return _segment(b"\xe1", ADOBE + text) + _segment(b"\xe2", ISO + binary)
+def _find_gain_map_jpeg(data: bytes) -> bytes:
+    """Return the first JPEG behind the picture that has the metadata of a gain map."""
+    end = jpeg_end(data)
+    while True:
+        start = data.find(b"\xff\xd8\xff", end)
+        if start < 0:
+            raise FileFormatError(
+                "no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW"
+            )
+        end = jpeg_end(data, start)
+        jpeg = data[start:end]
+        if ISO in jpeg or b"hdrgm:GainMapMax" in jpeg:
+            return jpeg
 
 
-def _index(first: int, second: int, at: int) -> bytes:
-    """Return the index of two JPEGs of so many bytes; it counts from its own place [CIPA DC-007 5.2]."""
-    tags = (0xB000, 7, 4, b"0100", 0xB001, 4, 1, 2, 0xB002, 7, 32, 50, 0)
-    entries = struct.pack(">3L4x3L4x", 0x030000, first, 0, 0, second, first - at)
-    return struct.pack(">2sHLH2HL4s2H2L2H2LL", b"MM", 42, 8, 3, *tags) + entries
-
-
-def _find(data: bytes) -> bytes:
-    """Return the first JPEG behind the picture that says what its gains mean."""
-    at = jpeg_end(data)
-    while (start := data.find(b"\xff\xd8\xff", at)) >= 0:
-        at = jpeg_end(data, start)
-        if ISO in data[start:at] or b"hdrgm:GainMapMax" in data[start:at]:
-            return data[start:at]
-    raise FileFormatError(
-        "no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW"
-    )
-
-
-def _meaning(part: bytes) -> dict[str, Any]:
-    """Return the knobs of `gainmap.apply_gain`, each for one channel or for three."""
-    at = part.find(ISO)
-    values = _from_xmp(part) if at < 0 else _from_binary(part[at + len(ISO) :])
-    (least, most), (low, high, gamma, *k) = (
-        values[:2],
-        values[2:].reshape(-1, 5).T.astype(np.float32),
-    )
-    within = np.all(np.abs(values) <= STOPS) and np.all(low <= high) and np.all(gamma > 1 / STOPS)
-    if not (within and least < most):
+def _read_metadata(jpeg: bytes) -> GainMapMetadata:
+    """Return the metadata of a gain map, from binary if it is there and from XMP otherwise."""
+    start = jpeg.find(ISO)
+    values = _values_from_xmp(jpeg) if start < 0 else _values_from_binary(jpeg[start + len(ISO) :])
+    min_headroom, max_headroom = values[:HEADROOMS]
+    channels = values[HEADROOMS:].reshape(-1, VALUES_PER_CHANNEL).T.astype(np.float32)
+    metadata = GainMapMetadata(*channels)
+    is_within_range = bool(np.all(np.abs(values) <= MAX_GAIN_STOPS))
+    is_ordered = bool(np.all(metadata.low <= metadata.high)) and min_headroom < max_headroom
+    if not (is_within_range and is_ordered and np.all(metadata.gamma > 1 / MAX_GAIN_STOPS)):
+        limit = f"{MAX_GAIN_STOPS:.0f} stops"
         raise FileFormatError(
-            f"expected gains within {STOPS:.0f} stops, toward more light, got {values.tolist()}"
+            f"expected gains within {limit}, toward more light, got {values.tolist()}"
         )
-    return {"low": low, "high": high, "gamma": gamma, "k": k}
+    return metadata
 
 
-def _from_binary(body: bytes) -> Array:
-    count, shared = 17 if body[4] & THREE else 7, body[4] & ONE
-    numbers = np.frombuffer(body, ">i4", count + 1 if shared else 2 * count, 5).astype(np.float64)
+def _values_from_binary(body: bytes) -> F64:
+    """Return headrooms and channel values as ISO 21496-1 stores them: fractions behind flags."""
+    flags_offset = 4
+    flags = body[flags_offset]
+    channels = 3 if flags & FLAG_MULTICHANNEL else 1
+    count = HEADROOMS + channels * VALUES_PER_CHANNEL
+    has_common_denominator = bool(flags & FLAG_COMMON_DENOMINATOR)
+    stored = count + 1 if has_common_denominator else 2 * count
+    numbers = np.frombuffer(body, ">i4", stored, flags_offset + 1).astype(np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return numbers[1:] / numbers[0] if shared else numbers[::2] / numbers[1::2]
+        if has_common_denominator:
+            return numbers[1:] / numbers[0]
+        return numbers[::2] / numbers[1::2]
 
 
-def _from_xmp(part: bytes) -> Array:
-    said = []
-    for name, usual in NAMES.items():
-        found = re.search(
-            rf'hdrgm:{name}(?:="([^"]*)"|>(.*?)</hdrgm:{name}>)'.encode(), part, re.DOTALL
-        )
-        text = re.sub(rb"<[^>]*>", b" ", found[1] or found[2]) if found else b""
-        said.append([float(one) for one in text.split()] or [usual])
-    return np.concatenate([*said[:2], np.transpose(np.broadcast_arrays(*said[2:])).ravel()])
+def _values_from_xmp(jpeg: bytes) -> F64:
+    """Return headrooms and channel values of `hdrgm` in XMP, in the order of ISO 21496-1."""
+    headrooms = []
+    for name, default in XMP_HEADROOMS.items():
+        headrooms += _xmp_numbers(jpeg, name, default)
+    channel_values = []
+    for name, default in XMP_CHANNEL_VALUES.items():
+        channel_values.append(_xmp_numbers(jpeg, name, default))
+    channels = np.transpose(np.broadcast_arrays(*channel_values))
+    return np.concatenate([headrooms, channels.ravel()])
 
 
-def _decode(header: decode.Header, part: bytes) -> F32:
-    """Return the gain map, upright and of the picture's size and channels."""
-    height, width = header.shape[:2] if header.orientation < 5 else header.shape[1::-1]
-    # of what Pillow thinks odd in a gain map's own EXIF nobody is to be told
+def _xmp_numbers(jpeg: bytes, name: str, default: float) -> list[float]:
+    """Return the numbers of a property, which is an attribute or an element with a list."""
+    pattern = rf'hdrgm:{name}(?:="([^"]*)"|>(.*?)</hdrgm:{name}>)'.encode()
+    match = re.search(pattern, jpeg, re.DOTALL)
+    if match is None:
+        return [default]
+    text = re.sub(rb"<[^>]*>", b" ", match[1] or match[2])
+    return [float(number) for number in text.split()] or [default]
+
+
+def _decode_gain_map(header: decode.Header, jpeg: bytes) -> F32:
+    """Return the values of the gain map, upright, with the size and channels of the picture."""
+    height, width = header.shape[:2]
+    if header.orientation > 4:
+        height, width = width, height
+    mode = "L" if len(header.shape) == 2 else "RGB"
+    # Pillow warns about the EXIF of the gain map, which nobody needs.
     with (
         warnings.catch_warnings(action="ignore"),
-        Image.open(io.BytesIO(part), formats=("JPEG",)) as image,
+        Image.open(io.BytesIO(jpeg), formats=("JPEG",)) as image,
     ):
-        least = image.height * image.width // decode.BEST_COMPRESSION_RATIO
-        files.check_size(header.path, *image.size[::-1], least, available=len(part))
-        g = image.convert("L" if len(header.shape) == 2 else "RGB").resize((width, height))
-    return decode.upright(np.asarray(g, np.float32) / 255, header.orientation)
+        min_bytes = image.height * image.width // decode.BEST_COMPRESSION_RATIO
+        files.check_size(header.path, image.height, image.width, min_bytes, available=len(jpeg))
+        gains = image.convert(mode).resize((width, height))
+    return decode.upright(np.asarray(gains, np.float32) / 255, header.orientation)
