@@ -13,7 +13,7 @@ chained.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -22,18 +22,32 @@ from hdrlab.align import light
 from hdrlab.core.arrays import F32, F64, ArrayLike, Indices
 from hdrlab.core.filters import warp
 
-# of the correlation: the coarsest level tries this many
-PEAKS = 3
-# of the error, at most, on each level
-CALLS = 120
+# The coarsest level starts a simplex from this many peaks of the correlation.
+_MAX_PEAKS = 3
+# A simplex that has evaluated the error this often stops where it is.
+_MAX_EVALUATIONS = 120
+# A peak of the correlation is the largest value in a square of this many pixels a side.
+_PEAK_WINDOW_PIXELS = 5
+# size of the first simplex, in pixels: at the coarsest level, and at all finer ones
+_COARSEST_SIMPLEX_PIXELS = 2.0
+_FINER_SIMPLEX_PIXELS = 1.0
+# size of the simplex at which a level ends, in pixels of that level
+_COARSE_TOLERANCE_PIXELS = 0.05
+_FINEST_TOLERANCE_PIXELS = 0.01
 
 
-class State(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
     """One level of one pair, the coarsest first; level 0 is full resolution.
 
-    `path` (n, 3) has the best corner of the simplex after each of its steps, (dy, dx, r phi) in
-    pixels of this level, and `errors` (n,) what it comes to; `H` is where it ended, in pixels of
-    this level.
+    Attributes
+    ----------
+    level : number of times that the photographs were halved
+    X : (2, h, w) light of both photographs at this level
+    path : (n, 3) best corner of the simplex after each step, (dy, dx, r phi) in pixels of this
+        level
+    errors : (n,) error at each point of the path
+    H : (3, 3) homography at the end of the path, in pixels of this level
     """
 
     level: int
@@ -46,65 +60,75 @@ class State(NamedTuple):
 def correlation(X: F32) -> F64:
     """Return how well `moving` fits at every shift (dy, dx): the sum of a(p + s) b(p), by FFT.
 
-    Discarded pixels are 0, and so is the mean, or the brightest overlap would win: the mean around
-    each pixel, for light that falls off slowly across the scene would win, too.
+    Discarded pixels are 0. The mean is subtracted, or the brightest overlap would win. It is the
+    mean around each pixel, because light that falls off slowly across the scene would win, too.
     """
-    a, b = (np.where(np.isfinite(x), x - light.local_mean(x), 0) for x in X)
+    a, b = [np.where(np.isfinite(x), x - light.local_mean(x), 0) for x in X]
     h, w = X.shape[1:]
     size = [scipy.fft.next_fast_len(2 * n - 1) for n in (h, w)]
-    c = scipy.fft.irfft2(scipy.fft.rfft2(a, size) * np.conj(scipy.fft.rfft2(b, size)), size)
+    spectrum = scipy.fft.rfft2(a, size) * np.conj(scipy.fft.rfft2(b, size))
+    c = scipy.fft.irfft2(spectrum, size)
     return np.asarray(np.roll(c, (h - 1, w - 1), axis=(0, 1))[: 2 * h - 1, : 2 * w - 1])
 
 
 def peaks(c: F64, count: int) -> Indices:
-    """Return the shifts (count, 2) of the highest peaks, the highest first: argmax [Cerman06 eq. 5]."""
-    y, x = np.nonzero((c == scipy.ndimage.maximum_filter(c, 5)) & (c > 0))
+    """Return the shifts (count, 2) of the highest peaks, the highest first [Cerman06 eq. 5]."""
+    is_peak = c == scipy.ndimage.maximum_filter(c, _PEAK_WINDOW_PIXELS)
+    y, x = np.nonzero(is_peak & (c > 0))
     best = np.argsort(-c[y, x], kind="stable")[:count]
     return np.stack([y[best], x[best]], axis=-1) - np.array(c.shape) // 2
 
 
 def rigid(shape: tuple[int, ...], unknowns: ArrayLike) -> F64:
-    """Return H of (dy, dx, r phi)."""
+    """Return the homography H of a shift and a rotation, (dy, dx, r phi)."""
     dy, dx, arc = np.asarray(unknowns, float)
-    return warp.turn(shape, np.rad2deg(2 * arc / np.hypot(shape[0], shape[1])), (dy, dx))
+    r = np.hypot(shape[0], shape[1]) / 2
+    return warp.turn(shape, np.rad2deg(arc / r), (dy, dx))
 
 
-def descend(X: F32, start: ArrayLike, reach: float, close: float = 0.01) -> tuple[F64, F64]:
-    """Return the path (n, 3) of a simplex that begins `reach`, ends `close` pixels wide, and its errors."""
-    shape, p = X.shape[1:], light.lattice(X.shape[1:])
-    found: dict[tuple[float, ...], float] = {}
+def descend(
+    X: F32, start: ArrayLike, reach: float, close: float = _FINEST_TOLERANCE_PIXELS
+) -> tuple[F64, F64]:
+    """Minimize the error by a simplex; return its path (n, 3) and the errors (n,) along it.
+
+    The simplex is `reach` pixels wide at first, and ends when it is `close` pixels wide.
+    """
+    shape = X.shape[1:]
+    p = light.lattice(shape)
+    errors: dict[tuple[float, ...], float] = {}
 
     def e(unknowns: F64) -> float:
-        found[tuple(unknowns)] = light.error(light.differences(X, rigid(shape, unknowns), p))
-        return found[tuple(unknowns)]
+        error = light.error(light.differences(X, rigid(shape, unknowns), p))
+        errors[tuple(unknowns)] = error
+        return error
 
     corners = np.asarray(start, float) + reach * np.vstack([np.zeros(3), np.eye(3)])
     options = {
         "initial_simplex": corners,
         "xatol": close,
         "fatol": 1e-9,
-        "maxfev": CALLS,
+        "maxfev": _MAX_EVALUATIONS,
         "return_all": True,
     }
-    path = np.array(
-        scipy.optimize.minimize(e, start, method="Nelder-Mead", options=options).allvecs
-    )
-    return path, np.array([found[tuple(unknowns)] for unknowns in path])
+    result = scipy.optimize.minimize(e, start, method="Nelder-Mead", options=options)
+    path = np.array(result.allvecs)
+    return path, np.array([errors[tuple(unknowns)] for unknowns in path])
 
 
 def search(pyramid: list[F32]) -> Iterator[State]:
-    """Yield a State per level: the correlation's best peaks at the coarsest, then the simplex at each."""
-    starts = [(*shift, 0.0) for shift in peaks(correlation(pyramid[-1]), PEAKS)] or [
-        (0.0, 0.0, 0.0)
-    ]
-    reach = 2.0
+    """Yield a State per level: peaks of the correlation at the coarsest, then a simplex at each."""
+    shifts = peaks(correlation(pyramid[-1]), _MAX_PEAKS)
+    starts: list[ArrayLike] = [(*shift, 0.0) for shift in shifts] or [(0.0, 0.0, 0.0)]
+    reach = _COARSEST_SIMPLEX_PIXELS
     for level in reversed(range(len(pyramid))):
-        X, close = pyramid[level], 0.05 if level else 0.01  # of a pixel
-        path, errors = min(
-            (descend(X, one, reach, close) for one in starts), key=lambda found: found[1][-1]
-        )
-        starts, reach = [2 * path[-1]], 1.0
-        yield State(level, X.copy(), path, errors, rigid(X.shape[1:], path[-1]))
+        X = pyramid[level]
+        close = _COARSE_TOLERANCE_PIXELS if level else _FINEST_TOLERANCE_PIXELS
+        descents = [descend(X, start, reach, close) for start in starts]
+        path, errors = min(descents, key=lambda descent: descent[1][-1])
+        H = rigid(X.shape[1:], path[-1])
+        yield State(level=level, X=X.copy(), path=path, errors=errors, H=H)
+        starts = [2 * path[-1]]
+        reach = _FINER_SIMPLEX_PIXELS
 
 
 def align_steps(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[State]:
@@ -114,20 +138,20 @@ def align_steps(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[S
 
 
 def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
-    """Return the homographies that lay every image on the one in the middle of their exposure.
+    """Return the homographies that align every image with the one of the middle exposure.
 
-    They turn and shift. Each image is compared with its neighbours in exposure in linear light, and
-    the homographies are chained; `resample.photographs` moves the images.
+    They turn and shift. Each image is compared with its neighbors in exposure in linear light, and
+    the homographies are chained. `resample.photographs` moves the images.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
     times : (P,) seconds
-        Their exposures; `light.exposure_ratio` measures ratios by the histograms.
+        Their exposures; `light.exposure_ratio` estimates their ratios from the histograms.
     g : (n,) or (n, 3)
-        The camera's response, ln exposure of each level. It can be found from photographs that are
-        not aligned, by their histograms: `debevec.recover` does.
+        The camera's response, ln exposure of each level. `debevec.recover` finds it from
+        photographs that are not aligned, by their histograms.
 
     Returns
     -------

@@ -15,34 +15,44 @@ least squares, for a simplex is slow in eight dimensions.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from hdrlab.align import light
-from hdrlab.core.arrays import F32, F64, ArrayLike, Mask
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_feature, skimage_measure, skimage_transform as transform
 
-# pixels of the level where points are looked for, at most
-PIXELS = 250_000
-# points of a photograph, the largest: every one is compared with every other
-MOST = 3000
-# pixels of that level, between a match and its homography
-INLIER = 1.5
-# matches that agree: 4 make a homography out of nothing
-ENOUGH = 10
-# samples of four matches
-TRIES = 2000
+# Every point of a photograph is compared with every point of the other: only the largest are used.
+MAX_POINTS = 3000
+# A match agrees with a homography that puts it at most this far off, in pixels of its level.
+MAX_INLIER_DISTANCE_PIXELS = 1.5
+# Any four matches fit a homography; with this many that agree it is no coincidence.
+MIN_AGREEING_MATCHES = 10
+# Points are looked for at the finest level that has at most this many pixels.
+_MAX_POINT_LEVEL_PIXELS = 250_000
+# RANSAC draws this many samples of four matches.
+_RANSAC_TRIALS = 2000
+# The corners are refined in at most this many evaluations.
+_MAX_REFINEMENTS = 12
+# The detail of a picture spans this many stops around its local mean.
+_DETAIL_STOPS = 6
 
 
-class State(NamedTuple):
-    """One level of one pair; first that of the points, then down to full resolution, level 0.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """One level of one pair: first the level of the points, then down to full resolution, level 0.
 
-    X is the light of both images, H in pixels of this level, e its error. `points` (2, n, 2) are
-    the matches of the first level, of the moving image and of the fixed one, `agree` (n,) those
-    that H explains.
+    Attributes
+    ----------
+    level : number of times that the photographs were halved
+    X : (2, h, w) light of both photographs at this level
+    points : (2, n, 2) matches at the first level, (x, y) in the moving photograph and the fixed one
+    agree : (n,) whether a match agrees with the homography
+    H : (3, 3) homography in pixels of this level
+    e : its error
     """
 
     level: int
@@ -54,69 +64,105 @@ class State(NamedTuple):
 
 
 def detail(x: F32) -> F64:
-    """Return D of the light x (h, w): a range of 8 to 1 around the mean fills it."""
-    over = np.log2(x / light.local_mean(x), where=x > 0, out=np.zeros(x.shape))
-    return np.clip(np.where(np.isfinite(over), over, 0) / 6 + 0.5, 0, 1)
+    """Return D of the light x (h, w): a range from 1/8 to 8 times the local mean fills 0 to 1."""
+    stops = np.log2(x / light.local_mean(x), where=x > 0, out=np.zeros(x.shape))
+    return np.clip(np.where(np.isfinite(stops), stops, 0) / _DETAIL_STOPS + 0.5, 0, 1)
 
 
-def match_points(X: F32) -> F64:
-    """Return the matches (2, n, 2), (x, y), of `moving` and of `fixed`: alike, and nothing else as alike."""
-    found = []
-    for x in (X[1], X[0]):
-        sift = skimage_feature.SIFT()
-        try:
-            sift.detect_and_extract(detail(x))
-        except RuntimeError:  # scikit-image's word for no point at all
-            return np.empty((2, 0, 2))
-        largest = np.argsort(-np.asarray(sift.sigmas), kind="stable")[:MOST]
-        points, descriptors = np.asarray(sift.keypoints), np.asarray(sift.descriptors)
-        found.append((points[largest, ::-1].astype(float), descriptors[largest]))
-    (q, one), (p, other) = found
-    both = skimage_feature.match_descriptors(one, other, max_ratio=0.8, cross_check=True)
-    return np.stack([q[both[:, 0]], p[both[:, 1]]])
+def find_points(x: F32, max_points: int = MAX_POINTS) -> tuple[F64, Array]:
+    """Return the points (n, 2), (x, y), of a photograph, the largest first, and their descriptors."""
+    sift = skimage_feature.SIFT()
+    try:
+        sift.detect_and_extract(detail(x))
+    except RuntimeError:  # scikit-image raises it where there is no point at all
+        return np.empty((0, 2)), np.empty((0, 128))
+    largest = np.argsort(-np.asarray(sift.sigmas), kind="stable")[:max_points]
+    points = np.asarray(sift.keypoints)[largest, ::-1].astype(float)
+    return points, np.asarray(sift.descriptors)[largest]
+
+
+def match_points(X: F32, max_points: int = MAX_POINTS) -> F64:
+    """Return the matches (2, n, 2), (x, y), of `moving` and of `fixed`.
+
+    Two points match if each is the most similar one to the other, and clearly more similar than the
+    second.
+    """
+    q, q_descriptors = find_points(X[1], max_points)
+    if not len(q):
+        return np.empty((2, 0, 2))
+    p, p_descriptors = find_points(X[0], max_points)
+    if not len(p):
+        return np.empty((2, 0, 2))
+    matches = skimage_feature.match_descriptors(
+        q_descriptors, p_descriptors, max_ratio=0.8, cross_check=True
+    )
+    return np.stack([q[matches[:, 0]], p[matches[:, 1]]])
 
 
 def consensus(points: F64) -> tuple[F64, Mask]:
-    """Return the H that most matches agree with, and which [Fischler and Bolles 1981]; else the identity."""
-    if points.shape[1] < ENOUGH:
-        return np.eye(3), np.zeros(points.shape[1], bool)
-    homography = transform.ProjectiveTransform
+    """Return the H that most matches agree with, by RANSAC, and which of them do (n,).
+
+    Where too few agree it is the identity, and no match counts as agreeing [Fischler and Bolles
+    1981].
+    """
+    nothing = np.eye(3), np.zeros(points.shape[1], bool)
+    if points.shape[1] < MIN_AGREEING_MATCHES:
+        return nothing
     model, agree = skimage_measure.ransac(
-        tuple(points), homography, 4, INLIER, max_trials=TRIES, rng=np.random.default_rng(0)
+        tuple(points),
+        transform.ProjectiveTransform,
+        min_samples=4,
+        residual_threshold=MAX_INLIER_DISTANCE_PIXELS,
+        max_trials=_RANSAC_TRIALS,
+        rng=np.random.default_rng(0),
     )
-    if model is None or agree is None or agree.sum() < ENOUGH:
-        return np.eye(3), np.zeros(points.shape[1], bool)
+    if model is None or agree is None or agree.sum() < MIN_AGREEING_MATCHES:
+        return nothing
     return np.asarray(model.params / model.params[2, 2]), agree
 
 
 def refine(X: F32, H: F64) -> F64:
-    """Return H with its corners moved to where the sum of d^2 is least; what lies far out counts little."""
-    corners, p = warp.corners(X.shape[1:]), light.lattice(X.shape[1:])
+    """Return H with its corners moved to where the sum of d^2 is least; outliers count little."""
+    corners = warp.corners(X.shape[1:])
+    p = light.lattice(X.shape[1:])
     start = warp.apply(H, corners)
 
     def d(c: F64) -> F64:
         moved = warp.through(corners, start + c.reshape(4, 2))
         return np.nan_to_num(light.differences(X, moved, p), nan=0.0)
 
-    options = {"loss": "soft_l1", "f_scale": 0.1, "diff_step": 0.1, "x_scale": 1.0, "max_nfev": 12}
-    found = scipy.optimize.least_squares(d, np.zeros(8), **options)
-    better = warp.through(corners, start + found.x.reshape(4, 2))
-    return min((H, better), key=lambda one: light.error(light.differences(X, one, p)))
+    result = scipy.optimize.least_squares(
+        d,
+        np.zeros(8),
+        loss="soft_l1",
+        f_scale=0.1,
+        diff_step=0.1,
+        x_scale=1.0,
+        max_nfev=_MAX_REFINEMENTS,
+    )
+    better = warp.through(corners, start + result.x.reshape(4, 2))
+    e_before = light.error(light.differences(X, H, p))
+    e_after = light.error(light.differences(X, better, p))
+    return better if e_after < e_before else H
 
 
 def enlarge(H: F64, times: float = 2) -> F64:
-    """Return H in finer pixels: pixel x of a level lies over 2 x + 1/2 of the one that is twice as large."""
-    finer = np.array([[times, 0, (times - 1) / 2], [0, times, (times - 1) / 2], [0, 0, 1]])
+    """Return H in the pixels of a level that is `times` as large.
+
+    Pixel x of a level lies over 2 x + 1/2 of the level that is twice as large.
+    """
+    middle = (times - 1) / 2
+    finer = np.array([[times, 0, middle], [0, times, middle], [0, 0, 1]])
     return np.asarray(finer @ H @ np.linalg.inv(finer))
 
 
 def search(pyramid: list[F32]) -> Iterator[State]:
-    """Yield a State per level: points and consensus at the first, then light at each."""
-    small = next(j for j, X in enumerate(pyramid) if X[0].size <= PIXELS or j == len(pyramid) - 1)
-    for first in (
-        small,
-        max(small - 1, 0),
-    ):  # twice the size has more points, and takes four times as long
+    """Yield a State per level: points and consensus at the first one, then light at each."""
+    small = 0
+    while pyramid[small][0].size > _MAX_POINT_LEVEL_PIXELS and small < len(pyramid) - 1:
+        small += 1
+    # The next finer level has more points, but takes four times as long.
+    for first in (small, max(small - 1, 0)):
         points = match_points(pyramid[first])
         H, agree = consensus(points)
         if agree.any():
@@ -126,7 +172,9 @@ def search(pyramid: list[F32]) -> Iterator[State]:
         if agree.any():
             H = refine(X, H)
         e = light.error(light.differences(X, H, light.lattice(X.shape[1:])))
-        yield State(level, X.copy(), points.copy(), agree.copy(), H.copy(), e)
+        yield State(
+            level=level, X=X.copy(), points=points.copy(), agree=agree.copy(), H=H.copy(), e=e
+        )
         H = enlarge(H)
 
 
@@ -137,7 +185,7 @@ def align_steps(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[S
 
 
 def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
-    """Return the homographies that lay every image on the one in the middle of their exposure.
+    """Return the homographies that align every image with the one of the middle exposure.
 
     Parameters
     ----------

@@ -6,17 +6,17 @@ f_inv  light of a level    (n,): exp g
 k      exposure ratio      brighter / darker
 X      light               (2, H, W) float32: f_inv(Z) of the brighter photograph, which stays, and
                            k f_inv(Z) of the darker, which moves; NaN where it is discarded
-low    noise level         the darker photograph's, on the common scale
-high   saturation level    the brighter photograph's
+low    noise limit         light at `DARK` of the darker photograph, on the common scale
+high   saturation limit    light at `BRIGHT` of the brighter photograph
 H      homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 p      pixels              (n, 2), (x, y): those of the fixed photograph that are compared
-d      differences         (n,): (a - b) / max((a + b) / 2, t), relative to light; NaN where one measures none
-t      least light         a thousandth of the largest, so that darkness does not count as contrast
+d      differences         (n,): (a - b) / max((a + b) / 2, t), relative to light; NaN where one is discarded
+t      smallest light      a thousandth of the largest, so that darkness does not count as contrast
 e      error               mean of d^2
 
-What lies below `low` or above `high` in either photograph is discarded in both, so the same parts
-of the scene are left. Where a level of the pyramid averages, it counts as `low` and `high`, which
-both share.
+Light below `low` or above `high` in either photograph is discarded in both, so that the same parts
+of the scene are left. In the averages of the coarser levels discarded light counts as `low` or
+`high`, which both photographs share.
 """
 
 from collections.abc import Iterator
@@ -25,80 +25,96 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, describe
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.errors import InputError
 
-# of the range of levels: noise below, saturation above
-DARK, BRIGHT = 5 / 255, 250 / 255
-# pixels: a level with a side below twice this is not halved again
-SMALLEST = 32
-# pixels: interpolation smooths the noise, so places between pixels would seem to fit better
-SMOOTH = 1.0
-# pixels of a level: the standard deviation of a local mean
-NEIGHBOURHOOD = 4.0
-# an even choice of this many pixels measures an error as well as all of them
-POINTS = 8_000
-# of those pixels both photographs must measure
-LEAST = 0.02
-# e of photographs of which one is dark wherever the other is bright
-NONE = 4.0
+# fraction of the top level below which noise dominates
+DARK = 5 / 255
+# fraction of the top level above which a pixel counts as saturated
+BRIGHT = 250 / 255
+# Interpolation smooths noise, so that fractions of pixels would seem to fit better than whole ones.
+# Smoothing both photographs first, by this standard deviation in pixels, removes the advantage.
+SMOOTHING_SIGMA = 1.0
+# standard deviation of a local mean, in pixels of a level
+LOCAL_MEAN_SIGMA = 4.0
+# error where too few pixels can be compared: that of one photograph dark where the other is bright
+ERROR_WITHOUT_OVERLAP = 4.0
+# a level is halved as long as the next one has at least this many pixels a side
+_MIN_SIDE_PIXELS = 32
+# About this many pixels, spread evenly, measure an error as well as all of them.
+_LATTICE_PIXELS = 8_000
+# fraction of the lattice that both photographs must measure
+_MIN_MEASURED_FRACTION = 0.02
+# fraction of four pixels that must be measured for their mean to count
+_MIN_KEPT_FRACTION = 0.7
+# largest absolute ln exposure of a response
+_MAX_LN_EXPOSURE = 80
 
 
 def neighbours(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[list[F32]]:
     """Yield the pyramid of X of pair after pair, from the shortest exposure to the longest."""
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    wrong = images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,))
-    if (
-        wrong
-        or not images.size
-        or t.shape != images.shape[:1]
-        or not np.all((t > 0) & (t < np.inf))
-    ):
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    is_stack = images.ndim >= 3 and images.shape[3:] in ((), (3,)) and images.size > 0
+    if not is_stack or images.dtype.kind != "u":
+        raise InputError(f"expected photographs (P, H, W[, 3]), got {describe(images)}")
+    if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
+        raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
+    n = np.iinfo(images.dtype).max + 1
+    is_bounded = np.all(np.abs(g) < _MAX_LN_EXPOSURE)
+    if g.shape not in ((n,), (n, 3)) or not is_bounded or not np.all(g[-1] > g[0]):
+        limit = _MAX_LN_EXPOSURE
         raise InputError(
-            f"expected photographs (P, H, W[, 3]), positive times (P,), got {images.shape}, {t}"
+            f"expected a rising g ({n},) or ({n}, 3) from -{limit} to {limit}, got {describe(g)}"
         )
-    Z, n = images if images.ndim == 3 else images[..., 1], np.iinfo(images.dtype).max + 1
-    if g.shape not in ((n,), (n, 3)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
-        raise InputError(f"expected g ({n},) or ({n}, 3) that rises, -80 to 80, got {g.shape}")
+    Z = images if images.ndim == 3 else images[..., 1]
     f_inv = np.exp(g if g.ndim == 1 else g[:, 1])
     for moving, fixed in pairwise(np.argsort(t, kind="stable")):
-        yield pair(Z[fixed], Z[moving], f_inv, t[fixed] / t[moving] * f_inv)
+        k = t[fixed] / t[moving]
+        yield pair(Z[fixed], Z[moving], f_inv, k * f_inv)
 
 
 def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:
-    """Return X at every size by the light (n,) of a level of `fixed`, and of `moving` on the same scale."""
-    n = len(dark) - 1
-    low, high = np.float32(dark[round(DARK * n)]), np.float32(bright[round(BRIGHT * n)])
+    """Return the pyramid of X of two gray photographs.
+
+    `bright` (n,) is the light of each level of `fixed`, `dark` (n,) that of each level of `moving`
+    on the same scale.
+    """
+    top = len(dark) - 1
+    low = np.float32(dark[round(DARK * top)])
+    high = np.float32(bright[round(BRIGHT * top)])
     X = np.stack([bright[fixed], dark[moving]]).astype(np.float32)
     return pyramid(np.clip(X, low, max(low, high)), (X > low) & (X < high))
 
 
 def pyramid(X: F32, kept: Mask) -> list[F32]:
-    """Return X (2, h, w) at every size, full resolution first, each half the one before; NaN unless kept."""
-    smooth = np.where(
-        kept, scipy.ndimage.gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan)
-    )
-    h, w = (side // 2 * 2 for side in X.shape[1:])
-    if min(h, w) < 2 * SMALLEST:
+    """Return X (2, h, w) at every size, full resolution first, each half as large; NaN unless kept."""
+    blurred = scipy.ndimage.gaussian_filter(X, (0, SMOOTHING_SIGMA, SMOOTHING_SIGMA))
+    smooth = np.where(kept, blurred, np.float32(np.nan))
+    h = X.shape[1] // 2 * 2
+    w = X.shape[2] // 2 * 2
+    if min(h, w) < 2 * _MIN_SIDE_PIXELS:
         return [smooth]
-    halve = transform.downscale_local_mean
-    X, share = (halve(x[:, :h, :w], (1, 2, 2)) for x in (X, kept.astype(np.float32)))
-    return [smooth, *pyramid(X, share > 0.7)]
+    half = transform.downscale_local_mean(X[:, :h, :w], (1, 2, 2))
+    share = transform.downscale_local_mean(kept[:, :h, :w].astype(np.float32), (1, 2, 2))
+    return [smooth, *pyramid(half, share > _MIN_KEPT_FRACTION)]
 
 
 def local_mean(x: F32) -> F32:
-    """Return the mean of x (h, w) around each pixel, of what is kept."""
+    """Return the mean of x (h, w) around each pixel, over the pixels that are not NaN."""
     kept = np.isfinite(x)
-    each = np.stack([np.where(kept, x, 0), kept]).astype(np.float32)
-    total, share = scipy.ndimage.gaussian_filter(each, (0, NEIGHBOURHOOD, NEIGHBOURHOOD))
+    planes = np.stack([np.where(kept, x, 0), kept]).astype(np.float32)
+    sigma = (0, LOCAL_MEAN_SIGMA, LOCAL_MEAN_SIGMA)
+    total, share = scipy.ndimage.gaussian_filter(planes, sigma)
     return np.asarray(total / np.maximum(share, 1e-6), np.float32)
 
 
-def lattice(shape: tuple[int, ...], points: int = POINTS) -> F64:
-    """Return about this many pixels p, spread evenly over a picture."""
+def lattice(shape: tuple[int, ...], points: int = _LATTICE_PIXELS) -> F64:
+    """Return about `points` pixels p, spread evenly over a picture."""
     step = max(1, int(np.sqrt(shape[0] * shape[1] / points)))
     y, x = np.mgrid[step // 2 : shape[0] : step, step // 2 : shape[1] : step]
     return np.stack([x.ravel(), y.ravel()], axis=-1).astype(float)
@@ -106,7 +122,8 @@ def lattice(shape: tuple[int, ...], points: int = POINTS) -> F64:
 
 def differences(X: F32, H: F64, p: F64) -> F64:
     """Return d at the pixels p [Cerman06 eq. 6]."""
-    q, (x, y) = warp.apply(np.linalg.inv(H), p), p.astype(int).T
+    x, y = p.astype(int).T
+    q = warp.apply(np.linalg.inv(H), p)
     a = X[0][y, x].astype(np.float64)
     b = scipy.ndimage.map_coordinates(X[1], q.T[::-1], order=1, cval=np.nan, output=np.float64)
     t = 1e-3 * np.max(X[0], where=np.isfinite(X[0]), initial=1e-9)
@@ -114,7 +131,7 @@ def differences(X: F32, H: F64, p: F64) -> F64:
 
 
 def error(d: F64) -> float:
-    """Return e; NONE where the two share too few pixels.
+    """Return e, or `ERROR_WITHOUT_OVERLAP` where too few pixels can be compared.
 
     Examples
     --------
@@ -122,11 +139,15 @@ def error(d: F64) -> float:
     0.05
     """
     measured = d[np.isfinite(d)]
-    return float(np.mean(measured**2)) if len(measured) > LEAST * len(d) else NONE
+    if len(measured) <= _MIN_MEASURED_FRACTION * len(d):
+        return ERROR_WITHOUT_OVERLAP
+    return float(np.mean(measured**2))
 
 
 def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
-    """Return k from the histograms, which need no alignment: the median of what both measure.
+    """Return the exposure ratio k from the histograms of two photographs, without alignment.
+
+    It is the median over the levels that both photographs measure; 1 where there is none.
 
     Examples
     --------
@@ -135,8 +156,10 @@ def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     3.0
     """
     h_dark, h_bright = histograms([dark, bright])[0]
-    z, T, top = np.arange(len(g)), brightness_transfer(h_dark, h_bright), len(g) - 1
-    both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)  # NaN is neither
+    z = np.arange(len(g))
+    top = len(g) - 1
+    T = brightness_transfer(h_dark, h_bright)  # NaN fails both comparisons
+    both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)
     h = h_dark[both]
     if not h.any():
         return 1.0

@@ -101,7 +101,7 @@ class Comparison(NamedTuple):
     scale : pixels that are one of the overview
     differences : function of H that returns d of the overview, or of the size whose pixel is so
         many wide
-    error : function of d that returns e, and `light.NONE` where the two share too little
+    error : function of d that returns e, and `light.ERROR_WITHOUT_OVERLAP` where the two share too little
     lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in
         the whole
     middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
@@ -169,7 +169,7 @@ def compare_bits(
 
     def error(d: F64) -> float:
         differ, compared = d.sum(axis=0)
-        return float(differ / compared) if compared else light.NONE
+        return float(differ / compared) if compared else light.ERROR_WITHOUT_OVERLAP
 
     def lower(d: F64, other: F64) -> Mask:
         d, other = (np.vstack([one, one.sum(axis=0)]) for one in (d, other))
@@ -191,12 +191,12 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     still, fine, coarse = np.eye(3), max(pair.scale // 2, 1), pair.scale
     before = pair.differences(still, 1)
     after = before if np.array_equal(H, still) else pair.differences(H, 1)
-    if pair.error(before) < light.NONE and not pair.lower(after, before)[-1]:
+    if pair.error(before) < light.ERROR_WITHOUT_OVERLAP and not pair.lower(after, before)[-1]:
         H, after = still, before
     d = pair.differences(H, fine)
     near = [pair.differences(shift(H, NEAR * fine * to), fine) for to in EIGHT]
     elsewhere = [pair.error(pair.differences(shift(H, FAR * coarse * to))) for to in EIGHT]
-    if (e := pair.error(after)) == light.NONE or not any(
+    if (e := pair.error(after)) == light.ERROR_WITHOUT_OVERLAP or not any(
         elsewhere + [pair.error(one) for one in near]
     ):
         return uninformative(pair.moving, pair.fixed)
@@ -260,8 +260,8 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
 
 def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation, by half."""
-    (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.NEIGHBOURHOOD)
-    k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.NEIGHBOURHOOD) ** 2)
+    (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.LOCAL_MEAN_SIGMA)
+    k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.LOCAL_MEAN_SIGMA) ** 2)
     down, across = (blur.blur_matrix(n, k / k.sum()) for n in (h, w))
     total, share = (
         down @ one @ across for one in (np.where(kept, middle, 0), kept)

@@ -48,7 +48,9 @@ def test_the_highest_correlation_is_drawn_where_it_is():
 
 
 def test_a_level_shows_its_picture_and_every_step_of_its_error():
-    state = cerman.State(2, X, np.zeros((5, 3)), np.geomspace(0.1, 0.01, 5), TRUE)
+    state = cerman.State(
+        level=2, X=X, path=np.zeros((5, 3)), errors=np.geomspace(0.1, 0.01, 5), H=TRUE
+    )
     figure = drawn.level(state)
     assert "level 2" in title(figure) and "e = 0.0000" in title(figure)
     assert figure.axes[1].lines[0].get_ydata().tolist() == (1000 * state.errors).tolist()
