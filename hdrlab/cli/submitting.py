@@ -61,13 +61,14 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
         files=tuple(one for one in found.files if one.resolve() != out.resolve())
     )
     findings = review.review(found)
-    for part, good, said in findings:
-        indented = said.replace("\n", "\n" + " " * 24).rstrip()
-        click.echo(f"{'  ok     ' if good else '  MISSING'}  {part:<12} {indented}")
-    missing = sum(not one.good for one in findings)
+    for finding in findings:
+        status = "  ok     " if finding.good else "  MISSING"
+        indented = finding.said.replace("\n", "\n" + " " * 24).rstrip()
+        click.echo(f"{status}  {finding.part:<12} {indented}")
+    missing = sum(not finding.good for finding in findings)
     if missing and not (force and found.artifact):
         raise InputError(
-            f"{missing} to mend; nothing was written (--force makes the archive as it is)"
+            f"{missing} problems to fix; nothing was written (--force writes the archive anyway)"
         )
     files = list(
         common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files))

@@ -112,7 +112,8 @@ class Page(HTMLParser):
 
 
 def bad(folder):
-    return {part: said for part, good, said in review.review(project.look(folder)) if not good}
+    findings = review.review(project.look(folder))
+    return {finding.part: finding.said for finding in findings if not finding.good}
 
 
 def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):

@@ -1,7 +1,8 @@
-"""What the assignment asks of a project, and what of it is missing, as a person would say it.
+"""Check that a project holds everything that the assignment asks for.
 
-What is asked for: complete source, a report, the photographs with their EXIF, the radiance map, the
-artifact.
+The assignment asks for the source, a report, the photos with their EXIF, the radiance map and the
+artifact (the tone-mapped image). Each part gets one line: what was found, or what is missing and
+what to do about it.
 """
 
 import ast
@@ -9,10 +10,10 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,61 +24,90 @@ from hdrlab.course.projects.words import ASKED
 from hdrlab.errors import InputError
 from hdrlab.io import decode, radiance
 
-TEAM = 2  # students at most
-FETCHED = re.compile(
+MAX_TEAM_SIZE = 2  # students
+EXTERNAL_RESOURCE = re.compile(
     r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)"""
 )
 
 
-class Finding(NamedTuple):
-    """A part of what is asked for: whether it is there as it should be, and a sentence."""
+@dataclass(frozen=True)
+class Finding:
+    """One line of the review.
+
+    Attributes
+    ----------
+    part : the part of the project, such as "photographs"
+    good : whether the part is as the assignment asks
+    said : what was found, or what is wrong and what to do
+    """
 
     part: str
     good: bool
     said: str
 
 
+@dataclass(frozen=True)
+class PartReview:
+    """The result of one check: a summary of what was found, and the problems; either may be empty."""
+
+    summary: str = ""
+    problems: tuple[str, ...] = ()
+
+
 def review(project: Project) -> list[Finding]:
-    """Return what there is to say of each part that is asked for."""
-    return [one for part, check in CHECKS.items() for one in _examined(project, part, check)]
+    """Check each part of a project; return a Finding for each problem, or one for a good part."""
+    findings = []
+    for part, check in CHECKS.items():
+        result = _run_check(check, project)
+        findings += [Finding(part, False, problem) for problem in result.problems]
+        if result.summary and not result.problems:
+            findings.append(Finding(part, True, result.summary))
+    return findings
 
 
-def _examined(project: Project, part: str, check: Callable[[Project], str]) -> list[Finding]:
-    """Return what a check says of a part: all is well, or each thing that is not, by names in the folder."""
+def _run_check(check: Callable[[Project], PartReview], project: Project) -> PartReview:
+    """Run a check; an unreadable file of the project is one of its problems."""
     try:
-        right = check(project)
-    except ValueError as wrong:
-        said = [str(one).replace(f"{project.folder}{os.sep}", "") for one in wrong.args]
-        return [Finding(part, False, one) for one in said]
-    return [Finding(part, True, right)] if right else []
+        return check(project)
+    except InputError as error:
+        message = str(error).replace(f"{project.folder}{os.sep}", "")
+        return PartReview(problems=(message,))
 
 
-def _students(project: Project) -> str:
+def check_students(project: Project) -> PartReview:
+    """Check who hands the project in."""
     students = project.about.students
     if not students:
-        raise InputError(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
-    if len(students) > TEAM:
-        raise InputError(f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
-    return " and ".join(students)
+        return PartReview(problems=(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}",))
+    if len(students) > MAX_TEAM_SIZE:
+        problem = f"A team has at most {MAX_TEAM_SIZE} students, {ABOUT} names {len(students)}."
+        return PartReview(problems=(problem,))
+    return PartReview(" and ".join(students))
 
 
-def _title(project: Project) -> str:
+def check_title(project: Project) -> PartReview:
+    """Check that the artifact has a title."""
     if project.about.students and not project.about.title:
-        raise InputError(f'Give your artifact a title: title = "..." in {ABOUT}.')
-    return ""
+        return PartReview(problems=(f'Give your artifact a title: title = "..." in {ABOUT}.',))
+    return PartReview()
 
 
-def _source(project: Project) -> str:
+def check_source(project: Project) -> PartReview:
+    """Check that programs and notebooks are there, can be read, and import what exists."""
     if not project.sources:
-        raise InputError("There is no source: put your programs and notebooks into the folder.")
-    wrong = [one for path in project.sources for one in _unreadable(project, path)]
-    if wrong := wrong + _foreign(project):
-        raise InputError(*wrong)
-    return f"{len(project.sources)} files"
+        problem = "There is no source: put your programs and notebooks into the folder."
+        return PartReview(problems=(problem,))
+    problems = []
+    for path in project.sources:
+        problem = _syntax_problem(project, path)
+        if problem:
+            problems.append(problem)
+    problems += _missing_imports(project)
+    return PartReview(f"{len(project.sources)} files", tuple(problems))
 
 
-def _unreadable(project: Project, path: Path) -> Iterator[str]:
-    """Yield why a source cannot be read, where it is one that we can tell."""
+def _syntax_problem(project: Project, path: Path) -> str:
+    """Return why a Python file or notebook cannot be read, or an empty text."""
     name = project.name(path)
     try:
         if path.suffix == ".py":
@@ -85,84 +115,102 @@ def _unreadable(project: Project, path: Path) -> Iterator[str]:
         elif path.suffix == ".ipynb":
             list(json.loads(path.read_text(encoding="utf8"))["cells"])
     except (SyntaxError, RecursionError, MemoryError) as error:
-        yield f"{name}, line {getattr(error, 'lineno', '?')}: Python cannot read it ({error.args[0]})."
-    except (ValueError, KeyError, TypeError):
-        yield f"{name} is no notebook that can be read. Save it again."
+        line = getattr(error, "lineno", "?")
+        return f"{name}, line {line}: Python cannot read it ({error.args[0]})."
+    except (ValueError, KeyError, TypeError):  # not UTF-8, not JSON, or without a list of cells
+        return f"{name} cannot be read as a notebook. Save it again."
+    return ""
 
 
-def _foreign(project: Project) -> list[str]:
-    """Return the modules that Python files import and that are neither here nor installed."""
-    here = {path.stem for path in project.sources} | {path.parent.name for path in project.sources}
-    missing: dict[str, str] = {}
-    for path in (one for one in project.sources if one.suffix == ".py"):
-        for top in dict.fromkeys(
-            one.split(".")[0] for one in sorted(names.modules(path.read_bytes()))
-        ):
-            if top not in here and top not in sys.stdlib_module_names and find_spec(top) is None:
-                missing.setdefault(top, project.name(path))
-    why = "which is neither in the folder nor installed"
-    return [f"{name} imports {top}, {why}." for top, name in missing.items()]
+def _missing_imports(project: Project) -> list[str]:
+    """Return a sentence for each imported module that is neither in the project nor installed."""
+    own_modules = {path.stem for path in project.sources}
+    own_modules |= {path.parent.name for path in project.sources}
+    first_importer: dict[str, str] = {}
+    for path in project.sources:
+        if path.suffix != ".py":
+            continue
+        for module in sorted(names.modules(path.read_bytes())):
+            package = module.split(".")[0]
+            is_known = package in own_modules or package in sys.stdlib_module_names
+            if not is_known and find_spec(package) is None:
+                first_importer.setdefault(package, project.name(path))
+    return [
+        f"{name} imports {package}, which is neither in the folder nor installed."
+        for package, name in first_importer.items()
+    ]
 
 
-def _report(project: Project) -> str:
+def check_report(project: Project) -> PartReview:
+    """Check that the report is up to date, has all sections, and loads nothing from the web."""
     if project.page is None:
-        raise InputError(f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
-    wrong = []
+        problem = f"There is no {PAGE}. Run `hdrlab report`, which makes it of report.md."
+        return PartReview(problems=(problem,))
+    problems = []
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:
-        wrong = [f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again."]
-    text = project.page.read_text(encoding="utf8", errors="replace")
-    heads = " ".join(re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.DOTALL | re.IGNORECASE))
-    if missing := [
-        name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)
-    ]:
-        wrong.append(f"{PAGE} has no heading about: {', '.join(missing)}.")
-    if fetched := FETCHED.search(text):
-        wrong.append(f"{PAGE} fetches {fetched[1][:80]}, which may be gone when it is read.")
-    if wrong:
-        raise InputError(*wrong)
-    return PAGE
+        problems.append(f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again.")
+    html = project.page.read_text(encoding="utf8", errors="replace")
+    headings = re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", html, re.DOTALL | re.IGNORECASE)
+    all_headings = " ".join(headings)
+    missing = [
+        name
+        for name, pattern in ASKED.items()
+        if not re.search(pattern, all_headings, re.IGNORECASE)
+    ]
+    if missing:
+        problems.append(f"{PAGE} has no heading about: {', '.join(missing)}.")
+    external = EXTERNAL_RESOURCE.search(html)
+    if external:
+        problems.append(f"{PAGE} loads {external[1][:80]}, which may be gone later.")
+    return PartReview(PAGE, tuple(problems))
 
 
-def _photographs(project: Project) -> str:
+def check_photographs(project: Project) -> PartReview:
+    """Check that the photos form a bracket whose exposures are known."""
     count = len(project.photographs)
     if count < 2:
-        raise InputError(f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
-    wrong = []
+        problem = f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}."
+        return PartReview(problems=(problem,))
+    problems = []
     exposures = set()
     for path in project.photographs:
+        name = project.name(path)
         try:
             header = decode.look(path)
-        except ValueError as error:
-            wrong.append(f"{error}.")
+        except InputError as error:
+            problems.append(f"{error}.".replace(f"{project.folder}{os.sep}", ""))
             continue
         if header.exposure.seconds is None:
-            wrong.append(f"{path} has no exposure time in its EXIF. Take the camera's own file.")
+            problems.append(f"{name} has no exposure time in EXIF. Use the camera's own file.")
         exposures.add(header.exposure)
-    if not wrong and len(exposures) == 1:
-        wrong = ["All photographs have the same exposure, which makes no bracket."]
-    if wrong:
-        raise InputError(*wrong)
-    return f"{count}, {len(exposures)} exposures"
+    if not problems and len(exposures) == 1:
+        problems.append("All photos have the same exposure, so they form no bracket.")
+    return PartReview(f"{count}, {len(exposures)} exposures", tuple(problems))
 
 
-def _map(project: Project) -> str:
+def check_map(project: Project) -> PartReview:
+    """Check that the radiance map can be read and holds light."""
     if project.map is None:
-        raise InputError("There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
+        problem = "There is no radiance map. Save it as map.hdr, map.exr or map.pfm."
+        return PartReview(problems=(problem,))
     E = radiance.read_radiance(project.map, clean=True)
+    name = project.name(project.map)
     if not np.any(E > 0) or E.max() == E.min():
-        raise InputError(f"{project.name(project.map)} holds one value everywhere.")
-    return f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}"
+        return PartReview(problems=(f"{name} holds the same value everywhere.",))
+    return PartReview(f"{name}, {E.shape[1]} x {E.shape[0]}")
 
 
-def _artifact(project: Project) -> str:
+def check_artifact(project: Project) -> PartReview:
+    """Check that the artifact is an image that can be read."""
     if project.artifact is None:
-        raise InputError("There is no artifact. Save your best picture as artifact.jpg.")
+        problem = "There is no artifact. Save your best tone-mapped image as artifact.jpg."
+        return PartReview(problems=(problem,))
     height, width = decode.look(project.artifact).shape[:2]
-    return f"{project.name(project.artifact)}, {width} x {height}"
+    return PartReview(f"{project.name(project.artifact)}, {width} x {height}")
 
 
-def _archive(project: Project, limits: Limits = LIMITS) -> str:
-    """Return "", unless the course would refuse the archive."""
+def check_archive(project: Project, limits: Limits = LIMITS) -> PartReview:
+    """Check that the course would accept an archive of the project."""
     members = [
         Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files
     ]
@@ -170,12 +218,17 @@ def _archive(project: Project, limits: Limits = LIMITS) -> str:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.total, limits)
     except Refused as reason:
-        raise InputError(f"The archive would be refused: {reason}.") from None
-    return ""
+        return PartReview(problems=(f"The course would refuse the archive: {reason}.",))
+    return PartReview()
 
 
-# each returns a sentence on what is right, if any, or raises a ValueError of all that is wrong
-CHECKS: dict[str, Callable[[Project], str]] = {
-    **{"students": _students, "title": _title, "source": _source, "report": _report},
-    **{"photographs": _photographs, "map": _map, "artifact": _artifact, "archive": _archive},
+CHECKS: dict[str, Callable[[Project], PartReview]] = {
+    "students": check_students,
+    "title": check_title,
+    "source": check_source,
+    "report": check_report,
+    "photographs": check_photographs,
+    "map": check_map,
+    "artifact": check_artifact,
+    "archive": check_archive,
 }
