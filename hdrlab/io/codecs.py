@@ -105,10 +105,14 @@ def _heic(data: bytes, out: Array | None) -> Array:
 
 def _jxl(data: bytes, out: Array | None) -> Array:
     """Decode into an array of the size that was looked at: another is refused before a pixel is decoded."""
-    shape, dtype, depth, *_ = jpegxl.look("", data)
-    out = np.empty(shape, dtype) if out is None else out
+    header = jpegxl.read_header("", data)
+    if out is None:
+        out = np.empty(header.shape, header.dtype)
     pixels = imagecodecs.jpegxl_decode(data, keeporientation=True, out=out)
-    return _fill(pixels << (16 - depth), depth) if dtype == np.uint16 else pixels
+    if header.dtype != np.uint16:
+        return pixels
+    depth = header.bits_per_sample
+    return _fill(pixels << (16 - depth), depth)
 
 
 def _fill(pixels: Array, depth: int) -> Array:

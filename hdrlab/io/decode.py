@@ -171,10 +171,12 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
 def _look_jxl(path: Path, kind: str, head: bytes) -> Header:
     """Return what is stated by a JPEG XL; how it is turned, it says itself, and not its EXIF."""
     exif = _exif(lambda exif: exif.load(jpegxl.exif(head)), None)
-    shape, dtype, _, exif["orientation"], curve, primaries = jpegxl.look(path, head)
-    exif["icc"] = profiles.DISPLAY_P3 if primaries == jpegxl.OF_P3 else b""
-    exif |= {"processing": CODED} if curve in (jpegxl.PQ, jpegxl.HLG) else {}
-    return Header(path, kind, shape, dtype, **exif)
+    header = jpegxl.read_header(path, head)
+    exif["orientation"] = header.orientation
+    exif["icc"] = profiles.DISPLAY_P3 if header.primaries == jpegxl.P3_PRIMARIES else b""
+    if header.transfer in (jpegxl.PQ_TRANSFER, jpegxl.HLG_TRANSFER):
+        exif["processing"] = CODED
+    return Header(path, kind, header.shape, header.dtype, **exif)
 
 
 def _look_tiff(path: Path, form: str, head: bytes) -> Header:

@@ -1,172 +1,322 @@
-"""What a JPEG XL says before its pixels: size, samples, colours, frames [ISO 18181-1 annexes D and F].
+"""The headers of JPEG XL: size, samples, color encoding and frames [ISO 18181-1, annexes D and F].
 
-A file is a codestream, or boxes of which one holds it, or several its parts. A header is bits, the
-lowest of each byte first. Colours are those of sRGB, whatever their curve, but that floats are
-linear, or those of Display P3; others are refused, as are alpha and animations. Of a frame libjxl
-believes any size, so that a few hundred bytes keep it busy for hours: a picture is read that is one
-frame of its own size.
+A file is a bare codestream, or boxes of which one or several hold the codestream. A header is a
+sequence of bits, the lowest of each byte first.
+
+hdrlab reads images with the primaries of sRGB, with any transfer function (floats are linear), and
+8-bit or 16-bit images of Display P3. It refuses other colors, alpha and animations. libjxl accepts
+any size of a frame, so that a few hundred bytes could keep it busy for hours; hdrlab therefore
+reads files with one frame of the image's own size only.
 """
 
-import struct
-from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hdrlab.core.optional import imagecodecs
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError
+from hdrlab.io.boxes import iter_boxes
 from hdrlab.io.files import OtherPixels
 
-USUAL = 0b110010000
-ENOUGH, LONGEST_EXIF = 64, 1 << 16  # bytes for the headers
-WIDER = ((1, 1), (6, 5), (4, 3), (3, 2), (16, 9), (5, 4), (2, 1))  # width over height, by number
-# bits of a sample: how they are told of whole numbers and of floats, and which are read
-DEPTHS = ((8, 0), (10, 0), (12, 0), (1, 6)), ((32, 0), (16, 0), (24, 0), (1, 6))
-READ = range(8, 17), (16, 32)
-# curves by their number [ITU-T H.273]
-LINEAR, SRGB, PQ, HLG = 8, 13, 16, 18
-OF_SRGB, OF_P3 = 1, 11  # primaries
+MAX_HEADER_BYTES = 64
+MAX_EXIF_BYTES = 2**16
+# Width over height, by the number of the ratio; 0 states the width itself.
+ASPECT_RATIOS = {1: (1, 1), 2: (6, 5), 3: (4, 3), 4: (3, 2), 5: (16, 9), 6: (5, 4), 7: (2, 1)}
+
+# The four ways in which the format stores a number: an offset, and the bits that are added to it.
+ENUM_CODES = ((0, 0), (1, 0), (2, 4), (18, 6))
+SIZE_CODES = ((1, 9), (1, 13), (1, 18), (1, 30))
+INTEGER_DEPTH_CODES = ((8, 0), (10, 0), (12, 0), (1, 6))
+FLOAT_DEPTH_CODES = ((32, 0), (16, 0), (24, 0), (1, 6))
+EXTRA_CHANNELS_CODES = ((0, 0), (1, 0), (2, 4), (1, 12))
+FRAME_FLAGS_CODES = ((0, 0), (1, 4), (17, 8), (0, 12))
+PASSES_CODES = ((1, 0), (2, 0), (3, 0), (4, 3))
+DOWNSAMPLINGS_CODES = ((0, 0), (1, 0), (2, 0), (3, 1))
+LAST_PASS_CODES = ((0, 0), (1, 0), (2, 0), (0, 3))
+TONE_MAPPING_BITS = 49
+
+# Bits a sample that hdrlab reads.
+INTEGER_DEPTHS = range(8, 17)
+FLOAT_DEPTHS = (16, 32)
+
+# Color spaces, white points, primaries and transfer functions by their numbers [ITU-T H.273].
+RGB_SPACE = 0
+GRAY_SPACE = 1
+D65 = 1
+SRGB_PRIMARIES = 1
+P3_PRIMARIES = 11
+UNKNOWN_PRIMARIES = 0
+GAMMA_TRANSFER = 0
+LINEAR_TRANSFER = 8
+SRGB_TRANSFER = 13
+PQ_TRANSFER = 16
+HLG_TRANSFER = 18
 
 
-class Bits:
-    """The bits of a header, to be taken one after the other."""
+@dataclass(frozen=True)
+class JxlHeader:
+    """What a JPEG XL file states about its pixels, as they are stored.
+
+    `transfer` and `primaries` are numbers of H.273.
+    """
+
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    bits_per_sample: int
+    orientation: int
+    transfer: int
+    primaries: int
+
+
+@dataclass(frozen=True)
+class ColorEncoding:
+    """The colors of an image, by the numbers of H.273; unknown primaries are those of a profile."""
+
+    primaries: int = SRGB_PRIMARIES
+    is_gray: bool = False
+    transfer: int = SRGB_TRANSFER
+
+
+@dataclass(frozen=True)
+class ImageMetadata:
+    """What stands in the header behind the size; the defaults are those of the standard."""
+
+    orientation: int = 1
+    is_float: bool = False
+    bits_per_sample: int = 8
+    extra_channels: int = 0
+    is_xyb: bool = True
+    color: ColorEncoding = ColorEncoding()
+    is_animation_or_preview: bool = False
+    has_extensions: bool = False
+
+
+class BitReader:
+    """Reads numbers from a sequence of bits; behind its end all bits are 0."""
 
     def __init__(self, data: bytes) -> None:
-        self.left, self.at = int.from_bytes(data, "little"), 0
+        self._bits = int.from_bytes(data, "little")
+        self._position = 0
 
-    def take(self, count: int) -> int:
-        """Return a number of so many bits."""
-        self.left, value = divmod(self.left, 1 << count)
-        self.at += count
+    def read(self, count: int) -> int:
+        """Return the number in the next `count` bits."""
+        value = self._bits >> self._position & ((1 << count) - 1)
+        self._position += count
         return value
 
-    def pick(self, *ways: tuple[int, int]) -> int:
-        """Return a number that is told in one of four ways: from where on, and in how many bits."""
-        start, count = ways[self.take(2)]
-        return start + self.take(count)
+    def read_bool(self) -> bool:
+        """Return whether the next bit is 1."""
+        return self.read(1) == 1
 
-    def kind(self) -> int:
-        """Return the number of a colour space, a white, primaries or a curve."""
-        return self.pick((0, 0), (1, 0), (2, 4), (18, 6))
+    def read_coded(self, codes: tuple[tuple[int, int], ...]) -> int:
+        """Return a number that is stored in one of four ways."""
+        offset, count = codes[self.read(2)]
+        return offset + self.read(count)
 
-    def side(self, small: int) -> int:
-        """Return height or width."""
-        return 8 + 8 * self.take(5) if small else self.pick((1, 9), (1, 13), (1, 18), (1, 30))
+    def read_enum(self) -> int:
+        """Return the number of a color space, a white point, primaries or a transfer function."""
+        return self.read_coded(ENUM_CODES)
 
-    def size(self) -> tuple[int, int]:
-        """Return height and width."""
-        small = self.take(1)
-        height, ratio = self.side(small), self.take(3)
-        over, under = WIDER[ratio - 1]
-        return height, height * over // under if ratio else self.side(small)
-
-    def colours(self) -> tuple[int, int, int]:
-        """Return the number of the primaries or 0, whether there is gray alone, and the curve's number."""
-        if self.take(1):
-            return OF_SRGB, 0, SRGB
-        profile, gray, white = self.take(1), self.kind(), self.kind()
-        primaries = OF_SRGB if gray == 1 else self.kind()
-        curve = 0 * self.take(24) if self.take(1) else self.kind()
-        self.kind()  # how it is to be rendered
-        return primaries if not profile and gray < 2 and white == 1 else 0, gray, curve
-
-    def lone(self, xyb: int) -> bool:
-        """Return whether the frame that begins here is the only one, and has the picture's size."""
-        self.take(-self.at % 8)
-        if self.take(1):  # all is as usual
-            return True
-        regular, modular, _ = (
-            not self.take(2),
-            self.take(1),
-            self.pick((0, 0), (1, 4), (17, 8), (0, 12)),
-        )
-        if not xyb and self.take(1):
-            self.take(6)  # how YCbCr is sampled
-        self.take(2 + (2 if modular else 6 * xyb))
-        if (passes := self.pick((1, 0), (2, 0), (3, 0), (4, 3))) > 1:
-            smaller = self.pick((0, 0), (1, 0), (2, 0), (3, 1))
-            self.take(2 * (passes - 1 + smaller))
-            for _ in range(smaller):
-                self.pick((0, 0), (1, 0), (2, 0), (0, 3))
-        placed, blended, last = self.take(1), self.take(2), self.take(1)
-        return bool(regular and last and not (placed or blended))
-
-
-def boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield the name of each box, and what is in it."""
-    at = 0
-    while at + 8 <= len(data):
-        size, name = struct.unpack_from(">I4s", data, at)
-        yield name, data[at + 8 : at + (size or len(data))]
-        at += size if size >= 8 else len(data)
+    def skip_to_next_byte(self) -> None:
+        """Skip the rest of the byte."""
+        self.read(-self._position % 8)
 
 
 def codestream(data: bytes) -> bytes:
-    """Return the first bytes of the codestream, which is all of the file or stands in boxes."""
-    start = {b"jxlc": 0, b"jxlp": 4}
-    parts = (box[start[name] :][:ENOUGH] for name, box in boxes(data) if name in start)
-    return data if data[:1] == b"\xff" else b"".join(parts)
+    """Return the first bytes of the codestream, which is the whole file or is stored in boxes."""
+    if data[:1] == b"\xff":
+        return data
+    sequence_number_size = 4
+    stream = b""
+    for box in iter_boxes(data):
+        if box.type == b"jxlc":
+            start = box.content_start
+        elif box.type == b"jxlp":
+            start = box.content_start + sequence_number_size
+        else:
+            continue
+        stream += data[start : min(box.end, start + MAX_HEADER_BYTES)]
+    return stream
 
 
 def exif(data: bytes) -> bytes:
-    """Return EXIF, which may be packed by Brotli, or nothing."""
-    for name, box in boxes(data):
-        if name == b"brob" and box[:4] == b"Exif":
-            name, box = (
-                b"Exif",
-                bytes(imagecodecs.brotli_decode(box[4:], out=bytearray(LONGEST_EXIF))),
-            )
-        if name == b"Exif":
-            return box[4:]
+    """Return the EXIF of a file, or nothing; it may be compressed by Brotli."""
+    tiff_offset_size = 4
+    for box in iter_boxes(data):
+        content = data[box.content_start : box.end]
+        if box.type == b"Exif":
+            return content[tiff_offset_size:]
+        if box.type == b"brob" and content[:4] == b"Exif":
+            buffer = bytearray(MAX_EXIF_BYTES)
+            return bytes(imagecodecs.brotli_decode(content[4:], out=buffer))[tiff_offset_size:]
     return b""
 
 
-def look(
-    path: str | Path, head: bytes
-) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int, int]:
-    """Return shape, dtype and bits of the samples as they are stored, orientation, curve and primaries.
+def read_header(path: str | Path, head: bytes) -> JxlHeader:
+    """Return what a JPEG XL file states about its pixels.
 
-    `head` is the beginning of the file. What is not read is an `OtherPixels`.
+    Parameters
+    ----------
+    path
+        The file, to be named in errors.
+    head
+        The beginning of the file.
+
+    Raises
+    ------
+    FileFormatError
+        For a file without a codestream.
+    OtherPixels
+        For an image that hdrlab does not read.
     """
-    data = codestream(head)
+    try:
+        data = codestream(head)
+    except FileFormatError as error:
+        raise FileFormatError(f"{path}: the header is damaged ({error})") from None
     if not data:
-        raise InputError(
-            f"{path}: expected a photograph, its header is damaged (it has no codestream)"
-        )
-    bits, orientation = Bits(data[2:ENOUGH]), 1
-    size = bits.size()
-    if bits.take(1):  # all is as usual, as 11 bits would say
-        bits.left, bits.at = bits.left << 11 | USUAL, bits.at - 11
-    if more := bits.take(1):
-        orientation += bits.take(3)
-        if bits.take(1):
-            bits.size()  # on a page
-        if bits.take(2):
-            raise OtherPixels(
-                f"{path}: expected one picture, got an animation or a preview as well"
-            )
-    floats = bits.take(1)
-    depth, _ = (
-        bits.pick(*DEPTHS[floats]),
-        bits.take(4 * floats + 1),
-    )  # an exponent's bits, and the decoder's
-    others, xyb = bits.pick((0, 0), (1, 0), (2, 4), (1, 12)), bits.take(1)
-    if others or depth not in READ[floats]:
-        got = f"{depth} bits and {others} more channels"
-        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {got}")
-    primaries, gray, curve = bits.colours()
-    if primaries != OF_SRGB and (primaries, curve, floats) != (OF_P3, SRGB, 0):
-        raise OtherPixels(
-            f"{path}: expected the primaries of sRGB or Display P3, got others or a profile"
-        )
-    if floats and curve != LINEAR:
-        raise OtherPixels(f"{path}: expected floats that are linear, got the curve number {curve}")
-    if more and not bits.take(1):
-        bits.take(49)  # how bright it is meant to be
-    if bits.take(2) or not bits.take(1) or not bits.lone(xyb):  # extensions, the usual transforms
+        raise FileFormatError(f"{path}: the header is damaged (it has no codestream)")
+    signature_size = 2
+    bits = BitReader(data[signature_size:MAX_HEADER_BYTES])
+    height, width = _read_size(bits)
+    metadata = _read_image_metadata(bits)
+    _require_readable(path, metadata)
+    has_usual_transforms = bits.read_bool()
+    if metadata.has_extensions or not has_usual_transforms or not _is_only_frame(bits, metadata):
         raise OtherPixels(
             f"{path}: expected one frame of the picture's size, got several or another"
         )
-    dtype = np.dtype(f"{'uf'[floats]}{(depth + 7) // 8}")
-    return (*size, 3)[: 3 - gray], dtype, depth, orientation, curve, primaries
+    bytes_per_sample = (metadata.bits_per_sample + 7) // 8
+    kind = "f" if metadata.is_float else "u"
+    return JxlHeader(
+        shape=(height, width) if metadata.color.is_gray else (height, width, 3),
+        dtype=np.dtype(f"{kind}{bytes_per_sample}"),
+        bits_per_sample=metadata.bits_per_sample,
+        orientation=metadata.orientation,
+        transfer=metadata.color.transfer,
+        primaries=metadata.color.primaries,
+    )
+
+
+def _require_readable(path: str | Path, metadata: ImageMetadata) -> None:
+    """Raise OtherPixels for an image that hdrlab does not read."""
+    if metadata.is_animation_or_preview:
+        raise OtherPixels(f"{path}: expected one picture, got an animation or a preview as well")
+    depths = FLOAT_DEPTHS if metadata.is_float else INTEGER_DEPTHS
+    if metadata.extra_channels or metadata.bits_per_sample not in depths:
+        samples = f"{metadata.bits_per_sample} bits and {metadata.extra_channels} more channels"
+        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {samples}")
+    color = metadata.color
+    is_srgb = color.primaries == SRGB_PRIMARIES
+    is_display_p3 = color.primaries == P3_PRIMARIES and color.transfer == SRGB_TRANSFER
+    if not is_srgb and not (is_display_p3 and not metadata.is_float):
+        raise OtherPixels(
+            f"{path}: expected the primaries of sRGB or Display P3, got others or a profile"
+        )
+    if metadata.is_float and color.transfer != LINEAR_TRANSFER:
+        raise OtherPixels(
+            f"{path}: expected linear floats, got the transfer function {color.transfer} of H.273"
+        )
+
+
+def _read_size(bits: BitReader) -> tuple[int, int]:
+    """Return height and width."""
+    is_small = bits.read_bool()
+    height = _read_side(bits, is_small=is_small)
+    ratio = bits.read(3)
+    if ratio == 0:
+        return height, _read_side(bits, is_small=is_small)
+    numerator, denominator = ASPECT_RATIOS[ratio]
+    return height, height * numerator // denominator
+
+
+def _read_side(bits: BitReader, *, is_small: bool) -> int:
+    """Return height or width; small images store a multiple of 8."""
+    if is_small:
+        return 8 + 8 * bits.read(5)
+    return bits.read_coded(SIZE_CODES)
+
+
+def _read_image_metadata(bits: BitReader) -> ImageMetadata:
+    if bits.read_bool():  # all values are the defaults
+        return ImageMetadata()
+    has_extra_fields = bits.read_bool()
+    orientation = 1
+    if has_extra_fields:
+        orientation = 1 + bits.read(3)
+        if bits.read_bool():
+            _read_size(bits)  # the intrinsic size
+        has_preview = bits.read_bool()
+        has_animation = bits.read_bool()
+        if has_preview or has_animation:
+            return ImageMetadata(is_animation_or_preview=True)
+    is_float = bits.read_bool()
+    if is_float:
+        depth = bits.read_coded(FLOAT_DEPTH_CODES)
+        bits.read(4)  # bits of the exponent
+    else:
+        depth = bits.read_coded(INTEGER_DEPTH_CODES)
+    bits.read_bool()  # whether 16-bit buffers suffice for the decoder
+    extra_channels = bits.read_coded(EXTRA_CHANNELS_CODES)
+    is_xyb = bits.read_bool()
+    if extra_channels:
+        # Their descriptions follow; hdrlab refuses the image, so nothing more is read.
+        return ImageMetadata(bits_per_sample=depth, extra_channels=extra_channels)
+    color = _read_color_encoding(bits)
+    if has_extra_fields and not bits.read_bool():
+        bits.read(TONE_MAPPING_BITS)
+    return ImageMetadata(
+        orientation=orientation,
+        is_float=is_float,
+        bits_per_sample=depth,
+        is_xyb=is_xyb,
+        color=color,
+        has_extensions=bits.read(2) != 0,
+    )
+
+
+def _read_color_encoding(bits: BitReader) -> ColorEncoding:
+    if bits.read_bool():  # all values are the defaults
+        return ColorEncoding()
+    has_profile = bits.read_bool()
+    space = bits.read_enum()
+    white_point = bits.read_enum()
+    primaries = SRGB_PRIMARIES if space == GRAY_SPACE else bits.read_enum()
+    if bits.read_bool():
+        bits.read(24)  # the exponent
+        transfer = GAMMA_TRANSFER
+    else:
+        transfer = bits.read_enum()
+    bits.read_enum()  # the rendering intent
+    if has_profile or space not in (RGB_SPACE, GRAY_SPACE) or white_point != D65:
+        primaries = UNKNOWN_PRIMARIES
+    return ColorEncoding(primaries, space == GRAY_SPACE, transfer)
+
+
+def _is_only_frame(bits: BitReader, metadata: ImageMetadata) -> bool:
+    """Return whether the frame that begins here is the only one, and has the image's size."""
+    bits.skip_to_next_byte()
+    if bits.read_bool():  # all values are the defaults
+        return True
+    is_regular = bits.read(2) == 0
+    is_modular = bits.read_bool()
+    bits.read_coded(FRAME_FLAGS_CODES)
+    if not metadata.is_xyb and bits.read_bool():
+        bits.read(6)  # the subsampling of YCbCr
+    bits.read(2)  # the upsampling
+    if is_modular:
+        bits.read(2)  # the size of a group
+    elif metadata.is_xyb:
+        bits.read(6)  # the scales of two quantization matrices
+    passes = bits.read_coded(PASSES_CODES)
+    if passes > 1:
+        downsamplings = bits.read_coded(DOWNSAMPLINGS_CODES)
+        bits.read(2 * (passes - 1))  # the shifts
+        bits.read(2 * downsamplings)  # their factors
+        for _ in range(downsamplings):
+            bits.read_coded(LAST_PASS_CODES)
+    has_crop = bits.read_bool()
+    blend_mode = bits.read(2)
+    is_last = bits.read_bool()
+    return is_regular and is_last and not has_crop and blend_mode == 0
