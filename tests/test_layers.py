@@ -57,6 +57,7 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
     "jinja2": {"show", "course"},
     **dict.fromkeys(["dask", "distributed"], {"course"}),  # a class on many machines
+    "filelock": {"course"},  # one run at a time in a folder
     "copydetect": {"course"},  # what submissions have in common
     **dict.fromkeys(["starlette", "uvicorn", "markupsafe", "markdown_it"], {"course"}),
     "threadpoolctl": {"show"},

@@ -6,6 +6,7 @@ as the launcher of a virtual environment does there, between a process and the o
 by.
 """
 
+import contextlib
 import ctypes
 import importlib.util
 import os
@@ -74,6 +75,8 @@ def build(folder):
 def hide():
     """Take away what Windows has not, from this process."""
     share_sockets()
+    with contextlib.suppress(ImportError):
+        import filelock  # noqa: F401 it locks by fcntl here, as it does by msvcrt on Windows
     for name in MODULES:
         sys.modules[name] = None
     for name in set(CALLS) & set(dir(os)):

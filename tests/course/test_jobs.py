@@ -2,6 +2,8 @@
 
 import os
 import stat
+import subprocess
+import sys
 from collections import deque
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import pytest
 
 from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.jobs import GradingJob, JobAttempt, JobResult
+from hdrlab.errors import InputError
 
 
 def make_jobs(*owners, key="k"):
@@ -185,4 +188,29 @@ def test_a_folder_is_locked_by_one_run_and_cleared_of_half_written_files(tmp_pat
         for name in (".hdrlab-1", "in/.hdrlab-2", "kept.json"):
             (folder / name).touch()
     with jobs.lock_folder(folder):
-        assert sorted(path.name for path in folder.rglob("*")) == ["in", "kept.json"]
+        assert not list(folder.rglob(".hdrlab-*"))
+        assert (folder / "kept.json").exists()
+
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from hdrlab.course.classroom import jobs
+with jobs.lock_folder(Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(600)
+"""
+
+
+def test_a_process_keeps_others_out_of_its_folder_until_it_is_killed(tmp_path):
+    command = [sys.executable, "-c", HOLDER, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as holder:
+        assert holder.stdout.readline() == b"locked\n"
+        with pytest.raises(InputError, match=tmp_path.name), jobs.lock_folder(tmp_path):
+            pass
+        other = subprocess.run(command, capture_output=True)
+        assert other.returncode != 0
+        assert b"InputError" in other.stderr
+        holder.kill()
+    with jobs.lock_folder(tmp_path):
+        pass

@@ -24,6 +24,7 @@ from hdrlab.io.files import replacing
 MAX_ATTEMPTS = 3
 KEY_LENGTH = 16  # hexadecimal digits
 MAX_PROBLEM_LENGTH = 400
+LOCK_NAME = ".hdrlab.lock"  # stays: deleting a lock file can let two processes hold it
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     with contextlib.ExitStack() as stack:
         try:
-            stack.enter_context(scratch.locked(folder.resolve()))
+            stack.enter_context(scratch.locked(folder.resolve() / LOCK_NAME))
         except BlockingIOError:
             raise InputError(
                 f"{folder}: another run is writing to this folder; wait until it has finished"

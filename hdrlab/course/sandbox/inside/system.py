@@ -25,7 +25,7 @@ def _optional(name: str) -> Any:
     return None
 
 
-fcntl, resource = _optional("fcntl"), _optional("resource")
+resource = _optional("resource")
 
 
 def prctl(number: int, *values: Any) -> None:
@@ -153,11 +153,6 @@ def sweep(pid: int, alone: bool) -> None:
                 with contextlib.suppress(OSError):
                     os.kill(one, signal.SIGKILL)
             time.sleep(0.0005)
-
-
-def lock(handle: int, wait: bool) -> None:
-    """Lock an open file or folder until it is closed; a BlockingIOError where another process holds it."""
-    fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
 
 
 def inherit_control(number: str) -> socket.socket:
