@@ -11,9 +11,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
-    """Return a lesson's function that uses fast `parts` where the lesson calls its own, for module `home`.
+    """Return a copy of a lesson's function that calls the fast functions in `parts` instead of its own.
 
-    The code is the lesson's own: the signature, the checks and the equations stand once.
+    So the signature, the checks and the equations are written only once, in the lesson. The copy
+    says that it belongs to the module `home`.
 
     Examples
     --------
@@ -24,12 +25,14 @@ def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
     [[0.5, 0.125]]
     """
     plain: Any = lesson
-    if strange := parts.keys() - set(plain.__code__.co_names):
+    unknown = parts.keys() - set(plain.__code__.co_names)
+    if unknown:
         raise InputError(
-            f"expected functions that {plain.__name__} calls, got {', '.join(sorted(strange))}"
+            f"expected functions that {plain.__name__} calls, got {', '.join(sorted(unknown))}"
         )
     names = {**plain.__globals__, **parts}
     fast: Any = FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__)
     update_wrapper(fast, plain)
-    fast.__kwdefaults__, fast.__module__ = plain.__kwdefaults__, home
+    fast.__kwdefaults__ = plain.__kwdefaults__
+    fast.__module__ = home
     return fast

@@ -1,8 +1,7 @@
-"""An equation over a picture, a band of rows at a time, which stays in the processor's cache.
+"""Compute an equation over a picture in bands of rows, which stay in the processor's cache.
 
-Written for a whole picture, an equation of neighbours gives the same answer in the rows of a band
-if the slab it is given reaches `margin` rows further on either side, and ends only where the
-picture does.
+An equation that looks at neighbours gives the same result for the rows of a band as for the whole
+picture, if it gets a slab with `margin` more rows on either side, or up to the end of the picture.
 """
 
 from collections.abc import Callable
@@ -13,17 +12,17 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 
-BAND = 32  # rows
+BAND_ROWS = 32
 
 
 def banded(equation: Callable[..., Array], *pictures: Array, margin: int = 0) -> Array:
-    """Return equation(*pictures), (H, W), computed in bands.
+    """Return equation(*pictures), (H, W), computed in bands of rows.
 
     Parameters
     ----------
-    equation : function of slabs (..., h, W), one of each picture, to (h, W)
+    equation : function of slabs (..., h, W), one of each picture, that returns (h, W)
     pictures : (H, W) each, or planes (..., H, W)
-    margin : rows above and below a pixel that the equation looks at
+    margin : number of rows above and below a pixel that its value depends on
 
     Returns
     -------
@@ -39,14 +38,18 @@ def banded(equation: Callable[..., Array], *pictures: Array, margin: int = 0) ->
     whole: Array | None = None
 
     def compute(top: int) -> Array:
-        start, stop = max(top - margin, 0), min(top + BAND + margin, n)
-        slab = equation(*(picture[..., start:stop, :] for picture in pictures))
-        return slab[top - start : top - start + BAND]
+        start = max(top - margin, 0)
+        stop = min(top + BAND_ROWS + margin, n)
+        slabs = [picture[..., start:stop, :] for picture in pictures]
+        result = equation(*slabs)
+        return result[top - start : top - start + BAND_ROWS]
 
-    tops = range(0, n, BAND)
-    for top, slab in zip(tops, map_in_threads(compute, tops, pixels=pictures[0].size), strict=True):
-        whole = np.empty((n, slab.shape[1]), slab.dtype) if whole is None else whole
-        whole[top : top + BAND] = slab
+    tops = range(0, n, BAND_ROWS)
+    bands = map_in_threads(compute, tops, pixels=pictures[0].size)
+    for top, band in zip(tops, bands, strict=True):
+        if whole is None:
+            whole = np.empty((n, band.shape[1]), band.dtype)
+        whole[top : top + BAND_ROWS] = band
     if whole is None:
         raise InputError("expected pictures of at least one row")
     return whole

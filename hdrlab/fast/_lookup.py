@@ -1,7 +1,7 @@
-"""A curve through evenly spaced knots, read for every pixel of a picture: np.interp, many times as fast.
+"""Linear interpolation on a curve with evenly spaced knots, many times as fast as np.interp.
 
-knots  value at t = 0, 1, ..., n   (n + 1,); lines between them, level beyond them
-t      where to read               any shape, float32
+knots  values at t = 0, 1, ..., n   (n + 1,); straight lines between them, constant beyond them
+t      positions                    any shape, float32
 """
 
 import numpy as np
@@ -10,13 +10,14 @@ from hdrlab.core.arrays import F32, ArrayLike, NDArray
 
 
 def tabulate(knots: ArrayLike) -> NDArray[np.complex64]:
-    """Return each knot with the rise to the next as imaginary part: one look-up gets both ends of a line."""
+    """Return the knots with the rise to the next one as imaginary part, so that one look-up gets both."""
     knots = np.asarray(knots, np.float64)
-    return (knots + 1j * np.append(np.diff(knots), 0)).astype(np.complex64)
+    rises = np.append(np.diff(knots), 0)
+    return (knots + 1j * rises).astype(np.complex64)
 
 
 def interpolate(table: NDArray[np.complex64], t: ArrayLike) -> F32:
-    """Return the curve's value at each t, from the table of its knots.
+    """Return the curve's value at each t, from the table of its knots by `tabulate`.
 
     Examples
     --------

@@ -9,12 +9,15 @@ from hdrlab.tonemap import brush
 
 
 def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> F32:
-    """Return display luminance of the whole picture as one window: what the brush is compared with."""
+    """Return display luminance by histogram equalization of ln L over the whole picture."""
     L = as_luminance(L)
     brush.check_knobs(bins, limit)
     low, high = brush.find_range(L)
     t = _bands.banded(lambda L: brush.bin_position(L, low, high, bins), L)
-    parts = [t[top : top + _bands.BAND] for top in range(0, len(t), _bands.BAND)]
-    h = sum((brush.histogram(part, bins) * (part.size / t.size) for part in parts), np.zeros(bins))
-    table = _lookup.tabulate(decode_srgb(brush.cumulative(brush.clip_histogram(h, limit=limit))))
+    h = np.zeros(bins)
+    for top in range(0, len(t), _bands.BAND_ROWS):
+        band = t[top : top + _bands.BAND_ROWS]
+        h = h + brush.histogram(band, bins) * (band.size / t.size)
+    P = brush.cumulative(brush.clip_histogram(h, limit=limit))
+    table = _lookup.tabulate(decode_srgb(P))
     return _bands.banded(lambda t: _lookup.interpolate(table, t), t)

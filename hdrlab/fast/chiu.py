@@ -1,4 +1,4 @@
-"""Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, the passes a band of rows at a time."""
+"""Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, smoothing passes in bands of rows."""
 
 from hdrlab.core.arrays import F32
 from hdrlab.fast import _bands, blur, with_parts
@@ -7,7 +7,7 @@ from hdrlab.tonemap import chiu
 
 
 def smooth(s: F32, L: F32) -> F32:
-    """Return the lesson's pass over s."""
+    """Return s after the lesson's smoothing pass, computed in bands of rows."""
     return _bands.banded(chiu.smooth, s, L, margin=1)
 
 

@@ -1,4 +1,4 @@
-"""Curves from scene to display, fast: a band of rows at a time."""
+"""Curves from scene to display, fast: computed in bands of rows."""
 
 from collections.abc import Callable
 from functools import partial
@@ -9,11 +9,16 @@ from hdrlab.fast import _bands, with_parts
 from hdrlab.tonemap import curves
 
 
-def _of(curve: Callable[..., F32]) -> Callable[..., F32]:
-    return lambda L, **ends: _bands.banded(partial(curve, **ends), L)
+def _in_bands(curve: Callable[..., F32]) -> Callable[..., F32]:
+    def banded_curve(L: F32, **parameters: float) -> F32:
+        return _bands.banded(partial(curve, **parameters), L)
+
+    return banded_curve
 
 
-_parts = {"CURVES": {name: _of(curve) for name, curve in curves.CURVES.items()}}
 tonemap = with_parts(
-    __name__, curves.tonemap, **_parts, decode_srgb=partial(_bands.banded, decode_srgb)
+    __name__,
+    curves.tonemap,
+    CURVES={name: _in_bands(curve) for name, curve in curves.CURVES.items()},
+    decode_srgb=partial(_bands.banded, decode_srgb),
 )

@@ -20,18 +20,23 @@ def _attenuation(slope: F32, mean: float, **knobs: Any) -> F32:
     return _bands.banded(partial(fattal.attenuation, mean=mean, **knobs), slope)
 
 
-def _diverge(lL: F32, Phi: F32) -> F32:
+def _divergence(lL: F32, Phi: F32) -> F32:
     divG = np.zeros_like(lL)
-    for u, w, f in ((lL, Phi, divG), (lL.T, Phi.T, divG.T)):
-        G = np.diff(u, axis=0) * ((w[1:] + w[:-1]) * np.float32(0.5))
-        f[:-1] += G
-        f[1:] -= G
+    _add_divergence_of_columns(lL, Phi, divG)
+    _add_divergence_of_columns(lL.T, Phi.T, divG.T)
     return divG
+
+
+def _add_divergence_of_columns(lL: F32, Phi: F32, divG: F32) -> None:
+    """Add what the differences between rows contribute to divG, in place."""
+    G = np.diff(lL, axis=0) * ((Phi[1:] + Phi[:-1]) * np.float32(0.5))
+    divG[:-1] += G
+    divG[1:] -= G
 
 
 def divergence(lL: F32, Phi: F32) -> F32:
     """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02; Battiato08 eq. 1.40]."""
-    return _bands.banded(_diverge, lL, Phi, margin=1)
+    return _bands.banded(_divergence, lL, Phi, margin=1)
 
 
 _parts = {"slope": _slope, "attenuation": _attenuation, "pyramid": pyramid}

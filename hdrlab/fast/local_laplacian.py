@@ -1,4 +1,4 @@
-"""Local Laplacian filters, fast: no coefficient leaves the cache before its share of the answer is taken."""
+"""Local Laplacian filters, fast: coefficients are added to the output while they are in the cache."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from hdrlab.tonemap import local_laplacian
 
 
 def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
-    """Return the lesson's r, for alpha = 1 without its powers: near g it is lL itself."""
+    """Return the lesson's r. For alpha = 1 no power is computed: within sigma of g, r is lL itself."""
     if alpha != 1:
         return local_laplacian.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
     r = np.clip(lL, g - sigma, g + sigma)
@@ -17,11 +17,13 @@ def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
 
 
 def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> F32:
-    """Return the lesson's answer; its levels grow in place, a band of rows at a time."""
+    """Return the lesson's filtered picture, with levels that are added to in place, in bands of rows."""
     G = pyramid.gaussian(lL, depth(lL.shape, 2))
     levels = [np.zeros_like(level) for level in G[:-1]] + G[-1:]
+    darkest = float(lL.min())
     spacing = max(float(np.ptp(lL)) / (samples - 1), 1e-6)
-    for g in (float(lL.min()) + spacing * j for j in range(samples)):
+    for j in range(samples):
+        g = darkest + spacing * j
         fine = remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
         for O_k, G_k in zip(levels[:-1], G, strict=False):
             coarse = pyramid.reduce(fine)

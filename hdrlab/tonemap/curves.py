@@ -7,11 +7,11 @@ F      tone curve          [Lw_min, Lw_max] -> [0, 1]
 Ld     display luminance   F(L), (H, W), 1 = white
 N      levels of a display
 
-A curve (tone reproduction curve) treats equal luminances equally wherever they stand; an operator
-(TRO) looks at the neighbourhood too, so that one luminance may become several (`spread` shows which
-it is). Ld is light: the display's own encoding comes after it (`core.colour.encode_srgb`). The
-levels Q of a display are codes, and so F is taken for a code; taken for light, a gamma is contrast
-that the picture loses, and a logarithm is pale.
+A tone reproduction curve maps equal luminances to equal values everywhere in the picture. A tone
+reproduction operator (TRO) also depends on the neighbourhood, so one luminance may become several
+values; `spread` shows which of the two a result is. Ld is light, and is encoded for the display
+afterwards (`core.colour.encode_srgb`). The levels Q of a display are codes, so by default F is
+taken as a code. Taken as light, a gamma loses contrast and a logarithm looks pale.
 """
 
 from collections.abc import Callable
@@ -52,7 +52,7 @@ CURVES: dict[str, Callable[..., F32]] = {"linear": linear, "gamma": gamma, "log"
 def quantise(Ld: ArrayLike, *, levels: int = 256) -> Array:
     """Return Q = floor((N - 1) Ld + 0.5), Ld in [0, 1], as uint8 or uint16 [Battiato08 eq. 1.21].
 
-    Raises a ValueError where Ld leaves [0, 1] or `levels` does not fit 16 bits.
+    Raises a ValueError if Ld leaves [0, 1] or `levels` does not fit 16 bits.
     """
     Ld = np.asarray(Ld)
     if not 2 <= levels <= 65536:
@@ -64,16 +64,17 @@ def quantise(Ld: ArrayLike, *, levels: int = 256) -> Array:
 
 
 def spread(L: F32, Ld: F32, *, bins: int = 64) -> tuple[F32, F32, F32]:
-    """Return (luminance, least Ld, greatest Ld) of `bins` classes of equally many pixels, dark to bright.
+    """Return (luminance, minimum Ld, maximum Ld) of `bins` classes of equally many pixels, dark to bright.
 
-    Of a curve the greatest of one class is the least of the next: together they draw the curve. Of
-    an operator they draw a band, as wide as the neighbourhood makes a difference.
+    For a curve, the maximum of one class is the minimum of the next, and both draw the curve. For
+    an operator they draw a band, which is as wide as the influence of the neighbourhood.
     """
     order = np.argsort(L, axis=None, kind="stable")
     classes = np.array_split(order, min(bins, order.size))
-    values = [(L.flat[c[len(c) // 2]], Ld.flat[c].min(), Ld.flat[c].max()) for c in classes]
-    luminance, least, greatest = np.array(values, np.float32).T
-    return luminance, least, greatest
+    luminance = [L.flat[pixels[len(pixels) // 2]] for pixels in classes]
+    lowest = [Ld.flat[pixels].min() for pixels in classes]
+    highest = [Ld.flat[pixels].max() for pixels in classes]
+    return np.float32(luminance), np.float32(lowest), np.float32(highest)
 
 
 def tonemap(
@@ -84,18 +85,17 @@ def tonemap(
     cut: float = 1e-4,
     encoded: bool = True,
 ) -> F32:
-    """Return display luminance by one curve for all pixels.
+    """Return display luminance by one tone curve for all pixels: linear, gamma or logarithmic.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    curve : which one
-    gamma : exponent 1 / gamma, for that curve
-    cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel
-        always is
-    encoded : F is the display's code, and Ld the light that it shows, so F as it is becomes the
-        levels of the
-        picture; False takes F itself as light, which the display's encoding then makes pale
+    curve : name of the curve
+    gamma : the gamma curve's exponent is 1 / gamma
+    cut : fraction of the positive pixels to leave out at either end of the scene's range, and at
+        least one pixel
+    encoded : take F as the display's code, and return the light that it shows, so that F becomes
+        the levels of the picture; False takes F itself as light, which looks pale when encoded
 
     Returns
     -------
@@ -104,8 +104,8 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero; an unknown curve; gamma or
-        cut out of range.
+        For luminance that is not (H, W), finite and at least 0; an unknown curve; gamma or cut out
+        of range.
 
     References
     ----------
@@ -124,14 +124,12 @@ def tonemap(
         raise InputError(
             f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}"
         )
-    low, high = (
-        extremes.robust_minimum(L, cut=cut) or 1.0,
-        extremes.robust_maximum(L, cut=cut) or 1.0,
-    )
-    own: dict[str, dict[str, float]] = {
-        "linear": {},
-        "gamma": {"gamma": gamma},
-        "log": {"low": low},
-    }
-    F = CURVES[curve](L, high=high, **own[curve])
+    low = extremes.robust_minimum(L, cut=cut) or 1.0
+    high = extremes.robust_maximum(L, cut=cut) or 1.0
+    if curve == "linear":
+        F = CURVES["linear"](L, high=high)
+    elif curve == "gamma":
+        F = CURVES["gamma"](L, high=high, gamma=gamma)
+    else:
+        F = CURVES["log"](L, low=low, high=high)
     return np.asarray(decode_srgb(F), np.float32) if encoded else F

@@ -107,7 +107,8 @@ def tonemap(
         paper; 50 in Battiato et al. 2008, which is the default
     sigma_s : spatial width of the bilateral filter in pixels; None takes 2 % of the longer side
     sigma_r : its width in range, decades; a larger difference is an edge
-    cut : fraction of the base that lies beyond its range, at either end
+    cut : fraction of the base that lies beyond its range at either end, and so of the picture that
+        may become white
 
     Returns
     -------

@@ -8,12 +8,12 @@ Phi_k   attenuation by all levels >= k     same; Phi = Phi_0
 G       attenuated gradient, (Gy, Gx)      (2, H, W)
 lLd     the picture with this gradient     (H, W), ln display luminance but for a constant; I in the paper
 Ld      display luminance                  (H, W) in [0, 1]
-beta    power                              a slope comes out to the power of beta, level by level
+beta    power                              each level raises a slope to the power of beta
 
-Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by
-itself. A larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta) =
-0.79 or so: it comes out paler than a small copy of it. Stripes one pixel wide are no slope to a
-central difference: a chart full of them is shown badly.
+Large contrasts have steep slopes at some level. Only slopes are attenuated, never single pixels. A
+larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta), about 0.79, so
+it becomes paler than a small copy of it. A central difference sees no slope in stripes that are one
+pixel wide, so a chart full of them is shown badly.
 """
 
 from collections.abc import Iterator
@@ -21,21 +21,24 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hdrlab.core import steps
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.filters import poisson, pyramid
 from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
-# gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale
+# luminance gradients are compressed and those of colour are not; the paper's 0.6 is pale
 SATURATION = 0.8
-# pixels: the shorter side of the coarsest level is at least this
-SMALLEST = 32
-# a pixel without light is taken to be this much darker than white, or as dark as the darkest
-DARK = 1e-3
+# pixels of the shorter side of the coarsest level
+MIN_LEVEL_SIDE = 32
+# relative to white: black pixels get this luminance, or that of the darkest pixel if it is lower
+BLACK_LUMINANCE = 1e-3
+# percentiles are computed from about this many pixels
+PERCENTILE_PIXELS = 2**18
 
 
 class Level(NamedTuple):
-    """The attenuation after one more level, from the coarsest, k = d, to the picture itself, k = 0.
+    """The attenuation after each level, from the coarsest, k = d, to the picture itself, k = 0.
 
     Attributes
     ----------
@@ -54,24 +57,26 @@ class Level(NamedTuple):
 
 
 def find_range(values: F32, black: float = 1e-4, white: float = 1e-4) -> tuple[float, float]:
-    """Return the values that these fractions of the pixels lie below and above, at least one pixel each."""
-    values = np.sort(
-        values[:: 1 + values.size // 2**18]
-    )  # of a large picture, every second, third, ...
-    low, high = (
-        min(int(np.ceil(cut * values.size)), (values.size - 1) // 2) for cut in (black, white)
-    )
-    return float(values[low]), float(values[-1 - high])
+    """Return the value below which a fraction `black` of the pixels lies, and the one for `white` above.
+
+    At least one pixel lies beyond either value, if there are three.
+    """
+    every = 1 + values.size // PERCENTILE_PIXELS
+    values = np.sort(values[::every])
+    middle = (values.size - 1) // 2
+    below = min(int(np.ceil(black * values.size)), middle)
+    above = min(int(np.ceil(white * values.size)), middle)
+    return float(values[below]), float(values[-1 - above])
 
 
 def log_luminance(L: F32) -> F32:
-    """Return lL = ln(L / Lwhite), Lwhite the brightest L but for 0.01 % of the pixels, so its unit cancels.
+    """Return lL = ln(L / Lwhite), where 0.01 % of the pixels are brighter than Lwhite.
 
-    Pixels above it are cut, as the display would cut them; so are the darkest, and with them the
-    zeros.
+    The unit of L cancels. Brighter pixels are clipped to white, as the display would clip them. The
+    darkest 0.01 % and black pixels are raised to one small luminance.
     """
     black, white = find_range(L[L > 0])
-    floor = max(min(black / white, DARK), float(np.finfo(np.float32).tiny))
+    floor = max(min(black / white, BLACK_LUMINANCE), float(np.finfo(np.float32).tiny))
     return np.log(np.maximum(np.minimum(L, white) / white, floor))
 
 
@@ -81,16 +86,17 @@ def slope(lL: F32, k: int = 0) -> F32:
     A step at level k is 2^k pixels of the picture, and a central difference takes two.
     """
     l = np.pad(lL, 1, mode="symmetric")  # noqa: E741
-    dy, dx = l[2:, 1:-1] - l[:-2, 1:-1], l[1:-1, 2:] - l[1:-1, :-2]
+    dy = l[2:, 1:-1] - l[:-2, 1:-1]
+    dx = l[1:-1, 2:] - l[1:-1, :-2]
     return np.sqrt(dy * dy + dx * dx) * np.float32(0.5 ** (k + 1))
 
 
 def attenuation(slope: F32, mean: float, *, alpha: float, beta: float, noise: float) -> F32:
     """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02; Battiato08 eq. 1.41].
 
-    The mean is that of the level's slopes. Where the slope goes to zero the formula goes to
-    infinity, and would lift the noise of an even sky: below `noise` means it stays what it is
-    there.
+    The mean is that of the level's slopes. Where the slope goes to zero, the formula goes to
+    infinity, and would amplify the noise of an even sky. So a slope below `noise` times the mean
+    counts as `noise` times the mean.
     """
     return (np.maximum(slope / (mean or 1), noise) / alpha) ** (beta - 1)
 
@@ -100,9 +106,9 @@ def attenuation_steps(
 ) -> Iterator[Level]:
     """Yield the Level of k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k [Battiato08 eq. 1.42].
 
-    It is enlarged by linear interpolation. The knobs are those of `attenuation`.
+    Phi is enlarged by linear interpolation. The parameters are those of `attenuation`.
     """
-    levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, SMALLEST))
+    levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, MIN_LEVEL_SIDE))
     Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)
@@ -114,9 +120,9 @@ def attenuation_steps(
 def attenuate_gradient(lL: F32, Phi: F32) -> F32:
     """Return G = Phi grad lL, by forward differences [Fattal02; Battiato08 eq. 1.38, 1.39].
 
-    A step lies between two pixels, and Phi there is their mean. With that of the first pixel alone,
-    the way up to a thin line would be attenuated and the way down would not: the picture would
-    drift with every line.
+    A step lies between two pixels, so Phi there is the mean of both. With the Phi of the first
+    pixel alone, the step up to a thin line would be attenuated and the step down would not, and the
+    picture would drift with every line.
     """
     G = poisson.gradient(lL)
     G[0, :-1] *= (Phi[:-1] + Phi[1:]) / 2
@@ -130,16 +136,15 @@ def divergence(lL: F32, Phi: F32) -> F32:
 
 
 def display(lLd: F32, *, black: float = 0.001, white: float = 0.005) -> F32:
-    """Return Ld = (exp lLd - b) / (w - b), cut to [0, 1].
+    """Return Ld = (exp lLd - b) / (w - b), clipped to [0, 1].
 
-    A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. An even
-    picture, where these are less than a factor of two apart, is not stretched over the whole
-    display.
+    A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. Where b is
+    more than w / 2, b = w / 2, so that an even picture is not stretched over the whole display.
     """
-    bright = np.exp(lLd - lLd.max())
-    low, high = find_range(bright.ravel(), black, white)
+    luminance = np.exp(lLd - lLd.max())
+    low, high = find_range(luminance.ravel(), black, white)
     low = min(low, high / 2)
-    return np.clip((bright - np.float32(low)) * np.float32(1 / (high - low)), 0, 1)
+    return np.clip((luminance - np.float32(low)) * np.float32(1 / (high - low)), 0, 1)
 
 
 def tonemap(
@@ -151,17 +156,16 @@ def tonemap(
     black: float = 0.001,
     white: float = 0.005,
 ) -> F32:
-    """Return display luminance in which steep slopes of ln L are flattened, and gentle ones kept.
+    """Return display luminance with steep gradients of ln L attenuated more than gentle ones.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    alpha : the slope that is left as it is, in mean slopes of each level. Another alpha multiplies
-        Phi, hence
-        lLd, by one number: it is the same picture with another contrast, as by a gamma
+    alpha : the slope that stays unchanged, in mean slopes of each level. Another alpha multiplies
+        Phi, and so lLd, by one number, which changes the contrast of the picture like a gamma
     beta : the power that slopes are raised to, 0 < beta <= 1; the paper has 0.8 to 0.9, 1 changes
         nothing
-    noise : the slope below which attenuation stays what it is, in mean slopes of each level
+    noise : the slope below which the attenuation is constant, in mean slopes of each level
     black, white : fractions of the pixels that become black and white
 
     Returns
@@ -172,7 +176,7 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs out of their range.
+        For luminance that is not (H, W), finite and at least 0, and parameters out of range.
 
     References
     ----------
@@ -183,7 +187,7 @@ def tonemap(
     --------
     >>> L = np.repeat([[1.0, 100.0, 1e4, 1e6]], 16, axis=1) * np.ones((64, 1))
     >>> Ld = tonemap(L)
-    >>> bool(Ld[0, 24] > 100 * L[0, 24] / L.max())  # what was lost in the dark is there
+    >>> bool(Ld[0, 24] > 100 * L[0, 24] / L.max())  # the dark parts are visible
     True
     """
     L = as_luminance(L)
@@ -196,5 +200,6 @@ def tonemap(
     if L.max() == 0:
         return np.zeros_like(L)
     lL = log_luminance(L)
-    *_, Phi = (level.Phi for level in attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise))
-    return display(poisson.solve(divergence(lL, Phi)), black=black, white=white)
+    finest = steps.last(attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise))
+    lLd = poisson.solve(divergence(lL, finest.Phi))
+    return display(lLd, black=black, white=white)

@@ -2,15 +2,16 @@
 
 lL     ln luminance, 0 at white        (H, W); I in the papers
 G_k    level k of its Gaussian pyramid
-g      a brightness                    nats: what G_k may be somewhere; g_0 in Paris, gamma in Aubry
+g      a brightness                    nats, one of the values of G_k; g_0 in Paris, gamma in Aubry
 r      remapped about g                (H, W), nats
-sigma  what differs from g by less is detail, and by more an edge, nats
-alpha  power of details, below 1 they grow; beta, what is left of edges beyond sigma, 0 to 1
-O_k    level k of the answer           the coefficients L_k of r, each with g = G_k at its own place
+sigma  threshold                       nats: a smaller difference from g is detail, a larger one an edge
+alpha  power of details                below 1, details grow
+beta   slope of edges                  0 to 1: the part of a difference beyond sigma that is kept
+O_k    level k of the output           the coefficients L_k of r, each with g = G_k at its own pixel
 
-Paris et al. remap the picture anew for every coefficient, Aubry et al. for a few g, and
-interpolate. There is no base: an edge is made smaller at each scale, and the wide shade left beside
-it runs the way the edge does.
+Paris et al. remap the picture again for every coefficient. Aubry et al. remap it for a few g, and
+interpolate. There is no base layer: an edge is compressed at each scale. The wide shading that
+remains next to it changes in the same direction as the edge.
 """
 
 from collections.abc import Iterator
@@ -25,12 +26,16 @@ from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 
 LAWS = ("exposure",)
-# of the display, nats, and the fraction of pixels beyond it at either end: those of Paris's program
-CONTRAST, CUT = 4.6, 0.005
+# nats, as in the program of Paris et al.
+DISPLAY_CONTRAST = 4.6
+# fraction of the pixels beyond the display's range at either end, as in their program
+CLIPPED_FRACTION = 0.005
+# percentiles are computed from about this many pixels
+PERCENTILE_PIXELS = 2**18
 
 
 class Sample(NamedTuple):
-    """One more g, the picture remapped about it, r (H, W), and the levels O_k of the answer so far."""
+    """A brightness g, the picture r (H, W) remapped about it, and the levels O_k of the output so far."""
 
     g: float
     r: F32
@@ -38,9 +43,13 @@ class Sample(NamedTuple):
 
 
 def log_luminance(L: F32) -> F32:
-    """Return lL = ln(L / Lwhite), cut at Lwhite, the brightest but for 0.01 %, and at its millionth."""
+    """Return lL = ln(L / Lwhite), clipped at 0 and at ln of a millionth.
+
+    0.01 % of the pixels are brighter than Lwhite.
+    """
     white = robust_maximum(L)
-    return np.log(np.clip(L, max(robust_minimum(L), 1e-6 * white), white) / np.float32(white))
+    black = max(robust_minimum(L), 1e-6 * white)
+    return np.log(np.clip(L, black, white) / np.float32(white))
 
 
 def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
@@ -56,16 +65,20 @@ def filter_steps(
     """Yield a Sample of each g: O_k += h L_k(r), h = max(1 - |G_k - g| / spacing, 0) [Aubry14]; O_d = G_d."""
     G = pyramid.gaussian(lL, pyramid.depth(lL.shape, 2))
     levels = [np.zeros_like(level) for level in G[:-1]] + G[-1:]
+    darkest = float(lL.min())
     spacing = max(float(np.ptp(lL)) / (samples - 1), 1e-6)
-    for g in (float(lL.min()) + spacing * j for j in range(samples)):
+    for j in range(samples):
+        g = darkest + spacing * j
         r = remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
-        for k, detail in enumerate(pyramid.laplacian(r, len(G))[:-1]):
-            levels[k] = levels[k] + np.maximum(1 - np.abs(G[k] - g) / spacing, 0) * detail
+        details = pyramid.laplacian(r, len(G))[:-1]
+        for k, detail in enumerate(details):
+            h = np.maximum(1 - np.abs(G[k] - g) / spacing, 0)
+            levels[k] = levels[k] + h * detail
         yield Sample(g, r, levels.copy())
 
 
 def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> F32:
-    """Return the answer, (H, W) in nats: its levels O_k, collapsed."""
+    """Return the filtered picture (H, W) in nats, collapsed from its levels O_k."""
     steps = filter_steps(lL, sigma=sigma, alpha=alpha, beta=beta, samples=samples)
     return pyramid.collapse(last(steps).levels)
 
@@ -73,15 +86,15 @@ def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) 
 def tonemap(
     L: ArrayLike, *, sigma: float = 0.92, alpha: float = 1.0, beta: float = 0.0, samples: int = 24
 ) -> F32:
-    """Return display luminance with edges made smaller at all scales, and details kept or raised.
+    """Return display luminance with compressed edges at all scales, and details kept or amplified.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    sigma : what differs by less is detail, nats, at least 0.01; ln 2.5 in the paper
-    alpha : power of details, above 0; below 0.7 or so more samples are needed
-    beta : what is left of edges, 0 to 1
-    samples : number of brightnesses g, at least 2, about sigma / 2 apart or less
+    sigma : a smaller difference is detail, nats, at least 0.01; ln 2.5 in the paper
+    alpha : power of details, above 0; below about 0.7, more samples are needed
+    beta : the part of an edge beyond sigma that is kept, 0 to 1
+    samples : number of brightnesses g, at least 2; they should be at most about sigma / 2 apart
 
     Returns
     -------
@@ -89,8 +102,8 @@ def tonemap(
 
     Raises
     ------
-    ValueError : for luminance that is not (H, W), finite and positive or zero, and knobs out of
-        range
+    ValueError
+        For luminance that is not (H, W), finite and at least 0, and parameters out of range.
 
     Examples
     --------
@@ -100,9 +113,15 @@ def tonemap(
     """
     L = as_luminance(L)
     if not (0.01 <= sigma < np.inf and 0 < alpha < np.inf and 0 <= beta <= 1 and samples >= 2):
-        raise InputError(f"expected knobs in range, got {sigma=}, {alpha=}, {beta=}, {samples=}")
+        raise InputError(
+            "expected sigma >= 0.01, alpha > 0, beta in 0 ... 1, samples >= 2, "
+            f"got {sigma=}, {alpha=}, {beta=}, {samples=}"
+        )
     if L.max() == 0:
         return np.zeros_like(L)
     lLd = filtered(log_luminance(L), sigma=sigma, alpha=alpha, beta=beta, samples=samples)
-    low, high = np.quantile(lLd.ravel()[:: 1 + lLd.size // 2**18], [CUT, 1 - CUT]).tolist()
-    return np.minimum(np.exp(min(1.0, CONTRAST / max(high - low, 1e-6)) * (lLd - high)), 1)
+    every = 1 + lLd.size // PERCENTILE_PIXELS
+    percentiles = [CLIPPED_FRACTION, 1 - CLIPPED_FRACTION]
+    low, high = np.quantile(lLd.ravel()[::every], percentiles).tolist()
+    compression = min(1.0, DISPLAY_CONTRAST / max(high - low, 1e-6))
+    return np.minimum(np.exp(compression * (lLd - high)), 1)

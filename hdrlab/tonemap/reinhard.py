@@ -20,6 +20,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import scipy
 
+from hdrlab.core import steps
 from hdrlab.core.arrays import F32, Array, ArrayLike, Flags, Mask
 from hdrlab.errors import InputError
 
@@ -29,7 +30,7 @@ WIDTHS = tuple(1.6**i for i in range(9))
 
 
 class Scale(NamedTuple):
-    """The search for each pixel's neighbourhood after one more width.
+    """The search for each pixel's neighbourhood after each width.
 
     Attributes
     ----------
@@ -61,10 +62,12 @@ def log_average(L: F32, *, delta: float = 1e-6) -> float:
 def automatic_key(L: F32) -> float:
     """Return a = 0.18 4^((2 log2 Lav - log2 Lmin - log2 Lmax) / (log2 Lmax - log2 Lmin)) [Reinhard02b].
 
-    A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the
-    pixels.
+    A scene that is mostly bright for its range gets a high key. Lmin and Lmax are the percentiles 1
+    and 99.
     """
-    low, high = np.log2(np.quantile(L[L > 0], [0.01, 0.99])) if np.any(L) else (0.0, 0.0)
+    if not np.any(L):
+        return 0.18
+    low, high = np.log2(np.quantile(L[L > 0], [0.01, 0.99]))
     middle = np.clip(np.log2(log_average(L)), low, high)
     return float(0.18 * 4 ** ((2 * middle - low - high) / max(high - low, 1e-9)))
 
@@ -75,7 +78,7 @@ def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
 
 
 def white_point(Lm: F32) -> float:
-    """Return the brightest Lm but for 0.01 % of the pixels, and at least 1: dim scenes are not stretched."""
+    """Return the Lm that 0.01 % of the pixels exceed, but at least 1, so that dim scenes stay dim."""
     return max(1.0, float(np.quantile(Lm, 0.9999, method="lower")))
 
 
@@ -112,7 +115,7 @@ def scale_steps(
 
 
 def select_widths(scales: Iterable[Scale]) -> Flags:
-    """Return the index into WIDTHS of each pixel's neighbourhood: how many widths stayed even, less one."""
+    """Return the index into WIDTHS of each pixel's neighbourhood: the number of even widths, minus one."""
     count = np.add.reduce([scale.even for scale in scales], dtype=np.uint8)
     return np.maximum(count, 1) - np.uint8(1)
 
@@ -121,7 +124,8 @@ def local_adaptation(
     Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
 ) -> F32:
     """Return V1 of each pixel at its own width: the last of scale_steps(blurs(Lm))."""
-    return list(scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold))[-1].adaptation
+    scales = scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold)
+    return steps.last(scales).adaptation
 
 
 def tonemap(
@@ -133,15 +137,18 @@ def tonemap(
     phi: float = 8.0,
     threshold: float = 0.05,
 ) -> F32:
-    """Return display luminance as a photographer prints it: expose for middle gray, hold back the highlights.
+    """Return display luminance by photographic tone reproduction, global or with dodging and burning.
+
+    The log average of the scene becomes middle gray, and highlights are compressed.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    key : a, what the scene's log average is scaled to; "auto" takes it from the histogram
-        (`automatic_key`)
-    white : the scaled luminance Lm that becomes white; None takes the scene's own (`white_point`)
-    local : dodge and burn, each pixel held back by its own neighbourhood
+    key : a, the value that the scene's log average is scaled to; "auto" computes it from the
+        histogram (`automatic_key`)
+    white : the scaled luminance Lm that becomes white; None computes it from the scene
+        (`white_point`)
+    local : dodge and burn: compress each pixel by the luminance of its own neighbourhood
     phi : sharpening at edges, local only
     threshold : epsilon, the response at which a neighbourhood is no longer even, local only
 
@@ -152,7 +159,7 @@ def tonemap(
     Raises
     ------
     ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs that are not
+        For luminance that is not (H, W), finite and at least 0, and parameters that are not
         positive.
 
     References

@@ -1,13 +1,13 @@
 """Codes for luminance beyond a gamma: PQ (SMPTE ST 2084, 2014) and HLG (ARIB STD-B67); both ITU-R BT.2100.
 
-FD     luminance that a display shows   cd/m2, 0 to 10,000; any shape
+FD     luminance of a display           cd/m2, 0 to 10,000; any shape
 E      light of the scene               0 to 1, 1 = the brightest that is coded; any shape
 v      signal, E' in BT.2100            0 to 1, the code over the largest code; same shape
 peak   L_W, the display's white         cd/m2
 
-PQ is absolute: a code stands for so many cd/m2, and each step is about as large as an eye just does
-not see. HLG is relative: up to v = 1/2 it is a root, as a gamma, so that an old display shows it;
-above that it is a logarithm, and each display makes of E what its white allows.
+PQ is absolute: a code stands for a luminance in cd/m2, and each step is just below the threshold of
+vision. HLG is relative: up to v = 1/2 it is a square root, similar to a gamma, so that a display
+without HDR can show it; above that it is a logarithm. Each display scales E to its own white.
 """
 
 from collections.abc import Callable
@@ -19,16 +19,24 @@ from hdrlab.errors import InputError
 
 # cd/m2, of PQ's largest code
 BRIGHTEST = 10_000
-# of PQ [BT.2100 table 4]
-M1, M2 = 2610 / 16384, 128 * 2523 / 4096
-C1, C2, C3 = 3424 / 4096, 32 * 2413 / 4096, 32 * 2392 / 4096
-# of HLG: root and logarithm meet at E = 1/12 with one slope, and E = 1 has v = 1 [BT.2100 table 5]
+# m1, m2, c1, c2, c3 of PQ [BT.2100 table 4]
+M1 = 2610 / 16384
+M2 = 128 * 2523 / 4096
+C1 = 3424 / 4096
+C2 = 32 * 2413 / 4096
+C3 = 32 * 2392 / 4096
+# a, b, c of HLG [BT.2100 table 5]: square root and logarithm meet at E = 1/12 with the same slope,
+# and v = 1 at E = 1
 A = 0.17883277
-B, C = 1 - 4 * A, 0.5 - A * np.log(4 * A)
+B = 1 - 4 * A
+C = 0.5 - A * np.log(4 * A)
 
 
 def within(values: ArrayLike, high: float) -> F64:
-    """Return values as float64, 0 ... high but for rounding, which is cut; or raise a ValueError."""
+    """Return values as float64, or raise a ValueError if one is not in 0 ... high.
+
+    Values that exceed `high` by rounding are clipped.
+    """
     array = np.asarray(values, np.float64)
     if not np.all((array >= 0) & (array <= high * (1 + 1e-6))):
         raise InputError(f"expected values in 0 ... {high}, got {describe(values)}")
@@ -54,7 +62,7 @@ def pq_inverse(v: ArrayLike) -> F64:
 
 
 def hlg(E: ArrayLike) -> F64:
-    """Return v = root(3 E) up to E = 1/12, and a ln(12 E - b) + c above it [BT.2100 table 5, OETF].
+    """Return v = sqrt(3 E) up to E = 1/12, and a ln(12 E - b) + c above it [BT.2100 table 5, OETF].
 
     Examples
     --------
@@ -79,7 +87,7 @@ def display_light(E: ArrayLike, *, peak: float = 1000.0) -> F64:
 def codes(
     encode: Callable[[float], ArrayLike], low: float, high: float, *, bits: int = 10
 ) -> float:
-    """Return (2^bits - 1) (encode(high) - encode(low)): how many codes the band from low to high gets.
+    """Return the number of codes between two luminances, (2^bits - 1) (encode(high) - encode(low)).
 
     Examples
     --------

@@ -14,7 +14,7 @@ def noise(shape, seed=0):
     return np.random.default_rng(seed).random(shape).astype(np.float32)
 
 
-@pytest.mark.parametrize("height", [1, 2, bands.BAND, bands.BAND + 1, 3 * bands.BAND - 1])
+@pytest.mark.parametrize("height", [1, 2, 31, 32, 33, 95, 200])
 def test_bands_answer_what_the_whole_picture_answers(height):
     u = noise((height, 9))
 

@@ -81,9 +81,9 @@ def test_beside_a_step_the_light_never_runs_the_other_way():
 
 def test_more_than_the_display_shows_is_compressed_to_its_contrast():
     Ld = local_laplacian.tonemap(laws.scene(), beta=1)
-    low, high = np.log(np.quantile(Ld, [local_laplacian.CUT, 1 - local_laplacian.CUT]))
+    low, high = np.log(np.quantile(Ld, [local_laplacian.CLIPPED_FRACTION, 1 - local_laplacian.CLIPPED_FRACTION]))
     assert high == pytest.approx(0, abs=0.01) and low == pytest.approx(
-        -local_laplacian.CONTRAST, abs=0.05
+        -local_laplacian.DISPLAY_CONTRAST, abs=0.05
     )
 
 
