@@ -81,10 +81,10 @@ def test_beside_a_step_the_light_never_runs_the_other_way():
 
 def test_more_than_the_display_shows_is_compressed_to_its_contrast():
     Ld = local_laplacian.tonemap(laws.scene(), beta=1)
-    low, high = np.log(np.quantile(Ld, [local_laplacian.CLIPPED_FRACTION, 1 - local_laplacian.CLIPPED_FRACTION]))
-    assert high == pytest.approx(0, abs=0.01) and low == pytest.approx(
-        -local_laplacian.DISPLAY_CONTRAST, abs=0.05
-    )
+    cut = local_laplacian.CLIPPED_FRACTION
+    black, white = np.log(np.quantile(Ld, [cut, 1 - cut]))
+    assert white == pytest.approx(0, abs=0.01)
+    assert black == pytest.approx(-local_laplacian.DISPLAY_CONTRAST, abs=0.05)
 
 
 def test_an_even_scene_is_white_and_a_black_one_black():
@@ -97,5 +97,5 @@ def test_an_even_scene_is_white_and_a_black_one_black():
     [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}],
 )
 def test_knobs_out_of_range_are_refused(knobs):
-    with pytest.raises(ValueError, match="expected knobs in range"):
+    with pytest.raises(ValueError, match="expected sigma"):
         local_laplacian.tonemap(np.ones((3, 3)), **knobs)
