@@ -88,7 +88,8 @@ def shoot(
             f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}"
         )
     light = E if c is None else sample(E, c)
-    X, rng = np.minimum(e * light, 4.0), np.random.default_rng(rng)
+    X = np.minimum(e * light, 4.0)
+    rng = np.random.default_rng(rng)
     if full_well < np.inf:
         N = np.minimum(rng.poisson(full_well * X), full_well) + rng.normal(0, read_noise, X.shape)
         X = N / full_well
@@ -158,7 +159,8 @@ def reconstruct(
     if Z.ndim != 2 or Z.dtype not in (np.uint8, np.uint16) or Z.size == 0:
         raise InputError(f"expected levels (H, W) of uint8 or uint16, got {describe(Z)}")
     e = _transparency(e, Z.shape)
-    w, values = weight(Z, e, full_well=full_well, read_noise=read_noise), Z / (levels(Z) - 1) / e
+    w = weight(Z, e, full_well=full_well, read_noise=read_noise)
+    values = Z / (levels(Z) - 1) / e
     if c is None:
         return _fill(values, w, e, sigma)
     masks = [as_channels(c, Z.shape) == k for k in range(3)]
@@ -173,7 +175,8 @@ def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) 
         if not unknown.any() or not w.any():
             break
         more, more_total = normalised_convolution(values, w, wider)
-        E, total = np.where(unknown, more, E), np.where(unknown, more_total, total)
+        E = np.where(unknown, more, E)
+        total = np.where(unknown, more_total, total)
     return np.where(total > 0, E, 1 / e[np.broadcast_to(mask, e.shape)].min())
 
 

@@ -52,10 +52,8 @@ def search(
     rng: np.random.Generator,
 ) -> Matches:
     """Return the matches of both ways, looked for from where they begin."""
-    P, Q = (
-        patchmatch.cut_patches(T, settings.side),
-        patchmatch.make_sources(S, settings.side, price),
-    )
+    P = patchmatch.cut_patches(T, settings.side)
+    Q = patchmatch.make_sources(S, settings.side, price)
     back = patchmatch.make_sources(T[None], settings.side)
     rows = Q.rows.reshape(*Q.shape, -1)
     coherence = search_one_way(P, Q, at[0], settings, rng)
@@ -100,5 +98,6 @@ def vote(S: F32, w: F32, matches: Matches, side: int) -> F32:
     for picture, each, field in zip(S, w / len(S), matches.completeness, strict=True):
         if each.any():
             more, votes = patchmatch.sum_given_votes(picture, field.at, each, shape, side)
-            total, count = total + more, count + votes
+            total = total + more
+            count = count + votes
     return total / count[..., None]

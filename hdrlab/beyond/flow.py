@@ -36,7 +36,8 @@ def tvl1(a: F32, b: F32) -> F32:
 
 def warp(f: F32, u: F32) -> F32:
     """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
-    places, planes = np.indices(u.shape[1:]) + u, f.reshape(*f.shape[:2], -1).astype(np.float32)
+    places = np.indices(u.shape[1:]) + u
+    planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
     channels = np.moveaxis(planes, -1, 0)
     found = [map_coordinates(one, places, order=1, mode="nearest") for one in channels]
     return np.stack(found, axis=-1).reshape(f.shape)
@@ -44,7 +45,8 @@ def warp(f: F32, u: F32) -> F32:
 
 def lands_inside(u: F32) -> Mask:
     """Return where p + u(p) lies in the picture, (H, W)."""
-    places, ends = np.indices(u.shape[1:]) + u, np.array(u.shape[1:]).reshape(2, 1, 1) - 1
+    places = np.indices(u.shape[1:]) + u
+    ends = np.array(u.shape[1:]).reshape(2, 1, 1) - 1
     return np.all((places >= 0) & (places <= ends), axis=0)
 
 

@@ -63,7 +63,8 @@ def equivalent_pictures(h: ArrayLike) -> float:
 
 def smear(x: ArrayLike, h: ArrayLike) -> F64:
     """Return y = h * x / m along the first axis: each open chop adds the thing where it is by then."""
-    x, code = np.asarray(x, np.float64), as_code(h)
+    x = np.asarray(x, np.float64)
+    code = as_code(h)
     y = np.zeros((len(x) + len(code) - 1, *x.shape[1:]))
     for k in np.flatnonzero(code):
         y[k : k + len(x)] += x / len(code)
@@ -105,7 +106,8 @@ def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
     >>> sharpen(smear(x, [1, 0, 1, 1]), [1, 0, 1, 1]).round(6) + 0.0
     array([0., 1., 4., 2.])
     """
-    y, code = np.asarray(y, np.float64), as_code(h)
+    y = np.asarray(y, np.float64)
+    code = as_code(h)
     n = len(y) - len(code) + 1
     if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
         raise InputError(
@@ -127,7 +129,8 @@ def expose(
 ) -> F64:
     """Return one photograph of the moving thing, 1 = full: smeared, noisy, clipped, rounded to levels."""
     X: F64 = gain * smear(x, h)
-    X, top = X + np.random.default_rng(rng).normal(0, sigma, X.shape), 2**bits - 1
+    X = X + np.random.default_rng(rng).normal(0, sigma, X.shape)
+    top = 2**bits - 1
     return np.round(np.clip(X, 0, 1) * top) / top
 
 
@@ -137,7 +140,8 @@ def combine(photographs: ArrayLike, gains: ArrayLike) -> F64:
     The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the
     smallest gain's value.
     """
-    X, g = np.asarray(photographs, np.float64), np.asarray(gains, np.float64)
+    X = np.asarray(photographs, np.float64)
+    g = np.asarray(gains, np.float64)
     if X.ndim < 2 or g.shape != X.shape[:1] or not np.all(g > 0):
         raise InputError(
             f"expected photographs (P, n, ...) and P positive gains, got {describe(X)} and {g}"

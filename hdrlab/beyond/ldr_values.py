@@ -100,10 +100,12 @@ def look_up_levels(table: F32, Z: Array) -> F32:
 def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     """Return photographs as Values, checked, in their order."""
     stack = as_stack(images)
-    t, n = as_times(times, len(stack)), levels(stack)
+    t = as_times(times, len(stack))
+    n = levels(stack)
     Z = stack.reshape(*stack.shape[:3], -1)
     table = as_response(g, n, Z.shape[-1])
-    v, z = np.exp((table - table[-1]) / GAMMA).astype(np.float32), (Z / (n - 1)).astype(np.float32)
+    v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
+    z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
     noise = look_up_levels(np.gradient(v, axis=0), Z)
     return Values(look_up_levels(v, Z), z, noise, z > CLIPPING_LEVEL, t, full)

@@ -66,7 +66,9 @@ def improve(
     rng: np.random.Generator,
 ) -> tuple[State, list[Fields]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
-    pictures, found, unlike = [], [], []
+    pictures = []
+    found = []
+    unlike = []
     for k, (T, at) in enumerate(zip(state.I, fields, strict=True)):
         S, price = synthesis.boost_photographs(k, scene)
         w = synthesis.weigh_patches(k, scene, price, settings.side)
@@ -98,7 +100,10 @@ def as_scene(
             raise InputError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
         place = int(np.flatnonzero(order == reference)[0])
     alpha = synthesis.trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
-    v, noise, clipped, t = each.v[order], each.noise[order], each.clipped[order], each.t[order]
+    v = each.v[order]
+    noise = each.noise[order]
+    clipped = each.clipped[order]
+    t = each.t[order]
     return synthesis.Scene(v, noise, clipped, t, each.full, place, alpha)
 
 
@@ -118,7 +123,9 @@ def synthesise_steps(
     sizes = plan_scales(finest.L.shape[1:3], coarsest)
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
         raise InputError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
-    generator, state, fields = np.random.default_rng(rng), None, None
+    generator = np.random.default_rng(rng)
+    state = None
+    fields = None
     for scale, (shape, count) in enumerate(
         zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)
     ):

@@ -56,10 +56,8 @@ def cut_patches(picture: F32, side: int) -> F32:
 
 def make_sources(S: F32, side: int, price: F32 | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
-    rows, price = (
-        cut_patches(S, side),
-        np.zeros(S.shape[:-1], np.float32) if price is None else price,
-    )
+    rows = cut_patches(S, side)
+    price = np.zeros(S.shape[:-1], np.float32) if price is None else price
     each = cut_patches(price[..., None], side).sum(axis=-1)
     return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
 
@@ -68,7 +66,8 @@ def distance(P: F32, Q: Sources, at: Indices) -> F32:
     """Return d = ||P - Q(at)||^2 + price of Q(at), (h, w)."""
     _, h, w = Q.shape
     index = ((at[..., 0] * h + at[..., 1]) * w + at[..., 2]).ravel()
-    rows, d = P.reshape(-1, P.shape[-1]), np.empty(index.size, np.float32)
+    rows = P.reshape(-1, P.shape[-1])
+    d = np.empty(index.size, np.float32)
     for start in range(0, index.size, PATCHES_PER_CHUNK):
         part = slice(start, start + PATCHES_PER_CHUNK)
         difference = rows[part] - Q.rows[index[part]]
@@ -101,7 +100,8 @@ def propagate(at: Indices, step: tuple[int, int]) -> Indices:
     At the edge, where there is no neighbour, it is the nearest one's.
     """
     h, w = at.shape[:2]
-    y, x = np.clip(np.arange(h) - step[0], 0, h - 1), np.clip(np.arange(w) - step[1], 0, w - 1)
+    y = np.clip(np.arange(h) - step[0], 0, h - 1)
+    x = np.clip(np.arange(w) - step[1], 0, w - 1)
     return at[np.ix_(y, x)] + np.array([0, *step])
 
 
@@ -152,7 +152,8 @@ def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F
     inside.
     """
     h, w = at.shape[:2]
-    total, count = np.zeros((*shape, S.shape[-1]), np.float32), np.zeros(shape, np.float32)
+    total = np.zeros((*shape, S.shape[-1]), np.float32)
+    count = np.zeros(shape, np.float32)
     for dy in range(side):
         for dx in range(side):
             total[dy : dy + h, dx : dx + w] += S[at[..., 0], at[..., 1] + dy, at[..., 2] + dx]

@@ -100,7 +100,9 @@ def shoot(
     >>> shoot(np.full((1, 1), 0.5), [0.5, 0.25], bits=16).ravel()
     array([16384,  8192], dtype=uint16)
     """
-    E, each, rng = as_radiance(E), as_shares(e), np.random.default_rng(rng)
+    E = as_radiance(E)
+    each = as_shares(e)
+    rng = np.random.default_rng(rng)
     if not 8 <= bits <= 16:
         raise InputError(f"expected 8 to 16 bits, got {bits}")
     shoot_one = partial(
@@ -135,7 +137,8 @@ def join_sensors(B: F64, D: F64, full: Mask) -> tuple[F64, NDArray[np.uint8]]:
     4  all is full                     D
     """
     u = full_share(full)
-    some, every = u > 1e-9, u > 1 - 1e-9
+    some = u > 1e-9
+    every = u > 1 - 1e-9
     own = np.where(full, predict_full(B, D, full), B)
     E = np.where(some, np.where(every, D, (1 - u) * own + u * D), B)
     return E, np.where(full, np.where(every, 4, 3), np.where(some, 2, 1)).astype(np.uint8)
@@ -143,7 +146,8 @@ def join_sensors(B: F64, D: F64, full: Mask) -> tuple[F64, NDArray[np.uint8]]:
 
 def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> Iterator[State]:
     """Yield the State from the darkest sensor alone to all of them; parameters are those of `merge`."""
-    each, stack = as_shares(e), np.asarray(Z)
+    each = as_shares(e)
+    stack = np.asarray(Z)
     if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(each):
         raise InputError(
             f"expected levels ({len(each)}, H, W), a picture per share, got {describe(stack)}"

@@ -58,7 +58,8 @@ def trapezoid(z: F32, low: Ramp, high: Ramp) -> F32:
     >>> trapezoid(np.array([[[0.1], [0.5], [0.875], [1.0]]]), (0.05, 0.2), (0.85, 0.95)).ravel().round(2)
     array([0.33, 1.  , 0.75, 0.  ], dtype=float32)
     """
-    rising, falling = (z - low[0]) / (low[1] - low[0]), (high[1] - z) / (high[1] - high[0])
+    rising = (z - low[0]) / (low[1] - low[0])
+    falling = (high[1] - z) / (high[1] - high[0])
     return np.clip(np.minimum(rising, falling), 0, 1).min(axis=-1, keepdims=True).astype(np.float32)
 
 
@@ -92,7 +93,8 @@ def blend_reference(H: F32, scene: Scene) -> F32:
     would be lost.
     """
     k = scene.reference
-    v, t = scene.L[k], scene.t[k]
+    v = scene.L[k]
+    t = scene.t[k]
     within = np.clip(H, *consistent_range(v, scene.noise[k], scene.clipped[k], t, scene.full))
     return scene.alpha * radiance(v, t, scene.full) + (1 - scene.alpha) * within
 

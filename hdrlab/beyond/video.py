@@ -156,7 +156,8 @@ def merge_steps(
     pairs = zip(frames, cycle(turn), strict=False)
     sized = require_one_size(as_frame(Z, float(t), g, w) for Z, t in pairs)
     for number, (place, window) in enumerate(neighbours.slide_windows(sized, 1)):
-        i, beside = window[place], [*window[:place], *window[place + 1 :]]
+        i = window[place]
+        beside = [*window[:place], *window[place + 1 :]]
         there = [warp_frame(j, estimate_motion(i, j, flow)) for j in beside]
         between = warp_half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
         along = tuple(weigh_neighbour(i, term) for term in there)
@@ -218,7 +219,8 @@ def merge(
 def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame:
     """Return one photograph as a Frame, checked."""
     stack = np.asarray(Z)[None]
-    values, n = ldr_values.as_values(stack, [t], g), levels(stack)
+    values = ldr_values.as_values(stack, [t], g)
+    n = levels(stack)
     table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n)
     f_W = table.astype(np.float32)[stack.reshape(values.v.shape)][0]
     R = ldr_values.radiance(values.v[0], t, values.full)

@@ -20,7 +20,8 @@ from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.errors import InputError
 
 # The paper's typical range of brightnesses that are measurements.
-MIN_BRIGHTNESS, MAX_BRIGHTNESS = 15 / 255, 240 / 255
+MIN_BRIGHTNESS = 15 / 255
+MAX_BRIGHTNESS = 240 / 255
 # Entries of a table: between two of them a response is straight to a millionth.
 TABLE_SIZE = 1024
 GRID = np.linspace(0, 1, TABLE_SIZE)
@@ -56,7 +57,8 @@ def make_blend(
     ValueError
         For arrays (l,) that do not fit together or are not finite.
     """
-    x, M = np.asarray(irradiance, np.float64), np.asarray(brightness, np.float64)
+    x = np.asarray(irradiance, np.float64)
+    M = np.asarray(brightness, np.float64)
     if x.shape != M.shape or x.ndim != 1 or not np.all(np.isfinite([x, M])):
         raise InputError(
             f"expected finite irradiance and brightness (l,), got {describe(x)}, {describe(M)}"
@@ -97,7 +99,8 @@ def rescale(blends: Sequence[Blend]) -> list[Blend]:
 
 def normalize(M: F64, X: F64, s: F64, r: F64) -> InverseResponse:
     """Return the curve with X from 0 to 1, s and r in the same unit: (X - X_0) / (X_end - X_0)."""
-    zero, span = X[0], X[-1] - X[0]
+    zero = X[0]
+    span = X[-1] - X[0]
     return InverseResponse(M, (X - zero) / span, s / span, (r - zero) / span)
 
 
@@ -138,14 +141,16 @@ def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = Fa
     ValueError
         Where the two have no range of brightness in common.
     """
-    low, high = max(found.M[0], truth.M[0]), min(found.M[-1], truth.M[-1])
+    low = max(found.M[0], truth.M[0])
+    high = min(found.M[-1], truth.M[-1])
     if not low < high:
         raise InputError(
             f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}"
         )
     M = np.linspace(low, high, TABLE_SIZE)
     X, Y = (np.interp(M, curve.M, curve.X) for curve in (found, truth))
-    X, Y = (X - X[0]) / (X[-1] - X[0]), (Y - Y[0]) / (Y[-1] - Y[0])
+    X = (X - X[0]) / (X[-1] - X[0])
+    Y = (Y - Y[0]) / (Y[-1] - Y[0])
     return np.polyval(np.polyfit(X, Y, 1), X) - Y if fit else X - Y
 
 
@@ -186,8 +191,10 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
         raise InputError(
             f"expected a black below {joined.X[0]}, the darkest X measured, got {black}"
         )
-    M, X = joined.M, joined.X - black
-    slope, levels = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0), np.arange(n) / (n - 1)
+    M = joined.M
+    X = joined.X - black
+    slope = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0)
+    levels = np.arange(n) / (n - 1)
     levels[0] = 0.25 / (n - 1)
     table = np.interp(levels, np.r_[0, M, 1], np.r_[0, X, X[-1] + slope * (1 - M[-1])])
     g = np.log(np.maximum(table, 1e-12))

@@ -31,7 +31,8 @@ from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_draw
 from hdrlab.errors import InputError
 
-ROWS, COLUMNS = 4, 6
+ROWS = 4
+COLUMNS = 6
 # Space between the patches of the classic chart, over a patch's width.
 GAP = 0.15
 # Y of the patches in %, row by row, under illuminant C.
@@ -196,10 +197,12 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
     >>> bool(np.abs(joined.X - (true - true[0]) / (true[-1] - true[0])).max() < 0.01)
     True
     """
-    M, R = np.asarray(M, np.float64), np.asarray(R, np.float64)
+    M = np.asarray(M, np.float64)
+    R = np.asarray(R, np.float64)
     samples = blends.make_blend(R, M)
     order = np.argsort(samples.I)
-    x, m = samples.I[order], samples.M[order]
+    x = samples.I[order]
+    m = samples.M[order]
     if len(x) < 3:
         raise InputError(
             f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}"

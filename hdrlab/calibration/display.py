@@ -146,11 +146,11 @@ def read_blends(
     ValueError
         As `chart.read_patches` and `mixing_ratios`.
     """
-    grids, rows, columns = len(schedule.high), schedule.rows, schedule.columns
-    alpha, gap = (
-        mixing_ratios(rows, columns, schedule.steps).ravel(),
-        schedule.border / schedule.patch,
-    )
+    grids = len(schedule.high)
+    rows = schedule.rows
+    columns = schedule.columns
+    alpha = mixing_ratios(rows, columns, schedule.steps).ravel()
+    gap = schedule.border / schedule.patch
     M = chart.read_patches(image, corners, grids * rows, columns, gap=gap, core=core)
     channels = np.moveaxis(M.reshape(grids, rows * columns, -1), -1, 0)
     return [

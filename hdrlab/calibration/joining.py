@@ -79,7 +79,8 @@ def slope_curvature(v: F64, count: int) -> F64:
     """
     t = knots(count)
     places = (t[1:-3] + t[2:-2] + t[3:-1]) / 3
-    h, middle = np.diff(places), (places[1:] + places[:-1]) / 2
+    h = np.diff(places)
+    middle = (places[1:] + places[:-1]) / 2
     rows = np.diff(np.diag(1 / h), 2, axis=0) / np.interp(middle[1:-1], GRID, v)[:, None]
     return np.pad(rows, ((0, 0), (1, 0)))
 
@@ -91,12 +92,11 @@ def build_equations(
 
     p holds the blends' predicted brightnesses one after the other.
     """
-    widest, weight = (
-        int(np.argmax([np.ptp(blend.M) for blend in blends])),
-        1 / np.interp(p, GRID, v),
-    )
+    widest = int(np.argmax([np.ptp(blend.M) for blend in blends]))
+    weight = 1 / np.interp(p, GRID, v)
     A = i_splines(p, count) * weight[:, None]
-    systems, start = [], 0
+    systems = []
+    start = 0
     for j, (I, M) in enumerate(blends):  # noqa: E741, the paper's letter
         own = slice(start, start + len(M))
         F = np.column_stack([I, np.ones(len(I))])[:, int(j == widest) : 2 if offset else 1]
@@ -108,7 +108,8 @@ def build_equations(
 
 def eliminate(A: F64, F: F64, b: F64) -> F64:
     """Return [A b] without the part that the blend's own unknowns take up: (1 - Q Q^T) [A b], F = Q R."""
-    Q, rows = np.linalg.qr(F)[0], np.column_stack([A, b])
+    Q = np.linalg.qr(F)[0]
+    rows = np.column_stack([A, b])
     return rows - Q @ (Q.T @ rows)
 
 
@@ -163,14 +164,18 @@ def join_steps(
     blends = rescale(select_blends(blends))
     if count < 6 or not smoothness >= 0 or max_iterations < 1:
         raise InputError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
-    p, v, before = np.concatenate([blend.M for blend in blends]), np.ones_like(GRID), GRID
+    p = np.concatenate([blend.M for blend in blends])
+    v = np.ones_like(GRID)
+    before = GRID
     for _ in range(max_iterations):
         state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)
         yield state
         now = state.g / state.g[-1]
         if np.abs(now - before).max() < tolerance:
             return
-        p, v, before = predict_brightness(blends, state), state.v, now
+        p = predict_brightness(blends, state)
+        v = state.v
+        before = now
 
 
 def join(

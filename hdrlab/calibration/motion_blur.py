@@ -68,7 +68,8 @@ def straighten_edges(found: Sequence[Ramp]) -> list[Ramp]:
     the median of all slopes) hardly depends on the noise of a single one. Ramps far off it belong
     to something else.
     """
-    edges, count = defaultdict(list), Counter[int]()
+    edges = defaultdict(list)
+    count = Counter[int]()
     for one in found:
         edges[count[one.row], one.rises].append(one)
         count[one.row] += 1

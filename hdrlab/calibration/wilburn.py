@@ -139,6 +139,7 @@ def join(
     >>> round(float(np.interp(0.5, joined.M, joined.X)), 2), round(float(joined.s[1] / joined.s[0]), 2)
     (0.25, 0.2)
     """
-    a, usable = last(join_steps(blends, degree=degree, runs=runs)).a, select_blends(blends)
+    a = last(join_steps(blends, degree=degree, runs=runs)).a
+    usable = select_blends(blends)
     s, r = np.transpose([np.polyfit(blend.I, evaluate(blend.M, a), 1) for blend in rescale(usable)])
     return build_response(usable, evaluate(GRID, a), s, r, ends=ends)

@@ -69,7 +69,8 @@ def histogram(block: F64) -> F64:
 
 def contrast(block: F64) -> float:
     """Return D, the mean of |i - M| over the smoothed histogram, M its mean [eq. 1.4, 1.5]."""
-    i, smoothed = np.arange(256), histogram(block)
+    i = np.arange(256)
+    smoothed = histogram(block)
     M = np.average(i, weights=smoothed)
     return float(np.average(np.abs(i - M), weights=smoothed))
 
@@ -151,8 +152,10 @@ def correct(
         raise InputError(
             f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}"
         )
-    Z, (a, c) = as_picture(picture), shape
-    Y, visible = brightness(Z), brighten(Z, a=a, c=c)
+    Z = as_picture(picture)
+    a, c = shape
+    Y = brightness(Z)
+    visible = brighten(Z, a=a, c=c)
     faces = find_skin(visible) if Z.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
     if by == "skin" and not faces.any():
         raise InputError("expected a colour picture with skin in it, found none")

@@ -22,7 +22,8 @@ from hdrlab.core.arrays import F64, Array, ArrayLike
 
 # A and C for which f lies within 4 levels of the curve of sRGB from level 20 to 200, by least
 # squares.
-A, C = 1.79, 0.192
+A = 1.79
+C = 0.192
 # level
 TARGET = 128.0
 # stops: a photograph that lacks more shows nothing
@@ -84,7 +85,8 @@ def settle_steps(p: F64, target: float = TARGET, *, a: float = A, c: float = C) 
     levels is another thing, for f is curved: it is off by 10 levels and more where the regions hold
     light and shade. So the round is repeated with the mean that resulted, a dozen times at most.
     """
-    delta, mean = 0.0, float(p @ LEVELS)
+    delta = 0.0
+    mean = float(p @ LEVELS)
     for _ in range(13):
         yield State(delta, mean)
         if abs(mean - target) < TOLERANCE or not 0 < mean < 255:

@@ -29,8 +29,12 @@ LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
 CHROMA = np.array(
     [[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]]
 )  # Cb, Cr of RGB [BT.601]
-LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
-UPPER, LOWER = (-1.3767, 1.0743, 0.1452), (-0.776, 0.5601, 0.1766)  # parabolas in r [Soriano03]
+# sRGB of the ColorChecker's two skins
+LIGHT = (194, 150, 130)
+DARK = (115, 82, 68)
+# parabolas in r [Soriano03]
+UPPER = (-1.3767, 1.0743, 0.1452)
+LOWER = (-0.776, 0.5601, 0.1766)
 # squared radius of the white that is left out of the locus
 WHITE = 0.0004
 # Mahalanobis distance: of a Gaussian, 96 % lie nearer
@@ -107,7 +111,8 @@ def find_by_locus(Z: ArrayLike) -> Mask:
     """
     Z = np.asarray(Z, np.float64)
     total = np.maximum(Z.sum(axis=-1), 1)
-    r, g = Z[..., 0] / total, Z[..., 1] / total
+    r = Z[..., 0] / total
+    g = Z[..., 1] / total
     white = (r - 1 / 3) ** 2 + (g - 1 / 3) ** 2 <= WHITE
     return (np.polyval(LOWER, r) < g) & (g < np.polyval(UPPER, r)) & ~white & (r > g)
 

@@ -20,13 +20,16 @@ from hdrlab.errors import InputError
 from hdrlab.fast import blur
 
 # levels in all
-MIN_LEVELS, MAX_LEVELS = 8, 1000
+MIN_LEVELS = 8
+MAX_LEVELS = 1000
 # of sigma_s
 SPACING = 0.55
 # levels per sigma_r, at least, and bins of a histogram per level
-LEVELS, BINS = 2, 4
+LEVELS = 2
+BINS = 4
 # a closeness below 1e-15 is none: the least numbers of float32 are slow
-NOTHING, TINY = 1e-15, 1e-30
+NOTHING = 1e-15
+TINY = 1e-30
 
 
 class Axes(NamedTuple):
@@ -45,7 +48,8 @@ class Axes(NamedTuple):
 def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
     """Return the grid that holds v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
     h = max(1, 2 * int((SPACING * sigma_s + 1) / 2) - 1)
-    low, extent = float(v.min()), float(np.ptp(v))
+    low = float(v.min())
+    extent = float(np.ptp(v))
     step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
     if extent > (most := MAX_LEVELS * step):
         raise InputError(f"expected a range of at most {most:g} for {sigma_r=}, got {describe(v)}")
@@ -71,7 +75,8 @@ def _histograms(v: F32, a: Axes) -> Iterator[F32]:
 
 def _closeness(a: Axes) -> F32:
     """Return the matrix (bins, 2 Z) that takes a histogram to (sum of w, sum of w (v_q - z)) for each z."""
-    v, z = np.arange(a.Z * BINS) * (a.step / BINS), np.arange(a.Z) * a.step
+    v = np.arange(a.Z * BINS) * (a.step / BINS)
+    z = np.arange(a.Z) * a.step
     d = v[:, None] - z
     w = np.exp(-(d**2) / (2 * a.sigma_r**2))
     w[w < NOTHING] = 0
@@ -92,12 +97,15 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
     (h^2 - 1) / 6. Variances add: the Gaussian along the nodes takes what is left.
     """
     g = blur._taps((a.sigma_s**2 - (a.h**2 - 1) / 4) ** 0.5 / a.h)
-    r, w, K = len(g) // 2, _closeness(a), blur._band(g, blur.NODES)
+    r = len(g) // 2
+    w = _closeness(a)
+    K = blur._band(g, blur.NODES)
     recent = np.zeros(
         (len(g), a.X * 2 * a.Z), np.float32
     )  # the rows in reach; row j stands at j mod len(g)
     row = np.zeros((a.X + -a.X % blur.NODES + 2 * r, 2 * a.Z), np.float32)
-    counted, area = _histograms(v, a), np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
+    counted = _histograms(v, a)
+    area = np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
     for j in range(a.Y + r):
         recent[j % len(g)] = 0
         if j < a.Y:
@@ -116,14 +124,16 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     The mean is read along lines between the nodes, k at a node nearby: it is right to about a
     tenth.
     """
-    y, x = np.arange(len(v))[:, None], np.arange(v.shape[1])
+    y = np.arange(len(v))[:, None]
+    x = np.arange(v.shape[1])
     z = (v - np.float32(a.low)) * np.float32(1 / a.step)
     level = np.floor(z)
     first, last = (row.away.view(np.float32).ravel() for row in (above, below))
     away = (y / a.h).astype(np.float32) * (last - first)
     away += first
     place = level.astype(np.intp) + x // a.h * a.Z
-    at, there = place + y * (a.X * a.Z), away.view(np.complex64).ravel()
+    at = place + y * (a.X * a.Z)
+    there = away.view(np.complex64).ravel()
     left, right = (some.take(at, mode="clip").view(np.float32) for some in (there, there[a.Z :]))
     right -= left
     right *= np.repeat(x % a.h / a.h, 2).astype(np.float32)
@@ -149,7 +159,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     v = np.asarray(v, np.float32)
     require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
     a = _axes(v, sigma_s=sigma_s, sigma_r=sigma_r)
-    mean, k = np.empty_like(v), np.empty_like(v)
+    mean = np.empty_like(v)
+    k = np.empty_like(v)
     for j, (above, below) in enumerate(pairwise(_nodes(v, a))):
         rows = slice(j * a.h, (j + 1) * a.h)
         mean[rows], k[rows] = _read(v[rows], a, above, below)

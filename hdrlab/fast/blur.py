@@ -81,7 +81,8 @@ def _pad(image: F32, margin: int) -> F32:
 
 def _inside(padded: F32, k: F32, margin: int) -> F32:
     """Return the blur by taps k of what lies `margin` inside `padded`, as far as it fills whole tiles."""
-    K, cut = _band(k, TILE), margin - len(k) // 2
+    K = _band(k, TILE)
+    cut = margin - len(k) // 2
     core = padded[cut : len(padded) - cut, cut : padded.shape[1] - cut]
     return _product(K, TILE, np.ascontiguousarray(_product(K, TILE, core).T)).T
 
@@ -106,7 +107,8 @@ def _coarse(image: F32, sigma: float, h: int) -> F32:
     few = _sampled(
         np.ascontiguousarray(_sampled(image, k, h).T), k, h
     )  # (nodes across, nodes down)
-    U, W = _spline(h, NODES), image.shape[1]
+    U = _spline(h, NODES)
+    W = image.shape[1]
     across = np.ascontiguousarray(_product(U, NODES, few)[:W].T)  # (nodes down, W)
     blurred = np.empty_like(image)
     for first in range(0, -(-len(image) // h), NODES):
@@ -120,12 +122,14 @@ def _sampled(image: F32, k: F32, h: int) -> F32:
 
     Reflection folds the ends of the band matrix inward, so the picture is read where it stands.
     """
-    K, n = _band(k, NODES, h), len(image)
+    K = _band(k, NODES, h)
+    n = len(image)
     few = np.empty((NODES * (-(-n // (NODES * h)) + 1), image.shape[1]), np.float32)
     for first in range(0, len(few), NODES):
         place = (np.arange(K.shape[1]) + (first - 1) * h - len(k) // 2) % (2 * n)
         rows = np.minimum(place, 2 * n - 1 - place)
-        low, high = rows.min(), rows.max() + 1
+        low = rows.min()
+        high = rows.max() + 1
         folded = K
         if not np.array_equal(rows, np.arange(low, high)):
             folded = np.zeros((NODES, high - low), np.float32)

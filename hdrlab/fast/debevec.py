@@ -25,7 +25,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
         If the arrays do not fit together, or no sample is seen well in two different exposures.
     """
     Z, B, w = _validate(Z, B, smoothness, w)
-    n, W = len(w), w[Z] ** 2
+    n = len(w)
+    W = w[Z] ** 2
     require_two_exposures(Z, B, w)
     D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
     has_weight = D > 0
@@ -49,7 +50,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
 
 def _stiffness(w: F64, smoothness: float) -> F64:
     """Return D^T D of the rows D of `core.weights.second_differences`, from their three diagonals."""
-    S, z = np.zeros((len(w), len(w))), np.arange(1, len(w) - 1)
+    S = np.zeros((len(w), len(w)))
+    z = np.arange(1, len(w) - 1)
     for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):
         S[z + a, z + b] += (smoothness * w[1:-1]) ** 2 * da * db
     return S
@@ -60,8 +62,12 @@ def _solve_with_gauge(S: F64, r: F64) -> F64:
     n = len(r)
     reached = (np.diag(S) > 0) | (np.arange(n) == n // 2)
     pinned = np.flatnonzero(~reached | (np.arange(n) == n // 2))
-    S, r = S.copy(), r.copy()  # an equation g(z) = 0 for each pinned level
-    S[pinned], S[:, pinned], r[pinned] = 0, 0, 0
+    # an equation g(z) = 0 for each pinned level
+    S = S.copy()
+    r = r.copy()
+    S[pinned] = 0
+    S[:, pinned] = 0
+    r[pinned] = 0
     S[pinned, pinned] = 1
     try:
         g = np.linalg.solve(S, r)
@@ -79,7 +85,9 @@ def _validate(
     Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike
 ) -> tuple[Indices, F64, F64]:
     """Return Z, B and w as arrays that fit together, or raise a ValueError."""
-    Z, B, w = np.asarray(Z), np.asarray(B, dtype=np.float64), np.asarray(w, dtype=np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, dtype=np.float64)
+    w = np.asarray(w, dtype=np.float64)
     if not 0 <= smoothness < np.inf:
         raise InputError(f"expected a smoothness that is finite and not negative, got {smoothness}")
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or Z.size == 0:

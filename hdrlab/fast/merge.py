@@ -28,7 +28,8 @@ from hdrlab.radiance.stuck import repair_stuck
 # of a block: its planes and sums stay in the processor's cache
 ROWS = 24
 # rows whose memory is given back at once, and bytes of a large page
-BAND, PAGE = 256, 1 << 21
+BAND = 256
+PAGE = 1 << 21
 # the terms a, b of one frame of t seconds, from w and g over the levels
 TERMS: dict[str, Callable[[F64, F64, float], tuple[F64, F64]]] = {
     "log": lambda w, g, t: (w * (g - np.log(t)), w),
@@ -71,10 +72,12 @@ def merge_with_quality(
 ) -> Merged:
     """Return the radiance map and the quality flags of its pixels, the lesson's."""
     stack, t, w, g, first = as_tables(images, times, g, w, method, top)
-    mask, order = as_mask(valid, stack), short_to_long(stack, t)
+    mask = as_mask(valid, stack)
+    order = short_to_long(stack, t)
     plan = _plan(t[order], g, w, first, method)
     pixels = stack.reshape(*stack.shape[:3], -1)
-    E, quality = np.empty(pixels.shape[1:], np.float32), np.empty(pixels.shape[1:3], np.uint8)
+    E = np.empty(pixels.shape[1:], np.float32)
+    quality = np.empty(pixels.shape[1:3], np.uint8)
 
     def merge_rows(start: int) -> None:
         rows = slice(start, start + ROWS)
@@ -94,10 +97,8 @@ def merge_with_quality(
 
 def _release(rows: Array) -> None:
     """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
-    start, stop = (
-        -(-rows.ctypes.data // PAGE) * PAGE,
-        (rows.ctypes.data + rows.nbytes) // PAGE * PAGE,
-    )
+    start = -(-rows.ctypes.data // PAGE) * PAGE
+    stop = (rows.ctypes.data + rows.nbytes) // PAGE * PAGE
     if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
         ctypes.CDLL(None).madvise(
             ctypes.c_void_p(start), ctypes.c_size_t(stop - start), mmap.MADV_DONTNEED
@@ -122,7 +123,8 @@ def _pair_tables(tables: Array) -> list[Array]:
     count, channels, n = tables.shape
     if n > 256:
         return list(tables)
-    firsts, seconds = tables[0 : count - 1 : 2, :, None, :], tables[1::2, :, :, None]
+    firsts = tables[0 : count - 1 : 2, :, None, :]
+    seconds = tables[1::2, :, :, None]
     return [*(seconds + firsts).reshape(-1, channels, n * n), *tables[count - count % 2 :]]
 
 

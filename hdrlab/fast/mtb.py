@@ -71,10 +71,13 @@ class Photograph:
         What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap
         counts.
         """
-        (dy, dx), H, every = offset, len(self.Y[level]), _every(self.Y[level])
+        dy, dx = offset
+        H = len(self.Y[level])
+        every = _every(self.Y[level])
         top = -(-max(dy, 0) // every)
         rows = len(range(top * every, min(H, H + dy), every))
-        start, A = (top * every - dy) // every, fixed.bits(q, level)[:, top : top + rows]
+        start = (top * every - dy) // every
+        A = fixed.bits(q, level)[:, top : top + rows]
         B = self.bits(q, level, dx, -dy % every)[:, start : start + rows]
         kept = A[1] & B[1]
         return (A[0] ^ B[0]) & kept, kept, max(-(-(H // 2) // every) - top, 0)
@@ -86,7 +89,8 @@ class Photograph:
 
     def offset_onto(self, fixed: Self, q: float = 0.5) -> Offset:
         """Return the offset that lays this photograph on another, as `align.mtb.search` finds it."""
-        y, x = 0, 0
+        y = 0
+        x = 0
         for level in reversed(range(len(self.Y))):
             nine = [(2 * y + dy, 2 * x + dx) for dy, dx in lesson.NINE]
             y, x = min(nine, key=partial(self.error, fixed, level, q))
@@ -98,7 +102,8 @@ class Photograph:
         The quarters are cut at a whole word.
         """
         differ, kept, n = self.compare(fixed, offset, level, q)
-        ones, half = (np.bitwise_count(differ), np.bitwise_count(kept)), kept.shape[1] // 2
+        ones = (np.bitwise_count(differ), np.bitwise_count(kept))
+        half = kept.shape[1] // 2
         quarters = product((slice(n), slice(n, None)), (slice(half), slice(half, None)))
         return np.array(
             [[one[quarter].sum(dtype=np.int64) for one in ones] for quarter in quarters]
@@ -130,7 +135,8 @@ def _gray(image: Array, luma: bool) -> Array:
 
 
 def _shrink(Y: Array) -> Array:
-    rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2
+    rows = Y.shape[0] // 2 * 2
+    columns = Y.shape[1] // 2 * 2
     half = np.empty((rows // 2, columns // 2), np.uint8)
     for row in range(0, rows, BAND):
         two = np.ascontiguousarray(Y[row : min(row + BAND, rows), :columns]).view(np.uint16)
@@ -153,7 +159,8 @@ def _bitmaps(Y: Array, t: int) -> Words:
     packed = []
     for Z in np.array_split(Y, Y.size // CACHE + 1):
         mask = np.empty((2, *Z.shape), bool)
-        mask[0], mask[1] = t < Z, lesson.exclusion(Z, t)
+        mask[0] = t < Z
+        mask[1] = lesson.exclusion(Z, t)
         packed.append(_pack(mask))
     return np.concatenate(packed, axis=1)
 
@@ -167,10 +174,12 @@ def _pack(mask: Mask) -> Words:
 
 def _slide(words: Words, dx: int) -> Words:
     """Return every row moved dx pixels to the right: zeros come in, and what leaves is gone."""
-    n, (whole, part) = words.shape[-1], divmod(dx, 64)
+    n = words.shape[-1]
+    whole, part = divmod(dx, 64)
     moved = np.zeros_like(words)
     for by, bits in ((whole, part), (whole + 1, part - 64)) if part else ((whole, 0),):
-        end, source = max(n + min(by, 0), 0), words[..., max(-by, 0) : max(n - by, 0)]
+        end = max(n + min(by, 0), 0)
+        source = words[..., max(-by, 0) : max(n - by, 0)]
         moved[..., max(by, 0) : end] |= (
             source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
         )

@@ -85,7 +85,8 @@ def _finer(
 
 def _double(a: F32, side: float, order: Literal["C", "F"] = "C") -> F32:
     """Return two rows for each inner one: with `side` of both neighbours, and the mean with the next."""
-    fine, pairs = np.empty((2 * len(a) - 4, a.shape[1]), np.float32, order), a[:-1] + a[1:]
+    fine = np.empty((2 * len(a) - 4, a.shape[1]), np.float32, order)
+    pairs = a[:-1] + a[1:]
     np.multiply(pairs[1:], np.float32(0.5), out=fine[1::2])
     even = a[1:-1] * np.float32(1 - 4 * side)  # the pairs on either side hold the row twice
     if side:

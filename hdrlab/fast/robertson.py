@@ -37,8 +37,12 @@ class Joint:
     """
 
     def __init__(self, Z: Indices, t: F64, w: F64) -> None:
-        n, P = len(w), Z.shape[1]
-        pairs, own, self.pixels, self.w = np.zeros(n * n), np.zeros(n), np.zeros(n, np.int64), w
+        n = len(w)
+        P = Z.shape[1]
+        pairs = np.zeros(n * n)
+        own = np.zeros(n)
+        self.pixels = np.zeros(n, np.int64)
+        self.w = w
         for start in range(0, len(Z), BLOCK):
             z = Z[start : start + BLOCK].T.astype(np.intp)
             d = t**2 @ w[z]
@@ -93,7 +97,8 @@ class Smooth:
         max_iterations: int = 200,
     ) -> Iterator[robertson.State]:
         """Yield the States of one channel; parameters as of `recover_steps`."""
-        matrix, line = None, robertson.linear(len(w))
+        matrix = None
+        line = robertson.linear(len(w))
 
         def complete(means: F64, w: F64) -> F64:
             nonlocal matrix
@@ -109,7 +114,8 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
     """Return the matrix from r (n,) to s."""
     level = np.arange(len(w))
     known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
-    bends, data = weights.second_differences(w, smoothness), np.diag(np.where(known, 1.0, 1e-6))
+    bends = weights.second_differences(w, smoothness)
+    data = np.diag(np.where(known, 1.0, 1e-6))
     A = data + bends.T @ bends  # five diagonals, of which the lower three say all
     bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
     return np.asarray(scipy.linalg.solveh_banded(bands, data, lower=True))

@@ -26,7 +26,8 @@ from hdrlab.errors import InputError
 
 POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5)
 # of the pixels: the lowest ratios, and those that must agree with them
-LOW, HIGH = 2e-4, 1e-2
+LOW = 2e-4
+HIGH = 1e-2
 # times the lowest ratio: without glare they differ by more
 AGREE = 1.7
 # share: less is neither visible nor measured by dark places
@@ -99,7 +100,8 @@ def glare_steps(
     The share is measured again in each round, or is the one given.
     """
     F = E = as_radiance(F)
-    transform, factor = spread_transform(F.shape, power, core), max(1, F.shape[1] // WIDTH)
+    transform = spread_transform(F.shape, power, core)
+    factor = max(1, F.shape[1] // WIDTH)
     for _ in range(ROUNDS):
         G = scatter(E, transform)
         now = (
@@ -224,7 +226,9 @@ def note(found: Deglared) -> str:
     """Return the sentence on how much light the lens scattered, and where that was removed."""
     if found.spread.share == 0:
         return "no veiling glare found: the darkest places have no common share of the light around them"
-    share, power, region = 100 * found.spread.share, found.spread.power, 100 * found.region.mean()
+    share = 100 * found.spread.share
+    power = found.spread.power
+    region = 100 * found.region.mean()
     return (
         f"veiling glare: the lens scattered {share:.1f} % of the light, falling with the power {power:g} of "
         f"the distance; removed in {region:.0f} % of the pixels"

@@ -100,7 +100,8 @@ def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
@@ -119,7 +120,9 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     >>> bool(np.allclose(E, [[40 / 128, 90 / 128]]))
     True
     """
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
     if (
         images.dtype.kind != "u"
         or images.ndim < 3
@@ -129,8 +132,11 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
         raise InputError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
         raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(TOP * (n - 1)) + 1
     if (
         g.shape not in ((n,), (n, 1), (n, c.size))
         or not np.all(np.abs(g) < 80)
@@ -202,9 +208,11 @@ def merge_with_quality(
     ['MEASURED', 'CLIPPED']
     """
     stack, t, w, curves, first = as_tables(images, times, g, w, method, top)
-    mask, Z = arrays.as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1)
+    mask = arrays.as_mask(valid, stack)
+    Z = stack.reshape(*stack.shape[:3], -1)
     shown = np.broadcast_to(True if mask is None else mask[..., None], Z.shape)
-    W, X = weigh(Z, w, first, shown), np.exp(curves[Z, np.arange(Z.shape[-1])])
+    W = weigh(Z, w, first, shown)
+    X = np.exp(curves[Z, np.arange(Z.shape[-1])])
     bounds, flags = bound(Z, np.log(t), curves, first, shown)
     measured = W.any(axis=0)
     with np.errstate(invalid="ignore"):
@@ -222,11 +230,10 @@ def as_tables(
 ) -> tuple[Array, F64, F64, F64, int]:
     """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
     stack = arrays.as_stack(images)
-    n, channels = arrays.levels(stack), stack[0, 0, 0].size
-    weights, curves = (
-        arrays.as_table(hat(n) if w is None else w, n),
-        arrays.as_response(g, n, channels),
-    )
+    n = arrays.levels(stack)
+    channels = stack[0, 0, 0].size
+    weights = arrays.as_table(hat(n) if w is None else w, n)
+    curves = arrays.as_response(g, n, channels)
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
         raise InputError(
             f"expected weights (n,), not negative and not all 0, got shape {weights.shape}"

@@ -72,10 +72,14 @@ def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") 
     """
     if scheme not in SCHEMES:
         raise InputError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
-    how, h_A, h_B = SCHEMES[scheme], np.asarray(h_A, np.float64), np.asarray(h_B, np.float64)
+    how = SCHEMES[scheme]
+    h_A = np.asarray(h_A, np.float64)
+    h_B = np.asarray(h_B, np.float64)
     n = len(h_A)
-    level, top = np.arange(n) * (255 / (n - 1)), 255 * SATURATED
-    T, back = how.transfer(h_A, h_B) * (255 / (n - 1)), how.transfer(h_B, h_A) * (255 / (n - 1))
+    level = np.arange(n) * (255 / (n - 1))
+    top = 255 * SATURATED
+    T = how.transfer(h_A, h_B) * (255 / (n - 1))
+    back = how.transfer(h_B, h_A) * (255 / (n - 1))
     a = (h_A > 0) & (level >= how.dark) & (T >= how.bright) & (T < top)  # NaN is neither
     b = (h_B > 0) & (level >= how.bright) & (level < top) & (back >= how.dark)
     v = np.sqrt(np.concatenate([h_A[a] / h_A.sum(), h_B[b] / h_B.sum()]))

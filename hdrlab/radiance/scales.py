@@ -50,7 +50,8 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     >>> fit_channel_scales(M * [2, 5, 4], M).round(6)
     array([2.5 , 1.  , 1.25])
     """
-    I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
+    I = np.asarray(I, np.float64)  # noqa: E741
+    M = np.asarray(M, np.float64)
     if I.shape != M.shape or I.shape[-1:] != (3,) or I.size == 0:
         raise InputError(
             f"expected radiance and brightness (..., 3), got {describe(I)} and {describe(M)}"
@@ -59,7 +60,8 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
         raise InputError(
             f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}"
         )
-    I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741
+    I = I.reshape(-1, 3)  # noqa: E741
+    target = chromaticity(M.reshape(-1, 3))
     first = np.median(np.log(target / I), axis=0)
 
     def misses(ln_k: F64) -> F64:
@@ -94,7 +96,8 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     240.0
     """
     L = luminance(as_radiance(E))
-    reach, inside = max(1, L.shape[1] // 200), 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
+    reach = max(1, L.shape[1] // 200)
+    inside = 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
     seen = (
         L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
     )

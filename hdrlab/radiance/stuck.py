@@ -30,9 +30,11 @@ def find_stuck(shortest: Array, longest: Array) -> Mask:
     >>> int(find_stuck(shortest, longest).sum())
     1
     """
-    quarter, found = (np.iinfo(shortest.dtype).max + 1) // 4, np.zeros(shortest.shape[:2], bool)
+    quarter = (np.iinfo(shortest.dtype).max + 1) // 4
+    found = np.zeros(shortest.shape[:2], bool)
     for top in range(0, len(found), ROWS):
-        a, b = shortest[top : top + ROWS], longest[top : top + ROWS]
+        a = shortest[top : top + ROWS]
+        b = longest[top : top + ROWS]
         still = np.maximum(a, b) - np.minimum(a, b) < quarter // 8
         y, x, c = np.unravel_index(np.flatnonzero(still), still.shape)
         for frame, sign in (
@@ -56,7 +58,8 @@ def _neighbour(
     y: Array, x: Array, step: tuple[int, int], shape: tuple[int, ...]
 ) -> tuple[Array, Array]:
     """Return the neighbours' coordinates in one direction, reflected at the border."""
-    (bottom, right), (dy, dx) = (shape[0] - 1, shape[1] - 1), step
+    bottom, right = (shape[0] - 1, shape[1] - 1)
+    dy, dx = step
     return bottom - abs(bottom - abs(y + dy)), right - abs(right - abs(x + dx))
 
 

@@ -45,7 +45,8 @@ def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike) -> F64:
     >>> float(variance(np.array(1.0), np.array(0.0), 100, 0)) ** 0.5  # of 100 electrons, 10 by chance
     0.1
     """
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X / N + (R / N) ** 2 + D**2 / 12
 
 
@@ -148,17 +149,21 @@ def merge_with_deviation(
     (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
     """
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
-    Z, c = stack.reshape(*stack.shape[:3], -1), np.arange(stack[0, 0, 0].size)
+    Z = stack.reshape(*stack.shape[:3], -1)
+    c = np.arange(stack[0, 0, 0].size)
     for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
             raise InputError(
                 f"expected {name} of at least {floor:g}, one or one a channel, got {value}"
             )
-    table, steps, R = np.exp(curves), np.gradient(np.exp(curves), axis=0), np.asarray(R, np.float64)
+    table = np.exp(curves)
+    steps = np.gradient(np.exp(curves), axis=0)
+    R = np.asarray(R, np.float64)
     E, s = np.empty((2, *Z.shape[1:]))
     for y, row in enumerate(Z.swapaxes(0, 1)):  # the processor's cache holds one
-        X, D = table[row, c], steps[row, c]
+        X = table[row, c]
+        D = steps[row, c]
         measured = (X < np.minimum(table[top], table[-1] - FULL * R / N)) & (
             (row > 0) | (D < R / N)
         )

@@ -51,5 +51,6 @@ SUBJECTS = {"backlight": backlight, "snow": snow, "locomotive": locomotive}
 def _read(name: str, shape: Shape) -> Subject:
     """Return a Subject; of its pixels those that it covers wholly are its mask."""
     picture = resample(read_layers(FOLDER / f"{name}.exr")["subject"], shape)
-    E, mask = picture[..., :3], picture[..., 3] > 0.99
+    E = picture[..., :3]
+    mask = picture[..., 3] > 0.99
     return Subject(E, mask, float(luminance(E)[mask].mean()) / LIGHT[name] if mask.any() else 0.0)

@@ -32,7 +32,7 @@ LAWS = ("exposure",)
 SIGMA_FRACTION = 0.08
 # luminance, in medians
 MAX_RELATIVE_LUMINANCE = np.float32(1e30)
-TINY = 1e-37
+SMALLEST_DIVISOR = 1e-37
 
 
 class State(NamedTuple):
@@ -54,19 +54,19 @@ def choose_sigma(L: F32, sigma: float | None = None) -> float:
 
 def divide_by_median(L: F32) -> F32:
     """Return L divided by its median, and limited to 1e30 so that sums stay finite in float32."""
-    median = np.float32(max(extremes.positive_median(L), TINY))
+    median = np.float32(max(extremes.positive_median(L), SMALLEST_DIVISOR))
     with np.errstate(over="ignore"):
         return np.minimum(L / median, MAX_RELATIVE_LUMINANCE)
 
 
 def scale(L: F32, *, headroom: float = 8.0, sigma: float | None = None) -> F32:
     """Return s = 1 / (k blur(L)) [Battiato08 eq. 1.28, whose further factor L is a misprint]."""
-    return 1 / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), TINY)
+    return 1 / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)
 
 
 def clamp(s: F32, L: F32) -> F32:
     """Return min(s, 1 / L): no pixel above white [Chiu93]."""
-    return np.minimum(s, 1 / np.maximum(L, TINY))
+    return np.minimum(s, 1 / np.maximum(L, SMALLEST_DIVISOR))
 
 
 def smooth(s: F32, L: F32) -> F32:
@@ -105,7 +105,7 @@ def halo(
     A positive value is a bright halo, a negative one a dark halo. The base is a bilateral mean as
     wide as the blur, over neighbours that differ by up to about `contrast` decades.
     """
-    floor = 1e-6 * max(extremes.positive_median(L), TINY)
+    floor = 1e-6 * max(extremes.positive_median(L), SMALLEST_DIVISOR)
     lL = np.log10(np.maximum(L, floor))
     base = bilateral(lL, sigma_s=choose_sigma(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))

@@ -55,7 +55,8 @@ def log_luminance(L: F32) -> F32:
 def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
     """Return r = g +- (sigma min(d / sigma, 1)^alpha + beta max(d - sigma, 0)), d = |lL - g| [Paris11]."""
     d = np.abs(lL - g)
-    detail, edge = sigma * np.minimum(d / sigma, 1) ** alpha, beta * np.maximum(d - sigma, 0)
+    detail = sigma * np.minimum(d / sigma, 1) ** alpha
+    edge = beta * np.maximum(d - sigma, 0)
     return g + np.sign(lL - g) * (detail + edge)
 
 

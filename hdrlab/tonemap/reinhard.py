@@ -106,7 +106,8 @@ def scale_steps(
     blurred: Iterable[F32], *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
 ) -> Iterator[Scale]:
     """Yield the Scale of each width, from small to large, given V1 at every width [Reinhard02]."""
-    even, adaptation = np.array(True), np.zeros(1, np.float32)
+    even = np.array(True)
+    adaptation = np.zeros(1, np.float32)
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)

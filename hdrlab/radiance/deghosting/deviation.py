@@ -72,7 +72,9 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
     >>> np.sqrt(measure_deviation(taken, np.ones(256)).v).round(3)
     array([[0.   , 0.347]], dtype=float32)
     """
-    pixels, tables, x = taken.images, moment_tables(taken, w), taken.x.astype(np.float32)
+    pixels = taken.images
+    tables = moment_tables(taken, w)
+    x = taken.x.astype(np.float32)
     out = np.empty((3, *pixels.shape[1:3]), np.float32)
     for start in range(0, out.shape[1], ROWS):
         rows = slice(start, start + ROWS)
@@ -91,7 +93,9 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
                     x[j, c].take(high[..., c]) - x[j, c].take(low[..., c])
                 )
         total = np.maximum(sums[0].real, 1e-9)
-        mean, square, s2 = sums[0].imag / total, sums[1].real / total, sums[1].imag / total
+        mean = sums[0].imag / total
+        square = sums[1].real / total
+        s2 = sums[1].imag / total
         out[:, rows] = [
             one.mean(axis=-1) for one in (np.maximum(square - mean**2, 0), s2, spans / total)
         ]
@@ -105,7 +109,8 @@ def find_clipped_elsewhere(taken: Calibrated, E: F32) -> Mask:
     v is 0. An edge that is off by a pixel does not count, and neither does the light around a lamp:
     see FAR.
     """
-    brightest, out = maximum_filter(E, (3, 3, 1)), np.zeros(E.shape[:2], bool)
+    brightest = maximum_filter(E, (3, 3, 1))
+    out = np.zeros(E.shape[:2], bool)
     for j, Z in enumerate(taken.images):
         bound = np.exp(taken.x[j, :, taken.top] - FAR).astype(np.float32)
         darker = ((Z >= taken.top) & (brightest < bound)).all(axis=-1)
@@ -130,11 +135,13 @@ def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:
 def local_extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
     """Return the lowest and the highest level in the 3 x 3 pixels around each of some rows."""
     last = len(frame) - 1
-    above, below = max(rows.start - 1, 0), min(rows.stop, last) + 1
+    above = max(rows.start - 1, 0)
+    below = min(rows.stop, last) + 1
     slab = np.pad(
         frame[above:below], [(rows.start == 0, rows.stop > last), (1, 1), (0, 0)], mode="edge"
     )
-    low, high = slab, slab
+    low = slab
+    high = slab
     for axis in (0, 1):
         low, high = (
             _three(one, axis, best) for one, best in ((low, np.minimum), (high, np.maximum))

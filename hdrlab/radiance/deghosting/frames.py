@@ -31,7 +31,8 @@ PIXELS = 300_000
 # ln E: a larger bias is that of a figure that fills its bin, and stays
 LARGEST = 0.25
 # of kappa: no level is surer than its rounding, and none is worth nothing
-LEAST, MOST = 1.0, 8.0
+LEAST = 1.0
+MOST = 8.0
 
 
 class Calibrated(NamedTuple):
@@ -86,10 +87,13 @@ def calibrate_frames(
     20.0
     """
     stack, seconds, _, curves, first_clipped = as_tables(images, times, g, None, "log", TOP)
-    mask, Z, E = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1), as_radiance(E)
+    mask = as_mask(valid, stack)
+    Z = stack.reshape(*stack.shape[:3], -1)
+    E = as_radiance(E)
     if E.shape != stack.shape[1:]:
         raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
-    s, x = level_noise(curves.T), curves.T - np.log(seconds)[:, None, None]
+    s = level_noise(curves.T)
+    x = curves.T - np.log(seconds)[:, None, None]
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
     with np.errstate(divide="ignore"):
         lE = np.log(E[::step, ::step]).reshape(-1, Z.shape[-1])
@@ -111,7 +115,8 @@ def fit_bias(Z: Array, rho: F64, s: F64) -> tuple[F64, F64]:
     n = len(s)
     at = (np.arange(BINS) + 0.5) * n / BINS
     inside = Z > 0  # level 0 is a bound, and no measurement
-    Z, rho = Z[inside], rho[inside]
+    Z = Z[inside]
+    rho = rho[inside]
     order = np.argsort(Z.astype(np.intp) * BINS // n, kind="stable")
     counts = np.bincount(Z.astype(np.intp) * BINS // n, minlength=BINS)
     groups = np.split(order, np.cumsum(counts)[:-1])
@@ -132,7 +137,8 @@ def mean_losses(taken: Calibrated, labels: Labels) -> F64:
 
     A level costs the variance of its ln E, and 1, the most, where it measures nothing.
     """
-    cost, boxes = np.minimum(taken.s2, 1.0).astype(np.float32), ndimage.find_objects(labels)
+    cost = np.minimum(taken.s2, 1.0).astype(np.float32)
+    boxes = ndimage.find_objects(labels)
     cost[..., 0] = cost[..., taken.top :] = 1
     out = np.ones((len(taken.images), len(boxes)))
     for j, r in np.ndindex(*out.shape):

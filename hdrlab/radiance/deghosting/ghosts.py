@@ -191,16 +191,19 @@ def remove_ghosts(
     (np.int32(1), (60, 90))
     """
     stack = as_stack(images)
-    mask, margin = as_mask(valid, stack), max(4, round(stack.shape[2] / 150))
+    mask = as_mask(valid, stack)
+    margin = max(4, round(stack.shape[2] / 150))
     if fixed is not None and fixed not in range(len(stack)):
         raise InputError(
             f"expected the number of a frame, 0 to {len(stack) - 1}, as fixed, got {fixed}"
         )
     w = weights.hat(levels(stack)) if w is None else w
     merged = merged or merge(stack, times, g, w, valid=mask)
-    E, quality = merged.E.copy(), merged.quality.copy()
+    E = merged.E.copy()
+    quality = merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
-    plain, found = merged.E.reshape(taken.images.shape[1:]), deviation.measure_deviation(taken, w)
+    plain = merged.E.reshape(taken.images.shape[1:])
+    found = deviation.measure_deviation(taken, w)
     found.v[deviation.find_clipped_elsewhere(taken, plain)] = (
         np.inf
     )  # no edge and no noise explains that
@@ -216,10 +219,8 @@ def remove_ghosts(
     alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
-        here, frames = (
-            labels[wide] == r + 1,
-            select_frames(taken, wide, int(chosen[r]), alone=alone),
-        )
+        here = labels[wide] == r + 1
+        frames = select_frames(taken, wide, int(chosen[r]), alone=alone)
         still = merge(stack[:, y, x], times, g, w, valid=frames)
         E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
         quality[wide][here] = still.quality[here]
@@ -235,7 +236,8 @@ def note(found: Ghosts, names: Sequence[str]) -> str:
     per_frame = ", ".join(
         f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True)
     )
-    count, share = len(found.references), 100 * np.mean(found.labels > 0)
+    count = len(found.references)
+    share = 100 * np.mean(found.labels > 0)
     number = "one region" if count == 1 else f"{count} regions"
     text = f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
     return (

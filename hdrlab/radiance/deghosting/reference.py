@@ -49,7 +49,8 @@ class Estimate(NamedTuple):
 
 def read_frame(taken: Calibrated, j: int, box: Box) -> Estimate:
     """Return the estimate of one frame in a box: E = exp x(Z), V = E^2 s2(Z), or a bound."""
-    Z, x = taken.images[j][box], taken.x[j]
+    Z = taken.images[j][box]
+    x = taken.x[j]
     E = np.stack([np.exp(x[c]).astype(np.float32)[Z[..., c]] for c in range(len(x))], axis=-1)
     V = (
         np.stack([taken.s2[j, c].astype(np.float32)[Z[..., c]] for c in range(len(x))], axis=-1)
@@ -58,7 +59,8 @@ def read_frame(taken: Calibrated, j: int, box: Box) -> Estimate:
     shown = (
         np.ones((*Z.shape[:2], 1), bool) if taken.valid is None else taken.valid[j][box][..., None]
     )
-    clipped, dark = (Z >= taken.top) & shown, (Z == 0) & shown
+    clipped = (Z >= taken.top) & shown
+    dark = (Z == 0) & shown
     V[clipped | dark | ~shown] = np.inf
     low = np.where(clipped, np.exp(x[:, taken.top]).astype(np.float32), np.float32(0))
     high = np.where(dark, np.exp(x[:, 1]).astype(np.float32), np.float32(np.inf))
@@ -68,14 +70,17 @@ def read_frame(taken: Calibrated, j: int, box: Box) -> Estimate:
 def find_consistent(known: Estimate, other: Estimate, *, tau: float) -> Mask:
     """Return where two estimates are consistent, with all of the neighbourhood, (H, W)."""
     both = known.measured & other.measured
-    share, E = np.maximum(_box_mean(both), np.float32(1e-6)), np.where(both, known.E, 0)
-    mean, D = _box_mean(E) / share, np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
+    share = np.maximum(_box_mean(both), np.float32(1e-6))
+    E = np.where(both, known.E, 0)
+    mean = _box_mean(E) / share
+    D = np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
     # a running mean rounds below 0, too
     sigma = (
         np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT)
         / share
     )
-    filled, size = np.where(both, E, mean), (BOX, BOX, 1)
+    filled = np.where(both, E, mean)
+    size = (BOX, BOX, 1)
     reach = (maximum_filter(filled, size) - minimum_filter(filled, size)) * np.float32(SHIFT / BOX)
     differ = np.any(D > SIGMAS * sigma + tau * mean + reach, axis=-1)
     violated = np.any(_violates(known, other, tau) | _violates(other, known, tau), axis=-1)
@@ -102,7 +107,8 @@ def join(known: Estimate, other: Estimate, where: Mask) -> Estimate:
         share = known.V / (known.V + other.V)  # of the other one
         E = np.where(joins & known.measured, known.E + share * (other.E - known.E), other.E)
         V = np.where(joins & known.measured, share * other.V, other.V)
-    E, V = np.where(joins, E, known.E), np.where(joins, V, known.V)
+    E = np.where(joins, E, known.E)
+    V = np.where(joins, V, known.V)
     low = np.maximum(known.low, np.where(here, other.low, 0))
     high = np.minimum(known.high, np.where(here, other.high, np.inf))
     return Estimate(E, V, known.measured | joins, low.astype(np.float32), high.astype(np.float32))

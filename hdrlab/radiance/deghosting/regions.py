@@ -52,7 +52,8 @@ def feather(labels: Labels, width: int) -> F32:
 
 def blend(E: F32, other: F32, alpha: F32) -> F32:
     """Return E^(1 - alpha) other^alpha: the seam is even in stops, as the eye sees it."""
-    a, both = alpha if E.ndim == 2 else alpha[..., None], (E > 0) & (other > 0)
+    a = alpha if E.ndim == 2 else alpha[..., None]
+    both = (E > 0) & (other > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         mixed = np.exp((1 - a) * np.log(E) + a * np.log(other))
     return np.where(a == 0, E, np.where((a == 1) | ~both, other, mixed)).astype(np.float32)

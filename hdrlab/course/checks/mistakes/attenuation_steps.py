@@ -4,7 +4,7 @@ import numpy as np
 
 from hdrlab.core.filters.pyramid import depth, gaussian, interpolate
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.tonemap.fattal import SMALLEST, Level, attenuation, slope
+from hdrlab.tonemap.fattal import MIN_LEVEL_SIDE, Level, attenuation, slope
 
 
 @mistake(
@@ -16,7 +16,7 @@ def power_inverted(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     def attenuation(slope, mean, *, alpha, beta, noise):
         return (np.maximum(slope / (mean or 1), noise) / alpha) ** (1 - beta)
 
-    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
     Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)
@@ -31,7 +31,7 @@ def power_inverted(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     "level for all.",
 )
 def mean_of_the_finest(lL, *, alpha=0.1, beta=0.9, noise=0.01):
-    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
     Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)
@@ -48,7 +48,7 @@ def mean_of_the_finest(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     "slopes there, and comes through.",
 )
 def finest_alone(lL, *, alpha=0.1, beta=0.9, noise=0.01):
-    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
     Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)
@@ -64,7 +64,7 @@ def finest_alone(lL, *, alpha=0.1, beta=0.9, noise=0.01):
 )
 def phi_of_the_coarser(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     coarser_phi = None
-    levels = gaussian(lL, depth(lL.shape, SMALLEST))
+    levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
     Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)

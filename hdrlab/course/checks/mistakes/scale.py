@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.tonemap.chiu import TINY, choose_sigma
+from hdrlab.tonemap.chiu import SMALLEST_DIVISOR, choose_sigma
 
 
 @mistake(
@@ -21,7 +21,7 @@ def blur_of_the_inverse(L, *, headroom=8.0, sigma=None):
     "bright pixels find room.",
 )
 def headroom_above(L, *, headroom=8.0, sigma=None):
-    return headroom / np.maximum(gaussian_filter(L, choose_sigma(L, sigma)), TINY)
+    return headroom / np.maximum(gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)
 
 
 @mistake(
@@ -30,7 +30,7 @@ def headroom_above(L, *, headroom=8.0, sigma=None):
     "factor L, where it is printed, is a misprint, and makes L^2 of the picture.",
 )
 def times_luminance(L, *, headroom=8.0, sigma=None):
-    return L / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), TINY)
+    return L / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)
 
 
 @mistake(
@@ -40,4 +40,4 @@ def times_luminance(L, *, headroom=8.0, sigma=None):
     misses_method=True,
 )
 def not_blurred(L, *, headroom=8.0, sigma=None):
-    return 1 / np.maximum(headroom * L, TINY)
+    return 1 / np.maximum(headroom * L, SMALLEST_DIVISOR)
