@@ -3,13 +3,14 @@
 #
 # Due {due}. {total} points. {late}
 #
-# A photograph that holds a whole scene begins before the camera clicks: which exposures, how many? And when
-# they are taken from the hand, it goes on with laying them on each other. Here you write both.
+# Before you can photograph a scene with a high dynamic range, you must decide which exposures you
+# need, and how many. If you take them by hand, you must also align the photos afterwards. In this
+# homework you write both parts.
 #
-# Under each task there is a cell `check("...")`. Run it as often as you like: it says, promise by promise,
-# what holds, and draws what differs. Hints come in three steps, so open the second one only when the first
-# has not helped. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when
-# your work is graded. Helpers of your own go into any cell.
+# Under each task there is a cell `check("...")`. Run it as often as you like. It shows which checks
+# pass and draws what differs. Each check has three hints; open the next one only if the last did
+# not help. Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be
+# imported when your work is graded. You can put helper functions into any cell.
 
 # %%
 import numpy as np
@@ -24,12 +25,14 @@ use_plan("hw1")
 # %% [markdown] about="ev"
 # ## 1 · Exposure value ({points})
 #
-# A camera has three dials, and many settings give the same exposure. The exposure value counts them in
-# stops, factors of two: with the f-number $F$, the time $T$ in seconds and the ISO speed $S$,
+# A camera has three controls, and many combinations give the same exposure. The exposure value (EV)
+# combines them into one number, in stops (factors of two). For the f-number $F$, the time $T$ in
+# seconds and the ISO speed $S$,
 #
 # $$\mathrm{EV} = 2\log_2 F - \log_2 T - \log_2\frac{S}{100}.$$
 #
-# Arguments are numbers or arrays of any shape; a setting that is not positive is a `ValueError`.
+# The arguments are numbers or arrays of any shape. If a setting is not positive, raise a
+# `ValueError`.
 
 # %% task="ev"
 # Return EV = 2 log2 F - log2 T - log2(S / 100).
@@ -37,9 +40,9 @@ use_plan("hw1")
 # %% [markdown] about="equivalent_time"
 # ## 2 · The same exposure with other settings ({points})
 #
-# You close the aperture to get more of the scene sharp. How long must the shutter stay open, so that the
-# sensor gets as much as before? Light grows with $T$ and $S$, and with the aperture's area, which is
-# $1/F^2$ but for a constant:
+# You close the aperture to get more of the scene in focus. How long must the shutter now stay open
+# to give the same exposure as before? Exposure is proportional to $T$, to $S$ and to the area of
+# the aperture, which is proportional to $1/F^2$:
 #
 # $$T' = T \left(\frac{F'}{F}\right)^2 \frac{S}{S'}.$$
 
@@ -47,11 +50,11 @@ use_plan("hw1")
 # Return T' = T (F' / F)^2 S / S': the time that gives the same exposure with other settings.
 
 # %% [markdown] about="count"
-# ## 3 · How many photographs? ({points})
+# ## 3 · How many photos? ({points})
 #
-# A scene spans so many stops, one photograph holds $R$ of them (`usable`), and neighbours shall share $O$
-# (`overlap`, less than $R$), so that the response can be found. The first photograph covers $R$, each further
-# one adds $R - O$:
+# One photo covers $R$ stops (`usable`). Neighboring photos must share $O$ stops (`overlap`, less
+# than $R$), so that the response curve can be estimated. The first photo covers $R$ stops of the
+# scene, and each further photo adds $R - O$:
 #
 # $$n = 1 + \left\lceil \frac{\text{scene} - R}{R - O} \right\rceil, \qquad\text{and at least } 1.$$
 
@@ -59,12 +62,12 @@ use_plan("hw1")
 # Return n = 1 + ceil((scene - R) / (R - O)), all in stops, and at least 1.
 
 # %% [markdown]
-# ## The photographs
+# ## The photos
 #
-# A room, photographed from the hand: five exposures, each shifted by some pixels. Levels cannot be compared
-# between them, since each is exposed otherwise. But a pixel brighter than the median of the scene is
-# brighter than the median in *every* photograph. Ward's method compares only this: one bit for each pixel,
-# the median threshold bitmap (MTB).
+# The photos show a room: five hand-held exposures, each shifted by some pixels. You cannot compare
+# their pixel values directly, since each has a different exposure. But a pixel that is brighter
+# than the median of the scene is brighter than the median in *every* photo. Ward's method compares
+# only that: one bit per pixel, the *median threshold bitmap* (MTB).
 
 # %%
 room = scenes.room((240, 320))
@@ -84,9 +87,10 @@ pictures.picture(
 # %% [markdown] about="threshold"
 # ## 4 · The threshold ({points})
 #
-# The histogram `h` (256,) counts the pixels of each code. The threshold is the lowest code with a share of at
-# least $q$ of the pixels at or below it: the median for $q = 1/2$; where that is clipped one takes another
-# share. Several $q$ may be asked at once: for an array of shares return an array of codes.
+# The histogram `h` (256,) counts the pixels of each pixel value. The threshold is the lowest value
+# for which at least a fraction $q$ of all pixels lie at or below it. For $q = 1/2$ that is the
+# median; if the median is clipped, another fraction is used. $q$ may be an array: then return an
+# array of thresholds.
 
 # %% task="threshold"
 
@@ -111,9 +115,10 @@ pictures.picture(
 # %% [markdown] about="shrink"
 # ## 6 · A level of the pyramid ({points})
 #
-# A hand moves by dozens of pixels, and trying all offsets would take long. So one begins with small
-# pictures: each level has half the size, and each of its pixels is the rounded mean of $2 \times 2$ pixels
-# of the level below; a mean of a half may go up or down. An odd row or column at the end is left out.
+# A hand moves by dozens of pixels, and testing all offsets would take long. So the search starts
+# with small images. Each level of the *image pyramid* has half the size of the level below, and
+# each of its pixels is the rounded mean of $2 \times 2$ pixels. If the mean ends in one half, you
+# may round up or down. Drop an odd row or column at the end.
 
 # %% task="shrink"
 
@@ -130,15 +135,20 @@ pictures.picture(
 # %% [markdown] about="align"
 # ## 8 · Alignment ({points})
 #
-# Now put it together. For a pair, from the coarsest level to the finest: bitmaps and exclusion bitmaps of
-# both; for the nine offsets around twice the one found so far, XOR the bitmaps, AND with both exclusion
-# bitmaps, count; the least count wins, and in a tie the centre does; between two others either may. Of the
-# overlap alone, for the counts of nine overlaps differ in size: compare shares of its pixels. Both images of
-# a pair have the same $q$; the median will do for all checks.
+# Now put everything together. For each pair of images, go from the coarsest level to the finest:
 #
-# Do this for each photograph and its neighbour in brightness, sum the offsets along the chain, and give
-# them relative to the image in the middle of brightness, whose offset is $(0, 0)$; of an even number either
-# of the two in the middle. `bits` is the number of levels, so `bits=6` finds offsets up to 63 pixels.
+# - Compute the bitmaps and exclusion bitmaps of both images. Use the same $q$ for both; the median
+#   is enough for all checks.
+# - Test the nine offsets around twice the offset found so far. For each, XOR the bitmaps, AND the
+#   result with both exclusion bitmaps, and count. Use only the overlap of the images. The nine
+#   overlaps differ in size, so compare counts as fractions of the overlap.
+# - Take the offset with the smallest fraction. In a tie, the center wins; between two others,
+#   either may win.
+#
+# Do this for each photo and its neighbor in brightness, and sum the offsets along the chain. Return
+# them relative to the image in the middle of the brightness order, whose offset is $(0, 0)$. If the
+# number of images is even, use either of the two in the middle. `bits` is the number of levels, so
+# `bits=6` finds offsets up to 63 pixels.
 
 # %% task="align"
 # Return the offsets that lay every image on the one in the middle of their brightness.
@@ -152,10 +162,10 @@ pictures.picture(
 )
 
 # %% [markdown]
-# ## The whole sheet
+# ## All checks
 #
-# The last cell runs all checks, as grading does, with a bar that fills up. What counts is what the grader
-# finds: it draws inputs of its own for you, so answers that only fit the examples do not carry far.
+# The last cell runs all checks with a progress bar, just like grading. Only the grader's result
+# counts. It draws its own inputs for you, so answers that only fit the examples do not get far.
 
 # %%
 check("hw1")

@@ -3,23 +3,23 @@
 #
 # Due {due}. {total} points. {late}
 #
-# A photograph does not hold light. It holds pixel levels, which the camera made from light in a way its
-# maker keeps to himself. Three papers give that way back from a few photographs; you write the heart of
-# each.
+# A photo does not store light. It stores pixel values, which the camera computed from the light by
+# its *camera response function* (CRF). The maker does not publish it. Three papers estimate it from
+# a few photos, and you write the core of each.
 #
-# | letter | what it is | shape |
+# | symbol | meaning | shape |
 # |---|---|---|
-# | $Z_{ij}$ | pixel level, 0 to 255, of sample $i$ in photograph $j$ | (N, P) |
+# | $Z_{ij}$ | pixel value, 0 to 255, of sample $i$ in photo $j$ | (N, P) |
 # | $t_j$, $B_j = \ln t_j$ | exposure time in seconds, and its logarithm | (P,) |
 # | $E_i$ | irradiance of sample $i$; `lE` $= \ln E_i$ | (N,) |
-# | $f$ | the camera's response: $Z = f(E\,t)$ | |
-# | $f^{-1}$, `f_inv` | its inverse, the exposure of each level | (256,) |
-# | $g = \ln f^{-1}$ | its logarithm | (256,) |
-# | $w$ | how far to trust a level | (256,) |
+# | $f$ | the camera's response function: $Z = f(E\,t)$ | |
+# | $f^{-1}$, `f_inv` | its inverse: the exposure of each pixel value | (256,) |
+# | $g = \ln f^{-1}$ | the logarithm of the inverse | (256,) |
+# | $w$ | weight: how much to trust a pixel value | (256,) |
 #
-# Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
-# differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when your
-# work is graded.
+# Under each task there is a cell `check("...")`. It shows which checks pass and draws what differs.
+# Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be imported when
+# your work is graded.
 
 # %%
 import numpy as np
@@ -33,11 +33,11 @@ from hdrlab.show import pictures, plots
 use_plan("hw2")
 
 # %% [markdown]
-# ## The photographs
+# ## The photos
 #
-# Seven photographs of a room, two stops apart, on film; sixty pixels of them are enough to begin with. As
-# long as nobody knows the $E_i$, each pixel's levels over $\ln t$ stand for themselves, as if every $E_i$
-# were 1.
+# The photos show a room: seven exposures, two stops apart, on film. Sixty of their pixels are
+# enough to begin with. The $E_i$ are still unknown, so the figure draws each pixel's values over
+# $\ln t$, as if every $E_i$ were 1.
 
 # %%
 room = scenes.room((240, 320))
@@ -55,27 +55,28 @@ pictures.picture(
 )
 
 # %% [markdown] about="hat"
-# ## 1 · The hat ({points})
+# ## 1 · The hat weight ({points})
 #
-# Near 0 rounding is as large as the signal, near the top the sensor is full. The hat trusts a level by how
-# far it is from both ends: over $n$ levels, $w(z) = z$ below the middle and $n - 1 - z$ above it, scaled to
-# about 1 in the middle. What counts is one weight against another, so any scale will do.
+# Near 0, the rounding error is as large as the signal. Near the top, the sensor is saturated. The
+# hat function weights a pixel value by its distance from both ends: for $n$ values, $w(z) = z$
+# below the middle and $n - 1 - z$ above it, scaled to about 1 in the middle. Only ratios of weights
+# matter, so any scale is right.
 
 # %% task="hat"
 
 # %% [markdown] about="gsolve"
-# ## 2 · Debevec and Malik: one system for all ({points})
+# ## 2 · Debevec and Malik: one system of equations ({points})
 #
-# The camera makes $Z_{ij} = f(E_i t_j)$, hence $g(Z_{ij}) = \ln E_i + B_j$. All $n$ values of $g$ and
-# all $N$ of $\ln E_i$ stand in it linearly. Minimise
+# The camera makes $Z_{ij} = f(E_i t_j)$, so $g(Z_{ij}) = \ln E_i + B_j$. This equation is linear in
+# all $n$ values of $g$ and all $N$ values of $\ln E_i$. Minimize
 #
 # $$\sum_{i,j} \bigl\{ w(Z_{ij})\,[\,g(Z_{ij}) - \ln E_i - B_j\,] \bigr\}^2
 #   + \sum_{z=1}^{n-2} \bigl\{\lambda\, w(z)\,[\,g(z-1) - 2 g(z) + g(z+1)\,] \bigr\}^2.$$
 #
-# Each term is a row of a matrix $A$ with $n + N$ columns, first $g$, then $\ln E$; one further row says
-# $g(n/2) = 0$. That makes $NP + 1 + n - 2$ rows. `np.linalg.lstsq` does the rest; a solver that iterates,
-# like `lsqr`, stops far too early by default: give it `atol=btol=1e-12`, `conlim=0` and `iter_lim=50_000`.
-# $\lambda$ is called `smoothness`, and $n$ is `len(w)`.
+# Each term is a row of a matrix $A$ with $n + N$ columns, first $g$, then $\ln E$. One more row
+# says $g(n/2) = 0$. That makes $NP + 1 + n - 2$ rows. `np.linalg.lstsq` solves the system. An
+# iterative solver such as `lsqr` stops far too early by default: pass `atol=btol=1e-12`, `conlim=0`
+# and `iter_lim=50_000`. The argument for $\lambda$ is `smoothness`, and $n$ is `len(w)`.
 
 # %% task="gsolve"
 # Return g and lE that minimise the sum of squares: the curve, and each sample's ln irradiance.
@@ -90,44 +91,51 @@ pictures.picture(
 # %% [markdown] about="irradiance"
 # ## 3 · Robertson: the best irradiance for a curve ({points})
 #
-# Robertson, Borman and Stevenson ask for the most probable curve under noise, and alternate. First half:
-# were $f^{-1}$ known, each sample's irradiance would be a weighted mean of what its photographs
-# say, $f^{-1}(Z_{ij})/t_j$. Long exposures know better, by $t_j^2$, so
+# Robertson, Borman and Stevenson look for the most probable curve under noise, by alternating
+# between two steps. This is the first step. If $f^{-1}$ were known, the irradiance of each sample
+# would be a weighted mean of the estimates $f^{-1}(Z_{ij})/t_j$ from its photos. Long exposures are
+# more precise, by a factor of $t_j^2$, so
 #
-# $$E_i = \frac{\sum_j w(Z_{ij})\, t_j\, f^{-1}(Z_{ij})}{\sum_j w(Z_{ij})\, t_j^2},$$
+# $$E_i = \frac{\sum_j w(Z_{ij})\, t_j\, f^{-1}(Z_{ij})}{\sum_j w(Z_{ij})\, t_j^2}.$$
 #
-# and NaN for a sample that no photograph saw well, where this is $0/0$.
+# If all weights of a sample are 0, this is $0/0$: return NaN for it.
 
 # %% task="irradiance"
 
 # %% [markdown] about="update"
 # ## 4 · Robertson: the best curve for irradiances ({points})
 #
-# Second half: were the $E_i$ known, $f^{-1}(m)$ would be the mean exposure of all pixels of level $m$,
+# This is the second step. If the $E_i$ were known, $f^{-1}(m)$ would be the mean exposure of all
+# pixels of value $m$:
 #
-# $$f^{-1}(m) = \frac{1}{|E_m|}\sum_{(i,j) \in E_m} E_i\, t_j, \qquad E_m = \{(i,j) : Z_{ij} = m\},$$
+# $$f^{-1}(m) = \frac{1}{|E_m|}\sum_{(i,j) \in E_m} E_i\, t_j, \qquad E_m = \{(i,j) : Z_{ij} = m\}.$$
 #
-# a plain mean, in which the weights have no say. Samples without irradiance are left out; a level without
-# pixels is NaN.
+# It is a plain mean, without weights. Ignore samples whose irradiance is NaN. If a value $m$ has no
+# pixels, its result is NaN.
 
 # %% task="update"
 
 # %% [markdown] about="recover_steps"
-# ## 5 · Robertson: step by step ({points})
+# ## 5 · Robertson: all iterations ({points})
 #
-# Begin with the line of a linear camera, $f^{-1}(m) = m/128$, yield it, and then iterate: irradiances from
-# the curve, the curve from the irradiances, levels without pixels filled from their neighbours (on a line
-# between them, or from the nearest: as you like), and all divided by $f^{-1}(128)$. Yield after every
-# iteration, and end when $f^{-1}$ changes by less than `tolerance` anywhere, or after `max_iterations`.
+# Start with the line of a linear camera, $f^{-1}(m) = m/128$, and yield it. Then iterate:
 #
-# A yielded state begins with $f^{-1}$; that alone, in a tuple, is enough. A list of states will do, too.
+# 1. Compute the irradiances from the curve, and the curve from the irradiances.
+# 2. Fill values without pixels from their neighbors, by linear interpolation or from the nearest,
+#    as you like.
+# 3. Divide the curve by $f^{-1}(128)$, and yield it.
+#
+# Stop when $f^{-1}$ changes by less than `tolerance` everywhere, or after `max_iterations`.
+#
+# A yielded state begins with $f^{-1}$. A tuple with only $f^{-1}$ in it is enough. You may also
+# return a list of states.
 
 # %% task="recover_steps"
 # Yield the state of one channel, before the first iteration and after each.
 
 # %% [markdown] about="recover_steps"
-# **Predict.** Photographs two stops apart leave something open: whatever repeats with a period of two stops
-# in $\ln E$ can be moved from $f^{-1}$ into the $E_i$. What will that look like?
+# **Predict.** Photos that are two stops apart leave something undetermined: any pattern in $\ln E$
+# with a period of two stops can move from $f^{-1}$ into the $E_i$. What will that look like?
 
 # %% about="recover_steps hat"
 states = list(recover_steps(sampling.by_rank(grays, 800), bracket.times, hat()))
@@ -142,20 +150,23 @@ pictures.picture(
 # %% [markdown] about="recover"
 # ## 6 · Mitsunaga and Nayar: a polynomial, and rough times ({points})
 #
-# A response is smooth, so for its inverse a polynomial of low order will do:
-# $f^{-1}(M) = \sum_{k=1}^{K} c_k M^k$, $M = Z/255$, with $f^{-1}(1) = 1$. And a shutter's times are rough, so
-# they are corrected in turn with the curve. For neighbours in time, with the ratio $R_q = t_q / t_{q+1} < 1$,
+# A response function is smooth, so a polynomial of low order can represent its inverse:
+# $f^{-1}(M) = \sum_{k=1}^{K} c_k M^k$ with $M = Z/255$ and $f^{-1}(1) = 1$. Shutter times are only
+# roughly known, so the method corrects them, alternating with the curve. For photos that are
+# neighbors in time, with the ratio $R_q = t_q / t_{q+1} < 1$,
 #
 # $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #
-# is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f^{-1}$ over the two frames
-# (the paper takes the mean of quotients, to which dark pixels add mostly noise); and so on, until $f^{-1}$
-# changes by less than `eps`, or for fifty turns. Each channel may have ratios of its own. The sum begins with
-# $k = 1$, so no light is level 0, where $g = -\infty$; put that there, or a part of what level 1 has.
+# is a least-squares problem in the $c_k$. Then each $R_q$ becomes the sum of $f^{-1}$ over the one
+# frame divided by the sum over the other. (The paper takes the mean of quotients, to which dark
+# pixels add mostly noise.) Repeat both steps until $f^{-1}$ changes by less than `eps`, or for
+# fifty iterations. Each channel may have its own ratios. The sum begins with $k = 1$, so
+# $f^{-1}(0) = 0$ and $g(0) = -\infty$. Return that for value 0, or use a fraction of the exposure
+# of value 1.
 #
-# `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames see well, between 0.05 and 0.98.
-# Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, rising, with $g(128) = 0$ in each channel. Knobs that
-# checks pass: `order` and `eps`.
+# `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames expose well, between 0.05 and
+# 0.98. Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, increasing, with $g(128) = 0$ in each
+# channel. The checks pass the parameters `order` and `eps`.
 
 # %% task="recover"
 
@@ -166,10 +177,10 @@ plots.response(curves, ax=ax)
 pictures.picture(ax, alt="The polynomials of three channels beside the true curve")
 
 # %% [markdown]
-# ## The whole sheet
+# ## All checks
 #
-# The last cell runs all checks, as grading does. The grader draws inputs of its own for you, so answers
-# that only fit the examples do not carry far.
+# The last cell runs all checks, just like grading. The grader draws its own inputs for you, so
+# answers that only fit the examples do not get far.
 
 # %%
 check("hw2")

@@ -3,15 +3,16 @@
 #
 # Due {due}. {total} points. {late}
 #
-# The response is known. Now the photographs become one map of the light in the scene, over more stops than
-# any of them holds, and the map becomes a file that another program can open. Between the two stands an
-# honest question: what do we say of a pixel that no photograph has measured?
+# The response curve is known. Now merge the photos into one radiance map, which covers more stops
+# than any single photo, and write the map to a file that other programs can open. On the way you
+# meet a question of honesty: what should the map say about a pixel that no photo has measured?
 #
-# {choice} The map and two kinds of files, tasks 1 to 6, are enough. A file of more bits, where ghosts
-# are, and how much longer a photograph was exposed may take the place of some, but not of the minimum.
+# {choice} The map and two file formats, tasks 1 to 6, are enough. You can replace some of them, but
+# not the minimum, by a file format with more bits, ghost detection, or the exposure ratio of two
+# photos.
 #
-# Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
-# differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab cannot be imported when
+# Under each task there is a cell `check("...")`. It shows which checks pass and draws what differs.
+# Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be imported when
 # your work is graded.
 
 # %%
@@ -26,9 +27,10 @@ from hdrlab.show import pictures, plots
 use_plan("hw3")
 
 # %% [markdown]
-# ## The photographs
+# ## The photos
 #
-# Five photographs of a room, two stops apart. No single one shows both the window and the dark corner.
+# The photos show a room: five exposures, two stops apart. No single one shows both the window and
+# the dark corner.
 
 # %%
 room = scenes.room((240, 320))
@@ -46,16 +48,19 @@ pictures.picture(
 # %% [markdown] about="merge"
 # ## 1 · The radiance map ({points})
 #
-# Each photograph $j$ says of a pixel: $\ln E = g(Z_j) - \ln t_j$. They disagree a little, and some are
-# clipped, so take the mean, weighted by the trust in their levels [Debevec97 eq. 6]:
+# Each photo $j$ gives an estimate for a pixel: $\ln E = g(Z_j) - \ln t_j$. The estimates differ a
+# little, and some are clipped. So take the mean, weighted by how much you trust the pixel values
+# [Debevec97 eq. 6]:
 #
 # $$\ln E = \frac{\sum_j w(Z_j)\,[\,g(Z_j) - \ln t_j\,]}{\sum_j w(Z_j)}.$$
 #
-# `images` are `(P, H, W[, 3])` bytes, `times` `(P,)` seconds, `g` `(256,)` or one column for each channel,
-# `w` `(256,)`, where none is given the hat of homework 2, which is 0 at both ends. Return $E$ `(H, W[,
-# 3])`. Where all weights are zero the mean is undefined; the next task has an answer, and no check of this
-# one looks there. (The library also drops a frame for all channels of a pixel where one is clipped. No
-# check asks for that either.)
+# - `images` are `(P, H, W[, 3])` bytes, and `times` are `(P,)` seconds.
+# - `g` is `(256,)`, or has one column for each channel.
+# - `w` is `(256,)`. If it is not given, use the hat of homework 2, which is 0 at both ends.
+#
+# Return $E$ `(H, W[, 3])`. If all weights of a pixel are zero, the mean is undefined. The next task
+# deals with such pixels, and no check of this task looks at them. (The library also drops a frame
+# for all channels of a pixel if one channel is clipped. No check asks for that.)
 
 # %% task="merge"
 # Return the radiance map E: the mean of the logarithms, weighted, over the photographs.
@@ -65,30 +70,35 @@ E = merge(bracket.images, bracket.times, g)
 pictures.radiance(E, alt="The radiance map of the room in false colour")
 
 # %% [markdown] about="bound"
-# ## 2 · Pixels that nobody measured ({points})
+# ## 2 · Pixels that no photo measures ({points})
 #
-# The sun is clipped in all photographs, and a mean would have nothing to go by. But a clipped pixel is not
-# unknown: its exposure was *at least* that of the first clipped level, `top`; and that of a dark one, level
-# 0, at most that of level 1:
+# The sun is clipped in all photos, so there is nothing to average. But a clipped pixel is not
+# unknown: its exposure was *at least* that of the first clipped value, `top`. The exposure of a
+# dark pixel, of value 0, was at most that of value 1:
 #
 # $$\ln E \ge g(\mathrm{top}) - B_j \quad\text{(clipped in } j), \qquad
 #   \ln E \le g(1) - B_j \quad\text{(dark in } j).$$
 #
-# The tightest bounds count. With one of them the map takes it; between two it takes the middle of their
-# logarithms; without any, $E = 0$. `Z` is `(P, M)`: levels of $M$ such pixels; `B` `(P,)` ln times; `shown`
-# `(P, M)` is False where a photograph does not show the pixel at all. Return $E$ `(M,)` and flags `(M,)`:
-# the sum of 1 where it was clipped in some photograph that shows it and 2 where it was dark in one, and 8
-# where there is no bound. A level between gives none.
+# Use the tightest bounds. If there is one bound, the map takes it. Between two bounds it takes the
+# middle of their logarithms. Without any bound, $E = 0$.
+#
+# - `Z` is `(P, M)`: the values of $M$ such pixels. A value between 1 and `top` gives no bound.
+# - `B` is `(P,)`: ln times.
+# - `shown` `(P, M)` is False if a photo does not show the pixel at all.
+#
+# Return $E$ `(M,)` and flags `(M,)`. A flag is the sum of 1 if some photo that shows the pixel is
+# clipped there, 2 if one is dark there, and 8 if there is no bound.
 
 # %% task="bound"
 # Return E (M,) and flags (M,) of pixels that no frame measures, from the frames' tightest bounds.
 
 # %% [markdown] about="to_bytes"
-# ## 3 · Writing a portable float map ({points})
+# ## 3 · Write a portable float map ({points})
 #
-# PFM is the simplest file that holds radiance. Three lines of text: `PF` for colour or `Pf` for gray; width
-# and height; and a number whose *sign* says the order of the bytes, negative for little endian; its size
-# says nothing. Then the values, float32, pixel by pixel, and row by row **from the bottom up**.
+# PFM is the simplest file format for radiance. It begins with three lines of text: `PF` for color
+# or `Pf` for gray; width and height; and a number. The *sign* of the number gives the byte order,
+# negative for little endian; its magnitude has no meaning. Then come the values as float32, pixel
+# by pixel, and row by row **from the bottom up**.
 #
 # Return the file as `bytes`.
 
@@ -96,11 +106,11 @@ pictures.radiance(E, alt="The radiance map of the room in false colour")
 # Return the PFM file of radiance (H, W[, 3]), as bytes.
 
 # %% [markdown] about="from_bytes"
-# ## 4 · Reading it again ({points})
+# ## 4 · Read a portable float map ({points})
 #
-# The way back, and files of other programs have to be read, too: the parts of the header may be separated
-# by any white space, the bytes may be in either order, and exactly one white space follows the number. The
-# next byte belongs to the picture, even where it looks like a space.
+# Now read such a file, also if another program wrote it. Any white space may separate the parts of
+# the header, the bytes may be in either order, and exactly one white-space character follows the
+# number. The next byte belongs to the image, even if it looks like a space.
 
 # %% task="from_bytes"
 # Return the values (H, W[, 3]) of a PFM file, given as bytes.
@@ -111,23 +121,24 @@ print(f"{len(data)} bytes for {E.size} values")
 print(f"unchanged when read again: {np.array_equal(from_bytes(data), np.float32(E))}")
 
 # %% [markdown] about="to_pixels"
-# ## 5 · Three mantissas and one exponent ({points})
+# ## 5 · Encode RGBE: three mantissas and one exponent ({points})
 #
-# Radiance RGBE stores a pixel in four bytes. The three channels share the exponent of the brightest:
+# Radiance RGBE stores a pixel in four bytes. The three channels share the exponent of the brightest
+# channel:
 #
 # $$m = \lfloor 256\, E\, 2^{128 - e} \rfloor, \qquad
 #   e \text{ such that the largest } m \text{ lies in } 128 \ldots 255.$$
 #
-# `E` is `(H, W, 3)`; return `(H, W, 4)` bytes, the exponent last. Black is four zeros. `np.frexp` is your
-# friend.
+# `E` is `(H, W, 3)`. Return `(H, W, 4)` bytes, with the exponent last. Black is four zeros.
+# `np.frexp` helps.
 
 # %% task="to_pixels"
 
 # %% [markdown] about="to_radiance"
-# ## 6 · And back ({points})
+# ## 6 · Decode RGBE ({points})
 #
-# $E = \frac{m}{256}\, 2^{e - 128}$, and 0 where $e = 0$. The exponent is a byte: mind what $100 - 128$ is
-# there.
+# $E = \frac{m}{256}\, 2^{e - 128}$, and 0 if $e = 0$. The exponent is a byte: think about what
+# $100 - 128$ is in bytes.
 
 # %% task="to_radiance"
 
@@ -138,16 +149,17 @@ print(
 )
 
 # %% [markdown] about="decode_half"
-# ## 7 · Half a float ({points})
+# ## 7 · Decode half floats ({points})
 #
-# OpenEXR stores a value in 16 bits: the first is the sign $s$, then come five of the exponent $e$, then ten
-# of the mantissa $m$, both whole numbers. They stand for
+# OpenEXR stores a value in 16 bits: first the sign $s$, then five bits of the exponent $e$, then
+# ten bits of the mantissa $m$, both integers. They represent
 #
 # $$(-1)^s\, 2^{e - 15} \Bigl(1 + \frac{m}{1024}\Bigr) \quad (0 < e < 31), \qquad
-#   (-1)^s\, 2^{-14}\, \frac{m}{1024} \quad (e = 0),$$
+#   (-1)^s\, 2^{-14}\, \frac{m}{1024} \quad (e = 0).$$
 #
-# and where $e = 31$ for $\pm\infty$ if $m = 0$, and for NaN else. `bits` is an array of uint16, of any shape;
-# return the values in the same shape, as float32 or float64. (Mind what $e - 15$ is in unsigned numbers.)
+# $e = 31$ represents $\pm\infty$ if $m = 0$, and NaN otherwise. `bits` is an array of uint16, of
+# any shape. Return the values in the same shape, as float32 or float64. (Think about what $e - 15$
+# is in unsigned numbers.)
 
 # %% task="decode_half"
 # Return the values of half floats, given as bits (uint16) of any shape.
@@ -157,17 +169,17 @@ for word in (0x3C00, 0xC100, 0x7BFF, 0x0001, 0x7C00):
     print(f"{word:016b} is {decode_half(np.array([word], np.uint16))[0]:.7g}")
 
 # %% [markdown] about="weighted_variance"
-# ## 8 · Who contradicts whom? ({points})
+# ## 8 · Where do the photos contradict each other? ({points})
 #
-# What moved while the photographs were taken stands in the map several times, half transparent: a ghost. Each
-# photograph answers with an $x = \ln E$ of its own, and where something moved the answers differ. How much
-# they do is the weighted variance, over the photographs,
+# Something that moved between the photos appears in the map several times, semi-transparent: a
+# *ghost*. Each photo gives its own estimate $x = \ln E$, and where something moved, the estimates
+# differ. The weighted variance over the photos measures by how much:
 #
 # $$v = \frac{\sum_j w_j\,(x_j - \bar x)^2}{\sum_j w_j}, \qquad
 #   \bar x = \frac{\sum_j w_j\, x_j}{\sum_j w_j}.$$
 #
-# `x` and `w` are `(P, H, W)`; all $x$ are finite, also where $w = 0$, and no weight is negative. Return $v$
-# `(H, W)`. Where all weights are 0, nobody contradicts: $v = 0$.
+# `x` and `w` are `(P, H, W)`. All $x$ are finite, also where $w = 0$, and no weight is negative.
+# Return $v$ `(H, W)`. Where all weights are 0, no photos contradict each other: $v = 0$.
 
 # %% task="weighted_variance"
 # Return v (H, W), the weighted variance of x (P, H, W) over the photographs; 0 where no w is above 0.
@@ -186,12 +198,13 @@ pictures.picture(
 )
 
 # %% [markdown] about="find_seeds"
-# ## 9 · The threshold of a ghost ({points})
+# ## 9 · Find the seeds of a ghost ({points})
 #
-# Over what noise explains, $\sqrt v$ is a `score` `(H, W)`: above 1 there is a contradiction. But noise has
-# bright specks, and where the camera moved by a pixel each edge is a bright line. What really moved is
-# wider. Mark all pixels of every square of 3 × 3 pixels, wholly in the picture, in which *all* scores are
-# above 1, and no others. Return the mask `(H, W)`, of bool, or 0 and 1.
+# $\sqrt v$ divided by the standard deviation that noise explains is a `score` `(H, W)`: above 1 the
+# photos contradict each other. But noise has bright specks, and if the camera moved by a pixel,
+# each edge is a bright line. Things that really moved are wider. Mark all pixels of every square of
+# 3 × 3 pixels that lies completely in the image and in which *all* scores are above 1, and no other
+# pixels. Return the mask `(H, W)`, of bool, or 0 and 1.
 
 # %% task="find_seeds"
 # Return where the score (H, W) exceeds 1 over at least 3 x 3 pixels.
@@ -203,16 +216,18 @@ pictures.picture(
 )
 
 # %% [markdown] about="dilate"
-# ## 10 · A margin for ghosts ({points})
+# ## 10 · Dilate the mask and fill its holes ({points})
 #
-# Where something moved, a mask (H, W) marks pixels that the photographs contradict each other about.
-# Movement is seen at outlines, so the mask is widened: to it belongs every pixel of which the middle is
-# at most `margin` pixels from the middle of a pixel of the mask, by the straight line, and then all that
-# the widened mask encloses, its holes. (A hole is what no walk from pixel to neighbour, above, below, left or
-# right, leads out of the picture from.)
+# A mask (H, W) marks pixels where the photos contradict each other. Movement is visible at
+# outlines, so the mask must grow in two steps:
 #
-# (`mask` is an array of bool, `margin` a whole number above 0. An empty mask stays empty. The answer is
-# of bool, or 0 and 1.)
+# 1. Add every pixel whose center is at most `margin` pixels, in a straight line, from the center of
+#    a pixel of the mask.
+# 2. Add all holes, that is, everything that the grown mask encloses. A pixel lies in a hole if no
+#    path of steps up, down, left or right, outside the grown mask, leads from it out of the image.
+#
+# (`mask` is an array of bool, and `margin` an integer above 0. An empty mask stays empty. The
+# result is of bool, or 0 and 1.)
 
 # %% task="dilate"
 # Return the mask (H, W), all within margin pixels of it, and what that encloses.
@@ -226,12 +241,12 @@ pictures.picture(
 )
 
 # %% [markdown] about="label"
-# ## 11 · Ghost by ghost ({points})
+# ## 11 · Label the regions ({points})
 #
-# Each region takes its pixels from one photograph, so regions are told apart: pixels of the mask belong
-# to one region if a walk within the mask leads from one to the other, each step to one of eight
-# neighbours, across corners too. Label the regions from 1 to their number, in whichever order, and with 0
-# what is not in the mask.
+# Each ghost region takes its pixels from one photo, so you must separate the regions. Two pixels of
+# the mask belong to one region if a path within the mask connects them; each step of the path goes
+# to one of the eight neighbors, including diagonal ones. Label the regions from 1 to their number,
+# in any order. Pixels outside the mask get 0.
 
 # %% task="label"
 # Return labels (H, W) of the connected regions of a mask of bool, 0 elsewhere.
@@ -245,21 +260,24 @@ pictures.picture(
 )
 
 # %% [markdown] about="ratio_steps"
-# ## 12 · How much longer? The ratio of a linear camera ({points})
+# ## 12 · The exposure ratio of a linear camera ({points})
 #
-# A linear camera's level is its exposure. So if one photograph was exposed $k$ times as long as another, a
-# level $x$ of the one belongs to $y = k\, x$ of the other, and pairs of such levels, each with a weight
-# $v$, say what $k$ is (Cerman and Hlavac, 2006). Least squares make $\sum \bigl(v\,(y - k\,x)\bigr)^2$
-# smallest, over the pairs in use. Some pairs are wrong, as of what moved; they are found in rounds:
+# A linear camera's pixel value is proportional to exposure. So if one photo got $k$ times the
+# exposure of another, a value $x$ of the one corresponds to $y = k\, x$ of the other. Pairs of such
+# values, each with a weight $v$, determine $k$ (Cerman and Hlavac, 2006). Least squares minimize
+# $\sum \bigl(v\,(y - k\,x)\bigr)^2$ over the pairs in use. Some pairs are wrong, for example
+# because something moved. They are found in rounds:
 #
-# 1. At first all pairs are in use. Take $k$, and the mean $V$ of $\bigl(v\,(y - k\,x)\bigr)^2$ over them.
-# 2. In a round those pairs are in use whose $\bigl(v\,(y - k\,x)\bigr)^2$ is at most `limit` times $V$,
-#    with $k$ and $V$ of the last state. All pairs are asked, those that are out, too. Then $k$ and $V$
-#    anew, of these.
-# 3. End after the round in which $k$ changed by less than `tolerance`, or after so many `rounds`.
+# 1. At first all pairs are in use. Compute $k$, and the mean $V$ of $\bigl(v\,(y - k\,x)\bigr)^2$
+#    over them.
+# 2. In each round, use the pairs whose $\bigl(v\,(y - k\,x)\bigr)^2$ is at most `limit` times $V$,
+#    with $k$ and $V$ of the last state. Test all pairs, including those that are not in use. Then
+#    compute $k$ and $V$ again from the pairs in use.
+# 3. Stop after the round in which $k$ changed by less than `tolerance`, or after the given number
+#    of `rounds`.
 #
-# `found` is a tuple of three arrays, $(x, y, v)$, each `(K,)`. Yield $(k, \text{used}, V)$ of the first
-# state, and after each round; `used` is a mask `(K,)`. A list of states will do, too.
+# `found` is a tuple of three arrays, $(x, y, v)$, each `(K,)`. Yield $(k, \text{used}, V)$ of the
+# first state and after each round; `used` is a mask `(K,)`. You may also return a list of states.
 
 # %% task="ratio_steps"
 # Yield (k, used, V) of all pairs, and after each round; found = (x, y, v).
@@ -273,7 +291,7 @@ for k, used, V in ratio_steps((darker, brighter, np.ones(300))):
     print(f"k = {k:.4f} by {np.count_nonzero(used)} pairs, which miss by {np.sqrt(V):.2f}")
 
 # %% [markdown]
-# ## The whole sheet
+# ## All checks
 
 # %%
 check("hw3")

@@ -3,32 +3,34 @@
 #
 # Due {due}. {total} points. {late}
 #
-# Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer
-# made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and for displays
-# that are brighter than paper a code and a map of gains. Then questions of the lecture that no other sheet
-# asks: a sensor's gain, levels that two histograms bring together, how sure a level is, what a good pixel is,
-# what a meter asks for and of whom, and where a surface is even. You write the heart of each.
+# The first tasks are about methods that are newer than the lecture: a radiance map with a standard
+# deviation for each pixel, a base layer from local linear fits (the guided filter), contrast
+# compression at each scale without a base layer (the local Laplacian filter), and PQ coding and
+# gain maps for HDR screens. The others are parts of the lecture that no other homework covers: the
+# gain of a sensor, the brightness transfer between two histograms, the signal-to-noise ratio of a
+# pixel value, the weights of exposure fusion, metering, and flat patches. You write the core of
+# each.
 #
 # {choice}
 #
-# | letter | what it is | shape |
+# | symbol | meaning | shape |
 # |---|---|---|
-# | $X$, $D$ | exposure, and the step of exposures that are rounded to one level | (P, H, W) |
-# | $N$, $R$ | electrons of a pixel at the exposure 1, and read noise in electrons | |
+# | $X$, $D$ | exposure, and the width of the exposures of one pixel value | (P, H, W) |
+# | $N$, $R$ | electrons of a pixel at exposure 1, and read noise in electrons | |
 # | $t$ | exposure times, s | (P,) |
 # | $E$, $s$ | radiance, and its standard deviation | (H, W) |
 # | $l$ | $\ln$ luminance, `lL` | (H, W) |
-# | $I$, $p$, $q$ | guide, picture, and the picture smoothed | (H, W) |
+# | $I$, $p$, $q$ | guide, image, and smoothed image | (H, W) |
 # | $F_D$ | luminance that a display shows, cd/m² | any |
-# | $G$ | gain, stops; of a map of gains, $g$ | (H, W, 3) |
-# | $S$, $V$ | signal in levels, and variance in levels², of pairs of photographs | (M,) |
-# | $h_A$, $h_B$; $T$ | histograms of two photographs; the level in $B$ of each level of $A$ | (n,) |
-# | $g$, $w$ | logarithm of each level's exposure, and its weight | (n,) |
-# | $F$, $W$ | a photograph from 0 to 1, its channels as planes; its weight | (3, H, W); (H, W) |
+# | $G$, $g$ | gain in stops; gain map | (H, W, 3) |
+# | $S$, $V$ | signal in pixel values, and variance in squared pixel values, of pairs of photos | (M,) |
+# | $h_A$, $h_B$; $T$ | histograms of two photos; the value in $B$ for each value of $A$ | (n,) |
+# | $g$, $w$ | logarithm of the exposure of each pixel value, and its weight | (n,) |
+# | $F$, $W$ | a photo from 0 to 1, its channels as planes; its weight | (3, H, W); (H, W) |
 #
-# Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
-# differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when your
-# work is graded.
+# Under each task there is a cell `check("...")`. It shows which checks pass and draws what differs.
+# Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be imported when
+# your work is graded.
 
 # %%
 import numpy as np
@@ -51,16 +53,18 @@ L = colour.luminance(room)
 pictures.radiance(room, alt="The room's radiance in false colour")
 
 # %% [markdown] about="variance"
-# ## 1 · The noise of one photograph ({points})
+# ## 1 · The noise of one photo ({points})
 #
-# A sensor counts photons, which come by chance: of a count the variance is the count itself. At the exposure
-# $X$ that is $X N$ electrons. Reading it out adds noise of its own, $R$ electrons whatever the light is, a
-# standard deviation. At last the value is rounded to a level: all exposures of a step, $D$ wide, come out as
-# one, and the true one lies anywhere in it, with equal chance.
+# A sensor counts photons, which arrive at random: the variance of a count equals the count itself
+# (*shot noise*). At exposure $X$ the count is $X N$ electrons. Reading it out adds *read noise*:
+# $R$ electrons of standard deviation, independent of the light. At last the value is rounded to a
+# pixel value. All exposures in an interval of width $D$ are rounded to the same value, and the true
+# one lies anywhere in the interval, with equal probability.
 #
-# What is the variance $V$ of the exposure $X$? Mind the units: two of the three are given in electrons, and
-# $N$ electrons are an exposure of 1. The three know nothing of one another. `X` and `D` are arrays of one
-# shape, `N` and `R` numbers, or arrays of that shape; return $V$ in the shape of `X`.
+# What is the variance $V$ of the exposure $X$? Think about the units: two of the three terms are
+# given in electrons, and $N$ electrons are an exposure of 1. The three are independent. `X` and `D`
+# are arrays of one shape; `N` and `R` are numbers, or arrays of that shape. Return $V$ in the shape
+# of `X`.
 
 # %% task="variance"
 # Return the variance V of the exposure X: of photons, of the amplifier, and of rounding.
@@ -85,23 +89,24 @@ pictures.picture(
 )
 
 # %% [markdown] about="inverse_variance_merge"
-# ## 2 · The surest mean ({points})
+# ## 2 · The inverse-variance mean ({points})
 #
-# Each photograph answers with a radiance, $x = X / t$, whose variance is
-# $V = \operatorname{variance}(X, D, N, R) / t^2$. Of all means, the one in which each answer counts by the
-# inverse of its variance errs least ([Granados and others, 2010](https://doi.org/10.1109/CVPR.2010.5540208)),
-# and it comes with its own standard deviation:
+# Each photo gives an estimate of the radiance, $x = X / t$, with the variance
+# $V = \operatorname{variance}(X, D, N, R) / t^2$. The mean with the smallest error weights each
+# estimate by the inverse of its variance ([Granados and others,
+# 2010](https://doi.org/10.1109/CVPR.2010.5540208)). It also gives its own standard deviation:
 #
 # $$E = \frac{\sum x / V}{\sum 1 / V}, \qquad s = \frac 1 {\sqrt{\sum 1 / V}}.$$
 #
-# The sums are over the photographs that measure the pixel: `measured` is False where one is clipped, and
-# what stands there in `X` and `D` says nothing. One thing is left. A photograph that by chance caught too
-# few photons has too small an $X$, so too small a $V$, and would count for too much. The variance ought to
-# be that of the light which is there, $E\,t$. But $E$ is what we look for: begin with $X$ in its place, and
-# then take $V$ from $E\,t$ and the mean again, twice. More rounds change nothing that a check looks at.
+# The sums are over the photos that measure the pixel: `measured` is False where a photo is clipped,
+# and `X` and `D` have no meaning there. One problem is left. A photo that caught too few photons by
+# chance has too small an $X$, so too small a $V$, and would get too much weight. The variance
+# should be that of the true light, $E\,t$. But $E$ is unknown. So begin with the variance of $X$,
+# compute the mean, and then twice compute $V$ from $E\,t$ and the mean again. The checks do not
+# notice more iterations.
 #
-# `X`, `D` and `measured` are `(P, H, W)`; return $E$ and $s$, both `(H, W)`. You may call your `variance`.
-# The checks give each pixel a photograph that measures it.
+# `X`, `D` and `measured` are `(P, H, W)`. Return $E$ and $s$, both `(H, W)`. You may call your
+# `variance`. In the checks, at least one photo measures each pixel.
 
 # %% task="inverse_variance_merge"
 # Return E and s: the mean of X / t, each counted by the inverse of its variance, and its standard deviation.
@@ -122,21 +127,22 @@ pictures.radiance(s / E, alt="s over E in false colour: the shadows are the leas
 # %% [markdown] about="guided"
 # ## 3 · A line in each window: the guided filter ({points})
 #
-# [He, Sun and Tang (2010, 2013)](https://doi.org/10.1109/TPAMI.2012.213) smooth a picture $p$ and keep the
-# edges of a guide $I$, often the same picture. In each square window of $2 \cdot$ `radius` $+\, 1$ pixels a
-# side let $p$ be a line of $I$, as near as it can be while the slope stays small:
+# [He, Sun and Tang (2010, 2013)](https://doi.org/10.1109/TPAMI.2012.213) smooth an image $p$ and
+# keep the edges of a guide $I$, which is often the same image. In each square window with sides of
+# $2 \cdot$ `radius` $+\, 1$ pixels, $p$ is approximated by a linear function of $I$, with a penalty
+# on its slope:
 #
 # $$a = \frac{\operatorname{cov}(I, p)}{\operatorname{var}(I) + \epsilon}, \qquad
-#   b = \operatorname{mean}(p) - a \operatorname{mean}(I),$$
+#   b = \operatorname{mean}(p) - a \operatorname{mean}(I).$$
 #
-# with mean, variance and covariance over the pixels of the window (divided by their number), and $\epsilon$
-# (`epsilon`, above 0) the variance from which on something is an edge. Each pixel lies in as many windows as
-# a window has pixels; it takes the mean of their lines:
+# Mean, variance and covariance are over the pixels of the window (divide by their number).
+# $\epsilon$ (`epsilon`, above 0) is the variance above which something counts as an edge. Each
+# pixel lies in many windows, as many as a window has pixels. It takes the mean of their lines:
 #
 # $$q = \operatorname{mean}(a)\, I + \operatorname{mean}(b).$$
 #
-# Where no `p` is given, $p = I$. What stands past the edge of the picture is yours to choose, and the checks
-# look at pixels further than $2 \cdot$ `radius` from it.
+# If `p` is not given, $p = I$. How you extend the image beyond its edge is up to you: the checks
+# only look at pixels further than $2 \cdot$ `radius` from it.
 
 # %% task="guided"
 # Return q = mean(a) I + mean(b), means over all windows that hold the pixel.
@@ -153,19 +159,19 @@ pictures.picture(
 )
 
 # %% [markdown] about="remap"
-# ## 4 · Detail or edge? The local Laplacian's question ({points})
+# ## 4 · Detail or edge? The local Laplacian filter ({points})
 #
-# [Paris, Hasinoff and Kautz (2011)](https://doi.org/10.1145/1964921.1964963) have no base. For each
-# coefficient of a Laplacian pyramid they look at the brightness $g$ of its place, and ask of the picture
-# around it: what differs from $g$ by less than $\sigma$ is detail, the rest is an edge. With
-# $d = |l - g|$ the picture is remapped,
+# [Paris, Hasinoff and Kautz (2011)](https://doi.org/10.1145/1964921.1964963) need no base layer.
+# For each coefficient of a Laplacian pyramid, they take the luminance $g$ at its position and
+# classify the image around it: whatever differs from $g$ by less than $\sigma$ is detail, and the
+# rest is an edge. With $d = |l - g|$, the image is remapped to
 #
 # $$r = \begin{cases} g \pm \sigma\, (d / \sigma)^\alpha & d \le \sigma \\
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
-# with + where $l$ is above $g$, and - where it is below. $\alpha$ below 1 makes details grow; $\beta$ is
-# what is left of edges. ($l$ and the number $g$ are nats; $\sigma$ is `sigma` and $\alpha$ `alpha`, both
-# above 0; $\beta$ is `beta`.)
+# with + where $l$ is above $g$ and - where it is below. $\alpha$ below 1 amplifies details, and
+# $\beta$ is the remaining fraction of edges. ($l$ and the number $g$ are natural logarithms.
+# $\sigma$ is `sigma` and $\alpha$ is `alpha`, both above 0; $\beta$ is `beta`.)
 
 # %% task="remap"
 # Return r, for log luminance lL (H, W) about the brightness g.
@@ -181,18 +187,18 @@ pictures.picture(
 )
 
 # %% [markdown] about="pq"
-# ## 5 · A code for a brighter screen: PQ ({points})
+# ## 5 · PQ: a code for brighter screens ({points})
 #
-# A gamma was made for displays of 100 cd/m². The perceptual quantiser of SMPTE ST 2084
-# ([ITU-R BT.2100](https://www.itu.int/rec/R-REC-BT.2100)) has a code for every luminance $F_D$ up to
-# 10,000 cd/m², in steps about as large as an eye just does not see:
+# Gamma coding was made for displays of 100 cd/m². The *perceptual quantizer* (PQ) of SMPTE ST 2084
+# ([ITU-R BT.2100](https://www.itu.int/rec/R-REC-BT.2100)) has a code for every luminance $F_D$ up
+# to 10,000 cd/m². Its steps are about as large as the smallest difference that the eye can see:
 #
 # $$v = \Bigl(\frac{c_1 + c_2\, Y^{m_1}}{1 + c_3\, Y^{m_1}}\Bigr)^{m_2}, \qquad Y = \frac{F_D}{10{,}000},$$
 #
 # $$m_1 = \frac{2610}{16384}, \quad m_2 = 128 \cdot \frac{2523}{4096}, \quad c_1 = \frac{3424}{4096}, \quad
 #   c_2 = 32 \cdot \frac{2413}{4096}, \quad c_3 = 32 \cdot \frac{2392}{4096}.$$
 #
-# $F_D$ is an array of any shape, 0 to 10,000; $v$ has the same shape, 0 to 1.
+# $F_D$ is an array of any shape, from 0 to 10,000. $v$ has the same shape, from 0 to 1.
 
 # %% task="pq"
 # Return the signal v, 0 to 1, of luminance FD, 0 to 10,000 cd/m2.
@@ -206,23 +212,25 @@ pictures.picture(
 )
 
 # %% [markdown] about="gain_map"
-# ## 6 · One picture for every screen: the gain map ({points})
+# ## 6 · One image for every screen: the gain map ({points})
 #
-# A photograph does not know its screen. So ISO 21496-1 (2025) keeps two: a picture for any screen, `sdr`,
-# which an operator made, and a map of how much brighter the scene, `hdr`, ought to be. Both are light, and
-# 1 is the screen's white; `hdr` goes on beyond it. The gain is counted in stops,
+# A file cannot know on which screen it will be shown. So ISO 21496-1 (2025) stores two images:
+# `sdr`, which an operator made for any screen, and a map of how much brighter the scene, `hdr`,
+# should be. Both are linear light, and 1 is the white of the screen; `hdr` goes beyond it. The gain
+# is in stops:
 #
-# $$G = \log_2 \frac{\text{hdr} + k_\text{hdr}}{\text{sdr} + k_\text{sdr}},$$
+# $$G = \log_2 \frac{\text{hdr} + k_\text{hdr}}{\text{sdr} + k_\text{sdr}}.$$
 #
-# with small offsets `k` $= (k_\text{sdr}, k_\text{hdr})$, so that black has a gain. The map says where a gain
-# lies between the least and the largest that it can tell, `low` and `high`:
+# The small offsets `k` $= (k_\text{sdr}, k_\text{hdr})$ make the gain of black finite. The map
+# stores where a gain lies between the smallest and the largest gain that it can represent, `low`
+# and `high`:
 #
-# $$g = \Bigl(\frac{G - \text{low}}{\text{high} - \text{low}}\Bigr)^\gamma,$$
+# $$g = \Bigl(\frac{G - \text{low}}{\text{high} - \text{low}}\Bigr)^\gamma.$$
 #
-# the quotient clipped to 0 ... 1 before it is raised to $\gamma$ = `gamma`, which is above 0.
+# The quotient is clipped to 0 ... 1 before it is raised to $\gamma$ = `gamma`, which is above 0.
 #
-# (`sdr`, `hdr` and $g$ have one shape, (H, W, 3) or another. `low` and `high` are numbers, or one for each
-# channel, (3,). Where an offset is 0, no check asks for black.)
+# (`sdr`, `hdr` and $g$ have the same shape, (H, W, 3) or another. `low` and `high` are numbers, or
+# one for each channel, (3,). If an offset is 0, no check tests black.)
 
 # %% task="gain_map"
 # Return g, 0 to 1, for the picture sdr and the scene hdr.
@@ -236,19 +244,19 @@ pictures.picture(
 )
 
 # %% [markdown] about="apply_gain"
-# ## 7 · What a brighter screen shows ({points})
+# ## 7 · Apply the gain map ({points})
 #
-# Who reads the map goes the way back. From $g$ comes the gain,
+# A program that reads the map reverses these steps. From $g$ it computes the gain,
 #
 # $$G = \text{low} + (\text{high} - \text{low})\, g^{1 / \gamma}.$$
 #
-# A screen whose brightest light is as far above white as the map reaches takes all of it; another takes the
-# part $W$ of its stops, 0 to 1, and shows
+# A screen that reaches as far above white as the map applies the whole gain. Another screen applies
+# a fraction $W$ of its stops, from 0 to 1, and shows
 #
 # $$(\text{sdr} + k_\text{sdr})\; 2^{W G} - k_\text{hdr}.$$
 #
-# ($W$ is a number. `low`, `high` and `gamma` are numbers, or one for each channel, (3,); what is shown has
-# the shape of `sdr`.)
+# ($W$ is a number. `low`, `high` and `gamma` are numbers, or one for each channel, (3,). The result
+# has the shape of `sdr`.)
 
 # %% task="apply_gain"
 # Return the light, 1 = white, that a screen shows which takes the part W of the gain.
@@ -263,22 +271,22 @@ pictures.picture(
 )
 
 # %% [markdown] about="line"
-# ## 8 · Photon transfer: a sensor's gain out of its noise ({points})
+# ## 8 · Photon transfer: a sensor's gain from its noise ({points})
 #
-# Of an even wall pairs of photographs were taken, with more light from pair to pair; the first pair is
-# dark, with the lens cap on. $S$ is each pair's signal, in levels above the dark ($S_0 = 0$), and $V$ the
-# variance of its noise, in levels². Photons come by chance: of $N$ electrons the variance is $N$. With
-# $K$ electrons a level,
+# Somebody took pairs of photos of an evenly lit wall, with more light from pair to pair. The first
+# pair is dark, with the lens cap on. $S$ is the signal of each pair, in pixel values above the dark
+# pair ($S_0 = 0$), and $V$ is the variance of its noise, in squared pixel values. Photons arrive at
+# random: the variance of $N$ electrons is $N$. With $K$ electrons per pixel value,
 #
-# $$V - V_0 = \frac{S}{K},$$
+# $$V - V_0 = \frac{S}{K}.$$
 #
-# a straight line through the dark pair, which is taken for exact. Measured in so many pixels, a variance
-# errs in proportion to itself, so each pair counts by $w = 1 / V^2$. The slope that makes $\sum w\,(V -
-# V_0 - S / K)^2$ smallest is
+# This is a straight line through the dark pair, which is taken as exact. The error of a variance
+# measured in many pixels is proportional to the variance, so each pair gets the weight
+# $w = 1 / V^2$. The slope that minimizes $\sum w\,(V - V_0 - S / K)^2$ is
 #
 # $$\frac{1}{K} = \frac{\sum w\, S\, (V - V_0)}{\sum w\, S^2}.$$
 #
-# ($S$ and $V$ are arrays (M,), with $V$ above 0. The answer is a number, $1 / K$.)
+# ($S$ and $V$ are arrays (M,), with $V$ above 0. Return the number $1 / K$.)
 
 # %% task="line"
 # Return the slope 1 / K of V - V[0] = S / K, by least squares with the weights 1 / V^2.
@@ -293,24 +301,25 @@ pictures.picture(
 )
 
 # %% [markdown] about="brightness_transfer"
-# ## 9 · Two histograms instead of two aligned photographs ({points})
+# ## 9 · Brightness transfer from two histograms ({points})
 #
-# The $k$-th darkest pixel of a photograph $A$ is the $k$-th darkest of $B$, whatever the camera's
-# response, if both show the same scene [(Grossberg and Nayar,
-# 2003)](https://doi.org/10.1109/TPAMI.2003.1240119). So histograms alone say which level $T(m)$ of $B$
-# belongs to level $m$ of $A$, and nothing has to be aligned.
+# If the photos $A$ and $B$ show the same scene, the $k$-th darkest pixel of $A$ is also the $k$-th
+# darkest of $B$, whatever the camera's response [(Grossberg and Nayar,
+# 2003)](https://doi.org/10.1109/TPAMI.2003.1240119). So the histograms alone determine which value
+# $T(m)$ of $B$ corresponds to the value $m$ of $A$, and the photos need not be aligned.
 #
-# A level is a step: level $z$ reaches from $z - \frac{1}{2}$ to $z + \frac{1}{2}$, and its pixels are
-# spread evenly over it. Let $H(z)$ be the share of the pixels below level $z$, with $H(0) = 0$ and $H(n)
-# = 1$: it belongs to the edge at $z - \frac{1}{2}$. The middle of $A$'s level $m$ has the rank
-# $\frac{1}{2}\bigl(H_A(m) + H_A(m + 1)\bigr)$, and $T(m)$ is the place where $H_B$, on straight lines
-# between the edges, reaches that rank.
+# A pixel value is an interval: the value $z$ reaches from $z - \frac{1}{2}$ to $z + \frac{1}{2}$,
+# and its pixels are spread evenly over it. Let $H(z)$ be the fraction of pixels below the value
+# $z$, with $H(0) = 0$ and $H(n) = 1$; it belongs to the edge at $z - \frac{1}{2}$. The middle of
+# the value $m$ of $A$ has the rank $\frac{1}{2}\bigl(H_A(m) + H_A(m + 1)\bigr)$. $T(m)$ is the
+# position where $H_B$, with straight lines between the edges, reaches that rank.
 #
-# The lowest level of $B$ holds all that is darker, and the highest all that is brighter. So $T(m)$ is NaN
-# where it falls on one of them: below $\frac{1}{2}$ or above $n - \frac{3}{2}$.
+# The lowest value of $B$ contains everything darker, and the highest everything brighter. So $T(m)$
+# is NaN where it falls on one of them: below $\frac{1}{2}$ or above $n - \frac{3}{2}$.
 #
-# (`h_A` and `h_B` (n,) are counts of pixels; their sums may differ. $T$ (n,) is not rounded. Where $B$ has
-# empty levels, $H_B$ may have one rank along a stretch; any place of it will do, and no check asks.)
+# (`h_A` and `h_B` (n,) are counts of pixels; their sums may differ. Do not round $T$ (n,). If $B$
+# has empty values, $H_B$ may have the same rank along an interval. Any position in it is right, and
+# no check tests it.)
 
 # %% task="brightness_transfer"
 # Return T (n,), the level in B of what has level m in A, NaN where B's outer levels hold it.
@@ -326,21 +335,21 @@ pictures.picture(
 )
 
 # %% [markdown] about="snr"
-# ## 10 · How sure is a level? The signal over its noise ({points})
+# ## 10 · The signal-to-noise ratio of a pixel value ({points})
 #
-# Let the noise in a photograph's levels have one size everywhere. Through the response $f = e^{g}$ it
-# enters the exposure by the slope $f'$, so the signal over the noise [(Mitsunaga and Nayar,
-# 1999)](https://doi.org/10.1109/CVPR.1999.786966) is
+# Assume that the noise of the pixel values is equally large everywhere. The slope $f'$ of the
+# response $f = e^{g}$ converts it into noise of the exposure, so the signal-to-noise ratio
+# [(Mitsunaga and Nayar, 1999)](https://doi.org/10.1109/CVPR.1999.786966) is
 #
 # $$w(z) = \frac{f(z)}{f'(z)}.$$
 #
-# - $f'(z)$ is the slope between the levels $z - s$ and $z + s$ with $s$ = `span`; where one of them is
-#   past an end of the range, the end takes its place.
-# - Where the curve is level the quotient would have no bound: a slope counts at least `least` times the
-#   mean slope, $\bigl(f(n - 1) - f(0)\bigr) / (n - 1)$.
-# - The lowest and the highest level are bounds: $w = 0$ there.
+# - $f'(z)$ is the slope between the values $z - s$ and $z + s$ with $s$ = `span`. If one of them is
+#   beyond an end of the range, use the end instead.
+# - Where the curve is flat, the quotient would be unbounded: replace a slope by `least` times the
+#   mean slope, $\bigl(f(n - 1) - f(0)\bigr) / (n - 1)$, if it is smaller than that.
+# - The lowest and the highest value are only bounds: $w = 0$ there.
 #
-# (`g` (n,) rises, $n$ is even. The scale of $w$ (n,) is free.)
+# (`g` (n,) increases, and $n$ is even. $w$ (n,) may have any scale.)
 
 # %% task="snr"
 # Return w = f / f' (n,), f = exp g, and 0 at both ends.
@@ -383,11 +392,12 @@ pictures.picture(
 )
 
 # %% [markdown] about="optimum"
-# ## 12 · What a meter asks for ({points})
+# ## 12 · The exposure that a meter recommends ({points})
 #
-# A picture taken at the exposure value $\mathrm{EV}_\text{pre}$ has the reading $B_\text{pre}$, a
-# brightness above 0, up to 1; it should be $B_\text{opt}$, by default 0.18. The exposure value that brings it
-# there, in stops, of which one more halves the light, is (Battiato and others, 2008, equation 1.2)
+# An image taken at the exposure value $\mathrm{EV}_\text{pre}$ has the reading $B_\text{pre}$, a
+# brightness above 0 and at most 1. It should be $B_\text{opt}$, by default 0.18. The exposure value
+# that achieves this, in stops (one more stop halves the light), is (Battiato and others, 2008,
+# equation 1.2)
 #
 # $$\mathrm{EV}_\text{opt} = \mathrm{EV}_\text{pre} + \log_2 B_\text{pre} - \log_2 B_\text{opt}.$$
 
@@ -395,16 +405,21 @@ pictures.picture(
 # Return EV_opt of numbers EV_pre, B_pre and B_opt.
 
 # %% [markdown] about="spot"
-# ## 13 · Whom does a spot meter ask? ({points})
+# ## 13 · Where does a spot meter look? ({points})
 #
-# It weights the pixels of a disc alike, and no others; all weights add up to 1. The middle of the disc is
-# `at`, how far down and how far right in parts of the picture (H, W): at row `at[0]` $H$ and column
-# `at[1]` $W$, where the pixel $(y, x)$ has its middle at $(y + \frac{1}{2}, x + \frac{1}{2})$. The disc
-# is made of the `share` $\cdot H W$ pixels, rounded (a half either way), and at least one, whose middles
-# are nearest to it, measured in pixels. A share of 0.12 makes a partial meter of it, and 1 an average
-# one, which asks all alike.
+# A spot meter gives equal weight to the pixels of a disc, and none to all others. All weights add
+# up to 1.
 #
-# (`shape` is (H, W), and the answer $w$ (H, W). The checks ask for no two pixels that are equally near.)
+# - The center of the disc is `at`, how far down and how far right as fractions of the image (H, W):
+#   at row `at[0]` $H$ and column `at[1]` $W$. The pixel $(y, x)$ has its center at
+#   $(y + \frac{1}{2}, x + \frac{1}{2})$.
+# - The disc consists of the `share` $\cdot H W$ pixels whose centers are nearest to that point,
+#   measured in pixels. Round this number (a half either way), but use at least one pixel.
+#
+# A share of 0.12 makes it a partial meter. A share of 1 makes it an average meter, which weights
+# all pixels equally.
+#
+# (`shape` is (H, W), and the result $w$ is (H, W). In the checks, no two pixels are equally near.)
 
 # %% task="spot"
 # Return the weights w (H, W) of a disc of the nearest pixels, whose sum is 1.
@@ -418,13 +433,14 @@ pictures.picture(
 )
 
 # %% [markdown] about="centre"
-# ## 14 · A meter that asks all, and the middle most ({points})
+# ## 14 · A center-weighted meter ({points})
 #
-# A centre-weighted meter has no rim. A pixel's weight is a Gaussian, $\exp\bigl(-d^2 / (2 \sigma^2)\bigr)$,
-# of its distance $d$ from the middle `at`, measured in parts of the picture: in heights down, in widths to
-# the right, $d^2 = (\Delta y / H)^2 + (\Delta x / W)^2$. All weights add up to 1. And $\sigma$ is the one
-# with which the part `inside` of all the weight lies on the pixels that a spot meter of this `share` and
-# `at` asks.
+# A center-weighted meter has no sharp boundary. The weight of a pixel is a Gaussian,
+# $\exp\bigl(-d^2 / (2 \sigma^2)\bigr)$, of its distance $d$ from the point `at`. The distance is
+# measured in fractions of the image: heights down and widths to the right,
+# $d^2 = (\Delta y / H)^2 + (\Delta x / W)^2$. All weights add up to 1. Choose $\sigma$ so that the
+# fraction `inside` of all weight lies on the pixels that a spot meter with this `share` and `at`
+# uses.
 #
 # (`shape` is (H, W), and `inside` is larger than `share`. You may call your `spot`.)
 
@@ -440,28 +456,29 @@ pictures.picture(
 )
 
 # %% [markdown] about="flat"
-# ## 15 · Is that patch flat? Ask chi-square ({points})
+# ## 15 · Is a patch flat? A chi-square test ({points})
 #
-# Whoever calibrates with pixels takes those on even surfaces ([Mitsunaga and Nayar,
-# 1999](https://doi.org/10.1109/CVPR.1999.786966)). `A` (t, H, W) are $t$ frames of one exposure, where 1 is
-# full. Take the average of the frames, and in it the patch of $s$ = `size`$^2$ pixels around each pixel
-# (`size` is odd). On an even surface its variance $\sigma_s^2$ (the mean of the squares, divided by $s$) is
-# that of noise alone.
+# For calibration, use pixels on evenly lit surfaces ([Mitsunaga and Nayar,
+# 1999](https://doi.org/10.1109/CVPR.1999.786966)). `A` (t, H, W) are $t$ frames of one exposure,
+# where 1 is full scale. Average the frames. In the average, take the patch of $s$ = `size`$^2$
+# pixels around each pixel (`size` is odd). On an even surface, its variance $\sigma_s^2$ (the sum
+# of the squared deviations, divided by $s$) comes from noise alone.
 #
-# - Of **one frame** the noise is known, $\sigma$ = `sigma`. Then $s\,\sigma_s^2 / \sigma^2$ is chi-square
-#   with $s - 1$ degrees of freedom: the patch is flat if it is at most $\chi^2_{s-1}(\psi)$, which noise
-#   exceeds by chance in the part $\psi$ = `psi` of all flat patches: `scipy.stats.chi2.isf(psi, s - 1)`.
-# - Of **more frames** the noise is seen, and `sigma` has no say. A pixel's variance over the frames,
-#   divided by $t - 1$, is that of one frame; its mean over the patch is $\sigma_t^2$. The average of $t$
-#   frames has $\sigma_t^2 / t$. And as that is an estimate of $s\,(t - 1)$ degrees of freedom, the limit is
-#   another: flat is where
+# - For **one frame**, the noise $\sigma$ = `sigma` is known. Then $s\,\sigma_s^2 / \sigma^2$ has a
+#   chi-square distribution with $s - 1$ degrees of freedom. The patch is flat if this is at most
+#   $\chi^2_{s-1}(\psi)$, which noise exceeds by chance in a fraction $\psi$ = `psi` of all flat
+#   patches: `scipy.stats.chi2.isf(psi, s - 1)`.
+# - For **several frames**, estimate the noise from the frames and ignore `sigma`. The variance of a
+#   pixel over the frames, divided by $t - 1$, is that of one frame; its mean over the patch is
+#   $\sigma_t^2$. The average of $t$ frames has $\sigma_t^2 / t$. This estimate has $s\,(t - 1)$
+#   degrees of freedom, so the limit is a different one. The patch is flat if
 #
 # $$\frac{s\,\sigma_s^2}{\sigma_t^2 / t} \le (s - 1)\, F_{s-1,\; s(t-1)}(\psi),$$
 #
-#   `scipy.stats.f.isf(psi, s - 1, s * (t - 1))`.
+#   which is `scipy.stats.f.isf(psi, s - 1, s * (t - 1))`.
 #
-# Where a patch is cut by the edge of the picture, within `size // 2` pixels of it, nothing is flat. Return
-# a mask (H, W), of bool, or 0 and 1.
+# If the edge of the image cuts a patch, that is, within `size // 2` pixels of the edge, nothing is
+# flat. Return a mask (H, W), of bool, or 0 and 1.
 
 # %% task="flat"
 # Return where the patch around a pixel is flat, (H, W), of frames A (t, H, W).
@@ -478,16 +495,16 @@ pictures.picture(
 # %% [markdown] about="solve_by_svd"
 # ## 16 · Least squares by the SVD ({points})
 #
-# Debevec and Malik's system $A x = b$ has more rows than unknowns; and if the row $g(n/2) = 0$ is left out,
-# not one answer but many, for a number that is added to all $g$ and all $\ln E$ changes no other row. The
-# singular value decomposition $A = U \Sigma V^\top$ finds among all $x$ of the smallest $\sum (A x - b)^2$
-# the shortest one:
+# Debevec and Malik's system $A x = b$ has more rows than unknowns. If you leave out the row
+# $g(n/2) = 0$, it has many solutions, because adding one number to all $g$ and all $\ln E$ changes
+# no other row. The singular value decomposition (SVD) $A = U \Sigma V^\top$ finds the shortest $x$
+# among all that minimize $\sum (A x - b)^2$:
 #
 # $$x = \sum_{\sigma_i > \text{rtol}\, \sigma_1} \frac{u_i^\top b}{\sigma_i}\, v_i,$$
 #
-# with the columns $u_i$ of $U$ and $v_i$ of $V$, and $\sigma_1$ the largest singular value. What is at most
-# `rtol` times as large is taken for 0, and its term left out. (`A` is (m, k), with $m \ge k$, `b` (m,) and
-# `x` (k,).)
+# where $u_i$ and $v_i$ are the columns of $U$ and $V$, and $\sigma_1$ is the largest singular
+# value. Singular values of at most `rtol` $\sigma_1$ count as 0, and their terms are left out. (`A`
+# is (m, k) with $m \ge k$, `b` is (m,) and `x` is (k,).)
 
 # %% task="solve_by_svd"
 # Return the shortest x (k,) that minimises |A x - b|, by the SVD of A.
@@ -502,7 +519,7 @@ print(
 )
 
 # %% [markdown]
-# ## The whole sheet
+# ## All checks
 
 # %%
 check("hw5")

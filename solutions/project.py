@@ -1,20 +1,20 @@
 # %% [markdown]
-# # Project · Your own HDR photograph
+# # Project · Your own HDR photo
 #
 # Due {due}. {total} points. {late}
 #
-# Find a place that no photograph holds: a church at noon, a street at night, your desk before the window.
-# Photograph it, assemble its radiance, and make a picture that shows what you saw there. One part is
-# checked here; the rest is looked at by people.
+# Find a scene that does not fit into a single photo: a church at noon, a street at night, your desk
+# in front of the window. Photograph it, make its radiance map, and tone-map it into an image that
+# shows what you saw there. One part is checked here; people grade the rest.
 #
-# You work in teams of two, and hand in once.
+# You work in teams of two, and submit once.
 #
-# What people look at:
+# What people grade:
 #
 # {hand}
 #
-# Hand in: this notebook, run from top to bottom; your photographs; the radiance map (`.hdr` or `.exr`); the
-# picture, your *artifact* (`.jpg` or `.png`); a report of one or two pages.
+# Submit: this notebook, run from top to bottom; your photos; the radiance map (`.hdr` or `.exr`);
+# the tone-mapped image, your *artifact* (`.jpg` or `.png`); and a report of one or two pages.
 
 # %%
 from pathlib import Path
@@ -33,30 +33,33 @@ use_plan("project")
 # %% [markdown] about="tonemap"
 # ## 1 · The operator ({points})
 #
-# Write the photographic operator of Reinhard and his colleagues as one function; homework 4 has its parts.
-# Log average, scale to the key $a$, and
+# Write the photographic operator of Reinhard and his colleagues as one function. Homework 4 has its
+# parts: the log average, the scaling to the key $a$, and
 #
-# $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + V}, \qquad L_m = \frac{a L}{\bar L},$$
+# $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + V}, \qquad L_m = \frac{a L}{\bar L}.$$
 #
-# where $V$ is $L_m$ itself, or with `local=True` the mean of each pixel's own even neighbourhood: what
-# `scale_steps` of homework 4 ends with, with `key`, `phi` and `threshold`, given $L_m$ blurred by Gaussians
-# of $\sigma = s / 4$, $s = 1, 1.6, \ldots, 1.6^8$. $\delta$ is that of homework 4, $10^{-6}$. `white=None`
-# takes the brightest $L_m$ but for 0.01 % of the pixels, by any rule of quantiles, and at least 1. The
-# checks give finite luminance and knobs above 0; what to do with any other is yours to decide, and
-# `key="auto"` is the library's alone.
+# - $V$ is $L_m$ itself. With `local=True`, it is the mean of each pixel's own even neighborhood:
+#   the last adaptation of `scale_steps` of homework 4, with `key`, `phi` and `threshold`. Its input
+#   is $L_m$ blurred by Gaussians of $\sigma = s / 4$, $s = 1, 1.6, \ldots, 1.6^8$.
+# - $\delta$ is that of homework 4, $10^{-6}$.
+# - `white=None` takes the brightest $L_m$ except for 0.01 % of the pixels, by any quantile rule,
+#   and at least 1.
+#
+# The checks use finite luminance and parameters above 0. For anything else, the behavior is up to
+# you. `key="auto"` exists only in the library.
 
 # %% task="tonemap"
 
 # %% [markdown]
-# ## 2 · The photographs
+# ## 2 · The photos
 #
-# - A tripod, or a wall to lean on. The camera on manual: fixed aperture, ISO, focus and white balance;
-#   only the shutter changes, by one or two stops from one photograph to the next.
-# - The shortest shows no clipped pixel but the lamp or the sun itself; the longest shows the dark corner
-#   at a middling level.
-# - Nothing moves, if you can help it. If something does, say in the report what became of it.
+# - Use a tripod, or a wall to lean on. Set the camera to manual, with fixed aperture, ISO, focus
+#   and white balance. Change only the shutter time, by one or two stops from one photo to the next.
+# - In the shortest exposure nothing is clipped except the lamp or the sun itself. In the longest,
+#   the dark corner has medium pixel values.
+# - Nothing should move. If something does, say in the report how you dealt with it.
 #
-# Put the folder's name between the quotes. As long as it is empty, a simulated room stands in.
+# Put the folder's name between the quotes. While it is empty, the notebook uses a simulated room.
 
 # %%
 FOLDER = ""
@@ -76,9 +79,9 @@ pictures.picture(
 # %% [markdown]
 # ## 3 · The radiance map
 #
-# Take your own `align`, `recover` and `merge` from the homeworks, or the library's: `pipeline.assemble`
-# takes a function where it takes a name. Read the doubts that it names, and say in the report what you did
-# about them.
+# Use your own `align`, `recover` and `merge` from the homework, or the library's:
+# `pipeline.assemble` accepts a function wherever it accepts a name. Read the warnings that it
+# prints, and say in the report what you did about them.
 
 # %%
 assembly = pipeline.assemble(bracket)
@@ -86,10 +89,10 @@ print("\n".join(assembly.doubts) or "no doubts")
 pictures.radiance(assembly.E, alt="The radiance map in false colour")
 
 # %% [markdown]
-# ## 4 · The artifact
+# ## 4 · The tone-mapped image
 #
-# Now the picture. Turn the knobs, try `local`, try the other operators (`hdrlab compare`), until it shows
-# what you saw.
+# Now make the image. Change the parameters, try `local`, and try the other operators
+# (`hdrlab compare`), until the image shows what you saw.
 
 # %% about="tonemap"
 L = colour.luminance(assembly.E)
@@ -100,15 +103,16 @@ pictures.picture(artifact, alt="The artifact: the scene by your operator")
 # %% [markdown]
 # ## 5 · The report
 #
-# One or two pages: where you were and how you photographed; the response you found, and whether you trust
-# it; what was clipped, what moved, and what you did about it; which operator and why; what went wrong. A
-# plot and a radiance map in false colour say more than a paragraph.
+# Write one or two pages: where you were and how you took the photos; the response curve, and
+# whether you trust it; what was clipped, what moved, and what you did about it; which operator you
+# chose and why; and what went wrong. A plot and a radiance map in false color say more than a
+# paragraph.
 #
 # ## 6 · Bells and whistles
 #
-# Choose what tempts you: a second operator of your own; ghosts removed; handheld photographs aligned; a
-# response recovered with Robertson's turns; a panorama; a scene relit. Show it beside the plain version,
-# and say what it cost.
+# Choose what interests you: a second operator of your own, deghosting, alignment of hand-held
+# photos, a response curve from Robertson's iterations, a panorama, or a relit scene. Show it beside
+# the plain version, and say what it cost.
 
 # %%
 check("project")
