@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks import rewording
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
 ANSWER_TIMEOUT_SECONDS = 10.0
@@ -247,7 +247,10 @@ def read_secret(path: Path) -> tuple[str, bool]:
             os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf8"
         ) as file:
             file.write(secrets.token_urlsafe(32) + "\n")
-    secret = path.read_text(encoding="utf8").strip()
+    try:
+        secret = path.read_text(encoding="utf8").strip()
+    except UnicodeDecodeError:
+        raise FileFormatError(f"{path}: the secret file is not a text file in UTF-8") from None
     if not secret:
         raise InputError(f"{path}: expected a line that nobody else knows, it is empty")
     return secret, made

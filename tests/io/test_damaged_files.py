@@ -1,4 +1,4 @@
-"""Whatever happens to a file, it reads, or a ValueError or OSError says that it does not: no other end."""
+"""Whatever happens to a file, it reads, or an HdrlabError or OSError says that it does not: no other end."""
 
 from functools import partial
 from pathlib import Path
@@ -10,6 +10,7 @@ import tifffile
 from hypothesis import HealthCheck, given, settings, strategies as st
 from PIL import Image
 
+from hdrlab.errors import HdrlabError
 from hdrlab.io.maps import rgbe
 from hdrlab.io.photos import read_photo
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
@@ -100,7 +101,7 @@ def test_a_damaged_file_reads_or_is_refused(folder, name, changes, length, inser
     for read in (pixels, describe_file):
         try:
             read(path)
-        except (ValueError, OSError) as error:
+        except (HdrlabError, OSError) as error:
             assert path.name in str(error)
 
 
@@ -114,5 +115,5 @@ def test_any_bytes_after_a_good_beginning_read_or_are_refused(folder, name, data
     path.write_bytes((folder / name).read_bytes()[:60] + data)
     try:
         reader_of(name)(path)
-    except (ValueError, OSError) as error:
+    except (HdrlabError, OSError) as error:
         assert path.name in str(error)

@@ -24,7 +24,7 @@ from hdrlab.course.classroom.overview import histogram
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.reports import csv_tables, results
 from hdrlab.course.sanitize import sanitize_line
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.show.pages.templates import render_page
 
 LOG = "journal.jsonl"
@@ -210,9 +210,14 @@ def signed_lines(out: Path, secret: str) -> list[dict[str, Any]]:
             "expected a class that was graded with --secret-file: it signs what is changed"
         )
     path, before = out / LOG, ""
-    lines = (
-        [json.loads(one) for one in path.read_text("utf8").splitlines()] if path.exists() else []
-    )
+    lines = []
+    if path.exists():
+        try:
+            lines = [json.loads(line) for line in path.read_text("utf8").splitlines()]
+        except ValueError as error:
+            raise FileFormatError(
+                f"{path}: expected a line of JSON for each change ({error})"
+            ) from None
     for number, line in enumerate(lines, 1):
         rest = {name: value for name, value in line.items() if name != "signature"}
         right = (number, before, _signature(rest, secret))
