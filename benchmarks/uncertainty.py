@@ -42,7 +42,7 @@ from benchmarks.experiments import Experiment, Hold, along, at_least, at_most, m
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, responses
 from hdrlab.capture.responses import Curve
-from hdrlab.cli.photographs import read_bracket
+from hdrlab.cli.brackets import read_bracket
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray
 from hdrlab.core.bracket import Bracket

@@ -1,18 +1,18 @@
-"""`python -m hdrlab` is the `hdrlab` command; Ctrl-C while it is loaded ends it in one line, too."""
+"""`python -m hdrlab` is the `hdrlab` command. Ctrl-C while it loads also ends in one line."""
 
 import sys
 
+EXIT_INTERRUPTED = 130
+
 try:
     from hdrlab.cli import run
-except (
-    KeyboardInterrupt,
-    ImportError,
-    RuntimeError,
-) as error:  # a module of C wraps what rises in it
-    if not isinstance(error.__cause__ or error, KeyboardInterrupt):
+except (KeyboardInterrupt, ImportError, RuntimeError) as error:
+    # C extensions wrap a KeyboardInterrupt that arrives while they load
+    cause = error.__cause__ or error
+    if not isinstance(cause, KeyboardInterrupt):
         raise
     sys.stderr.write("hdrlab: interrupted\n")
-    sys.exit(130)
+    sys.exit(EXIT_INTERRUPTED)
 
 if __name__ == "__main__":
     run()

@@ -1,11 +1,12 @@
-"""The main job on an embedded scene: photograph a chapel whose radiance is known, assemble, compare.
+"""The demo: simulate a bracket of a scene with known radiance, assemble it, and compare.
 
-The camera keeps its response to itself, the hand shakes, the sensor is noisy and has a few stuck
-pixels: all that a real bracket has, and the truth besides. `real_steps` does it with a real
-bracket, without the truth.
+The simulated camera has an unknown response, camera shake, noise and a few hot pixels, as a real
+one has, and the true radiance is known. `real_steps` runs the same steps on real photos, whose
+true radiance is unknown.
 """
 
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,64 +21,90 @@ from hdrlab.io import photos, radiance
 from hdrlab.pipeline.pictures import Developed
 from hdrlab.show.pages.report import write_report
 
+# lines that demo_steps and real_steps yield
 STEPS = 10
+
 CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
+
+# size of the real photos, (width, height)
+PHOTO_SIZE = (720, 540)
+
+# pixel values between which the summary measures the response
+DARK_LEVEL = 10
+BRIGHT_LEVEL = 250
+
+
+@dataclass(frozen=True)
+class DemoResult:
+    """The assembled bracket and its tone-mapped image."""
+
+    assembly: pipeline.Assembly
+    developed: Developed
 
 
 def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     """Write the demo's files into `out`, and yield a line about each step when it is done."""
-    rng, scene = np.random.default_rng(seed), scenes.chapel()
+    rng = np.random.default_rng(seed)
+    scene = scenes.chapel()
     yield f"scene      a chapel with stained glass, {scenes.decades(scene):.1f} decades"
     times = camera.times_around(scene)
-    shaken = camera.shake(len(times), rng=rng)
-    bracket = camera.shoot(scene, times, CAMERA, offsets=shaken, rng=rng)
-    yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
-    assembly, (picture, settings) = yield from _assemble_steps(out, bracket)
-    light = views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
-    truth = Truth(light, responses.true_g(CAMERA.response), shaken)
-    noise = {name: getattr(CAMERA, name) for name in ("full_well", "read_noise", "hot")}
-    recipe = {"tonemap": settings, "seed": seed, "camera": CAMERA.response, **noise}
-    yield f"report     {write_report(out, assembly, picture, recipe=recipe, truth=truth)}"
+    offsets = camera.shake(len(times), rng=rng)
+    bracket = camera.shoot(scene, times, CAMERA, offsets=offsets, rng=rng)
+    yield f"bracket    {len(times)} photos, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
+    result = yield from _assemble_steps(out, bracket)
+    middle_view = views(scene, offsets)[len(times) // 2]
+    common_area = crop(result.assembly.offsets, bracket.images.shape[1:3])
+    truth = Truth(middle_view[common_area], responses.true_g(CAMERA.response), offsets)
+    recipe = {
+        "tonemap": result.developed.settings,
+        "seed": seed,
+        "camera": CAMERA.response,
+        "full_well": CAMERA.full_well,
+        "read_noise": CAMERA.read_noise,
+        "hot": CAMERA.hot,
+    }
+    page = write_report(out, result.assembly, result.developed.picture, recipe=recipe, truth=truth)
+    yield f"report     {page}"
 
 
 def real_steps(out: Path) -> Iterator[str]:
-    """Do the same with real photographs, whose radiance nobody knows."""
-    bracket = scenes.photographs((720, 540))
-    yield "scene      a small tripod before a window, seen by a telephone"
-    yield f"bracket    {len(bracket.times)} photographs, hand-held"
-    assembly, (picture, settings) = yield from _assemble_steps(out, bracket)
-    yield f"report     {write_report(out, assembly, picture, recipe={'tonemap': settings})}"
+    """Run the demo on real photos, whose true radiance is unknown."""
+    bracket = scenes.photographs(PHOTO_SIZE)
+    yield "scene      a small tripod in front of a window, taken with a phone"
+    yield f"bracket    {len(bracket.times)} photos, hand-held"
+    result = yield from _assemble_steps(out, bracket)
+    recipe = {"tonemap": result.developed.settings}
+    page = write_report(out, result.assembly, result.developed.picture, recipe=recipe)
+    yield f"report     {page}"
 
 
-def _assemble_steps(
-    out: Path, bracket: Bracket
-) -> Generator[str, None, tuple[pipeline.Assembly, Developed]]:
-    """Write the maps and the picture of a bracket, yield a line about each step, return what was found."""
+def _assemble_steps(out: Path, bracket: Bracket) -> Generator[str, None, DemoResult]:
+    """Assemble a bracket, write its maps and its image, and yield a line about each step."""
     out.mkdir(parents=True, exist_ok=True)
     for assembly in pipeline.assemble_steps(bracket):
-        yield f"{assembly.stage:<10} {_summarise(assembly)}"
-    made = pipeline.develop_and_describe(assembly.E)
-    yield f"picture    {made.settings}"
+        yield f"{assembly.stage:<10} {_summarize(assembly)}"
+    developed = pipeline.develop_and_describe(assembly.E)
+    yield f"picture    {developed.settings}"
     for suffix in (".hdr", ".exr", ".pfm"):
         radiance.write_radiance(out / f"radiance{suffix}", assembly.E)
-    photos.write_picture(out / "picture.png", made.picture)
+    photos.write_picture(out / "picture.png", developed.picture)
     yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
-    return assembly, made
+    return DemoResult(assembly, developed)
 
 
-def _summarise(assembly: pipeline.Assembly) -> str:
-    """Return what a stage of the pipeline has to say."""
+def _summarize(assembly: pipeline.Assembly) -> str:
+    """Return the result of the pipeline's last stage in words."""
     match assembly.stage:
         case "align":
-            return (
-                "moved by " + ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets) + " pixels"
-            )
+            offsets = ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets)
+            return f"moved by {offsets} pixels"
         case "times":
             times = assembly.bracket.times
             return f"the longest is {times[-1] / times[0]:.4g} times the shortest"
         case "response":
-            darkest, brightest = assembly.g.reshape(256, -1)[[10, 250]].mean(axis=1)
-            return f"levels 10 and 250 lie {(brightest - darkest) / np.log(2):.1f} stops apart"
+            g = assembly.g.reshape(256, -1).mean(axis=1)
+            stops = (g[BRIGHT_LEVEL] - g[DARK_LEVEL]) / np.log(2)
+            return f"pixel values {DARK_LEVEL} and {BRIGHT_LEVEL} are {stops:.1f} stops apart"
         case "merge":
             return f"{np.mean(assembly.quality == 0):.2%} of the pixels measured"
         case _:

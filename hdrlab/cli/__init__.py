@@ -1,57 +1,161 @@
-"""The `hdrlab` command: the library's verbs with files around them.
+"""The `hdrlab` command line.
 
-Nothing is computed here. Chapters are imported inside the commands, so that `hdrlab --help` answers
-at once. Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; files are
-written whole or not at all.
+Every command is a thin layer over the library: it reads files, calls hdrlab and writes files. The
+library is imported inside the commands, so that `hdrlab --help` stays fast. Output files appear
+whole or not at all.
+
+Exit codes: 0 for success, 2 for bad input (one line on standard error), 130 after Ctrl-C, and 1
+with a traceback for a bug in hdrlab.
 """
 
 import ctypes
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib import import_module
 from io import TextIOWrapper
-from pkgutil import iter_modules
 
 import click
 
-from hdrlab.cli.common import main
+from hdrlab import __version__
+from hdrlab.cli import (
+    capture,
+    course,
+    gallery,
+    grading,
+    lessons,
+    maps,
+    photos,
+    projects,
+    video,
+    viva,
+)
+from hdrlab.cli.common import Group, Settings, debug_option
 from hdrlab.cli.terminal import visible
+from hdrlab.errors import HdrlabError
 
-for module in iter_modules(__path__):  # whose commands join the group when they are imported
-    import_module(f"{__name__}.{module.name}")
+COMMANDS = (
+    capture.correct,
+    capture.meter,
+    capture.plan,
+    capture.shoot,
+    course.course,
+    gallery.gallery,
+    grading.check,
+    grading.doctor,
+    grading.grade,
+    grading.regrade,
+    lessons.demo,
+    lessons.lab,
+    lessons.site,
+    maps.compare,
+    maps.convert,
+    maps.info,
+    maps.tonemap,
+    photos.assemble,
+    photos.calibrate,
+    projects.report,
+    projects.submit,
+    video.video,
+    viva.viva,
+)
+
+EXIT_BUG = 1
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130
+
+# the number of glibc's option M_ARENA_MAX, the number of memory pools
+MALLOPT_ARENA_MAX = -8
+
+
+@click.group(
+    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True}
+)
+@click.version_option(__version__, prog_name="hdrlab")
+def main() -> None:
+    """High dynamic range imaging: from photos to a radiance map to a tone-mapped image."""
+
+
+main.params.append(debug_option(hidden=False))
+for command in COMMANDS:
+    main.add_command(command)
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
-    """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C or SIGTERM."""
-    if arguments is None:  # not from Python, whose own signals stay
+    """Run the command line and exit.
+
+    Parameters
+    ----------
+    arguments : the words after `hdrlab`; by default those of this process
+    """
+    if arguments is None:
+        # called from Python, the caller's signal handlers stay
         signal.signal(signal.SIGTERM, signal.default_int_handler)
-    # the products here are small: threads only wait on them
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # glibc's M_ARENA_MAX: one pool of memory for all threads
-    with suppress(AttributeError, OSError, TypeError):
-        ctypes.CDLL(None).mallopt(-8, 1)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):  # a pipe of Windows has no sign such as ✗
-            stream.reconfigure(errors="replace")
+    _limit_threads_and_memory()
+    _replace_unprintable_characters()
+    settings = Settings()
     try:
-        sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False))
-    except click.exceptions.Abort:
-        said, code = "interrupted", 130
-    except click.ClickException as error:
-        said, code = error.format_message(), error.exit_code
-    except OSError as error:
-        said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
-    except (ValueError, MemoryError) as error:
-        said, code = str(error) or type(error).__name__, 2
-    except (
-        RuntimeError,
-        ImportError,
-    ) as error:  # wrap what rises while a class, or a module of C, is made
-        if not isinstance(error.__cause__, KeyboardInterrupt):
-            raise
-        said, code = "interrupted", 130
-    click.echo(f"hdrlab: {visible(said)}", err=True)
-    sys.exit(code)
+        sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False, obj=settings))
+    except Exception as error:
+        if settings.debug:
+            traceback.print_exc()
+        message, exit_code = _describe(error)
+        if exit_code == EXIT_BUG and not settings.debug:
+            traceback.print_exc()
+        click.echo(f"hdrlab: {visible(message)}", err=True)
+    sys.exit(exit_code)
+
+
+def _describe(error: Exception) -> tuple[str, int]:
+    """Return the line that tells the user about an error, and the exit code."""
+    if isinstance(error, click.exceptions.Abort) or _is_interrupt(error):
+        return "interrupted", EXIT_INTERRUPTED
+    if isinstance(error, click.ClickException):
+        return error.format_message(), error.exit_code
+    if isinstance(error, HdrlabError):
+        return str(error), EXIT_BAD_INPUT
+    if isinstance(error, OSError):
+        if error.filename is None:
+            return str(error), EXIT_BAD_INPUT
+        return f"{_file_names(error)}: {error.strerror}", EXIT_BAD_INPUT
+    if isinstance(error, MemoryError):
+        advice = "not enough memory; use fewer or smaller photos, or close other programs"
+        return f"{advice} ({error})" if str(error) else advice, EXIT_BAD_INPUT
+    return (
+        f"this is a bug in hdrlab ({type(error).__name__}); please report it with the lines above",
+        EXIT_BUG,
+    )
+
+
+def _file_names(error: OSError) -> str:
+    """Return the name of the file of an error, or both of a rename that failed."""
+    if error.filename2 is None:
+        return os.fsdecode(error.filename)
+    return f"{os.fsdecode(error.filename)} -> {os.fsdecode(error.filename2)}"
+
+
+def _is_interrupt(error: Exception) -> bool:
+    """Tell whether Ctrl-C caused an error.
+
+    Python and pybind11 wrap a KeyboardInterrupt in a RuntimeError or an ImportError when it
+    arrives while a class is created or a C extension is loaded.
+    """
+    return isinstance(error, RuntimeError | ImportError) and isinstance(
+        error.__cause__, KeyboardInterrupt
+    )
+
+
+def _limit_threads_and_memory() -> None:
+    """Use one BLAS thread and one memory pool: the matrices here are small, and threads only wait."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).mallopt(MALLOPT_ARENA_MAX, 1)
+
+
+def _replace_unprintable_characters() -> None:
+    """Print `?` for what an output stream cannot encode, such as ✗ on a pipe of Windows."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")

@@ -1,210 +1,276 @@
-"""`hdrlab grade` on a folder, a whole class, and `hdrlab regrade`, what corrected checks would change for it.
-
-`asked` holds the options of a class by name, as the command line gave them.
-"""
+"""Grade all submissions of a class. `hdrlab grade FOLDER` and `hdrlab regrade` call these functions."""
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from hdrlab.cli import common, grading
+from hdrlab.cli import assignments, common
 from hdrlab.course import plan as plans
-from hdrlab.errors import InputError
-
-# options of a run; the others are of the class, and a regrade takes them as they were
-OF_A_RUN = ("submission", "out", "only", "since", "regrade", "jobs", "cluster")
+from hdrlab.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
     from hdrlab.course.classroom.handins import Submission, SubmissionScan
     from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
     from hdrlab.course.classroom.run import GradingContext
 
+# in a class's results: the folder of the submissions and the ClassOptions, for `hdrlab regrade`
+OPTIONS_FILE = "asked.json"
 
-class Class(NamedTuple):
-    """A class that is graded: by what, what has come, what there is to do, and the options."""
+
+@dataclass(frozen=True)
+class ClassOptions:
+    """The options of `hdrlab grade` that belong to a class; a regrade uses the same.
+
+    Attributes
+    ----------
+    submissions : the folder of what the class has handed in
+    homework : the name of the assignment, or None for the one in the folder's name
+    tier, timeout, hidden, secret_file : the conditions of each check
+    student : used by submissions of one student only, and recorded here
+    roster, received, before : CSV files: the class, when files came in, earlier gradebooks
+    moodle : the assignment's grading worksheet
+    plan : the course plan, or None for the package's
+    """
+
+    submissions: Path
+    homework: str | None
+    tier: str
+    hidden: Path | None
+    student: str
+    secret_file: Path | None
+    timeout: float
+    roster: Path | None
+    received: Path | None
+    before: tuple[Path, ...]
+    moodle: Path | None
+    plan: Path | None
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """The options of `hdrlab grade` that belong to one run.
+
+    Attributes
+    ----------
+    out : the folder for the results
+    only, since : which submissions to grade
+    regrade : grade again what was graded before
+    jobs, cluster : how many at a time, and on which Dask cluster
+    """
+
+    out: Path
+    only: tuple[str, ...] = ()
+    since: datetime | None = None
+    regrade: bool = False
+    jobs: int | None = None
+    cluster: str | None = None
+
+
+@dataclass(frozen=True)
+class GradedClass:
+    """A class with its submissions, a grading job for each of them, and the options."""
 
     course: "GradingContext"
     found: "SubmissionScan"
     jobs: "list[GradingJob]"
-    asked: Any
+    options: ClassOptions
+    run: RunOptions
 
 
-def class_of(conditions: plans.GradingOptions, asked: Any) -> Class:
-    """Return a class with what it has handed in, as the options of `hdrlab grade` name it."""
-    from hdrlab.course.classroom import handins, marks, roster as lists, run as classroom
+def load_class(
+    conditions: plans.GradingOptions, options: ClassOptions, run_options: RunOptions
+) -> GradedClass:
+    """Read the roster, the plan and the submissions of a class."""
+    from hdrlab.course.classroom import handins, marks, roster, run
 
-    if asked.roster is None:
+    if options.roster is None:
         raise InputError("expected --roster, which says who is in the class")
-    homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
-    late, before = plans.read(asked.plan).late, marks.read(asked.before)
-    course = classroom.GradingContext(lists.read(asked.roster), homework, conditions, late, before)
-    times = handins.read_times(asked.received) if asked.received else {}
-    found = handins.find(asked.submission, course.roster, times)
-    return Class(course, found, classroom.make_jobs(found.submissions, homework, conditions), asked)
+    homework = assignments.find_homework(options.submissions, options.homework, options.plan)
+    course = run.GradingContext(
+        roster=roster.read(options.roster),
+        homework=homework,
+        conditions=conditions,
+        late=plans.read(options.plan).late,
+        before=marks.read(options.before),
+    )
+    times = handins.read_times(options.received) if options.received else {}
+    found = handins.find(options.submissions, course.roster, times)
+    jobs = run.make_jobs(found.submissions, homework, conditions)
+    return GradedClass(course, found, jobs, options, run_options)
 
 
-def grade_folder(whole: Class) -> None:
-    """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course.classroom import jobs, run as classroom
+def grade_class(graded_class: GradedClass) -> None:
+    """Grade the submissions of a class that have no result yet, and write its gradebook and page."""
+    from hdrlab.course.classroom import jobs as grading_jobs, run
 
-    course, found, pieces, asked = whole
-    common.say("note", found.notes)
-    options = {name: value for name, value in vars(asked).items() if name not in OF_A_RUN}
-    since = asked.since.replace(tzinfo=UTC) if asked.since else None
-    wanted = classroom.select_submissions(found.submissions, course.roster, asked.only, since)
-    with jobs.lock_folder(asked.out):
-        text = json.dumps([asked.submission, options], default=lambda path: str(path.resolve()))
-        jobs.write_private_file(asked.out / "asked.json", text.encode())
-        done = graded(whole, [piece for piece in pieces if piece.owner in wanted], asked.out)
-        lost = [f"{one.job.owner}: {one.problem}" for one in done if one.problem]
-        common.say("warning", lost)
-        page, count = write_books(whole, lost)
-        _compare(asked.out, course, found.submissions)
-    fresh = sum(one.is_new for one in done if one.path)
-    click.echo(f"{page}: {count} of {len(found.submissions)} graded, {fresh} of them now")
-
-
-def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
-    """Write all that is about the whole class; return its page, and how many works have a result."""
-    from hdrlab.course.classroom import moodle, overview, run as classroom
-
-    course, found, pieces, asked = whole
-    counted = overview.tally(classroom.read_results(asked.out, pieces))
-    *_, page = overview.write(asked.out, course, found, counted, lost)
-    if asked.moodle:
-        rows = overview.marks_of(course, found, counted)
-        common.say(
-            "note", moodle.write(asked.out, asked.moodle, rows, course.roster, course.homework)
-        )
-    return page, len(counted.points)
+    course = graded_class.course
+    out = graded_class.run.out
+    submissions = graded_class.found.submissions
+    common.echo_notes(graded_class.found.notes)
+    since = graded_class.run.since
+    if since is not None:
+        since = since.replace(tzinfo=UTC)
+    selected = run.select_submissions(submissions, course.roster, graded_class.run.only, since)
+    with grading_jobs.lock_folder(out):
+        grading_jobs.write_private_file(out / OPTIONS_FILE, _options_to_json(graded_class.options))
+        jobs = [job for job in graded_class.jobs if job.owner in selected]
+        results = run_jobs(graded_class, jobs, out)
+        failures = describe_failures(results)
+        common.echo_warnings(failures)
+        page, graded_count = write_books(graded_class, failures)
+        _compare(out, course, submissions)
+    fresh = sum(result.is_new for result in results if result.path)
+    click.echo(f"{page}: {graded_count} of {len(submissions)} graded, {fresh} of them now")
 
 
-def graded(whole: Class, wanted: "Sequence[GradingJob]", out: Path) -> "list[JobResult]":
-    """Return what became of each submission; its feedback is written as soon as its result is there."""
-    from hdrlab.course.classroom import jobs, run as classroom
+def describe_failures(results: "Sequence[JobResult]") -> list[str]:
+    """Return a line about each submission that could not be graded."""
+    return [f"{result.job.owner}: {result.problem}" for result in results if result.problem]
 
-    folder, course, asked = out / "results", whole.course, whole.asked
-    before, rest = ([], [*wanted]) if asked.regrade else jobs.split_finished(folder, wanted)
-    done = [classroom.write_feedback(out, one) for one in before]
-    if before:
-        click.echo(f"{len(before)} of {len(wanted)} were graded before", err=True)
-    if rest:
-        with _executor(course, asked) as executor:
-            jobs.delete_results(folder, rest)
+
+def write_books(graded_class: GradedClass, failures: Sequence[str] = ()) -> tuple[Path, int]:
+    """Write the gradebooks and the page of a class; return the page and the number of results."""
+    from hdrlab.course.classroom import moodle, overview, run
+
+    course = graded_class.course
+    out = graded_class.run.out
+    worksheet = graded_class.options.moodle
+    tally = overview.tally(run.read_results(out, graded_class.jobs))
+    *_, page = overview.write(out, course, graded_class.found, tally, failures)
+    if worksheet:
+        rows = overview.marks_of(course, graded_class.found, tally)
+        notes = moodle.write(out, worksheet, rows, course.roster, course.homework)
+        common.echo_notes(notes)
+    return page, len(tally.points)
+
+
+def run_jobs(
+    graded_class: GradedClass, jobs: "Sequence[GradingJob]", out: Path
+) -> "list[JobResult]":
+    """Run grading jobs, and write each team's feedback as soon as its result exists.
+
+    Jobs whose results exist are not run again, except with --regrade.
+    """
+    from hdrlab.course.classroom import jobs as grading_jobs, run
+
+    folder = out / "results"
+    if graded_class.run.regrade:
+        finished: list[JobResult] = []
+        remaining = list(jobs)
+    else:
+        finished, remaining = grading_jobs.split_finished(folder, jobs)
+    results = [run.write_feedback(out, result) for result in finished]
+    if finished:
+        click.echo(f"{len(finished)} of {len(jobs)} were graded before", err=True)
+    if remaining:
+        with _executor(graded_class.course, graded_class.run) as executor:
+            grading_jobs.delete_results(folder, remaining)
             steps = (
-                classroom.write_feedback(out, one) for one in jobs.run_jobs(rest, executor, folder)
+                run.write_feedback(out, result)
+                for result in grading_jobs.run_jobs(remaining, executor, folder)
             )
-            done += common.progress(steps, course.homework.name, len(rest))
-    return done
+            name = graded_class.course.homework.name
+            results.extend(common.progress(steps, name, len(remaining)))
+    return results
 
 
 def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Submission]") -> None:
-    """Write what is alike among all that was handed in, also what was graded before."""
+    """Write similar.html, which compares all submissions of the class, old and new."""
     try:
         from hdrlab.course.overlap import alike
     except ImportError as error:
-        click.echo(f'note: similar.html needs {error.name}: pip install "hdrlab[class]"', err=True)
+        common.echo_notes([f'similar.html needs {error.name}: pip install "hdrlab[class]"'])
         return
     if len(submissions) > alike.MOST:
-        click.echo(f"note: no similar.html, which compares at most {alike.MOST:,} works", err=True)
+        common.echo_notes([f"no similar.html: it compares at most {alike.MOST:,} submissions"])
         return
     steps = alike.write_steps(out, course.homework, submissions, course.conditions.secret)
-    list(common.progress(steps, "what is alike", len(submissions)))
+    for _ in common.progress(steps, "comparing", len(submissions)):
+        pass
 
 
-def _executor(course: "GradingContext", asked: Any) -> "Executor":
-    """Return those who grade: processes of this machine, or the workers of a cluster."""
-    from hdrlab.course.classroom import run as classroom
+def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
+    """Return what runs the grading jobs: processes of this machine, or a Dask cluster."""
+    from hdrlab.course.classroom import run
     from hdrlab.course.classroom.executors import processes
     from hdrlab.course.sandbox import doctor
 
-    grader = classroom.Grader(
-        course.homework, course.conditions, classroom.read_hidden_checks(course.conditions.hidden)
-    )
-    if asked.cluster is None:
-        found = doctor.examine(
-            course.conditions.tier
-        )  # tried once, and not missed by each submission
-        if not found.works:
-            raise common.no_tier(found.says)
-        return processes.Processes(grader.grade, asked.jobs)
-    if asked.jobs is not None:
+    conditions = course.conditions
+    grader = run.Grader(course.homework, conditions, run.read_hidden_checks(conditions.hidden))
+    if options.cluster is None:
+        # tested once, before the jobs, and not by each of them
+        examination = doctor.examine(conditions.tier)
+        if not examination.works:
+            raise common.tier_error(examination.says)
+        return processes.Processes(grader.grade, options.jobs)
+    if options.jobs is not None:
         raise InputError(
             "expected --jobs or --cluster: a cluster grades as many at a time as it has threads"
         )
-    common.require("cluster", ["dask", "distributed"])
+    common.require_modules("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
 
-    return cluster.Cluster(asked.cluster, grader.grade, grader.check_available)
+    return cluster.Cluster(options.cluster, grader.grade, grader.check_available)
 
 
-@common.command()
-@click.argument("results", type=grading.FOLDER)
-@grading.HOMEWORK
-@common.choice(
-    "--policy", ["replace", "never-lower", "only-listed"], help="Which new results are to count."
-)
-@click.option(
-    "--only", metavar="WHO", multiple=True, help="Of only-listed, a student or team. Repeatable."
-)
-@click.option(
-    "--requests", type=grading.FILE, multiple=True, help="CSV with student, task and words."
-)
-@click.option("--why", default="", help="A sentence for the journal.")
-@click.option(
-    "--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]"
-)
-@click.option("--cluster", metavar="ADDRESS", help="On this Dask cluster, tcp://HOST:8786.")
-@click.option("--apply", is_flag=True, help="Let it count, with a signed line in the journal.")
-def regrade(
-    results: Path, requests: Sequence[Path], only: Sequence[str], policy: str, **how: Any
-) -> None:
-    """Grade anew what the checks have changed of a class, and show who would move, by how much and why.
+def load_graded_class(results: Path, run_options: RunOptions, homework: str | None) -> GradedClass:
+    """Load a class with the options that `hdrlab grade` recorded in its results.
 
-    RESULTS is what `hdrlab grade` has written of the class. Nothing in it changes before --apply.
+    A homework that is given replaces the recorded one.
     """
-    from hdrlab.course.classroom import jobs, regrade as review, run
-    from hdrlab.course.scratch import temporary_folder
-
-    whole = _as_graded(results, how)
-    course, pieces = whole.course, whole.jobs
-    words = review.requests(requests, course.roster)
-    listed = {course.roster.find_team(name) for name in only} | set(words)
-    with temporary_folder(), jobs.lock_folder(results):
-        _, changed = jobs.split_finished(results / "results", pieces)
-        done = graded(whole, changed, results / "regrade")
-        common.say("warning", [f"{one.job.owner}: {one.problem}" for one in done if one.problem])
-        moves = review.moves(results, pieces, policy, listed, words)
-        click.echo(review.text(moves))
-        click.echo(review.write(results, moves, course.homework.points, policy))
-        if how["apply"]:
-            now = datetime.now(UTC).isoformat(timespec="seconds")
-            secret, why = course.conditions.secret, how["why"]
-            review.apply(results, moves, pieces, secret, policy=policy, why=why, when=now)
-            for one in jobs.split_finished(results / "results", pieces)[0]:
-                run.write_feedback(results, one)
-            click.echo(write_books(whole)[0])
+    options = _read_options(results)
+    if homework is not None:
+        options = replace(options, homework=homework)
+    secret = ""
+    if options.secret_file:
+        # unlike `grade`, never create a secret: all inputs would change
+        secret, _is_new = plans.read_secret(options.secret_file.resolve(strict=True))
+    conditions = plans.GradingOptions(
+        tier=options.tier, secret=secret, hidden=options.hidden, timeout=options.timeout
+    )
+    return load_class(conditions, options, run_options)
 
 
-def _as_graded(results: Path, how: dict[str, Any]) -> Class:
-    """Return a class as it was graded, by the options of then but for those that are given."""
-    file = results / "asked.json"
+def _options_to_json(options: ClassOptions) -> bytes:
+    """Return the record of the options of a class. Its paths are absolute."""
+    values = asdict(options)
+    folder = values.pop("submissions")
+    return json.dumps([folder, values], default=lambda path: str(path.resolve())).encode()
+
+
+def _read_options(results: Path) -> ClassOptions:
+    """Read the record of the options of a class."""
+    file = results / OPTIONS_FILE
     if not file.is_file():
         raise InputError(
             f"{results}: expected the results of a class that `hdrlab grade` has graded"
         )
-    folder, said = json.loads(file.read_bytes())
-    given = {name: value for name, value in how.items() if value is not None}
-    context = grading.grade.make_context("grade", [folder], default_map=said)
-    asked = SimpleNamespace(**context.params | given | {"out": results})
-    # a class's own secret is never made anew: all inputs would be others
-    secret = (
-        plans.read_secret(asked.secret_file.resolve(strict=True))[0] if asked.secret_file else ""
-    )
-    conditions = plans.GradingOptions(asked.tier, "", secret, asked.hidden, asked.timeout)
-    return class_of(conditions, asked)
+    try:
+        folder, values = json.loads(file.read_bytes())
+        return ClassOptions(
+            submissions=Path(folder),
+            homework=values["homework"],
+            tier=values["tier"],
+            hidden=_path_or_none(values["hidden"]),
+            student=values["student"],
+            secret_file=_path_or_none(values["secret_file"]),
+            timeout=values["timeout"],
+            roster=_path_or_none(values["roster"]),
+            received=_path_or_none(values["received"]),
+            before=tuple(Path(path) for path in values["before"]),
+            moodle=_path_or_none(values["moodle"]),
+            plan=_path_or_none(values["plan"]),
+        )
+    except (ValueError, TypeError, KeyError) as error:
+        raise FileFormatError(
+            f"{file}: expected the options that `hdrlab grade` recorded ({error!r}); grade the class again"
+        ) from None
+
+
+def _path_or_none(text: Any) -> Path | None:
+    return None if text is None else Path(text)

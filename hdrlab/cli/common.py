@@ -1,132 +1,182 @@
-"""What the commands share: kinds of options, progress, and text that becomes values."""
+"""Option types, file checks, messages and progress that the commands share."""
 
-import inspect
 import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from hdrlab import __version__
 from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 
+if TYPE_CHECKING:
+    from hdrlab.core.arrays import F32
+
 Item = TypeVar("Item")
-Option = Callable[[Callable[..., Any]], Callable[..., Any]]
-FILE = click.Path(path_type=Path)
-OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+INPUT_PATH = click.Path(path_type=Path)
+# an object of its own: `Command` finds the outputs among a command's options by it
+OUTPUT_PATH = click.Path(path_type=Path)
+EXISTING_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+EXISTING_FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
+
 OPERATORS = ["photograph", *catalogue.names("tonemap")]
-SUFFIXES = ".hdr, .exr, .pfm or .tif"
-PIXELS = 400_000  # of a map, on an even grid, by which its range is told
-MASK = click.option(
-    "--mask", metavar="RRGGBB", help="Exactly this colour is no picture (borders of scans)."
-)
-CLEAN = click.option(
-    "--clean", is_flag=True, help="Repair even a map of which most is NaN or below 0."
-)
+MAP_SUFFIXES = ".hdr, .exr, .pfm or .tif"
+
+# the decades of a radiance map are measured on an even grid of at most so many pixels
+MAX_SAMPLED_PIXELS = 400_000
 
 
-def choice(
-    name: str, values: Sequence[str], default: str | None = None, help: str | None = None
-) -> Option:
-    """Return the option that takes one of some values, by default the first."""
-    return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
+@dataclass
+class Settings:
+    """Global options of one run of the command line."""
+
+    debug: bool = False
 
 
-def operator(name: str) -> Option:
-    """Return the option that names a tone mapping operator."""
-    said = "photograph chooses its settings by the map; the others have their papers'."
-    return choice(name, OPERATORS, help=said)
+def _set_debug(ctx: click.Context, param: click.Parameter, value: bool) -> None:
+    """Store --debug where `run` finds it when the command has failed."""
+    if value:
+        ctx.find_root().ensure_object(Settings).debug = True
+
+
+def debug_option(*, hidden: bool) -> click.Option:
+    """Return the option --debug, which every command accepts and only `hdrlab --help` lists."""
+    return click.Option(
+        ["--debug"],
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        hidden=hidden,
+        callback=_set_debug,
+        help="Show the traceback of every error.",
+    )
 
 
 class Command(click.Command):
-    """A command that writes over nothing that it reads; one of many options gets them by name, as `asked`."""
+    """A command that refuses to overwrite a file that it reads."""
+
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        super().__init__(*arguments, **keywords)
+        self.params.append(debug_option(hidden=True))
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command, or raise a ValueError where an output is one of the files that it would read."""
+        """Run the command, or raise InputError if an output is one of the files that it reads."""
         from hdrlab.io.files import require_other
 
-        given = [(one.type is OUT, _paths(ctx.params.get(str(one.name)))) for one in self.params]
-        written = [path for is_out, paths in given if is_out for path in paths]
-        read = [path for is_out, paths in given if written and not is_out for path in paths]
-        require_other(written, [file for path in read for file in (path, *_photographs(path))])
-        if "asked" in inspect.signature(self.callback or print).parameters:
-            ctx.params = {"asked": SimpleNamespace(**ctx.params)}
+        written: list[Path] = []
+        read: list[Path] = []
+        for param in self.params:
+            paths = _paths(ctx.params.get(str(param.name)))
+            if param.type is OUTPUT_PATH:
+                written.extend(paths)
+            else:
+                read.extend(paths)
+        if written:
+            photos = [photo for path in read for photo in _photos_in(path)]
+            require_other(written, [*read, *photos])
         return super().invoke(ctx)
 
 
 class Group(click.Group):
-    """A group of such commands, and of such groups."""
+    """A group whose commands and subgroups are of these classes too."""
 
     command_class = Command
     group_class = type
 
 
-@click.group(
-    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True}
-)
-@click.version_option(__version__, prog_name="hdrlab")
-def main() -> None:
-    """High dynamic range imaging: photographs to a radiance map to a picture."""
-
-
-command = main.command
-
-
-def _paths(value: Any) -> list[Path]:
+def _paths(value: object) -> list[Path]:
     """Return what the value of an option, or each of its values, may name."""
-    each = value if isinstance(value, tuple) else (value,)
-    return [Path(one) for one in each if isinstance(one, str | Path)]
+    values = value if isinstance(value, tuple) else (value,)
+    return [Path(item) for item in values if isinstance(item, str | Path)]
 
 
-def _photographs(folder: Path) -> list[Path]:
-    """Return the photographs in a folder, which are read where the folder is named; none of a file."""
+def _photos_in(folder: Path) -> list[Path]:
+    """Return the photos in a folder: a command that gets the folder reads them. Files have none."""
     from hdrlab.io import album
 
-    inside = folder.iterdir() if os.path.isdir(folder) else ()
-    return [path for path in inside if path.suffix.lower() in album.SUFFIXES]
+    if not os.path.isdir(folder):
+        return []
+    return [path for path in folder.iterdir() if path.suffix.lower() in album.SUFFIXES]
 
 
-def no_tier(reason: str) -> InputError:
-    """Return the error of a tier that cannot be had, with what can be done about it, in one line."""
+def choice_option(
+    name: str, values: Sequence[str], default: str | None = None, help: str | None = None
+) -> Decorator:
+    """Return an option that takes one of some values, by default the first."""
+    return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
+
+
+def operator_option(name: str) -> Decorator:
+    """Return an option that names a tone mapping operator."""
+    return choice_option(
+        name,
+        OPERATORS,
+        help="Tone mapping operator. photograph adapts its settings to the map; the others use "
+        "the settings of their papers.",
+    )
+
+
+mask_option = click.option(
+    "--mask",
+    metavar="RRGGBB",
+    help="Ignore pixels of exactly this color (e.g. scan borders).",
+)
+clean_option = click.option(
+    "--clean", is_flag=True, help="Repair a map even if most of its pixels are NaN or negative."
+)
+
+
+def tier_error(reason: str) -> InputError:
+    """Return the error for a sandbox tier that this machine cannot run, with what to do."""
     from hdrlab.course.sandbox import doctor
 
-    helps = "; ".join(filter(None, (doctor.remedy(reason), "hdrlab doctor says more")))
-    line = reason.strip().partition("\n")[0].rstrip(".")
-    other = (
-        "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
-    )
-    return InputError(f"{line}; {helps}{other}")
+    first_line = reason.strip().partition("\n")[0].rstrip(".")
+    advice = "hdrlab doctor says more"
+    remedy = doctor.remedy(reason)
+    if remedy:
+        advice = f"{remedy}; {advice}"
+    message = f"{first_line}; {advice}"
+    if "practice" not in first_line:
+        message += ". For practice alone, and not for credit: --tier practice"
+    return InputError(message)
 
 
-def require(extra: str, names: Iterable[str]) -> None:
-    """Raise a ValueError that says what to install, where modules of an extra are not there."""
-    if missing := [name for name in names if find_spec(name) is None]:
+def require_modules(extra: str, names: Iterable[str]) -> None:
+    """Raise InputError with the command to install an extra, if any of its modules is missing."""
+    missing = [name for name in names if find_spec(name) is None]
+    if missing:
         raise InputError(f'expected {", ".join(missing)}: pip install "hdrlab[{extra}]"')
 
 
-def say(word: str, lines: Iterable[object]) -> None:
-    """Print lines beside the results, each after a word: "note" or "warning"."""
-    for line in lines:
-        click.echo(f"{word}: {line}", err=True)
+def echo_notes(notes: Iterable[object]) -> None:
+    """Print each note on standard error, after the word "note"."""
+    for note in notes:
+        click.echo(f"note: {note}", err=True)
 
 
-def list_files(files: Iterable[Path]) -> None:
-    """Print the name of each file as soon as it is there."""
-    for file in files:
-        click.echo(file)
+def echo_warnings(warnings: Iterable[object]) -> None:
+    """Print each warning on standard error, after the word "warning"."""
+    for warning in warnings:
+        click.echo(f"warning: {warning}", err=True)
+
+
+def echo_paths(paths: Iterable[Path]) -> None:
+    """Print the path of each file as soon as it is written."""
+    for path in paths:
+        click.echo(path)
 
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
-    """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
-    if (
-        not sys.stderr.isatty()
-    ):  # where tqdm would say nothing, it takes a tenth of a second to import
+    """Return `items` behind a progress bar. It appears after a second, and only on a terminal."""
+    if not sys.stderr.isatty():
+        # importing tqdm takes a tenth of a second
         return items
     from tqdm import tqdm
 
@@ -150,80 +200,90 @@ def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
         yield item
 
 
-def read_map(source: Path, clean: bool) -> Any:
-    """Return the radiance map of a file, with one line on what was repaired.
+def read_map(source: Path, clean: bool) -> "F32":
+    """Read a radiance map, repair it, and print a note about the repair.
 
-    Raises a ValueError where half of the pixels or more hold no light at all, unless `clean`.
+    Raises
+    ------
+    InputError
+        If half of the pixels or more need a repair, unless `clean`.
     """
     from hdrlab.io import radiance
 
-    E, *counts = radiance.read_sanitized(source)
-    unknown, infinite, _, black = counts
-    what = (
-        "unknown pixels",
-        "infinite values",
-        "pixels with a negative channel",
-        "pixels below black",
-    )
-    said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
+    E, unknown, infinite, negative, black = radiance.read_sanitized(source)
+    count_by_repair = {
+        "unknown pixels": unknown,
+        "infinite values": infinite,
+        "pixels with a negative channel": negative,
+        "pixels below black": black,
+    }
+    repairs = ", ".join(f"{count} {name}" for name, count in count_by_repair.items() if count)
     pixels = E.shape[0] * E.shape[1]
-    if not clean and 2 * (unknown + black + infinite / (E.size / pixels)) >= pixels:
+    channels = E.size / pixels
+    if not clean and 2 * (unknown + black + infinite / channels) >= pixels:
         raise InputError(
-            f"{source}: expected radiance, got {said} of {pixels} pixels; --clean repairs all"
+            f"{source}: expected radiance, got {repairs} of {pixels} pixels; --clean repairs all"
         )
-    if said:
-        click.echo(f"note: {source}: cleaned {said}, of {pixels} pixels", err=True)
+    if repairs:
+        click.echo(f"note: {source}: cleaned {repairs}, of {pixels} pixels", err=True)
     elif clean:
         click.echo(f"{source}: cleaned nothing, all is radiance")
     return E
 
 
-def size(E: Any) -> str:
-    """Return what a radiance map is, in words: its size and its decades."""
+def describe_map(E: "F32") -> str:
+    """Return the size of a radiance map and its range in decades, in words."""
     from hdrlab.core.extremes import decades
 
-    every = max(1, int((E.shape[0] * E.shape[1] / PIXELS) ** 0.5))
-    few = E[::every, ::every]
-    return f"{E.shape[1]} x {E.shape[0]}, " + (
-        f"{decades(few):.1f} decades" if few.any() else "all black"
-    )
+    height, width = E.shape[:2]
+    step = max(1, int((height * width / MAX_SAMPLED_PIXELS) ** 0.5))
+    sample = E[::step, ::step]
+    content = f"{decades(sample):.1f} decades" if sample.any() else "all black"
+    return f"{width} x {height}, {content}"
 
 
-def agreement(spread: float) -> str:
-    """Return how far the frames of a map agree, in words; a spread of NaN stops could not be measured."""
+def describe_agreement(spread: float) -> str:
+    """Return in words how far the frames of a map agree; NaN stops stand for "not measured"."""
     if spread != spread:
         return "how far the frames agree could not be measured"
     return f"frames agree to {spread:.3f} stops"
 
 
-def colour(text: str | None) -> tuple[int, int, int] | None:
-    """Return RRGGBB as three levels, or raise a ValueError; None passes."""
+def parse_color(text: str | None) -> tuple[int, int, int] | None:
+    """Return the three pixel values of a color RRGGBB; None stays None."""
     if text is None:
         return None
     try:
         red, green, blue = bytes.fromhex(text.removeprefix("#"))
     except ValueError:
         raise InputError(
-            f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}"
+            f"--mask: expected a color as RRGGBB, such as 0000FF, got {text!r}"
         ) from None
     return red, green, blue
 
 
-def reading(text: str) -> tuple[int, int, float]:
-    """Return X,Y=CD as a place and its luminance, or raise a ValueError."""
-    found = re.fullmatch(r"(\d{1,6}),(\d{1,6})=(\d{1,9}(?:\.\d{1,9})?)", text, re.ASCII)
-    if not found:
+def parse_meter_reading(text: str) -> tuple[int, int, float]:
+    """Return the place and the luminance of a meter reading X,Y=CD."""
+    match = re.fullmatch(r"(\d{1,6}),(\d{1,6})=(\d{1,9}(?:\.\d{1,9})?)", text, re.ASCII)
+    if not match:
         raise InputError(f"--calibrate: expected X,Y=CD, such as 640,360=125, got {text[:40]!r}")
-    return int(found[1]), int(found[2]), float(found[3])
+    return int(match[1]), int(match[2]), float(match[3])
 
 
-def knob(text: str) -> tuple[str, Any]:
-    """Return knob=value as a name and a number, a word, True, False or None."""
+def parse_setting(text: str) -> tuple[str, float | str | bool | None]:
+    """Return the name and the value of a setting NAME=VALUE.
+
+    Examples
+    --------
+    >>> parse_setting("key=0.36"), parse_setting("passes=3"), parse_setting("local=true")
+    (('key', 0.36), ('passes', 3), ('local', True))
+    """
     name, equals, value = text.partition("=")
     if not equals or not name.isidentifier():
-        raise InputError(f"--set: expected knob=value, such as key=0.36, got {text!r}")
-    if value in ("true", "false", "none"):
-        return name, {"true": True, "false": False, "none": None}[value]
+        raise InputError(f"--set: expected NAME=VALUE, such as key=0.36, got {text!r}")
+    words: dict[str, bool | None] = {"true": True, "false": False, "none": None}
+    if value in words:
+        return name, words[value]
     try:
         number = float(value)
     except ValueError:

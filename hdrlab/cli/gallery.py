@@ -1,4 +1,4 @@
-"""The commands with which a class votes on its artifacts."""
+"""The commands for a class's vote on its artifacts: `gallery init`, `add`, `links`, `serve` ..."""
 
 import time
 from contextlib import closing
@@ -8,91 +8,129 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
-from hdrlab.course.classroom import roster as lists
+from hdrlab.course.classroom import roster as rosters
 from hdrlab.course.gallery import store
 from hdrlab.course.reports import csv_tables
 from hdrlab.course.sanitize import sanitize_line
-from hdrlab.errors import InputError
+from hdrlab.errors import HdrlabError, InputError
 
-FOLDER = click.argument("folder", type=common.FILE)
-NEEDS = ("starlette", "uvicorn")
+SERVER_MODULES = ("starlette", "uvicorn")
+MAX_TITLE_LENGTH = 80
+MAX_NOTE_LENGTH = 300
+
+folder_argument = click.argument("folder", type=common.INPUT_PATH)
 
 
-@common.main.group()
+@click.group(cls=common.Group)
 def gallery() -> None:
     """Let the class vote on its artifacts: init, add, links, serve, close, results."""
 
 
 @gallery.command()
-@FOLDER
-@click.option("--title", default="Which artifact is best?", help="Over the wall.")
+@folder_argument
+@click.option("--title", default="Which artifact is best?", help="Title of the gallery.")
 @click.option(
-    "--closes", required=True, metavar="TIME", help="Of the vote, as 2026-12-01T23:59+01:00."
+    "--closes",
+    required=True,
+    metavar="TIME",
+    help="End of the vote, such as 2026-12-01T23:59+01:00.",
 )
-@click.option("--marks", type=click.IntRange(1, 20), default=3, help="Votes on a ballot, at most.")
-def init(folder: Path, title: str, closes: str, marks: int) -> None:
-    """Make a gallery in FOLDER."""
+@click.option(
+    "--marks", type=click.IntRange(1, 20), default=3, help="Largest number of votes on a ballot."
+)
+def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
+    """Create a gallery in FOLDER."""
     try:
         end = datetime.fromisoformat(closes)
     except ValueError:
-        said = f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
-        raise InputError(said) from None
-    store.create(folder, sanitize_line(title, 80), end, marks)
+        raise InputError(
+            f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
+        ) from None
+    store.create(folder, sanitize_line(title, MAX_TITLE_LENGTH), end, marks)
     click.echo(
         f"{folder}: a gallery, open until {store.format_time(end)}, {marks} votes on a ballot"
     )
 
 
 @gallery.command()
-@FOLDER
+@folder_argument
 @click.option(
-    "--roster", required=True, type=common.FILE, help="CSV: student, and name, email, team."
+    "--roster",
+    required=True,
+    type=common.INPUT_PATH,
+    help="Class list: a CSV file with the column student, and optionally name, email and team.",
 )
-@click.argument("artifacts", nargs=-1, type=common.FILE)
-def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
-    """Admit the students of a roster, and hang ARTIFACTS (files or folders) in the gallery of FOLDER.
+@click.argument("artifacts", nargs=-1, type=common.INPUT_PATH)
+def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
+    """Register the students of a roster as voters, and add ARTIFACTS to the gallery in FOLDER.
 
-    A file, or its folder, is named after its team or student: team7.jpg, b0123/submission.zip. A
-    text beside a picture, team7.txt, holds its title and then a caption; archives of `hdrlab
-    submit` hold both themselves. What cannot hang is named, and the rest hangs.
+    ARTIFACTS are files or folders. A file, or its folder, is named after its team or student:
+    team7.jpg, b0123/submission.zip. A text file next to an image, team7.txt, holds its title and
+    then a caption. Archives of `hdrlab submit` contain both. hdrlab lists the artifacts that it
+    cannot add, and adds the others.
     """
     from hdrlab.course.gallery import collect
 
-    students = lists.read(roster)
-    hung, refused = 0, 0
+    students = rosters.read(roster)
+    added = 0
+    refused = 0
     with closing(store.connect(folder)) as db:
         with store.transaction(db):
-            for one in students.students:
-                store.admit(db, store.Voter(one.id, one.name, one.team))
-        for source, name in common.progress(collect.sources(artifacts), "hanging"):
+            for student in students.students:
+                store.admit(db, store.Voter(student.id, student.name, student.team))
+        for source, name in common.progress(collect.sources(artifacts), "adding"):
             try:
                 with collect.entry(source, students, name) as entry:
-                    votes = collect.hang(db, folder, entry, source.name)
-                hung += 1
-                if votes:
-                    said = f"{entry.team} hung another before, whose {votes} votes do not count any longer"
-                    click.echo(f"note: {sanitize_line(f'{source.name}: {said}', 300)}", err=True)
-            except ValueError as error:
+                    lost_votes = collect.hang(db, folder, entry, source.name)
+            except HdrlabError as error:
                 refused += 1
-                click.echo(f"note: {sanitize_line(f'{source.name}: {error}', 300)}", err=True)
-    said = f", {refused} refused" if refused else ""
-    click.echo(f"{folder}: {len(students.students)} voters, {hung} artifacts hung{said}")
+                _echo_note(f"{source.name}: {error}")
+                continue
+            added += 1
+            if lost_votes:
+                _echo_note(
+                    f"{source.name}: replaces the earlier artifact of {entry.team}, "
+                    f"whose {lost_votes} votes no longer count"
+                )
+    refusals = f", {refused} refused" if refused else ""
+    click.echo(f"{folder}: {len(students.students)} voters, {added} artifacts added{refusals}")
+
+
+def _echo_note(text: str) -> None:
+    """Print a note that contains text from a submission, without control characters."""
+    common.echo_notes([sanitize_line(text, MAX_NOTE_LENGTH)])
 
 
 @gallery.command()
-@FOLDER
+@folder_argument
 @click.option(
-    "-o", "--out", required=True, type=common.OUT, help="CSV of links, for your eyes alone."
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="CSV file for the links. Keep it secret.",
 )
 @click.option(
-    "--address", required=True, help="Where voters reach the gallery: https://vote.example.edu."
+    "--address",
+    required=True,
+    help="Address where voters reach the gallery, such as https://vote.example.edu.",
 )
-@click.option("--roster", type=common.FILE, help="Adds the addresses of its column email.")
 @click.option(
-    "--renew", multiple=True, metavar="STUDENT", help="A new link for this one alone. Repeatable."
+    "--roster",
+    type=common.INPUT_PATH,
+    help="Class list whose column email is copied next to the links.",
 )
-@click.option("--all-anew", is_flag=True, help="New links for everybody, though some have theirs.")
+@click.option(
+    "--renew",
+    multiple=True,
+    metavar="STUDENT",
+    help="Make a new link only for this student. Repeatable.",
+)
+@click.option(
+    "--all-anew", is_flag=True, help="Make new links for all students, and end their old ones."
+)
 def links(
+    *,
     folder: Path,
     out: Path,
     address: str,
@@ -100,55 +138,68 @@ def links(
     renew: tuple[str, ...],
     all_anew: bool,
 ) -> None:
-    """Make the personal links, each good for one browser.
+    """Make the personal links. Each works in one browser.
 
-    They are written once and kept nowhere else. Who has a link keeps it, unless --renew or
-    --all-anew ends it.
+    The links are written once and stored nowhere else. Students who have a link keep it, unless
+    --renew or --all-anew replaces it.
     """
     from hdrlab.course.gallery import tokens
 
-    emails = {one.id: one.email for one in lists.read(roster).students} if roster else {}
+    if renew and all_anew:
+        raise InputError("--renew and --all-anew exclude each other; pass one of them")
+    emails = {}
+    if roster:
+        emails = {student.id: student.email for student in rosters.read(roster).students}
     with closing(store.connect(folder)) as db:
-        without = [
-            id for (id,) in db.execute("SELECT id FROM voters WHERE link IS NULL ORDER BY id")
-        ]
-        everybody = [voter.id for voter in store.voters(db)]
-        wanted = list(renew) or (everybody if all_anew else without)
-        rows = tokens.links(db, address, wanted, emails)
+        if renew:
+            students = list(renew)
+        elif all_anew:
+            students = [voter.id for voter in store.voters(db)]
+        else:
+            query = "SELECT id FROM voters WHERE link IS NULL ORDER BY id"
+            students = [row[0] for row in db.execute(query)]
+        rows = tokens.links(db, address, students, emails)
     csv_tables.write_csv(out, tokens.LINKS, rows, private=True)
     click.echo(
-        f"{out}: {len(rows)} personal links; who has one can vote with it, so send each to its owner"
+        f"{out}: {len(rows)} personal links; anybody who has a link can vote with it, "
+        "so send each to its owner only"
     )
 
 
 @gallery.command()
-@FOLDER
-@click.option("--host", default="127.0.0.1", help="Where to listen.")
-@click.option("--port", type=click.IntRange(1, 65535), default=8044)
-@click.option("--address", help="Where voters reach the gallery.  [default: http://HOST:PORT]")
+@folder_argument
+@click.option("--host", default="127.0.0.1", help="Address to listen on.")
+@click.option("--port", type=click.IntRange(1, 65535), default=8044, help="Port to listen on.")
 @click.option(
-    "--behind-proxy", is_flag=True, help="A proxy on this machine ends TLS and names its clients."
+    "--address",
+    help="Address where voters reach the gallery.  [default: http://HOST:PORT]",
 )
-def serve(folder: Path, host: str, port: int, address: str | None, behind_proxy: bool) -> None:
-    """Serve the gallery of FOLDER until Ctrl-C. Ballots that were acknowledged are on the disk."""
-    common.require("class", NEEDS)
-    from hdrlab.course.gallery.web.serve import serve as run
+@click.option(
+    "--behind-proxy",
+    is_flag=True,
+    help="Trust a proxy on this machine for TLS and the clients' addresses.",
+)
+def serve(*, folder: Path, host: str, port: int, address: str | None, behind_proxy: bool) -> None:
+    """Serve the gallery in FOLDER until Ctrl-C. Every acknowledged ballot is on the disk."""
+    common.require_modules("class", SERVER_MODULES)
+    from hdrlab.course.gallery.web.serve import serve as serve_gallery
 
     address = address or f"http://{host}:{port}"
-    if not address.startswith("https://") and host not in ("127.0.0.1", "localhost", "::1"):
-        click.echo(
-            "warning: without https:// whoever shares the network can read the links", err=True
+    is_local = host in ("127.0.0.1", "localhost", "::1")
+    if not address.startswith("https://") and not is_local:
+        common.echo_warnings(
+            ["without https://, everybody on the same network can read the personal links"]
         )
     click.echo(
-        f"{address}: the gallery of {folder}; Ctrl-C ends it, and what goes wrong is in gallery.log"
+        f"{address}: the gallery of {folder}; Ctrl-C stops it, errors are logged in gallery.log"
     )
-    run(folder, address, host=host, port=port, behind_proxy=behind_proxy)
+    serve_gallery(folder, address, host=host, port=port, behind_proxy=behind_proxy)
 
 
 @gallery.command()
-@FOLDER
-def close(folder: Path) -> None:
-    """End the vote now, also while the gallery is being served."""
+@folder_argument
+def close(*, folder: Path) -> None:
+    """End the vote now, even while the gallery is being served."""
     with store.writing(folder) as db:
         now = datetime.now().astimezone()
         if not store.settings(db).is_open(now.timestamp()):
@@ -158,19 +209,23 @@ def close(folder: Path) -> None:
 
 
 @gallery.command()
-@FOLDER
-@click.option("-o", "--out", required=True, type=common.OUT, help="CSV for the gradebook.")
-def results(folder: Path, out: Path) -> None:
-    """Write who voted and how each artifact fared, after the end of the vote."""
+@folder_argument
+@click.option(
+    "-o", "--out", required=True, type=common.OUTPUT_PATH, help="CSV file for the gradebook."
+)
+def results(*, folder: Path, out: Path) -> None:
+    """Write who voted, and the result of each artifact, after the end of the vote."""
     from hdrlab.course.gallery import ballots
 
     with closing(store.connect(folder)) as db:
-        set_up = store.settings(db)
-        if set_up.is_open(time.time()):
+        settings = store.settings(db)
+        if settings.is_open(time.time()):
             raise InputError(
-                f"{folder}: expected a vote that has ended, it is open until {set_up.closes}"
+                f"{folder}: expected a vote that has ended, it is open until {settings.closes}"
             )
-        rows, changes = list(ballots.gradebook(db)), store.changes(db)
-    common.say("note", changes)
+        rows = list(ballots.gradebook(db))
+        changes = store.changes(db)
+    common.echo_notes(changes)
     csv_tables.write_csv(out, ballots.GRADEBOOK, rows, private=True)
-    click.echo(f"{out}: {len(rows)} students. {ballots.METHOD.format(marks=set_up.marks)}")
+    method = ballots.METHOD.format(marks=settings.marks)
+    click.echo(f"{out}: {len(rows)} students. {method}")

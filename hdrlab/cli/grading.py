@@ -1,191 +1,288 @@
-"""Commands about assignments: a student's check, and an instructor's grade."""
+"""The commands about assignments: `check`, `grade`, `regrade` and `doctor`."""
 
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 
-from hdrlab.cli import common
+from hdrlab.cli import assignments, classroom, common
 from hdrlab.course import plan as plans
 from hdrlab.errors import InputError
 
-if TYPE_CHECKING:
-    from hdrlab.course.reports.results import Result
-
-FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
-FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
-PLAN = click.option(
-    "--plan", type=FILE, help="A plan of your own instead of the package's plan.toml."
-)
-HOMEWORK = click.option(
-    "--homework", metavar="NAME", help="Such as hw2; by default the file's name says it."
-)
-
-SECRET = click.option(
-    "--secret-file", type=common.FILE, help="Draws students' inputs; made on first use."
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    help="Number of submissions to grade at the same time.  [default: processors]",
 )
 
 
-@common.command()
-@click.argument("submission", type=click.Path(path_type=Path))
-@HOMEWORK
-@click.option("--task", metavar="NAME", help="Only this one, such as gsolve.")
+@click.command(cls=common.Command)
+@click.argument("submission", type=common.INPUT_PATH)
+@assignments.homework_option
+@click.option("--task", metavar="NAME", help="Check only this task, such as gsolve.")
 @click.option(
-    "--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold."
+    "--hints",
+    type=click.IntRange(0, 3),
+    default=0,
+    help="Show up to N hints for each failed check.",
 )
-@click.option("--page", type=common.OUT, help="The same as a page with pictures: a .html file.")
-@PLAN
-def check(asked: Any) -> None:
+@click.option(
+    "--page", type=common.OUTPUT_PATH, help="Page with the same results and figures: .html."
+)
+@assignments.plan_option
+def check(
+    *,
+    submission: Path,
+    homework: str | None,
+    task: str | None,
+    hints: int,
+    page: Path | None,
+    plan: Path | None,
+) -> None:
     """Check SUBMISSION, a notebook or a Python file, as often as you like. Not for credit.
 
-    Your functions run in a process of their own, which is no sandbox: check what you trust.
+    The functions run in a process of their own. That is no sandbox, so check only code you trust.
     """
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
 
-    homework = homework_of(asked.submission, asked.homework, asked.plan)
-    if asked.task is not None:
-        tasks = {one.id: one for one in homework.tasks}
-        if asked.task not in tasks:
-            raise InputError(f"expected a task out of {', '.join(tasks)}, got {asked.task!r}")
-        homework = homework._replace(tasks=(tasks[asked.task],))
-    conditions = plans.GradingOptions(tier="practice", draw=asked.page is not None)
-    result = _graded(asked.submission, homework, conditions)
-    click.echo(feedback.text(result, hints=asked.hints))
-    if asked.page is not None:
-        click.echo(write(asked.page, feedback.page(result)))
+    assignment = assignments.find_homework(submission, homework, plan)
+    if task is not None:
+        tasks = {known.id: known for known in assignment.tasks}
+        if task not in tasks:
+            raise InputError(f"expected a task out of {', '.join(tasks)}, got {task!r}")
+        assignment = assignment._replace(tasks=(tasks[task],))
+    conditions = plans.GradingOptions(tier="practice", draw=page is not None)
+    result = assignments.grade_submission(submission, assignment, conditions)
+    click.echo(feedback.text(result, hints=hints))
+    if page is not None:
+        click.echo(write(page, feedback.page(result)))
 
 
-@common.command()
-@click.argument("submission", type=click.Path(path_type=Path))
-@HOMEWORK
-@common.choice(
-    "--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor."
-)
-@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
-@click.option("-o", "--out", type=common.OUT, default="results", help="Folder for the results.")
-@click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
-@SECRET
+@click.command(cls=common.Command)
+@click.argument("submission", type=common.INPUT_PATH)
+@assignments.homework_option
+@assignments.tier_option
 @click.option(
-    "--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for an answer, see above."
+    "--hidden",
+    type=common.EXISTING_FOLDER,
+    help="Folder with your own checks, test_<task>.py.",
 )
 @click.option(
-    "--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted."
+    "-o", "--out", type=common.OUTPUT_PATH, default="results", help="Folder for the results."
 )
 @click.option(
-    "--received", type=FILE, help="Of a class: CSV with file and received, for files' own times."
+    "--student",
+    default="",
+    help="Name that determines this student's own inputs. Requires --secret-file.",
+)
+@assignments.secret_option
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0.1),
+    default=10.0,
+    help="Time limit for one call of a function, in seconds, see above.",
 )
 @click.option(
-    "--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable."
+    "--roster",
+    type=common.EXISTING_FILE,
+    help="Class list: a CSV file with the column student, and optionally name, email and team.",
 )
 @click.option(
-    "--moodle", type=FILE, help="Of a class: the assignment's grading worksheet, to be filled in."
+    "--received",
+    type=common.EXISTING_FILE,
+    help="Submission times of a class: a CSV file with the columns file and received.  "
+    "[default: the files' own times]",
 )
 @click.option(
-    "--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable."
-)
-@click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
-@click.option("--regrade", is_flag=True, help="Of a class, anew what was graded before.")
-@click.option(
-    "--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]"
+    "--before",
+    type=common.EXISTING_FILE,
+    multiple=True,
+    help="Gradebook of an earlier homework of the class. Repeatable.",
 )
 @click.option(
-    "--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786."
+    "--moodle",
+    type=common.EXISTING_FILE,
+    help="Moodle's grading worksheet of the assignment, to fill in for the class.",
 )
-@PLAN
-def grade(asked: Any) -> None:
-    """Grade SUBMISSION, a notebook or a Python file, and write the results in every form.
+@click.option(
+    "--only",
+    metavar="WHO",
+    multiple=True,
+    help="Grade only this student or team. Repeatable.",
+)
+@click.option(
+    "--since",
+    type=click.DateTime(),
+    help="Grade only submissions received after this time (UTC).",
+)
+@click.option("--regrade", is_flag=True, help="Grade submissions of a class again.")
+@jobs_option
+@click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="Dask cluster that grades the class, such as tcp://HOST:8786.",
+)
+@assignments.plan_option
+def grade(
+    *,
+    submission: Path,
+    homework: str | None,
+    tier: str,
+    hidden: Path | None,
+    out: Path,
+    student: str,
+    secret_file: Path | None,
+    timeout: float,
+    roster: Path | None,
+    received: Path | None,
+    before: tuple[Path, ...],
+    moodle: Path | None,
+    only: tuple[str, ...],
+    since: datetime | None,
+    regrade: bool,
+    jobs: int | None,
+    cluster: str | None,
+    plan: Path | None,
+) -> None:
+    """Grade SUBMISSION, a notebook or a Python file, and write the results in every format.
 
-    Its code never runs in the process that scores it. A tier that this machine cannot give is an
-    error. An answer may take the seconds of --timeout, a check 3 times and a submission 20 times as
-    many.
+    The submitted code never runs in the process that computes the score. If this machine cannot run
+    the sandbox tier, hdrlab stops with an error. One call of a function may take --timeout seconds,
+    one check 3 times as long, and one submission 20 times as long.
 
-    The file of --secret-file holds a line that nobody else knows, and is not to be lost.
+    The file of --secret-file holds one line that nobody else may know. Do not lose it.
 
-    A folder is a class: with --roster, every submission in it is graded, several at a time, and a
-    gradebook and a page about the class are written. Stopped at any moment, the next run finishes
-    the rest.
+    If SUBMISSION is a folder, hdrlab grades every submission in it (this requires --roster), several
+    at a time, and writes a gradebook and a page about the class. After an interruption, the next
+    run grades the rest.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
-    if asked.student and asked.secret_file is None:
+    if student and secret_file is None:
         raise InputError(
             "expected --secret-file with --student: else anybody could draw the same inputs"
         )
-    secret, note = secret_of(asked.secret_file)
+    secret, note = assignments.read_secret(secret_file)
     conditions = plans.GradingOptions(
-        asked.tier, asked.student, secret, asked.hidden, asked.timeout
+        tier=tier, student=student, secret=secret, hidden=hidden, timeout=timeout
     )
-    if asked.submission.is_dir():
-        from hdrlab.cli import classroom
-
+    if submission.is_dir():
+        options = classroom.ClassOptions(
+            submissions=submission,
+            homework=homework,
+            tier=tier,
+            hidden=hidden,
+            student=student,
+            secret_file=secret_file,
+            timeout=timeout,
+            roster=roster,
+            received=received,
+            before=before,
+            moodle=moodle,
+            plan=plan,
+        )
+        run_options = classroom.RunOptions(
+            out=out, only=only, since=since, regrade=regrade, jobs=jobs, cluster=cluster
+        )
         with temporary_folder():
-            classroom.grade_folder(classroom.class_of(conditions, asked))
-        click.echo(note, nl=bool(note), err=True)
+            classroom.grade_class(classroom.load_class(conditions, options, run_options))
+        assignments.echo_secret_note(note)
         return
-    homework = homework_of(asked.submission, asked.homework, asked.plan)
-    result = _graded(asked.submission, homework, conditions)
+    assignment = assignments.find_homework(submission, homework, plan)
+    result = assignments.grade_submission(submission, assignment, conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
-        click.echo(f"note: for practice. {result.why_practice}", err=True)
+        common.echo_notes([f"for practice. {result.why_practice}"])
     if secret:
-        click.echo(note, nl=bool(note), err=True)
-    gradebook.write_results(asked.out, result)
-    click.echo(asked.out / "feedback.html")
+        assignments.echo_secret_note(note)
+    gradebook.write_results(out, result)
+    click.echo(out / "feedback.html")
 
 
-@common.command()
+@click.command(cls=common.Command)
+@click.argument("results", type=common.EXISTING_FOLDER)
+@assignments.homework_option
+@common.choice_option(
+    "--policy",
+    ["replace", "never-lower", "only-listed"],
+    help="Rule that decides which new results count.",
+)
+@click.option(
+    "--only",
+    metavar="WHO",
+    multiple=True,
+    help="Student or team whose new result counts with --policy only-listed. Repeatable.",
+)
+@click.option(
+    "--requests",
+    type=common.EXISTING_FILE,
+    multiple=True,
+    help="Regrade requests: a CSV file with the columns student, task and words. Repeatable.",
+)
+@click.option("--why", default="", help="Reason to record in the signed log.")
+@jobs_option
+@click.option(
+    "--cluster", metavar="ADDRESS", help="Dask cluster that grades, such as tcp://HOST:8786."
+)
+@click.option(
+    "--apply",
+    "is_applied",
+    is_flag=True,
+    help="Apply the changes and record them in the signed log.",
+)
+def regrade(
+    *,
+    results: Path,
+    homework: str | None,
+    policy: str,
+    only: tuple[str, ...],
+    requests: tuple[Path, ...],
+    why: str,
+    jobs: int | None,
+    cluster: str | None,
+    is_applied: bool,
+) -> None:
+    """Grade a class again with corrected checks, and show whose points change and why.
+
+    RESULTS is the folder that `hdrlab grade` wrote for the class. Without --apply, the results in
+    it stay as they are.
+    """
+    from hdrlab.course.classroom import jobs as grading_jobs, regrade as regrading, run
+    from hdrlab.course.scratch import temporary_folder
+
+    run_options = classroom.RunOptions(out=results, jobs=jobs, cluster=cluster)
+    graded_class = classroom.load_graded_class(results, run_options, homework)
+    course = graded_class.course
+    all_jobs = graded_class.jobs
+    requested = regrading.requests(requests, course.roster)
+    listed = {course.roster.find_team(name) for name in only} | set(requested)
+    with temporary_folder(), grading_jobs.lock_folder(results):
+        _, changed = grading_jobs.split_finished(results / "results", all_jobs)
+        new_results = classroom.run_jobs(graded_class, changed, results / "regrade")
+        common.echo_warnings(classroom.describe_failures(new_results))
+        moves = regrading.moves(results, all_jobs, policy, listed, requested)
+        click.echo(regrading.text(moves))
+        click.echo(regrading.write(results, moves, course.homework.points, policy))
+        if is_applied:
+            now = datetime.now(UTC).isoformat(timespec="seconds")
+            secret = course.conditions.secret
+            regrading.apply(results, moves, all_jobs, secret, policy=policy, why=why, when=now)
+            for result in grading_jobs.split_finished(results / "results", all_jobs)[0]:
+                run.write_feedback(results, result)
+            page, _ = classroom.write_books(graded_class)
+            click.echo(page)
+
+
+@click.command(cls=common.Command)
 def doctor() -> None:
-    """Say which tiers of isolation this machine can give, and what is missing for the others."""
-    from hdrlab.course.sandbox import doctor as visiting
+    """Report which sandbox tiers this machine can run, and what the others need."""
+    from hdrlab.course.sandbox import doctor as sandbox_doctor
 
-    for tier, works, credit, says, remedy in visiting.report():
-        answer, worth = "yes" if works else "no", "for credit" if credit else "practice"
+    for tier, works, credit, says, remedy in sandbox_doctor.report():
+        answer = "yes" if works else "no"
+        worth = "for credit" if credit else "practice"
         click.echo(f"{tier:<10}{answer:<5}{worth:<12}{says}")
         if remedy:
             click.echo(f"{'':<10}{remedy}")
-
-
-def homework_of(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
-    """Return the homework that is asked for, or the one whose name stands in the file's."""
-    homeworks = plans.read(plan).homeworks
-    if name is None:
-        fitting = [one for one in homeworks if one in submission.stem.lower()]
-        if len(fitting) != 1:
-            names = ", ".join(homeworks)
-            raise InputError(f"expected --homework, one of {names}: {submission.name} does not say")
-        (name,) = fitting
-    if name not in homeworks:
-        raise InputError(f"expected a homework out of {', '.join(homeworks)}, got {name!r}")
-    return homeworks[name]
-
-
-def secret_of(file: Path | None) -> tuple[str, str]:
-    """Return the course's secret, and a note where it was made, or where there is none."""
-    if file is None:
-        return "", "note: for practice: without --secret-file the inputs are public"
-    secret, made = plans.read_secret(file)
-    return (
-        secret,
-        f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made,
-    )
-
-
-def _graded(
-    submission: Path, homework: plans.Homework, conditions: plans.GradingOptions
-) -> "Result":
-    """Return the Result, while a terminal shows how many checks have been answered."""
-    from hdrlab.core.steps import last
-    from hdrlab.course import grading
-    from hdrlab.course.sandbox.running import Unavailable
-    from hdrlab.course.scratch import temporary_folder
-
-    if not submission.exists():
-        raise FileNotFoundError(2, "no such file", str(submission))
-    try:
-        with temporary_folder():
-            steps: Any = grading.grade_steps(submission, homework, conditions)
-            return last(common.progress(steps, homework.name))
-    except Unavailable as error:
-        raise common.no_tier(str(error)) from None

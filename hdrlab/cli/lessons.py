@@ -1,112 +1,142 @@
-"""Commands that begin with nothing: a demonstration, the notebooks, and the site that is made of them."""
+"""The commands for a first look and for the notebooks: `demo`, `lab` and `site`."""
 
 import os
 from pathlib import Path
 
 import click
 
-from hdrlab.cli import common, grading
+from hdrlab.cli import common
 from hdrlab.errors import InputError
 
-FIRST = "notebooks/00_welcome.ipynb"
-NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+FIRST_NOTEBOOK = "notebooks/00_welcome.ipynb"
+SITE_MODULES = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+
+# characters a line, of the help texts on the site's page about the commands
+HELP_WIDTH = 88
 
 
-@common.command()
-@click.option("--out", type=common.FILE, default="hdrlab-demo", help="Folder for the results.")
-@click.option("--seed", default=1, help="Of noise and hand shake.")
-@click.option("--real", is_flag=True, help="Take six real photographs, from a telephone, instead.")
-def demo(out: Path, seed: int, real: bool) -> None:
-    """Photograph a dark chapel with bright windows, and assemble the photographs again."""
-    from hdrlab import demo as room
+@click.command(cls=common.Command)
+@click.option(
+    "--out", type=common.INPUT_PATH, default="hdrlab-demo", help="Folder for the results."
+)
+@click.option("--seed", default=1, help="Seed of the noise and the camera shake.")
+@click.option("--real", is_flag=True, help="Use six real photos from a phone instead.")
+def demo(*, out: Path, seed: int, real: bool) -> None:
+    """Simulate a bracket of a dark chapel with bright windows, and assemble it."""
+    from hdrlab import demo as demo_steps
 
-    steps = room.real_steps(out) if real else room.demo_steps(out, seed=seed)
-    for line in common.progress(steps, "demo", room.STEPS):
+    steps = demo_steps.real_steps(out) if real else demo_steps.demo_steps(out, seed=seed)
+    for line in common.progress(steps, "demo", demo_steps.STEPS):
         click.echo(line)
 
 
-@common.command()
+@click.command(cls=common.Command)
 @click.option(
-    "--folder", type=common.FILE, default="hdrlab-course", help="Your copy of the notebooks."
+    "--folder",
+    type=common.INPUT_PATH,
+    default="hdrlab-course",
+    help="Folder for your copy of the notebooks.",
 )
-@click.option("--copy-only", is_flag=True, help="Copy the notebooks and do not start JupyterLab.")
+@click.option("--copy-only", is_flag=True, help="Copy the notebooks without starting JupyterLab.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED)
-def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
+def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
 
-    What you changed in your copy stays. JupyterLab saves what the widgets show, unless your own
-    settings say otherwise. OPTIONS go to JupyterLab.
+    Files that you changed in your copy stay. JupyterLab saves the state of the widgets, unless your
+    own settings disable that. OPTIONS are passed on to JupyterLab.
     """
     from hdrlab.course.material import materials
 
     new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")
-    if not copy_only:
-        from jupyterlab.labapp import LabApp
+    if copy_only:
+        return
+    from jupyterlab.labapp import LabApp
 
-        own = os.environ.get("JUPYTER_CONFIG_PATH")
-        os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(
-            filter(None, [str(materials.JUPYTER), own])
-        )
-        where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
-        LabApp.launch_instance([*where, *options])
+    config_folders = [str(materials.JUPYTER)]
+    own_folders = os.environ.get("JUPYTER_CONFIG_PATH")
+    if own_folders:
+        config_folders.append(own_folders)
+    os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(config_folders)
+    place = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"]
+    LabApp.launch_instance([*place, *options])
 
 
-@common.command()
+@click.command(cls=common.Command)
 @click.option(
-    "--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before."
+    "--out",
+    type=common.OUTPUT_PATH,
+    default="site",
+    help="Folder for the site: empty, or an earlier site.",
 )
 @click.option(
-    "--notebooks", multiple=True, type=grading.FILE, help="One in place of all. Repeatable."
+    "--notebooks",
+    multiple=True,
+    type=common.EXISTING_FILE,
+    help="Notebook to use instead of all of them. Repeatable.",
 )
 @click.option(
-    "--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Runs at a time."
+    "--jobs",
+    type=click.IntRange(1),
+    default=min(4, os.cpu_count() or 1),
+    help="Number of notebooks to run at the same time.",
 )
 @click.option(
-    "--address", default="", help="Where it will stand, https:// and all, for a link's preview."
+    "--address",
+    default="",
+    help="Address of the published site, https://..., for link previews.",
 )
-def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
-    """Make a site of the course: notebooks that were run, guides, and the reference.
+def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
+    """Build a web site of the course: executed notebooks, guides and the reference.
 
-    Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any
-    web server. What has been run is kept beside it, in .NAME.cache, so that the next build runs
-    only what has changed.
+    The pages need no server and load nothing from other sites: open index.html, or copy the folder
+    to any web server. Executed notebooks are cached in .NAME.cache next to the site, so the next
+    build runs only those that have changed.
     """
-    common.require("site", NEEDS)
+    common.require_modules("site", SITE_MODULES)
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course.material import materials
     from hdrlab.course.site import execute, pages
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
-    if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
+    names = {notebook.stem for notebook in chosen}
+    if len(names) < len(chosen) or pages.FRONT.stem in names:
         raise InputError(
             f"expected notebooks of different names, and none called {pages.FRONT.name}"
         )
-    os.getcwd()  # Jupyter needs one: where it is gone, nothing is begun
+    # Jupyter needs a working folder; if it is gone, stop here and not in the middle
+    os.getcwd()
     cache = pages.claim(out)
-    running = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
+    steps = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
     try:
-        done = list(common.progress(running, "notebooks", len(chosen) + 1))
+        executed = list(common.progress(steps, "notebooks", len(chosen) + 1))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None
-    in_order = sorted(done, key=lambda one: one.source.stem)
+    executed.sort(key=lambda notebook: notebook.source.stem)
+    more_pages = {"commands.md": _commands_page()}
     with elapsed("pages"):
-        made = pages.build(out, in_order, handouts, {"commands.md": _commands()}, address=address)
-    common.say("note", made.complaints)
-    fresh = sum(one.fresh for one in done)
+        made = pages.build(out, executed, handouts, more_pages, address=address)
+    common.echo_notes(made.complaints)
+    fresh = sum(notebook.fresh for notebook in executed)
     counts = f"{made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks"
     click.echo(f"{made.front}: {counts}; run now: {fresh}")
 
 
-def _commands() -> str:
-    """Return a page with the help of every command."""
+def _commands_page() -> str:
+    """Return the guide to the commands, followed by the help of every command."""
     from hdrlab.course.site import pages
 
     text = (pages.PAGES / "commands.md").read_text("utf-8")
-    for name, command in sorted(common.main.commands.items()):
+    main = click.get_current_context().find_root().command
+    if not isinstance(main, click.Group):
+        return text
+    for name, command in sorted(main.commands.items()):
         context = click.Context(
-            command, info_name=f"hdrlab {name}", terminal_width=88, max_content_width=88
+            command,
+            info_name=f"hdrlab {name}",
+            terminal_width=HELP_WIDTH,
+            max_content_width=HELP_WIDTH,
         )
         text += f"\n## {name}\n\n```text\n{command.get_help(context)}\n```\n"
     return text

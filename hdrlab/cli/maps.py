@@ -1,9 +1,9 @@
-"""Commands that begin with a radiance map, or say what a file is."""
+"""The commands that start from a radiance map, `tonemap`, `compare` and `convert`, and `info`."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,100 +11,160 @@ from hdrlab.cli import common, terminal
 from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 
-TO = ["picture", "ultrahdr", "png", "avif", "jxl"]
-WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see above.")
+if TYPE_CHECKING:
+    from hdrlab.core.arrays import F32, Array
 
+OUTPUT_KINDS = ["picture", "ultrahdr", "png", "avif", "jxl"]
 
-@common.command()
-@click.argument("source", type=common.FILE)
-@click.option(
-    "-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl."
+# what --to picture writes for files whose suffix leaves no choice
+KIND_BY_SUFFIX = {".avif": "avif", ".jxl": "jxl"}
+
+gamut_option = common.choice_option(
+    "--way", ["hue", "ratio"], help="Treatment of colors that the display cannot show."
 )
-@common.choice("--to", TO, help="All but picture light up on a bright screen, see above.")
-@click.option("--headroom", default=8.0, help="Of a bright screen: the brightest light over white.")
-@common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see above.")
-@common.operator("--operator")
+
+
+@click.command(cls=common.Command)
+@click.argument("source", type=common.INPUT_PATH)
 @click.option(
-    "--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36."
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="Image to write: .png, .jpg or .tif; .avif or .jxl.",
+)
+@common.choice_option(
+    "--to",
+    OUTPUT_KINDS,
+    help="Kind of image. All but picture use the extra brightness of an HDR screen, see above.",
 )
 @click.option(
-    "--saturation", type=float, help="1: the colours' ratios, 0: gray.  [default: the operator's]"
+    "--headroom",
+    default=8.0,
+    help="Brightest light of the HDR screen, as a multiple of white.",
 )
-@WAY
-@common.CLEAN
-def tonemap(asked: Any) -> None:
-    """Make a picture of the radiance map SOURCE.
+@common.choice_option("--primaries", ["bt2020", "p3"], help="Color primaries for png and avif.")
+@common.operator_option("--operator")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Setting of the operator, such as key=0.36. Repeatable.",
+)
+@click.option(
+    "--saturation",
+    type=float,
+    help="Color saturation: 1 keeps the map's color ratios, 0 is gray.  [default: the operator's]",
+)
+@gamut_option
+@common.clean_option
+def tonemap(
+    *,
+    source: Path,
+    out: Path,
+    to: str,
+    headroom: float,
+    primaries: str,
+    operator: str,
+    settings: tuple[str, ...],
+    saturation: float | None,
+    way: str,
+    clean: bool,
+) -> None:
+    """Tone-map the radiance map SOURCE to an image.
 
-    Bright colours may want more of a channel than a display has. By --way hue they become a little
-    darker and a little paler, and keep their hue. By --way ratio the channel is clipped: the
-    picture stays colourful, but a bright blue turns toward cyan.
+    A bright color may exceed the range of a display in one channel. --way hue makes the color a
+    little darker and paler and keeps its hue. --way ratio clips the channel: the image stays
+    colorful, but a bright blue turns toward cyan.
 
-    An Ultra HDR picture (ISO 21496-1) is the picture for any program, with gains that lead from it
-    to the map, up to --headroom, for screens that can be brighter than white. Such a .jpg can be
-    SOURCE as well.
+    --to ultrahdr writes an Ultra HDR .jpg (ISO 21496-1). Every program can show it, and it holds a
+    gain map from which an HDR screen restores the radiance, up to --headroom. Such a .jpg can also
+    be SOURCE.
 
-    By --to png (16 bits) and avif (10 bits) the light of the map itself is coded by PQ (SMPTE ST
-    2084), with white at 203 cd/m2 and as bright as the operator made it; a program that knows no PQ
-    shows it pale. By --to jxl it is kept for the archive, as floats without loss or headroom. A
-    suffix .avif or .jxl is enough.
+    --to png and --to avif encode the radiance of the map itself with PQ (SMPTE ST 2084). White is
+    at 203 cd/m2 and as bright as the operator made it. Programs without PQ show the image pale.
+
+    --to jxl archives floating-point values, without loss or headroom. A suffix .avif or .jxl
+    selects its kind by itself.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
-    from hdrlab.io import photos as files, screens as codes
-    from hdrlab.io.maps import ultrahdr
-    from hdrlab.pipeline import screens
     from hdrlab.pipeline.pictures import find_operator
 
-    by_suffix = {".avif": "avif", ".jxl": "jxl"}.get(asked.out.suffix.lower(), "picture")
-    to = by_suffix if asked.to == "picture" else asked.to
-    E = common.read_map(asked.source, asked.clean)
-    settings = dict(common.knob(one) for one in asked.knobs)
-    check_knobs("tonemap", find_operator(asked.operator), settings)
-    with elapsed(asked.operator):
-        settings |= {"saturation": asked.saturation, "way": asked.way}
-        made = pipeline.develop_and_describe(E, asked.operator, **settings)
-        if to == "ultrahdr":
-            ultrahdr.write_picture(asked.out, made.picture, E, headroom=asked.headroom)
-        elif to == "picture":
-            files.write_picture(asked.out, made.picture)
-        elif to == "jxl":
-            codes.write_jxl(asked.out, screens.light(made.picture, E))
+    if to == "picture":
+        to = KIND_BY_SUFFIX.get(out.suffix.lower(), "picture")
+    knobs = dict(common.parse_setting(text) for text in settings)
+    E = common.read_map(source, clean)
+    check_settings("tonemap", find_operator(operator), knobs)
+    with elapsed(operator):
+        developed = pipeline.develop_and_describe(
+            E, operator, saturation=saturation, way=way, **knobs
+        )
+        _write_image(out, to, developed.picture, E, headroom=headroom, primaries=primaries)
+    click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {developed.settings}")
+
+
+def _write_image(
+    out: Path, kind: str, picture: "Array", E: "F32", *, headroom: float, primaries: str
+) -> None:
+    """Write a tone-mapped image as one of OUTPUT_KINDS."""
+    from hdrlab.io import photos, screens as screen_files
+    from hdrlab.io.maps import ultrahdr
+    from hdrlab.pipeline import screens
+
+    if kind == "picture":
+        photos.write_picture(out, picture)
+    elif kind == "ultrahdr":
+        ultrahdr.write_picture(out, picture, E, headroom=headroom)
+    elif kind == "jxl":
+        screen_files.write_jxl(out, screens.light(picture, E))
+    else:
+        light = screens.light(picture, E, headroom=headroom)
+        signal = screens.signal(light, primaries=primaries)
+        if kind == "png":
+            screen_files.write_png(out, signal, primaries=primaries)
         else:
-            light = screens.light(made.picture, E, headroom=asked.headroom)
-            v = screens.signal(light, primaries=asked.primaries)
-            (codes.write_png if to == "png" else codes.write_avif)(
-                asked.out, v, primaries=asked.primaries
+            screen_files.write_avif(out, signal, primaries=primaries)
+
+
+def check_settings(
+    chapter: str, method: str | Callable[..., Any], settings: Mapping[str, Any]
+) -> None:
+    """Raise InputError with the names of a method's settings, if it has none of a given name."""
+    known = inspect.getfullargspec(catalogue.method(chapter, method)).kwonlyargs
+    for setting in settings:
+        if setting not in known:
+            name = method if isinstance(method, str) else method.__module__.rpartition(".")[2]
+            raise InputError(
+                f"--set: expected a setting of {name} out of {', '.join(known)}, got {setting!r}"
             )
-    click.echo(f"{asked.out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 
-def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:
-    """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
-    known = inspect.getfullargspec(catalogue.method(chapter, name)).kwonlyargs
-    for knob in knobs:
-        if knob not in known:
-            name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]
-            raise InputError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")
-
-
-@common.command()
-@click.argument("source", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help="Contact sheet to write: .png.")
+@click.command(cls=common.Command)
+@click.argument("source", type=common.INPUT_PATH)
 @click.option(
-    "--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]"
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="Contact sheet to write: .png.",
 )
 @click.option(
-    "--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see above."
+    "--operators", metavar="NAME,...", help="Operators to compare, in this order.  [default: all]"
 )
-@WAY
-@common.CLEAN
+@click.option(
+    "--size", type=click.IntRange(16), default=1024, help="Longest side of the map, in pixels."
+)
+@gamut_option
+@common.clean_option
 def compare(
-    source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
+    *, source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
 ) -> None:
     """Make a contact sheet of the radiance map SOURCE under every operator, with time and quality.
 
-    The operators see the map at up to --size pixels along a side: time and quality are of that
-    size. For --way see `hdrlab tonemap --help`.
+    hdrlab first reduces the map to --size pixels along its longer side. Times and qualities are for
+    that size. `hdrlab tonemap --help` explains --way.
     """
     from hdrlab.show.pages import contact, sheet
     from hdrlab.show.plots import figures
@@ -113,34 +173,37 @@ def compare(
     names = operators.replace(" ", "").split(",") if operators else common.OPERATORS
     E = figures.fit(common.read_map(source, clean), size)
     entries = common.one_by_one(contact.entry_steps(E, names, way=way), names)
-    sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {common.size(E)}"))
-    click.echo(f"{out}: {len(names)} operators, {common.size(E)}")
+    description = common.describe_map(E)
+    sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {description}"))
+    click.echo(f"{out}: {len(names)} operators, {description}")
 
 
-@common.command()
-@click.argument("source", type=common.FILE)
-@click.argument("target", type=common.OUT)
+@click.command(cls=common.Command)
+@click.argument("source", type=common.INPUT_PATH)
+@click.argument("target", type=common.OUTPUT_PATH)
 @click.option(
-    "--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504."
+    "--half",
+    is_flag=True,
+    help="Write half-precision floats to .exr: half the size, values up to 65504.",
 )
-@common.CLEAN
-def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
-    """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr, .pfm or .tif."""
+@common.clean_option
+def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
+    """Convert the radiance map SOURCE to the format of TARGET: .hdr, .exr, .pfm or .tif."""
     from hdrlab.io import radiance
 
     E = common.read_map(source, clean)
     radiance.write_radiance(target, E, half=half)
-    click.echo(f"{target}: {common.size(E)}")
+    click.echo(f"{target}: {common.describe_map(E)}")
 
 
-@common.command()
-@click.argument("files", nargs=-1, required=True, type=common.FILE)
-def info(files: tuple[Path, ...]) -> None:
-    """Say what FILES are: radiance maps or photographs, their size, values and exposure."""
+@click.command(cls=common.Command)
+@click.argument("files", nargs=-1, required=True, type=common.INPUT_PATH)
+def info(*, files: tuple[Path, ...]) -> None:
+    """Describe FILES, radiance maps or photos: format, size, values and exposure."""
     from hdrlab.show.describe import describe_file
 
     for file in files:
-        said = describe_file(file)
-        click.echo(said.pop("file"))
-        for key, value in said.items():
+        description = describe_file(file)
+        click.echo(description.pop("file"))
+        for key, value in description.items():
             click.echo(f"  {key:<12} {terminal.visible(value)}")

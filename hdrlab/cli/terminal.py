@@ -1,4 +1,4 @@
-"""A sign of life on a terminal, for work that does not know how far it is."""
+"""Show on a terminal that a command is still working, and make text from files safe to print."""
 
 import sys
 from collections.abc import Iterator
@@ -7,36 +7,43 @@ from threading import Event, Thread
 from time import monotonic
 from typing import TextIO
 
-# letters: what a file holds may be quoted in a message, and may be of any length
-LONGEST_MESSAGE = 2000
+# messages may quote the content of a file, which may be of any length
+MAX_MESSAGE_LENGTH = 2000
 
 
 def visible(text: object) -> str:
-    r"""Return text of any origin as a terminal may show it: controls are written out, and it is not too long.
+    r"""Return text with its control characters escaped, and shortened to a length for a message.
 
     Examples
     --------
     >>> print(visible("a \x1b[2J of a title"))
     a \x1b[2J of a title
     """
-    letters = str(text)[: LONGEST_MESSAGE + 1]
-    shown = "".join(
-        one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in letters
-    )
-    return shown if len(letters) <= LONGEST_MESSAGE else f"{shown[:LONGEST_MESSAGE]} ..."
+    characters = str(text)
+    shown = "".join(map(_escape, characters[:MAX_MESSAGE_LENGTH]))
+    if len(characters) > MAX_MESSAGE_LENGTH:
+        return f"{shown[:MAX_MESSAGE_LENGTH]} ..."
+    return shown
+
+
+def _escape(character: str) -> str:
+    r"""Return a character as it is, or as \x1b if a terminal would obey it."""
+    if character.isprintable() or character in "\n\t":
+        return character
+    return ascii(character)[1:-1]
 
 
 @contextmanager
 def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> Iterator[None]:
-    """Show `what` and the seconds gone by while the block runs, after `delay` and on a terminal alone.
+    """Show `what` and the elapsed seconds while the block runs. Only a terminal shows them.
 
-    A bar would be a guess where the work is one piece. The line is removed when the block ends.
+    This is for work whose progress is unknown. The line is removed when the block ends.
 
     Parameters
     ----------
-    what : the work
-    stream : standard error by default
-    delay : seconds before the first sign, and between two of them
+    what : description of the work
+    stream : where to show it; standard error by default
+    delay : seconds before the line appears, and between its updates
 
     Examples
     --------
@@ -49,17 +56,20 @@ def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> I
         yield
         return
     done = Event()
-    clock = Thread(target=_tick, args=(what, stream, delay, done), daemon=True)
+    clock = Thread(target=_update_line, args=(what, stream, delay, done), daemon=True)
     clock.start()
     try:
         yield
-    finally:  # after an error or Ctrl-C too: its message belongs on a clean line
+    finally:
+        # also after an error or Ctrl-C, whose message needs a clean line
         done.set()
         clock.join()
 
 
-def _tick(what: str, stream: TextIO, delay: float, done: Event) -> None:
-    start, line = monotonic(), ""
+def _update_line(what: str, stream: TextIO, delay: float, done: Event) -> None:
+    """Write the elapsed seconds every `delay` seconds until `done`, then erase the line."""
+    start = monotonic()
+    line = ""
     while not done.wait(delay):
         line = f"{what}: {monotonic() - start:.0f} s"
         stream.write("\r" + line)

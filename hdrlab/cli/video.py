@@ -1,98 +1,132 @@
-"""The command that begins with a film."""
+"""The command that makes an HDR film: `video`."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import click
 
-from hdrlab.cli import common, curves
+from hdrlab.cli import brackets, common
 from hdrlab.errors import InputError
 
+if TYPE_CHECKING:
+    from hdrlab.core.arrays import F32, F64, Array
 
-@common.command()
-@click.argument("frames", type=common.FILE)
-@click.option(
-    "-o", "--out", required=True, type=common.OUT, help="Film to write, .gif or .mp4; see above."
-)
-@click.option(
-    "--times", required=True, metavar="SECONDS,...", help="Exposure times of a turn: 1/1000,1/60."
-)
-@click.option(
-    "--response", type=curves.Response(), default="auto", help="A method, or a saved curve."
-)
-@click.option(
-    "--rate", type=float, default=25.0, help="Frames a second of the film that is written."
-)
-@click.option("--key", type=float, default=0.18, help="What the log average of the frames becomes.")
-@click.option(
-    "--span", type=click.IntRange(0), default=1, help="Frames before and after to adapt to, too."
-)
-def video(asked: Any) -> None:
-    """Make a film of high dynamic range out of FRAMES whose exposures take turns.
 
-    FRAMES is a folder of photographs, sorted by name, or a film, which wants the extra `video`. The
-    first frame has the first of --times, the next one the second, and so on in turns.
+@click.command(cls=common.Command)
+@click.argument("frames", type=common.INPUT_PATH)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="Film to write, .gif or .mp4, or a folder, see above.",
+)
+@click.option(
+    "--times",
+    required=True,
+    metavar="SECONDS,...",
+    help="Exposure times that the frames cycle through, such as 1/1000,1/60.",
+)
+@click.option(
+    "--response",
+    type=brackets.ResponseType(),
+    default="auto",
+    help="Response method, or a saved curve.",
+)
+@click.option("--rate", type=float, default=25.0, help="Frames per second of the film.")
+@click.option(
+    "--key", type=float, default=0.18, help="Brightness to which the frames' log average is mapped."
+)
+@click.option(
+    "--span",
+    type=click.IntRange(0),
+    default=1,
+    help="Frames before and after each frame that the brightness adapts to.",
+)
+def video(
+    *,
+    frames: Path,
+    out: Path,
+    times: str,
+    response: str | Path,
+    rate: float,
+    key: float,
+    span: int,
+) -> None:
+    """Make an HDR film from FRAMES whose exposure times alternate.
 
-    Each frame gets from its neighbours what its own exposure lacks, brought along the motion
-    between them. An --out of .gif or .mp4 is tone-mapped; a name without a suffix becomes a folder
+    FRAMES is a folder of photos, sorted by name, or a film, which needs the extra `video`. The first
+    frame has the first of --times, the second frame the second one, and so on, over and over.
+
+    hdrlab fills in what a frame's own exposure lacks from its neighbors, after motion compensation.
+    If --out ends in .gif or .mp4, the film is tone-mapped. A name without a suffix becomes a folder
     of radiance maps, 0001.exr and so on.
 
-    The response is found in the frames of the first turn (auto: in the space of measured curves),
-    which should show nearly the same. Better is a curve that `hdrlab calibrate` has saved.
+    hdrlab recovers the response from the first frame of each exposure time, which should show
+    nearly the same scene (auto: by a fit to measured curves). A curve saved by `hdrlab calibrate`
+    is better.
     """
     from hdrlab.beyond import video as merging
     from hdrlab.io import sequence
 
-    turn = seconds(asked.times)
-    require = sequence.require_writable if asked.out.suffix else sequence.require_new
-    require(asked.out)  # better known before the work
-    count, film = sequence.count(asked.frames), sequence.read(asked.frames)
-    begun = list(islice(film, len(turn)))
-    g = recovered(asked.response, begun, turn)
-    steps = merging.merge_steps(chain(begun, film), turn, g)
-    maps = (state.E for state in common.progress(steps, "merging", count))
-    if asked.out.suffix:
-        written = sequence.write(
-            asked.out, pictures(maps, key=asked.key, span=asked.span), rate=asked.rate
-        )
+    exposure_times = parse_times(times)
+    # a bad output is reported before the work starts
+    if out.suffix:
+        sequence.require_writable(out)
     else:
-        written = sequence.write_maps(asked.out, maps)
-    click.echo(f"{asked.out}: {written} frames, {begun[0].shape[1]} x {begun[0].shape[0]}")
+        sequence.require_new(out)
+    count = sequence.count(frames)
+    film = sequence.read(frames)
+    first_frames = list(islice(film, len(exposure_times)))
+    g = recover_response(response, first_frames, exposure_times)
+    steps = merging.merge_steps(chain(first_frames, film), exposure_times, g)
+    maps = (state.E for state in common.progress(steps, "merging", count))
+    if out.suffix:
+        written = sequence.write(out, tone_map(maps, key=key, span=span), rate=rate)
+    else:
+        written = sequence.write_maps(out, maps)
+    height, width = first_frames[0].shape[:2]
+    click.echo(f"{out}: {written} frames, {width} x {height}")
 
 
-def seconds(text: str) -> list[float]:
-    """Return times, separated by commas, as seconds; each may be a fraction."""
+def parse_times(text: str) -> list[float]:
+    """Return the seconds of exposure times that are separated by commas, such as 1/1000,1/60."""
     from hdrlab.capture import exposure
 
     try:
-        found = [exposure.seconds(one) for one in text.split(",")]
-    except ValueError:
+        times = [exposure.seconds(part) for part in text.split(",")]
+    except InputError:
         raise InputError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
-    if len(set(found)) < 2:
-        raise InputError(f"--times: expected at least two exposures of a turn, got {text!r}")
-    return found
+    if len(set(times)) < 2:
+        raise InputError(f"--times: expected at least two different times, got {text!r}")
+    return times
 
 
-def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any:
-    """Return the response: of a file, or found in the frames of a turn."""
+def recover_response(
+    response: str | Path, frames: "Sequence[Array]", times: Sequence[float]
+) -> "F64":
+    """Return the response curve of a file, or the one that the first frames have in common."""
     import numpy as np
 
     from hdrlab.core.bracket import bracket
+    from hdrlab.io.response_files import read_curve
     from hdrlab.pipeline import recovery
 
     if isinstance(response, Path):
-        return curves.method_or_curve(response)()  # type: ignore[operator]  # of a file it is a function
-    if len(frames) < len(turn):
-        raise InputError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
-    taken = bracket(np.stack(frames), turn)
-    method = recovery.find_validated_method("space" if response == "auto" else response)
-    return method(taken.images, taken.times)
+        return read_curve(response)
+    if len(frames) < len(times):
+        raise InputError(
+            f"expected at least a frame for each of the {len(times)} times, got {len(frames)}"
+        )
+    first = bracket(np.stack(frames), times)
+    recover = recovery.find_validated_method("space" if response == "auto" else response)
+    return recover(first.images, first.times)
 
 
-def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:
-    """Yield the frames as a display shows them, tone-mapped steadily."""
+def tone_map(maps: "Iterable[F32]", *, key: float, span: int) -> "Iterator[Array]":
+    """Yield the tone-mapped frames of a film. Their brightness changes slowly."""
     from hdrlab.beyond import steady
     from hdrlab.core import colour
     from hdrlab.fast import reinhard

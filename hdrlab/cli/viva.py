@@ -1,65 +1,90 @@
-"""`hdrlab viva`: an oral examination on a student's own functions, which writes itself."""
+"""The command that prepares an oral examination on a student's own code: `viva`."""
 
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
 
 import click
 
-from hdrlab.cli import common, grading
+from hdrlab.cli import assignments, common
 from hdrlab.course import plan as plans
 
+# the examiner that runs in the sandbox, module:class
 EXAMINER = "hdrlab.course.viva.examining:Examining"
 
 
-@common.command()
+@click.command(cls=common.Command)
 @click.argument("submission", type=click.Path(path_type=Path, exists=True))
-@grading.HOMEWORK
-@common.choice(
-    "--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor."
-)
-@click.option("-o", "--out", type=common.OUT, help="Folder for the sheets.  [default: viva/NAME]")
+@assignments.homework_option
+@assignments.tier_option
 @click.option(
-    "--photographs", type=grading.FILE, multiple=True, help="Photograph to ask about. Repeatable."
+    "-o", "--out", type=common.OUTPUT_PATH, help="Folder for the pages.  [default: viva/NAME]"
 )
 @click.option(
-    "--student", default="", help="Draws this student's own questions, with --secret-file."
+    "--photographs",
+    type=common.EXISTING_FILE,
+    multiple=True,
+    help="Photo to ask questions about. Repeatable.",
 )
-@click.option("--seed", type=click.IntRange(0), help="Draws other questions, for a second try.")
-@grading.SECRET
-@grading.PLAN
-def viva(asked: Any) -> None:
-    """Write five questions on the code of SUBMISSION, a notebook or a Python file, for an oral examination.
+@click.option(
+    "--student",
+    default="",
+    help="Name that determines this student's own questions, with --secret-file.",
+)
+@click.option(
+    "--seed", type=click.IntRange(0), help="Seed of the questions, for a second examination."
+)
+@assignments.secret_option
+@assignments.plan_option
+def viva(
+    *,
+    submission: Path,
+    homework: str | None,
+    tier: str,
+    out: Path | None,
+    photographs: tuple[Path, ...],
+    student: str,
+    seed: int | None,
+    secret_file: Path | None,
+    plan: Path | None,
+) -> None:
+    """Write five questions about the code of SUBMISSION for an oral examination.
 
-    Each is about one of its functions that keep every promise, with one small change, and was
-    answered by running it. viva.html, quiz.html and oral.html ask; examiner.html has the answers;
-    viva.ipynb is for practice. They show whether somebody understands the code, and not who wrote
-    it.
+    SUBMISSION is a notebook or a Python file. Each question changes one detail of a function that
+    passed all checks, and hdrlab answers it by running the changed function. viva.html, quiz.html
+    and oral.html hold the questions, examiner.html the answers, viva.ipynb is for practice. The
+    questions show whether students understand the code, not who wrote it.
     """
-    from hdrlab.course import grading as grader, scratch
+    from hdrlab.course import grading, scratch
     from hdrlab.course.sandbox.running import Unavailable
     from hdrlab.course.viva import pages
     from hdrlab.io.files import write
 
-    homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
-    secret, note = grading.secret_of(asked.secret_file)
-    conditions = plans.GradingOptions(asked.tier, asked.student, secret, draw=False)
-    seed = (
-        plans.seed(secret, asked.student, f"viva {homework.name}")
-        if asked.seed is None
-        else asked.seed
-    )
-    out = asked.out or Path("viva") / asked.submission.stem
-    out.mkdir(parents=True, exist_ok=True)  # better known before the work, where it cannot be
-    read, homework = grader.read_tasks(asked.submission, homework, conditions)
-    more = {"by": EXAMINER, "seed": str(seed), "photographs": pages.photographs(asked.photographs)}
+    assignment = assignments.find_homework(submission, homework, plan)
+    secret, note = assignments.read_secret(secret_file)
+    conditions = plans.GradingOptions(tier=tier, student=student, secret=secret, draw=False)
+    drawn_seed = seed
+    if drawn_seed is None:
+        drawn_seed = plans.seed(secret, student, f"viva {assignment.name}")
+    folder = out or Path("viva") / submission.stem
+    # a folder that cannot be written is reported before the work starts
+    folder.mkdir(parents=True, exist_ok=True)
+    read, assignment = grading.read_tasks(submission, assignment, conditions)
     try:
         with scratch.temporary_folder():
-            steps = grader.heard_steps(read, homework, conditions, **more)
-            found = [*common.progress(steps, "viva")]
+            steps = grading.heard_steps(
+                read,
+                assignment,
+                conditions,
+                by=EXAMINER,
+                seed=str(drawn_seed),
+                photographs=pages.photographs(photographs),
+            )
+            questions = list(common.progress(steps, "viva"))
     except Unavailable as error:
-        raise common.no_tier(str(error)) from None
-    common.say("note", read.problems)
-    for name, text in pages.pages(found, homework=homework, asked=asked, read=read):
-        click.echo(write(out / name, text))
-    (out / "examiner.html").chmod(0o600)
-    click.echo(note, nl=bool(note), err=True)
+        raise common.tier_error(str(error)) from None
+    common.echo_notes(read.problems)
+    options = SimpleNamespace(submission=submission, student=student, tier=tier, seed=seed)
+    for name, text in pages.pages(questions, homework=assignment, asked=options, read=read):
+        click.echo(write(folder / name, text))
+    (folder / "examiner.html").chmod(0o600)
+    assignments.echo_secret_note(note)

@@ -53,7 +53,7 @@ def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(
         *("-o", outs[0], "-o", outs[1]),
         capsys=capsys,
     )
-    assert code == 0 and said.startswith("space, from 4 photographs\nstops ")
+    assert code == 0 and said.startswith("space, from 4 photos\nstops ")
     assert all(line == line.rstrip() for line in said.splitlines())
     lines = {line.split()[0]: line.split()[1:] for line in said.splitlines()}
     levels = dict(zip(lines["stops"], map(int, lines["green"]), strict=True))

@@ -11,8 +11,9 @@ import pytest
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.cli.common import agreement, size
+from hdrlab.cli.common import describe_agreement, describe_map
 from hdrlab.core.colour import luminance
+from hdrlab.errors import InputError
 from hdrlab.io import radiance
 from hdrlab.io.maps.layers import read_layers
 from hdrlab.io.photos import read_photo, write_picture
@@ -99,7 +100,7 @@ def test_assembling_loads_nothing_of_scipy_that_it_does_not_use_and_no_plots(pho
 
 def test_the_range_of_a_large_map_is_told_by_a_sample_of_its_pixels():
     E = np.exp(np.random.default_rng(0).normal(0, 2, (1300, 1500))).astype(np.float32)
-    assert size(E) == f"1500 x 1300, {scenes.decades(E):.1f} decades"
+    assert describe_map(E) == f"1500 x 1300, {scenes.decades(E):.1f} decades"
 
 
 def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp_path, capsys):
@@ -124,7 +125,7 @@ def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp
     assert "<html" in (report / "report.html").read_text(encoding="utf8")
 
 
-@pytest.mark.parametrize(("error", "code"), [(ValueError("no"), 2), (KeyboardInterrupt(), 130)])
+@pytest.mark.parametrize(("error", "code"), [(InputError("no"), 2), (KeyboardInterrupt(), 130)])
 def test_the_map_is_written_whole_where_its_picture_fails_or_is_interrupted(
     error, code, photographs, tmp_path, monkeypatch
 ):
@@ -349,7 +350,7 @@ def test_what_cannot_be_done_ends_in_one_line_and_exit_code_2(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_knobs_of_an_operator_are_set_by_name(map_file, tmp_path):
+def test_the_settings_of_an_operator_are_set_by_name(map_file, tmp_path):
     dark, bright = tmp_path / "dark.png", tmp_path / "bright.png"
     assert hdrlab("tonemap", map_file, "-o", dark, "--set", "key=0.09") == 0
     assert hdrlab("tonemap", map_file, "-o", bright, "--set", "key=0.72") == 0
@@ -357,9 +358,9 @@ def test_the_knobs_of_an_operator_are_set_by_name(map_file, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("setting", "expected"), [("kee=1", "key"), ("key", "knob=value"), ("key=bright", "key")]
+    ("setting", "expected"), [("kee=1", "key"), ("key", "NAME=VALUE"), ("key=bright", "key")]
 )
-def test_a_knob_that_the_operator_does_not_have_is_refused(
+def test_a_setting_that_the_operator_does_not_have_is_refused(
     setting, expected, map_file, tmp_path, capsys
 ):
     code, _, complaint = hdrlab(
@@ -518,14 +519,36 @@ def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_no
     assert code == 1 or len(ended.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize("kind", [RuntimeError, ImportError])
-def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(kind, monkeypatch, tmp_path):
+@pytest.mark.parametrize("kind", [ValueError, RuntimeError, ImportError, KeyError])
+def test_a_bug_shows_its_traceback_and_is_not_taken_for_bad_input(
+    kind, monkeypatch, tmp_path, capsys
+):
     def broken(*_, **__):
         raise kind("a mistake of ours")
 
     monkeypatch.setattr("hdrlab.io.album.select", broken)
-    with pytest.raises(kind, match="a mistake of ours"):
-        cli.run(["assemble", str(tmp_path), "-o", str(tmp_path / "x.hdr")])
+    code, _, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert code == 1 and complaint.startswith("Traceback") and "a mistake of ours" in complaint
+    closing_line = complaint.splitlines()[-1]
+    assert closing_line.startswith("hdrlab: ") and "bug in hdrlab" in closing_line
+
+
+def test_too_little_memory_is_one_line_with_advice(monkeypatch, tmp_path, capsys):
+    def exhausted(*_, **__):
+        raise MemoryError("Unable to allocate 9 GiB")
+
+    monkeypatch.setattr("hdrlab.io.album.select", exhausted)
+    code, _, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert code == 2 and complaint.count("\n") == 1
+    assert "smaller photos" in complaint and "9 GiB" in complaint
+
+
+@pytest.mark.parametrize("words", ["--debug info missing.jpg", "info missing.jpg --debug"])
+def test_debug_shows_the_traceback_of_bad_input_too(words, monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    code, _, complaint = hdrlab(*words.split(), capsys=capsys)
+    assert code == 2 and "Traceback" in complaint
+    assert "missing.jpg" in complaint.splitlines()[-1]
 
 
 def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(tmp_path, capsys):
@@ -562,8 +585,8 @@ def test_lab_saves_what_the_widgets_show_and_keeps_news_away(tmp_path, monkeypat
 
 
 def test_an_agreement_that_cannot_be_measured_is_no_number_of_stops():
-    assert agreement(0.0123) == "frames agree to 0.012 stops"
-    assert agreement(float("nan")) == "how far the frames agree could not be measured"
+    assert describe_agreement(0.0123) == "frames agree to 0.012 stops"
+    assert describe_agreement(float("nan")) == "how far the frames agree could not be measured"
 
 
 def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, capsys):

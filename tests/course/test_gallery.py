@@ -140,7 +140,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
         hdrlab("close", "g"),
     ]
     assert [code for code, _ in said] == [0, 2, 0, 0, 0, 0, 2]
-    assert "3 voters, 1 artifacts hung, 2 refused" in said[2][1] and "eve.png" in said[2][1]
+    assert "3 voters, 1 artifacts added, 2 refused" in said[2][1] and "eve.png" in said[2][1]
     assert "\x1b" not in said[2][1]
     assert "stranger" in said[2][1] and "Traceback" not in "".join(text for _, text in said)
     with open(tmp_path / "links.csv", encoding="utf-8-sig") as file:

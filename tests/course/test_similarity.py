@@ -358,7 +358,7 @@ def test_grading_a_class_compares_it(tmp_path, capsys):
 
 def test_a_class_too_large_to_compare_is_told_so_and_not_compared(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(alike, "MOST", 1)
-    assert "at most 1 works" in compared(tmp_path, capsys)
+    assert "at most 1 submissions" in compared(tmp_path, capsys)
     assert not (tmp_path / "similar.html").exists()
 
 

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from hdrlab.cli.maps import check_knobs
+from hdrlab.cli.maps import check_settings
 from hdrlab.pipeline import catalogue
 
 
@@ -58,7 +58,7 @@ def test_every_method_documents_every_knob(chapter):
                 )
 
 
-def test_a_knob_that_a_method_does_not_have_is_refused_with_those_it_has():
-    check_knobs("align", "mtb", {"bits": 5})
-    with pytest.raises(ValueError, match="expected a knob of mtb out of .*bits.*, got 'bytes'"):
-        check_knobs("align", "mtb", {"bytes": 5})
+def test_a_setting_that_a_method_does_not_have_is_refused_with_those_it_has():
+    check_settings("align", "mtb", {"bits": 5})
+    with pytest.raises(ValueError, match="a setting of mtb out of .*bits.*, got 'bytes'"):
+        check_settings("align", "mtb", {"bytes": 5})

@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.cli.photographs import read_bracket
+from hdrlab.cli.brackets import read_bracket
 from hdrlab.core.bracket import Bracket
 from hdrlab.pipeline import certainty
 from hdrlab.radiance.merge import Quality

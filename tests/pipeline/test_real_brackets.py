@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab import pipeline
-from hdrlab.cli.photographs import read_bracket
+from hdrlab.cli.brackets import read_bracket
 
 pytestmark = pytest.mark.papers
 

@@ -1,0 +1,83 @@
+"""Options and steps that the commands about assignments share."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hdrlab.cli import common
+from hdrlab.course import plan as plans
+from hdrlab.errors import InputError
+
+if TYPE_CHECKING:
+    from hdrlab.course.reports.results import Result
+
+TIERS = ["strict", "container", "practice"]
+
+plan_option = click.option(
+    "--plan",
+    type=common.EXISTING_FILE,
+    help="Course plan to use instead of the package's plan.toml.",
+)
+homework_option = click.option(
+    "--homework",
+    metavar="NAME",
+    help="Assignment, such as hw2.  [default: from the file name]",
+)
+secret_option = click.option(
+    "--secret-file",
+    type=common.INPUT_PATH,
+    help="File with the secret that determines each student's inputs. Created if missing.",
+)
+tier_option = common.choice_option(
+    "--tier", TIERS, help="Sandbox tier for the submitted code; see hdrlab doctor."
+)
+
+
+def find_homework(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
+    """Return the homework of a name, or the one whose name occurs in the submission's file name."""
+    homeworks = plans.read(plan).homeworks
+    names = ", ".join(homeworks)
+    if name is None:
+        matches = [known for known in homeworks if known in submission.stem.lower()]
+        if len(matches) != 1:
+            raise InputError(f"expected --homework, one of {names}: {submission.name} does not say")
+        return homeworks[matches[0]]
+    if name not in homeworks:
+        raise InputError(f"expected a homework out of {names}, got {name!r}")
+    return homeworks[name]
+
+
+def read_secret(file: Path | None) -> tuple[str, str]:
+    """Return the course's secret, and a note for the instructor, "" if there is nothing to note."""
+    if file is None:
+        return "", "for practice: without --secret-file the inputs are public"
+    secret, is_new = plans.read_secret(file)
+    if is_new:
+        return secret, f"{file}: a new secret for the course; keep it, and keep it to yourself"
+    return secret, ""
+
+
+def echo_secret_note(note: str) -> None:
+    """Print the note of `read_secret` on standard error, if there is one."""
+    if note:
+        common.echo_notes([note])
+
+
+def grade_submission(
+    submission: Path, homework: plans.Homework, conditions: plans.GradingOptions
+) -> "Result":
+    """Return the result of a submission, while a terminal shows how many checks are done."""
+    from hdrlab.core.steps import last
+    from hdrlab.course import grading
+    from hdrlab.course.sandbox.running import Unavailable
+    from hdrlab.course.scratch import temporary_folder
+
+    if not submission.exists():
+        raise FileNotFoundError(2, "no such file", str(submission))
+    try:
+        with temporary_folder():
+            steps: Any = grading.grade_steps(submission, homework, conditions)
+            return last(common.progress(steps, homework.name))
+    except Unavailable as error:
+        raise common.tier_error(str(error)) from None

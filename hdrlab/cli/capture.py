@@ -1,0 +1,372 @@
+"""The commands about exposure: plan a bracket, take it, meter a photo, correct a photo."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from hdrlab.cli import common, photos as photo_commands
+from hdrlab.errors import FileFormatError, InputError
+
+if TYPE_CHECKING:
+    from hdrlab.capture import planning
+
+# those of hdrlab.capture.metering, which takes long to import
+METERING_MODES = ("spot", "partial", "centre", "average", "matrix")
+
+# the fractions of a map's pixels between which its scene's range lies
+SCENE_QUANTILES = (0.001, 0.999)
+
+# exposure times from here on are written as decimals, shorter ones as fractions
+SHORTEST_DECIMAL_SECONDS = 0.4
+
+
+@click.command(cls=common.Command)
+@click.argument("low", type=float, required=False)
+@click.argument("high", type=float, required=False)
+@click.option("--low", "low_option", type=float, help="The same as the argument LOW.")
+@click.option("--high", "high_option", type=float, help="The same as the argument HIGH.")
+@click.option(
+    "--map",
+    "source",
+    type=common.INPUT_PATH,
+    help="Radiance map in cd/m^2 to take LOW and HIGH from.",
+)
+@click.option("--aperture", default=8.0, help="f-number of all photos.")
+@click.option("--iso", default=100.0, help="ISO speed of all photos.")
+@click.option("--usable", default=7.0, help="Usable range of one photo, in stops.")
+@click.option("--overlap", default=3.0, help="Overlap of two neighboring photos, in stops.")
+@click.option("--thirds", is_flag=True, help="Use shutter times in thirds of a stop.")
+@click.option(
+    "--snr",
+    type=click.FloatRange(0, min_open=True),
+    help="Also plan the fastest bracket with at least this signal-to-noise ratio.",
+)
+@click.option(
+    "--camera",
+    "camera_file",
+    type=common.INPUT_PATH,
+    help="Noise model of the camera for --snr: a .toml file.",
+)
+@click.pass_context
+def plan(
+    ctx: click.Context,
+    *,
+    low: float | None,
+    high: float | None,
+    low_option: float | None,
+    high_option: float | None,
+    source: Path | None,
+    aperture: float,
+    iso: float,
+    usable: float,
+    overlap: float,
+    thirds: bool,
+    snr: float | None,
+    camera_file: Path | None,
+) -> None:
+    """Plan the photos for a scene with luminances from LOW to HIGH, in cd/m^2.
+
+    Moonlight is about 0.1 cd/m^2, a living room in the evening 10, a white page in the sun 30 000.
+    With --map, hdrlab leaves out the darkest and the brightest thousandth of the pixels.
+
+    With --snr 20, hdrlab also plans the bracket that takes the least time while the noise of the
+    merged map (the mean with inverse-variance weights) is at most a 20th of the signal from LOW to
+    HIGH. The --camera file may set full_well = 20000, read_noise = 5 (electrons), gain = 5
+    (electrons per level), converter_noise = 0 (levels), pause = 0.2 (seconds after each photo),
+    aperture = 8 (f-number) and speeds = [100, 400] (ISO; full_well and gain belong to the lowest).
+    """
+    from hdrlab.capture import planning
+
+    low = _either(low, low_option, "LOW")
+    high = _either(high, high_option, "HIGH")
+    if camera_file is not None and snr is None:
+        raise InputError("--camera is used only with --snr; add --snr or leave --camera out")
+    if source is not None:
+        if low is not None or high is not None:
+            raise InputError("--map and LOW or HIGH exclude each other; pass one of them")
+        low, high = _scene_range(source)
+    if low is None or high is None:
+        raise InputError("expected LOW and HIGH in cd/m^2, or --map FILE")
+    bracket = planning.plan(
+        low,
+        high,
+        aperture=aperture,
+        iso=iso,
+        usable=usable,
+        overlap=overlap,
+        per_stop=3 if thirds else 1,
+    )
+    camera = planning.Model(speeds=(iso,), aperture=aperture)
+    if camera_file is not None:
+        values = _read_camera(camera_file, camera._fields)
+        for name, option in (("aperture", "aperture"), ("speeds", "iso")):
+            is_given = ctx.get_parameter_source(option) is ParameterSource.COMMANDLINE
+            if is_given and name in values:
+                raise InputError(
+                    f"--{option} and {name} in {camera_file} exclude each other; leave one out"
+                )
+        camera = camera._replace(**values)
+    for line in _bracket_lines(bracket, low, high, aperture=aperture, iso=iso, usable=usable):
+        click.echo(line)
+    if snr is not None:
+        for line in _noise_lines(bracket, low, high, iso=iso, snr=snr, camera=camera):
+            click.echo(line)
+
+
+def _either(argument: float | None, option: float | None, name: str) -> float | None:
+    """Return the value of an argument that is also an option; both together are an error."""
+    if argument is not None and option is not None:
+        raise InputError(f"{name} and --{name.lower()} are the same; pass one of them")
+    return option if argument is None else argument
+
+
+def _scene_range(source: Path) -> tuple[float, float]:
+    """Return the darkest and the brightest luminance of a radiance map, without outliers."""
+    import numpy as np
+
+    from hdrlab.core.colour import luminance
+
+    L = luminance(common.read_map(source, clean=False))
+    if not (L > 0).any():
+        raise InputError(f"{source}: expected a map with positive radiance, all of it is black")
+    darkest, brightest = np.quantile(L[L > 0], SCENE_QUANTILES)
+    return float(darkest), float(brightest)
+
+
+def _read_camera(file: Path, known: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values of a camera's noise model in a TOML file, by name."""
+    expected = f"{file}: expected numbers {', '.join(known)}, and for speeds a list"
+    try:
+        table = tomllib.loads(file.read_text(encoding="utf8"))
+        values = {
+            name: tuple(map(float, value)) if name == "speeds" else float(value)
+            for name, value in table.items()
+        }
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FileFormatError(f"{expected}; {error}") from None
+    unknown = sorted(set(values) - set(known))
+    if unknown or values.get("speeds") == ():
+        got = ", ".join(unknown) or "no speeds"
+        raise FileFormatError(f"{expected}; got {got}")
+    return values
+
+
+def _bracket_lines(
+    bracket: "planning.Plan",
+    low: float,
+    high: float,
+    *,
+    aperture: float,
+    iso: float,
+    usable: float,
+) -> Iterator[str]:
+    """Yield the lines that describe a scene and the bracket for it."""
+    import numpy as np
+
+    stops = np.log2(high / low)
+    yield f"scene: {low:.3g} to {high:.3g} cd/m^2, {stops:.1f} stops; one photo holds {usable:g}"
+    count = len(bracket.times)
+    photos = "1 photo" if count == 1 else f"{count} photos, {bracket.step:.3g} stops apart"
+    yield f"{photos}, f/{aperture:g}, ISO {iso:g}:"
+    for name, seconds, (dark, bright) in zip(
+        bracket.names, bracket.times, bracket.holds, strict=True
+    ):
+        holds = f"{dark:.3g} to {bright:.3g} cd/m^2"
+        yield f"  {name:>7} s  (exactly {seconds:.6g} s) holds {holds}"
+
+
+def _noise_lines(
+    bracket: "planning.Plan",
+    low: float,
+    high: float,
+    *,
+    iso: float,
+    snr: float,
+    camera: "planning.Model",
+) -> Iterator[str]:
+    """Yield the lines that compare a bracket by stops with the fastest one for an SNR."""
+    import numpy as np
+
+    from hdrlab.capture import planning
+
+    by_stops = planning.Shots(bracket.names, bracket.times, np.full(len(bracket.times), iso))
+    by_noise = planning.plan_by_noise(low, high, snr, camera)
+    for title, shots in (("by stops", by_stops), ("by noise", by_noise)):
+        worst = planning.worst_snr(low, high, shots.times, shots.speeds, camera)
+        count = len(shots.names)
+        duration = f"{shots.times.sum():.4g} s and {count} pauses of {camera.pause:g} s"
+        yield f"{title}: {count} photos in {duration}; lowest signal-to-noise ratio {worst:.3g}"
+    for name, seconds, speed in zip(by_noise.names, by_noise.times, by_noise.speeds, strict=True):
+        yield f"  {name:>7} s  (exactly {seconds:.6g} s) at ISO {speed:g}"
+
+
+@click.command(cls=common.Command)
+@click.argument("photo", type=common.INPUT_PATH)
+@common.choice_option("--mode", METERING_MODES, "centre", help="Metering mode.")
+@click.option(
+    "--at",
+    metavar="DOWN,RIGHT",
+    default="0.5,0.5",
+    help="Place of the spot, as fractions of the height and the width.",
+)
+def meter(photo: Path, mode: str, at: str) -> None:
+    """Meter PHOTO as a camera would, and report the exposure that it should have had.
+
+    hdrlab assumes an sRGB photo. Clipped pixels only give a lower bound of the brightness, so for
+    an overexposed photo the result is a first step: take that photo, and meter again.
+    """
+    import numpy as np
+
+    from hdrlab.capture import metering
+    from hdrlab.core.colour import decode_srgb, luminance
+    from hdrlab.io import decode, photos
+
+    place = _parse_place(at)
+    image = photos.read_photo(photo)
+    largest = np.float32(np.iinfo(image.dtype).max)
+    brightness = np.minimum(luminance(decode_srgb(image / largest)), 1)
+    weights = metering.weights(brightness, mode, at=place)
+    reading = metering.reading(brightness, weights)
+    stops = metering.correction(brightness, weights)
+    metered_fraction = (weights > weights.max() / 100).mean()
+    clipped_fraction = float((weights * (brightness >= 1)).sum())
+    click.echo(
+        f"{mode}: meters {metered_fraction:.0%} of the pixels; "
+        f"{clipped_fraction:.0%} of their weight is on clipped pixels"
+    )
+    direction = "too dark" if stops > 0 else "too bright"
+    click.echo(
+        f"reading {reading:.3f} of full scale, the target is {metering.MIDDLE_GRAY}: "
+        f"{abs(stops):.1f} stops {direction}"
+    )
+    seconds = decode.look(photo).exposure.seconds
+    if seconds:
+        click.echo(_corrected_time(seconds, stops))
+
+
+def _corrected_time(seconds: float, stops: float) -> str:
+    """Return the time of a photo, and the time on the dial that corrects it by `stops`."""
+    import numpy as np
+
+    from hdrlab.capture import exposure
+
+    corrected = exposure.true_time(exposure.true_time(seconds) * 2.0**stops)
+    dial = exposure.shutter_series(3)
+    name = dial.names[int(np.argmin(abs(dial.values - corrected)))]
+    taken = f"{seconds:g}" if seconds >= SHORTEST_DECIMAL_SECONDS else f"1/{1 / seconds:.0f}"
+    return f"taken with {taken} s; the right time is {name} s"
+
+
+def _parse_place(text: str) -> tuple[float, float]:
+    """Return the two fractions of --at."""
+    try:
+        down, right = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            f"--at: expected two fractions of the image, such as 0.5,0.5, got {text!r}"
+        ) from None
+    return down, right
+
+
+@click.command(cls=common.Command)
+@click.argument("photo", type=common.INPUT_PATH)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="Photo to write: .png, .jpg or .tif.",
+)
+@common.choice_option(
+    "--by", ["auto", "skin", "blocks"], help="Region to expose correctly, see above."
+)
+@common.choice_option("--way", ["chrominance", "locus"], help="Method that finds skin.")
+@click.option(
+    "--target", default=128.0, help="Mean pixel value of that region afterwards, 1 to 254."
+)
+def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
+    """Correct the exposure of PHOTO so that its important region is well exposed.
+
+    The region is skin, if skin covers at least a hundredth of the photo. Otherwise it is the blocks
+    with the most contrast and the sharpest focus. A photo that is less than a third of a stop off
+    is written unchanged. 16 bits become 8.
+    """
+    from hdrlab.core.arrays import to_256
+    from hdrlab.enhance import battiato, skin
+    from hdrlab.io import photos
+
+    Z = to_256(photos.read_photo(photo))
+    correction = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
+    photos.write_picture(out, correction.picture)
+    fraction = correction.relevant.mean()
+    click.echo(
+        f"important region: {correction.by}, {fraction:.0%} of the photo, "
+        f"mean pixel value {correction.before:.0f}"
+    )
+    if correction.delta:
+        change = f"{correction.delta:+.1f} stops: mean pixel value {correction.after:.0f}"
+    else:
+        change = "unchanged"
+    click.echo(f"{out}: {change}")
+
+
+@click.command(cls=common.Command)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help="Folder for the photos, new or empty.",
+)
+@click.option("--frames", type=click.IntRange(2), default=7, help="Number of photos.")
+@click.option(
+    "--stops",
+    type=click.FloatRange(0, min_open=True),
+    default=2.0,
+    help="Stops from one photo to the next.",
+)
+@click.option(
+    "--assemble",
+    "map_file",
+    type=common.OUTPUT_PATH,
+    help=f"Radiance map to assemble from the photos: {common.MAP_SUFFIXES}.",
+)
+def shoot(out: Path, frames: int, stops: float, map_file: Path | None) -> None:
+    """Take a bracket with a camera on a USB cable.
+
+    hdrlab fixes focus, ISO and white balance, and restores them at the end. The aperture stays. The
+    middle time is the one that the camera shows: in A (Av) its metered time, in M the time that you
+    set. The others are the nearest times that the camera has.
+
+    Each photo is saved when it is taken, and its time is added to exposures.csv. This needs the
+    extra `camera`, which exists for Linux and macOS.
+    """
+    from hdrlab.capture import exposure, planning
+    from hdrlab.io import files, radiance, sequence, tethered
+
+    # bad options are reported before the first photo
+    common.require_modules("camera", ["gphoto2"])
+    sequence.require_new(out)
+    if map_file:
+        radiance.format_of(map_file)
+    with tethered.connected() as camera:
+        common.echo_notes(camera.fix("light"))
+        metered, names = camera.shutter()
+        dial = exposure.read_dial(names)
+        chosen = planning.around(exposure.seconds(metered), dial.values, frames, stops)
+        common.echo_notes(camera.fix("mode"))
+        out.mkdir(exist_ok=True)
+        lines = ["file,exposure_time_s"]
+        for index in common.progress(chosen, "taking", frames):
+            paths = camera.photograph(dial.names[index], out / f"{len(lines):02d}")
+            lines.append(f"{paths[0].name},{dial.values[index]:.6g}")
+            files.write(out / "exposures.csv", "\n".join(lines) + "\n")
+            click.echo(f"{paths[0]}: {dial.names[index]}")
+    if map_file:
+        times = str(out / "exposures.csv")
+        words = ["-o", str(map_file), "--times", times, "--", str(out)]
+        photo_commands.assemble.main(words, standalone_mode=False)

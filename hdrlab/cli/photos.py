@@ -1,0 +1,336 @@
+"""The commands that start from photos: `assemble` and `calibrate`."""
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from hdrlab.cli import brackets, common
+from hdrlab.errors import InputError
+from hdrlab.pipeline import catalogue
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hdrlab.pipeline.assembly import Assembly
+    from hdrlab.pipeline.pictures import Developed
+
+ALIGN_METHODS = ["auto", *catalogue.names("align"), "none"]
+
+# "linear" needs no photos
+CALIBRATION_METHODS = [name for name in catalogue.names("response") if name != "linear"]
+
+EXIT_DOUBTFUL_MAP = 3
+MAX_DOUBT_LINES = 3
+
+FUSION_NOTE = "the image is an exposure fusion of the photos"
+
+
+@click.command(cls=common.Command)
+@click.argument("photos", nargs=-1, required=True, type=common.INPUT_PATH)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_PATH,
+    help=f"Radiance map to write: {common.MAP_SUFFIXES}.",
+)
+@click.option(
+    "--times",
+    metavar="exif|stated|estimate|FILE",
+    default="exif",
+    help="exif: start from EXIF and correct from the pixels; stated: use as given; "
+    "estimate: compute from the pixels; FILE: a list of times.",
+)
+@click.option("--keep-times", is_flag=True, help="Use the times of a FILE without correction.")
+@click.option(
+    "--stops",
+    type=click.FloatRange(0, min_open=True),
+    help="Stops between neighboring photos whose times are unknown.",
+)
+@common.mask_option
+@common.choice_option("--align", ALIGN_METHODS, help="Alignment method, see above.")
+@click.option(
+    "--response",
+    type=brackets.ResponseType(),
+    default="auto",
+    help="Response method, or a saved curve.",
+)
+@common.choice_option(
+    "--weight", ["gaussian", "hat", "flat", "snr"], help="Weight of the pixel values."
+)
+@common.choice_option(
+    "--merge", ["log", "likelihood", "mean", "shot"], help="Method that averages the exposures."
+)
+@common.choice_option(
+    "--ghosts",
+    ["none", "auto", "regions", "reference"],
+    "auto",
+    help="Removal of moving objects, see above.",
+)
+@common.choice_option(
+    "--flare", ["none", "glare"], help="Remove veiling glare, the light scattered in the lens."
+)
+@click.option(
+    "--calibrate",
+    metavar="X,Y=CD",
+    help="Scale the map to cd/m^2 by a light meter's reading at a pixel.",
+)
+@common.operator_option("--tonemap")
+@click.option(
+    "--picture",
+    type=common.OUTPUT_PATH,
+    help="Tone-mapped image to write as well: .png, .jpg or .tif.",
+)
+@click.option(
+    "--report",
+    type=common.INPUT_PATH,
+    help="Folder for report.html, with the photos, the response, the map and the image.",
+)
+@click.option(
+    "--uncertainty",
+    type=common.OUTPUT_PATH,
+    help="File for the map and its standard deviation as two layers: .exr.",
+)
+@click.option(
+    "--strict",
+    is_flag=True,
+    help=f"Exit with {EXIT_DOUBTFUL_MAP} if the map is doubtful. It is written all the same.",
+)
+def assemble(
+    *,
+    photos: tuple[Path, ...],
+    out: Path,
+    times: str,
+    keep_times: bool,
+    stops: float | None,
+    mask: str | None,
+    align: str,
+    response: str | Path,
+    weight: str,
+    merge: str,
+    ghosts: str,
+    flare: str,
+    calibrate: str | None,
+    tonemap: str,
+    picture: Path | None,
+    report: Path | None,
+    uncertainty: Path | None,
+    strict: bool,
+) -> None:
+    """Assemble PHOTOS (files, or one folder) into a radiance map.
+
+    From a folder, hdrlab uses the photos that form one bracket and lists the ones it skipped.
+
+    hdrlab reads exposures from EXIF (time, ISO, f-number), or from a list in the folder with lines
+    such as `a.jpg 1/60`. To use a list named exif, stated or estimate, write ./exif.
+
+    --align mtb shifts the photos onto each other. cerman also rotates them, homography also
+    corrects perspective. auto uses mtb, and more only if mtb is not enough.
+
+    --ghosts regions takes each region that moved from the photo that exposed it best. auto does the
+    same only if much has moved. reference takes everything that moved from the middle photo.
+
+    hdrlab writes the map even if it is doubtful. Warnings then say why and what to do, and the
+    report and the header of .hdr and .exr repeat them.
+    """
+    from hdrlab import pipeline
+    from hdrlab.io import photos as photo_files, radiance
+    from hdrlab.io.files import require_suffix
+    from hdrlab.io.maps import layers
+    from hdrlab.show.pages import wording
+
+    # bad options are reported before the work starts
+    if stops and times not in brackets.TIMES_KEYWORDS:
+        raise InputError(
+            f"--stops and --times {times} exclude each other: pass the list or the spacing"
+        )
+    recover = brackets.saved_curve(response) if isinstance(response, Path) else response
+    meter_reading = common.parse_meter_reading(calibrate) if calibrate else None
+    radiance.format_of(out)
+    if uncertainty:
+        require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
+
+    bracket = brackets.read_bracket(photos, times, mask, stops)
+    times_mode = "correct"
+    if times == "estimate":
+        times_mode = "estimate"
+    elif keep_times or times == "stated":
+        times_mode = "stated"
+    steps = pipeline.assemble_steps(
+        bracket,
+        in_place=True,
+        release=not (report or uncertainty),
+        align=align,
+        response=recover,
+        times=times_mode,
+        weight=weight,
+        method=merge,
+        ghosts=ghosts,
+        flare=flare,
+    )
+    del bracket
+    optional_stages = (times_mode != "stated", ghosts != "none", flare != "none")
+    stages = len(pipeline.STAGES) - 1 + sum(optional_stages)
+    assembly = _run_steps(steps, stages, align)
+    if uncertainty:
+        assembly = pipeline.measure_deviation(assembly)
+    if meter_reading:
+        assembly = pipeline.calibrate(assembly, *meter_reading)
+    if assembly.fallback and (picture or report):
+        fusion_note = f"{FUSION_NOTE}, for {assembly.fallback}"
+        assembly = assembly._replace(notes=(*assembly.notes, fusion_note))
+    common.echo_notes(assembly.notes)
+    common.echo_warnings(_shorten(assembly.doubts))
+
+    comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
+    if meter_reading:
+        comments.insert(0, "unit: cd/m^2")
+    # the map is written while the image is made, and also if making the image fails
+    with ThreadPoolExecutor(1) as executor:
+        writing = executor.submit(radiance.write_radiance, out, assembly.E, comments=comments)
+        description = executor.submit(common.describe_map, assembly.E)
+        developed = _develop(assembly, tonemap) if picture or report else None
+        if uncertainty and assembly.s is not None:
+            both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
+            layers.write_layers(uncertainty, both, comments=comments)
+            click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
+        if developed and picture:
+            photo_files.write_picture(picture, developed.picture)
+            click.echo(f"{picture}: {developed.settings}")
+        if developed and report:
+            from hdrlab.show.pages.report import write_report
+
+            recipe = {
+                "response": response,
+                "align": align,
+                "weight": weight,
+                "ghosts": ghosts,
+                "flare": flare,
+                "method": merge,
+                "times": times_mode,
+                "tonemap": developed.settings,
+            }
+            write_report(report, assembly, developed.picture, recipe=recipe)
+        writing.result()
+    agreement = common.describe_agreement(assembly.spread)
+    click.echo(f"{out}: {description.result()}, {agreement}")
+    if strict and assembly.doubts:
+        click.get_current_context().exit(EXIT_DOUBTFUL_MAP)
+
+
+def _run_steps(steps: "Iterable[Assembly]", count: int, align: str) -> "Assembly":
+    """Run the stages of the pipeline, show progress, and return the last state."""
+    from hdrlab.core.steps import last
+    from hdrlab.pipeline.alignment import SEARCHES
+
+    if align in SEARCHES:
+        # these take seconds a photo, in which a bar of stages stands still
+        names = ["aligning", *["the map"] * (count - 1)]
+        return last(common.one_by_one(steps, names))
+    return last(common.progress(steps, "assembling", count))
+
+
+def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
+    """Return the tone-mapped image of a map, or a fusion of the photos if the map is not usable."""
+    import numpy as np
+
+    from hdrlab.pipeline import pictures
+
+    if not assembly.fallback:
+        return pictures.develop_and_describe(assembly.E, tonemap)
+    from hdrlab.fast import mertens
+
+    fused = mertens.fuse(assembly.bracket.images).clip(0, 1)
+    return pictures.Developed(np.rint(255 * fused).astype(np.uint8), FUSION_NOTE)
+
+
+def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
+    """Return at most MAX_DOUBT_LINES doubts. The last line counts those that are left out."""
+    if len(doubts) <= MAX_DOUBT_LINES:
+        return doubts
+    shown = doubts[: MAX_DOUBT_LINES - 1]
+    hidden = len(doubts) - len(shown)
+    return *shown, f"{hidden} more warnings are in the report (--report FOLDER)"
+
+
+@click.command(cls=common.Command)
+@click.argument("photos", nargs=-1, required=True, type=common.INPUT_PATH)
+@click.option(
+    "-o",
+    "--out",
+    multiple=True,
+    type=common.OUTPUT_PATH,
+    help=f"Curve to write: {brackets.CURVE_SUFFIXES}. Repeatable.",
+)
+@click.option(
+    "--times",
+    metavar="exif|estimate|FILE",
+    default="exif",
+    help="exif: use EXIF; estimate: compute from the pixels; FILE: a list of times.",
+)
+@click.option(
+    "--estimate-times", is_flag=True, help="Correct the times of EXIF or a FILE from the pixels."
+)
+@common.mask_option
+@common.choice_option("--align", ALIGN_METHODS, "mtb", help="Alignment method, as in assemble.")
+@common.choice_option("--response", CALIBRATION_METHODS, "debevec", help="Response method.")
+@click.option(
+    "--plot",
+    type=common.OUTPUT_PATH,
+    help="Figure of the curve and the residuals to write: .png or .svg.",
+)
+def calibrate(
+    *,
+    photos: tuple[Path, ...],
+    out: tuple[Path, ...],
+    times: str,
+    estimate_times: bool,
+    mask: str | None,
+    align: str,
+    response: str,
+    plot: Path | None,
+) -> None:
+    """Recover the camera's response from PHOTOS (files, or one folder), and measure its errors.
+
+    The table lists the pixel values at which the exposure doubles.
+    """
+    from hdrlab import pipeline
+    from hdrlab.io import response_files
+    from hdrlab.pipeline import recovery
+    from hdrlab.show.plots import calibration
+
+    # bad options are reported before the work starts
+    for path in out:
+        response_files.suffix_of(path)
+    if plot:
+        calibration.check_suffix(plot)
+
+    bracket = brackets.read_bracket(photos, times, mask, None)
+    last_stage = "align"
+    times_mode = "stated"
+    if estimate_times or times == "estimate":
+        last_stage = "times"
+        times_mode = "estimate"
+    steps = pipeline.assemble_steps(bracket, align=align, response=response, times=times_mode)
+    aligned = next(state for state in steps if state.stage == last_stage)
+    common.echo_notes([*aligned.notes, *aligned.doubts])
+
+    # this method keeps only a plausible response
+    recover = recovery.find_validated_method(response)
+    g = recover(aligned.bracket.images, aligned.bracket.times, valid=aligned.bracket.valid)
+    assembly = pipeline.assemble(
+        aligned.bracket, align="none", response=lambda *_, **__: g, times="stated"
+    )
+    common.echo_warnings(assembly.doubts)
+    seconds = assembly.bracket.times
+    click.echo(f"{response}, from {len(seconds)} photos")
+    click.echo(calibration.summary(assembly.g, assembly.medians, assembly.bracket.names))
+    for path in out:
+        response_files.write_curve(path, assembly.g)
+        click.echo(path)
+    if plot:
+        figure = calibration.calibration(assembly.g, assembly.medians, seconds, title=response)
+        calibration.write_plot(plot, figure)
+        click.echo(plot)
