@@ -186,12 +186,12 @@ def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["-o", "out.gif", "--times", "1"], "at least two exposures"),
+        (["-o", "out.gif", "--times", "1"], "at least two different times"),
         (["-o", "out.gif", "--times", "1,x"], "expected seconds"),
         (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
         (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
         (["-o", "frames", "--times", "1,4"], "frames is read and would be lost"),
-        (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a turn"),
+        (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a frame for each"),
         (
             ["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"],
             "expected a rate",
