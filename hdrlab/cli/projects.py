@@ -69,7 +69,7 @@ def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> Non
     missing = sum(not finding.good for finding in findings)
     if missing and not (force and found.artifact):
         raise InputError(
-            f"{missing} to fix; nothing was written (--force writes the archive as it is)"
+            f"{missing} problems to fix; nothing was written (--force writes the archive anyway)"
         )
     packed = packing.pack(found, keep=keep_metadata)
     files = list(common.progress(packed, "packing", len(found.files)))
