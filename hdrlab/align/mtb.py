@@ -8,8 +8,8 @@ bits    of one photograph   (2, H, W) bool: bitmap Y > t, and exclusion bitmap |
 offset  (dy, dx) pixels     where a photograph must move, down and right, to lie on another
 error   disagreement        bits that differ / bits compared, over the overlap alone
 
-`fast.mtb` does the same with 64 pixels to a machine word; `diagnostics.registration` says what to
-trust.
+`fast.mtb` computes the same with 64 pixels in a machine word; `diagnostics.registration` checks
+whether an alignment can be trusted.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,19 +23,21 @@ from hdrlab.errors import InputError
 
 # codes: closer than this to the threshold, noise decides the bit
 NOISE = 4
-# pixels: a level with a side below this is not halved again
-SMALLEST = 16
-# codes: a threshold this close to 0 or 255 leaves too little on its other side
-CLIPPED = 12
-# the centre, its sides, its corners: of equal errors the first wins, so in a tie nothing moves
-NINE = sorted(product((-1, 0, 1), repeat=2), key=lambda d: d[0] ** 2 + d[1] ** 2)
+# A level is halved as long as its smaller side has at least this many pixels.
+MIN_SIDE_PIXELS = 16
+# The center, its sides, its corners: of equal errors the first wins, so in a tie nothing moves.
+NINE_OFFSETS = sorted(product((-1, 0, 1), repeat=2), key=lambda d: d[0] ** 2 + d[1] ** 2)
+# A threshold within this many codes of 0 or 255 leaves too few pixels on its other side.
+_CLIPPED_CODES = 12
+# The percentiles that are tried, of 0 to 1.
+_PERCENTILES = np.linspace(0, 1, 1001)
 
 
 class State(NamedTuple):
     """One level of one pair, the coarsest first; level 0 is full resolution.
 
-    `fixed` and `moving` (2, H, W) are the bits of both photographs, `errors` those of the nine
-    offsets around twice the one that came from the level above, `offset` is the best of them.
+    `fixed` and `moving` (2, H, W) are the bits of both photographs. `errors` are the errors of the
+    nine offsets around twice the offset of the level above, and `offset` is the best of them.
     """
 
     level: int
@@ -48,12 +50,14 @@ class State(NamedTuple):
 def gray(image: Array, *, luma: bool = False) -> Array:
     """Return Y = (54 R + 183 G + 19 B) / 256, or green alone, which is faster [Ward03 allows either]."""
     Z = image if image.ndim == 2 or luma else image[..., 1]
-    Y = Z >> 8 * (Z.itemsize - 1)  # of 16 bits the upper eight
-    return (Y if Y.ndim == 2 else Y @ (54, 183, 19) // 256).astype(np.uint8)
+    Y = Z >> 8 * (Z.itemsize - 1)  # the upper eight of 16 bits
+    if Y.ndim == 3:
+        Y = Y @ (54, 183, 19) // 256
+    return Y.astype(np.uint8)
 
 
 def shrink(Y: Array) -> Array:
-    """Return Y at half the size: the mean of each 2 x 2 pixels, rounded; an odd row or column is left out.
+    """Return Y at half the size: the rounded mean of each 2 x 2 pixels, without an odd row or column.
 
     Examples
     --------
@@ -82,27 +86,43 @@ def bitmaps(Y: Array, q: float = 0.5) -> Mask:
 
 
 def error(fixed: Mask, moving: Mask, offset: tuple[int, int]) -> float:
-    """Return bits that differ / bits compared: XOR, AND with both exclusions, over the overlap; 0 of none."""
-    (dy, dx), (H, W) = offset, fixed.shape[1:]
+    """Return bits that differ / bits compared, over the overlap: XOR, then AND with both exclusions.
+
+    Without any bit to compare it is 0.
+    """
+    dy, dx = offset
+    H, W = fixed.shape[1:]
     A, A_kept = fixed[:, max(dy, 0) : max(H + dy, 0), max(dx, 0) : max(W + dx, 0)]
     B, B_kept = moving[:, max(-dy, 0) : max(H - dy, 0), max(-dx, 0) : max(W - dx, 0)]
-    return float(((A ^ B) & A_kept & B_kept).sum() / max((A_kept & B_kept).sum(), 1))
+    compared = A_kept & B_kept
+    return float(((A ^ B) & compared).sum() / max(compared.sum(), 1))
 
 
 def step(fixed: Mask, moving: Mask, offset: tuple[int, int]) -> dict[tuple[int, int], float]:
-    """Return the errors of the nine offsets around one, itself the first."""
-    near = [(offset[0] + dy, offset[1] + dx) for dy, dx in NINE]
-    return {one: error(fixed, moving, one) for one in near}
+    """Return the errors of the nine offsets around an offset, its own first."""
+    y, x = offset
+    errors = {}
+    for dy, dx in NINE_OFFSETS:
+        neighbor = (y + dy, x + dx)
+        errors[neighbor] = error(fixed, moving, neighbor)
+    return errors
 
 
 def search(fixed: Array, moving: Array, *, bits: int = 6, q: float = 0.5) -> Iterator[State]:
-    """Yield a State per level of two Y: the best of nine, and twice that is where the next level begins."""
+    """Yield a State per level of two Y, the coarsest first.
+
+    Each level takes the best of nine offsets; the next level starts from twice that offset.
+    """
     pyramid = [(fixed, moving)]
-    while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
-        pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
+    while len(pyramid) < bits and min(fixed.shape) >= MIN_SIDE_PIXELS:
+        fixed = shrink(fixed)
+        moving = shrink(moving)
+        pyramid.append((fixed, moving))
     offset = (0, 0)
     for level in reversed(range(len(pyramid))):
-        A, B = (bitmaps(Y, q) for Y in pyramid[level])
+        fixed, moving = pyramid[level]
+        A = bitmaps(fixed, q)
+        B = bitmaps(moving, q)
         errors = step(A, B, (2 * offset[0], 2 * offset[1]))
         offset = min(errors, key=errors.__getitem__)
         yield State(level, A, B, errors, offset)
@@ -120,7 +140,10 @@ def by_brightness(images: Array) -> list[int]:
 
 
 def chain_offsets(order: Sequence[int], steps: ArrayLike) -> NDArray[np.int64]:
-    """Return the offsets (P, 2) onto the middle of `order`: sums of the steps, of which k lays k on k + 1."""
+    """Return the offsets (P, 2) onto the middle image of `order`, as sums of the steps.
+
+    Step k moves image order[k] onto image order[k + 1].
+    """
     sums = np.cumsum(np.reshape(steps, (-1, 2))[::-1], axis=0)[::-1]  # onto the brightest
     offsets = np.zeros((len(order), 2), np.int64)
     offsets[order[:-1]] = sums
@@ -128,27 +151,23 @@ def chain_offsets(order: Sequence[int], steps: ArrayLike) -> NDArray[np.int64]:
 
 
 def align_steps(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> Iterator[State]:
-    """Yield the States of pair after pair of neighbours in brightness, from dark to bright."""
+    """Yield the States of pair after pair of neighbors in brightness, from dark to bright."""
     images = np.asarray(images)
-    if (
-        images.ndim < 3
-        or images.shape[3:] not in ((), (3,))
-        or images.dtype.kind != "u"
-        or bits < 1
-    ):
+    is_stack = images.ndim >= 3 and images.shape[3:] in ((), (3,))
+    if not is_stack or images.dtype.kind != "u" or bits < 1:
         raise InputError(
             f"expected photographs (P, H, W[, 3]) and bits > 0, got {images.shape}, {bits=}"
         )
     for moving, fixed in pairwise(by_brightness(images)):
-        yield from search(
-            gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
-        )
+        Y_fixed = gray(images[fixed], luma=luma)
+        Y_moving = gray(images[moving], luma=luma)
+        yield from search(Y_fixed, Y_moving, bits=bits)
 
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
-    """Return the offsets that lay every image on the one in the middle of their brightness.
+    """Return the offsets that align every image with the one of the middle brightness.
 
-    Each image is compared with its neighbours in brightness, whose bitmaps are most alike, and the
+    Each image is compared with its neighbors in brightness, whose bitmaps are most similar, and the
     offsets are summed along the chain.
 
     Parameters
@@ -156,8 +175,8 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
     bits : int
-        Levels of the pyramid: neighbours are at most 2^bits - 1 pixels apart, fewer in small
-        images.
+        Levels of the pyramid. Offsets of up to 2^bits - 1 pixels between neighbors are found,
+        smaller ones in small images.
     luma : bool
         Compare (54 R + 183 G + 19 B) / 256 instead of the green channel.
 
@@ -185,24 +204,28 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     >>> mtb.align(images).tolist()
     [[3, -2], [0, 0]]
     """
-    found = [
-        state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
-    ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    states = align_steps(images, bits=bits, luma=luma)
+    steps = [state.offset for state in states if state.level == 0]
+    return chain_offsets(by_brightness(np.asarray(images)), steps)
 
 
 def percentile(*histograms: Array, near: float = 0.5) -> float | None:
-    """Return the q nearest to the median whose threshold divides every one of the photographs, or None.
+    """Return the percentile q nearest to the median whose threshold divides all photographs, or None.
 
-    Ward goes to the 17th or 83rd percentile where the median is clipped. Any percentile cuts all
-    photographs of a scene along one line of equal light.
+    Ward uses the 17th or 83rd percentile where the median is clipped. Any percentile cuts all
+    photographs of a scene along the same line of equal light.
     """
-    q = np.linspace(0, 1, 1001)
+    q = _PERCENTILES
     q = q[np.all([divides(h)[threshold(h, q)] for h in histograms], axis=0)]
     return float(q[np.argmin(np.abs(q - near))]) if len(q) else None
 
 
 def divides(h: Array) -> Mask:
-    """Return for each code whether it can be a threshold: not clipped, and half the pixels not excluded."""
-    z, near = np.arange(256), np.convolve(h, np.ones(2 * NOISE + 1), mode="same")
-    return (z >= CLIPPED) & (z < 256 - CLIPPED) & (near <= h.sum() / 2)
+    """Return for each code whether it can be the threshold of a photograph with histogram h.
+
+    It must not be clipped, and at least half of the pixels must not be excluded.
+    """
+    z = np.arange(256)
+    excluded = np.convolve(h, np.ones(2 * NOISE + 1), mode="same")
+    is_inside = (z >= _CLIPPED_CODES) & (z < 256 - _CLIPPED_CODES)
+    return is_inside & (excluded <= h.sum() / 2)

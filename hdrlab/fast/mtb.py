@@ -39,7 +39,7 @@ class Photograph:
 
     def __init__(self, image: Array, *, bits: int = 6, luma: bool = False) -> None:
         self.Y = [_gray(image, luma)]
-        while len(self.Y) < bits and min(self.Y[-1].shape) >= lesson.SMALLEST:
+        while len(self.Y) < bits and min(self.Y[-1].shape) >= lesson.MIN_SIDE_PIXELS:
             self.Y.append(_shrink(self.Y[-1]))
         self.h = [_histogram(Y) for Y in self.Y]
         self.overview = next(
@@ -92,7 +92,7 @@ class Photograph:
         y = 0
         x = 0
         for level in reversed(range(len(self.Y))):
-            nine = [(2 * y + dy, 2 * x + dx) for dy, dx in lesson.NINE]
+            nine = [(2 * y + dy, 2 * x + dx) for dy, dx in lesson.NINE_OFFSETS]
             y, x = min(nine, key=partial(self.error, fixed, level, q))
         return y, x
 

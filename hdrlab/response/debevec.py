@@ -43,11 +43,15 @@ def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
     N P rows fit the data, w (g(Z_ij) - lE_i) = w B_j; one row says g(n // 2) = 0; n - 2 rows say
     that lambda w(z) g''(z) = 0.
     """
-    (N, P), n = Z.shape, len(w)
-    A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+    N, P = Z.shape
+    n = len(w)
+    A = np.zeros((N * P + n - 1, n + N))
+    b = np.zeros(N * P + n - 1)
     for k, (i, j) in enumerate(np.ndindex(N, P)):
         wij = w[Z[i, j]]
-        A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+        A[k, Z[i, j]] = wij
+        A[k, n + i] = -wij
+        b[k] = wij * B[j]
     A[N * P, n // 2] = 1
     for z in range(1, n - 1):
         A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
@@ -55,9 +59,9 @@ def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
 
 
 def solve_by_svd(A: ArrayLike, b: ArrayLike, *, rtol: float = 1e-10) -> F64:
-    """Return the shortest x that minimises |A x - b|: sum of (u_i^T b / sigma_i) v_i, A = U Sigma V^T.
+    """Return the shortest x that minimizes |A x - b|: sum of (u_i^T b / sigma_i) v_i, A = U Sigma V^T.
 
-    Singular values up to rtol times the largest are taken for 0, and their terms left out.
+    Singular values up to rtol times the largest count as 0, and their terms are left out.
 
     Examples
     --------
@@ -70,7 +74,7 @@ def solve_by_svd(A: ArrayLike, b: ArrayLike, *, rtol: float = 1e-10) -> F64:
 
 
 def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
-    """Return g and lE of the least sum of squares, by the shortest x that minimises |A x - b|.
+    """Return the g and lE that minimize the sum of squares: the shortest x that minimizes |A x - b|.
 
     Parameters
     ----------
@@ -81,8 +85,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     smoothness : float
         lambda; 10 to 100 for photographs.
     w : (n,) float
-        Weights. Levels in no equation, those beyond a cut, take the value of the nearest that is in
-        one.
+        Weights. A level beyond a cut is in no equation; it takes the value of the nearest level
+        that is in one.
 
     Returns
     -------
@@ -107,7 +111,9 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     >>> bool(np.allclose(g[200] - g[100], np.log(2), atol=0.01))  # twice the light: ln 2 apart
     True
     """
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     if Z.ndim != 2 or B.shape != Z.shape[1:] or not 0 <= Z.min() <= Z.max() < n:
         raise InputError(
@@ -120,7 +126,8 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
             "expected samples seen well in two exposures, which connect the levels; got none"
         )
     reached = np.flatnonzero(A[:, :n].any(axis=0))
-    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+    g = np.interp(np.arange(n), reached, x[reached])
+    return Solution(g, np.asarray(x[n:]))
 
 
 def recover(

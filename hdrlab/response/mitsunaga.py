@@ -7,17 +7,17 @@ c       coefficients   (C, N - 1), one row a channel
 R       ratios         (P - 1,), exposure of frame q over that of frame q + 1: one shutter for all channels
 H       (N, N)         eq. 7 multiplied out: the sum of squares is (1, c) H (1, c)^T
 
-A sample in two neighbouring frames says f^-1(M_q) = R f^-1(M_q+1) [eq. 5]. With R known that is
-linear in c; with c known, R is a quotient; so each is made from the other, from rough ratios on.
-But (f^-u, R^u) answers eq. 5 as well as (f^-1, R) does: along u the error is a valley, nearly
-level, which noise tilts one way or the other. The first iterations lead into the valley, all later
-ones along it: mostly towards the truth, now and then far away. So `eps` is more than a stop, it
-keeps the answer near the ratios given.
+A sample in two neighboring frames gives the equation f^-1(M_q) = R f^-1(M_q+1) [eq. 5]. If R is
+known, that is linear in c; if c is known, R is a quotient. So each is computed from the other in
+turn, starting from rough ratios. But (f^-u, R^u) solves eq. 5 as well as (f^-1, R) does: along u the
+error is a nearly level valley, which noise tilts one way or the other. The first iterations lead
+into the valley, all later ones along it: mostly toward the truth, sometimes far away from it. So
+`eps` does more than end the iteration: it keeps the result near the ratios given.
 
-f^-1(M) = M + sum_n c_n b_n(M): every polynomial through both ends can be written so, and no other
-can, so eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3
-are so alike that at N = 10 their normal equations lose all digits. And a ratio is a quotient of
-sums, not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels add mostly noise.
+f^-1(M) = M + sum_n c_n b_n(M): this form holds every polynomial through both ends and no other. So
+eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3 are so
+similar that at N = 10 their normal equations lose all digits. And a ratio is a quotient of sums,
+not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels would add mostly noise.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,14 +29,17 @@ from numpy.polynomial.chebyshev import chebvander
 from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask
 from hdrlab.errors import InputError
 
-# of the trace of H: where the samples constrain less, the straight line is kept
-RIDGE = 1e-7
-# brightness of a sample that both frames see well
-LOW, HIGH = 0.05, 0.98
+# fraction of the trace of H: where the samples constrain less, f^-1 stays a straight line
+RIDGE_FRACTION = 1e-7
+# A frame measures a sample well if its brightness lies between these.
+MIN_BRIGHTNESS = 0.05
+MAX_BRIGHTNESS = 0.98
+# `recover` takes an even grid of about this many pixels.
+_GRID_PIXELS = 12_000
 
 
 class Fit(NamedTuple):
-    """After an iteration: c (C, N - 1), the R (P - 1,) they lead to, and by how much f^-1 changed."""
+    """After an iteration: c (C, N - 1), the ratios R (P - 1,) for it, and the change of f^-1."""
 
     c: F64
     R: F64
@@ -55,28 +58,35 @@ def value(M: ArrayLike, c: ArrayLike) -> F64:
 
     Examples
     --------
-    >>> value([0, 0.5, 1], []).tolist()  # with no terms a straight line
+    >>> value([0, 0.5, 1], []).tolist()  # without coefficients it is a straight line
     [0.0, 0.5, 1.0]
     """
     return np.asarray(terms(M, np.size(c) + 1) @ np.append(1, c))
 
 
 def in_range(M: F64) -> Mask:
-    """Return (..., P - 1), whether both of two neighbouring frames see a sample well; NaN is not seen.
+    """Return (..., P - 1), whether frames q and q + 1 both measure a sample well; NaN counts as not.
 
     Examples
     --------
     >>> in_range(np.array([0.1, 0.4, 0.99])).tolist()  # the third frame is clipped
     [True, False]
     """
-    inside = (M > LOW) & (M < HIGH)
+    inside = (M > MIN_BRIGHTNESS) & (M < MAX_BRIGHTNESS)
     return inside[..., :-1] & inside[..., 1:]
 
 
 def neighbours(M: F64, order: int) -> tuple[F64, F64, Indices]:
-    """Return the terms a, b (K, N) of samples M (N, P) that frames q (K,) and q + 1 see well."""
-    used, phi = in_range(M), terms(np.nan_to_num(M), order)
-    return phi[:, :-1][used], phi[:, 1:][used], np.nonzero(used)[1]
+    """Return the terms a and b (K, N) of samples M (N, P) in frames q (K,) and q + 1, and q.
+
+    Only pairs that both frames measure well are kept.
+    """
+    used = in_range(M)
+    phi = terms(np.nan_to_num(M), order)
+    a = phi[:, :-1][used]
+    b = phi[:, 1:][used]
+    q = np.nonzero(used)[1]
+    return a, b, q
 
 
 def gram(a: F64, b: F64, q: Indices, R: F64) -> F64:
@@ -86,66 +96,68 @@ def gram(a: F64, b: F64, q: Indices, R: F64) -> F64:
 
 
 def coefficients(H: F64) -> F64:
-    """Return c of the least (1, c) H (1, c)^T, where its derivative is 0 [eq. 9]."""
-    ridge = (RIDGE * np.trace(H) + 1e-300) * np.eye(len(H) - 1)
+    """Return the c that minimizes (1, c) H (1, c)^T, where its derivative is 0 [eq. 9]."""
+    ridge = (RIDGE_FRACTION * np.trace(H) + 1e-300) * np.eye(len(H) - 1)
     return np.linalg.solve(H[1:, 1:] + ridge, -H[1:, 0])
 
 
 def ratios(channels: Sequence[tuple[F64, F64, Indices]], c: F64, R: F64) -> F64:
     """Return sum f^-1(M_q) / sum f^-1(M_q+1) of each pair [eq. 10]; R where no sample constrains it."""
-    total = np.zeros((2, len(R)))
-    for (a, b, q), own in zip(channels, c, strict=True):
-        total += [np.bincount(q, phi[:, 0] + phi[:, 1:] @ own, len(R)) for phi in (a, b)]
-    return np.divide(total[0], total[1], out=R.copy(), where=(total[0] > 0) & (total[0] < total[1]))
+    dark = np.zeros(len(R))
+    bright = np.zeros(len(R))
+    for (a, b, q), c_channel in zip(channels, c, strict=True):
+        dark += np.bincount(q, a[:, 0] + a[:, 1:] @ c_channel, len(R))
+        bright += np.bincount(q, b[:, 0] + b[:, 1:] @ c_channel, len(R))
+    return np.divide(dark, bright, out=R.copy(), where=(dark > 0) & (dark < bright))
 
 
 def fit_steps(
     M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30
 ) -> Iterator[Fit]:
     """Yield c and R after each iteration, until f^-1 changes by less than eps [eq. 11]."""
-    channels = [neighbours(own, order) for own in M]
-    levels, R, before = (
-        terms(np.linspace(0, 1, 256), order)[:, 1:],
-        np.asarray(R),
-        np.full(256, np.inf),
-    )
+    channels = [neighbours(M_channel, order) for M_channel in M]
+    basis = terms(np.linspace(0, 1, 256), order)[:, 1:]
+    R = np.asarray(R)
+    before = np.full(256, np.inf)
     for _ in range(max_iterations):
-        c = np.stack([coefficients(gram(*one, R)) for one in channels])
+        c = np.stack([coefficients(gram(a, b, q, R)) for a, b, q in channels])
         R = ratios(channels, c, R)
-        curves = c @ levels.T
-        change, before = float(np.max(np.abs(curves - before))), curves
+        curves = c @ basis.T
+        change = float(np.max(np.abs(curves - before)))
+        before = curves
         yield Fit(c, R, change)
         if change < eps:
             return
 
 
 def curve(c: ArrayLike, n: int = 256, *, least: float = 1e-4) -> F64:
-    """Return g = ln f^-1 (n,), g[n // 2] = 0, where f^-1 climbs by `least` / (n - 1) or more a level.
+    """Return g = ln f^-1 (n,), g[n // 2] = 0, where f^-1 rises by at least `least` / (n - 1) a level.
 
-    A polynomial may dip where no pixel held it; a g that falls has no inverse. The clamp acts on
-    the increments, so the curve keeps its shape wherever it rises. Level 0 holds what is darker
-    than half a level; it gets the middle of that.
+    A polynomial may dip where no pixel constrains it, and a g that falls has no inverse. The clamp
+    acts on the increments, so that the curve keeps its shape wherever it rises. Level 0 holds all
+    light below half a level, and is placed in the middle of that.
     """
     increments = np.maximum(np.diff(value(np.linspace(0, 1, n), c)), least / (n - 1))
-    f_inv = np.cumsum(np.append(increments[0] / 4, [0.75 * increments[0], *increments[1:]]))
+    first = increments[0] / 4
+    second = 0.75 * increments[0]
+    f_inv = np.cumsum([first, second, *increments[1:]])
     return np.log(f_inv / f_inv[n // 2])
 
 
 def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float = 1e-3) -> F64:
-    """Return the response g, and take the exposure times for rough.
+    """Return the response g of a bracket whose exposure times are only roughly known.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Photographs, aligned.
     times : (P,) float
-        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in
-        part.
+        Exposure times in seconds, at least two different ones. Errors of 10 % are partly corrected.
     order : int
-        Of the polynomial.
+        Order of the polynomial.
     eps : float
-        Stop when f^-1, 0 to 1, changes by less. A smaller one lets the ratios drift further from
-        the times.
+        Stop when f^-1, 0 to 1, changes by less than this. With a smaller eps the ratios drift
+        further from the times.
 
     Returns
     -------
@@ -155,7 +167,8 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     Raises
     ------
     ValueError
-        For photographs and times that do not fit, or photographs that share no levels worth using.
+        For photographs and times that do not fit together, and for photographs without pixels that
+        two neighboring frames measure well.
 
     References
     ----------
@@ -169,27 +182,25 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    images, t = np.asarray(images), np.asarray(times, np.float64)
-    if (
-        images.dtype.kind != "u"
-        or images.ndim < 3
-        or images.shape[3:] not in ((), (3,))
-        or not images.size
-    ):
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    is_stack = images.ndim >= 3 and images.shape[3:] in ((), (3,)) and images.size > 0
+    if not is_stack or images.dtype.kind != "u":
         raise InputError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
     if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
         raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
-    images, t = images[np.argsort(t)], np.sort(t)
-    every = max(
-        1, int(np.sqrt(images.size / len(t) / 12_000))
-    )  # an even grid of some thousand pixels
-    M = (
-        images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
-        / np.iinfo(images.dtype).max
-    )
-    if not all(in_range(own).any() for own in M):
+    images = images[np.argsort(t)]
+    t = np.sort(t)
+    step = max(1, int(np.sqrt(images.size / len(t) / _GRID_PIXELS)))
+    grid = images[:, ::step, ::step].reshape(len(t), -1, images[0, 0, 0].size)
+    M = grid.T / np.iinfo(images.dtype).max
+    if not np.all(in_range(M).any(axis=(1, 2))):
+        low = MIN_BRIGHTNESS
+        high = MAX_BRIGHTNESS
         raise InputError(
-            "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames"
+            f"expected pixels between {low} and {high} of the top level in two neighboring frames"
         )
-    *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
-    return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])
+    for fit in fit_steps(M, t[:-1] / t[1:], order, eps=eps):
+        c = fit.c
+    g = np.stack([curve(c_channel) for c_channel in c], axis=-1)
+    return g.reshape(256, *images.shape[3:])

@@ -8,13 +8,13 @@ E       irradiance         (N,), exposure per unit of t; NaN for a sample withou
 E_m                        all (i, j) with Z_ij = m
 lambda                     `smoothness`, which the paper does not have
 
-Were f^-1 known, the most likely E would be a mean; were E known, f^-1 would be one. So each is made
-from the other, from a linear camera's on.
+If f^-1 were known, the most likely E would be a mean; if E were known, f^-1 would be one. So each is
+computed from the other in turn, starting from the f^-1 of a linear camera.
 
-What the photographs leave open, the initial guess decides: where all times are powers of one ratio
-r, f^-1 times any function of ln E with the period ln r explains them as well. So the paper's scheme
-stays up to 4 % off where frames are 2 stops apart, 0.5 % at 1 stop; and noise makes it drift,
-slowly, long after it has settled.
+The photographs do not determine f^-1 completely. If all times are powers of one ratio r, then f^-1
+times any function of ln E with the period ln r explains them as well, and the initial guess decides.
+So the paper's scheme stays up to 4 % off where frames are 2 stops apart, and 0.5 % at 1 stop. And
+noise makes it drift, slowly, long after it has settled.
 """
 
 from collections.abc import Callable, Iterator
@@ -29,7 +29,7 @@ from hdrlab.errors import InputError
 
 
 class State(NamedTuple):
-    """f^-1 after an iteration, and by how much it changed at most."""
+    """f^-1 after an iteration, and its largest change."""
 
     f_inv: F64
     change: float
@@ -42,25 +42,32 @@ def irradiance(Z: Indices, t: F64, f_inv: F64, w: F64) -> F64:
 
 
 def update(Z: Indices, t: F64, E: F64, n: int = 256) -> F64:
-    """Return f^-1(m), the plain mean of E_i t_j over E_m: weights would bias it; NaN where E_m is empty."""
+    """Return f^-1(m), the mean of E_i t_j over E_m; NaN where E_m is empty.
+
+    It is a plain mean, because weights would bias it.
+    """
     known = ~np.isnan(E)
+    levels = Z[known].ravel()
     X = E[known, None] * t
+    total = np.bincount(levels, X.ravel(), n)
+    count = np.bincount(levels, minlength=n)
     with np.errstate(invalid="ignore"):
-        return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(
-            Z[known].ravel(), minlength=n
-        )
+        return total / count
 
 
 def linear(n: int = 256) -> F64:
-    """Return f^-1 of the linear camera, the initial guess; level 0 is all below half a level."""
+    """Return f^-1 of the linear camera, the initial guess.
+
+    Level 0 holds all light below half a level; its f^-1 is the middle of that.
+    """
     return np.maximum(np.arange(n), 0.25) / (n // 2)
 
 
 def fill(means: F64, w: F64) -> F64:
-    """Return the means, with levels that no sample constrains on straight lines between their neighbours.
+    """Return the means, with the levels that no sample constrains interpolated linearly.
 
-    Such are levels without a mean, 0, which is all that is dark, and those beyond the cut, where
-    noise carries what is clipped. Those at the end are like the last one that has a mean.
+    These are the levels without a mean; level 0, which holds all that is dark; and the levels
+    beyond the cut, where noise mixes in clipped pixels. Levels at the end take the last mean.
     """
     level = np.arange(len(w))
     known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
@@ -70,8 +77,13 @@ def fill(means: F64, w: F64) -> F64:
 
 
 def alternate(Z: Indices, t: F64, w: F64) -> Callable[[F64], F64]:
-    """Return what makes of f^-1 the next means: E from f^-1, and f^-1 from E."""
-    return lambda f_inv: update(Z, t, irradiance(Z, t, f_inv, w), len(w))
+    """Return the function of one iteration: f^-1 -> E -> the means that become the next f^-1."""
+
+    def means(f_inv: F64) -> F64:
+        E = irradiance(Z, t, f_inv, w)
+        return update(Z, t, E, len(w))
+
+    return means
 
 
 def recover_steps(
@@ -88,9 +100,9 @@ def recover_steps(
     w : (256,) float
         Weights.
     tolerance : float
-        The iterations end when f^-1, 1 at level 128, changes by less than this at every level ...
+        The iteration ends when f^-1, 1 at level 128, changes by less than this at every level.
     max_iterations : int
-        ... or after this number.
+        It ends after this number of iterations in any case.
 
     Raises
     ------
@@ -105,12 +117,14 @@ def recover_steps(
     """
     t = np.asarray(times, np.float64) / np.max(times)
     sampling.require_two_exposures(Z, t, w)
-    means, f_inv = alternate(Z, t, w), linear(len(w))
+    means = alternate(Z, t, w)
+    f_inv = linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
         new = new / new[len(w) // 2]
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        change = float(np.max(np.abs(new - f_inv)))
+        f_inv = new
         yield State(f_inv, change)
         if change < tolerance:
             return

@@ -119,7 +119,7 @@ def test_what_is_done_to_a_state_does_not_reach_the_search(room):
     taken, _ = shoot(room, [warp.turn(SHAPE, 1, (3, 2)), np.eye(3)])
     for state in cerman.align_steps(taken.images, taken.times, true_g()):
         last = state.H.copy()
-        for array in state[1:]:
+        for array in (state.X, state.path, state.errors, state.H):
             array[:] = 0
     assert np.allclose(last, list(cerman.align_steps(taken.images, taken.times, true_g()))[-1].H)
 

@@ -100,7 +100,8 @@ def test_black_is_a_quarter_of_a_level_and_no_light_at_all_is_none():
         assert mann.power_law(gamma)[0] == pytest.approx(np.log(0.25 / 128) / gamma)
 
 
-@pytest.mark.parametrize("knobs", [{"alpha": -1}, {"alpha": 65}, {"starts": 0}])
-def test_each_knob_is_judged_by_itself(knobs):
-    with pytest.raises(ValueError, match="alpha from 0 to 64 and at least one start"):
-        mann.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], **knobs)
+@pytest.mark.parametrize(("name", "value"), [("alpha", -1), ("alpha", 65), ("start", 0)])
+def test_an_alpha_or_a_number_of_starts_out_of_range_is_refused_by_name(name, value):
+    options = {"starts": value} if name == "start" else {name: value}
+    with pytest.raises(ValueError, match=f"{name}.* got {value}"):
+        mann.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], **options)

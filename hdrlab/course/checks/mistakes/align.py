@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 
 from hdrlab.align.mtb import (
-    NINE,
-    SMALLEST,
+    MIN_SIDE_PIXELS,
+    NINE_OFFSETS,
     State,
     align_steps,
     bitmaps,
@@ -27,7 +27,7 @@ from hdrlab.course.checks.mistakes import mistake
 def not_doubled(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
-        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= MIN_SIDE_PIXELS:
             pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
         offset = (0, 0)
         for level in reversed(range(len(pyramid))):
@@ -57,7 +57,7 @@ def not_doubled(images, *, bits=6, luma=False):
 def ties_from_the_corner(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
-        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= MIN_SIDE_PIXELS:
             pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
         offset = (0, 0)
         for level in reversed(range(len(pyramid))):
@@ -87,7 +87,7 @@ def ties_from_the_corner(images, *, bits=6, luma=False):
 def bitmap_made_small(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
-        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= MIN_SIDE_PIXELS:
             pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
         offset = (0, 0)
         for level in reversed(range(len(pyramid))):
@@ -117,7 +117,7 @@ def bitmap_made_small(images, *, bits=6, luma=False):
 def coarsest_level_forgotten(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
-        while len(pyramid) < bits - 1 and min(pyramid[-1][0].shape) >= SMALLEST:
+        while len(pyramid) < bits - 1 and min(pyramid[-1][0].shape) >= MIN_SIDE_PIXELS:
             pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
         offset = (0, 0)
         for level in reversed(range(len(pyramid))):
@@ -152,12 +152,12 @@ def nothing_excluded(images, *, bits=6, luma=False):
         return float((A ^ B).mean())
 
     def step(fixed, moving, offset):
-        near = [(offset[0] + dy, offset[1] + dx) for dy, dx in NINE]
+        near = [(offset[0] + dy, offset[1] + dx) for dy, dx in NINE_OFFSETS]
         return {one: error(fixed, moving, one) for one in near}
 
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
-        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= SMALLEST:
+        while len(pyramid) < bits and min(pyramid[-1][0].shape) >= MIN_SIDE_PIXELS:
             pyramid.append((shrink(pyramid[-1][0]), shrink(pyramid[-1][1])))
         offset = (0, 0)
         for level in reversed(range(len(pyramid))):
