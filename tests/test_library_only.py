@@ -100,7 +100,7 @@ def test_pillow_decodes_what_imagecodecs_does(form, tmp_path):
     picture = np.random.default_rng(0).integers(0, 256, (40, 50, 3)).astype(np.uint8)
     Image.fromarray(picture).save(tmp_path / "a", form)
     data = (tmp_path / "a").read_bytes()
-    assert np.array_equal(codecs._pillow(data), codecs.DECODERS[form](data, None))
+    assert np.array_equal(codecs.decode_by_pillow(data), codecs.DECODERS[form](data, None))
 
 
 def test_the_chapters_are_there_by_name_and_nothing_else_is():

@@ -80,14 +80,14 @@ def read_bracket(
 
 def _find_times(paths: list[Path], times: str, stops: float | None) -> Path | list[float] | None:
     """Return a list of times, or the file that has one, or None if the photos' EXIF has them."""
-    from hdrlab.io.decode import look
+    from hdrlab.io.decode import read_header
 
     unknown_times = [1.0] * len(paths)
     if stops:
         return unknown_times
     if times not in TIMES_KEYWORDS:
         return Path(times)
-    if all(look(path).exposure.seconds for path in paths):
+    if all(read_header(path).exposure.seconds for path in paths):
         return None
     list_file = _find_list(paths)
     if list_file is not None:

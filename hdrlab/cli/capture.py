@@ -243,7 +243,7 @@ def meter(photo: Path, mode: str, at: str) -> None:
         f"reading {reading:.3f} of full scale, the target is {metering.MIDDLE_GRAY}: "
         f"{abs(stops):.1f} stops {direction}"
     )
-    seconds = decode.look(photo).exposure.seconds
+    seconds = decode.read_header(photo).exposure.seconds
     if seconds:
         click.echo(_corrected_time(seconds, stops))
 

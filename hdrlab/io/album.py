@@ -7,6 +7,7 @@ edited copies, side-car files. What does not belong to it is left out, and a sen
 import re
 from collections import Counter, defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from hdrlab.errors import InputError
@@ -114,7 +115,7 @@ def _alike(paths: list[Path]) -> Selection:
     notes = []
     for path in paths:
         try:
-            shape, dtype = (header := decode.look(path)).shape, header.dtype
+            shape, dtype = (header := decode.read_header(path)).shape, header.dtype
             kinds[path] = (*sorted(shape[:2]), shape[2:], dtype, header.kind == "RAW")
         except files.OtherPixels as error:
             notes.append(f"{error}: left out")
@@ -124,7 +125,7 @@ def _alike(paths: list[Path]) -> Selection:
     return [path for path in kinds if path not in odd], notes
 
 
-def turn_alike(headers: list[decode.Header]) -> tuple[list[decode.Header], list[str]]:
+def turn_alike(headers: list[decode.PhotoHeader]) -> tuple[list[decode.PhotoHeader], list[str]]:
     """Return headers turned as most of them are, and a note, where some of one size stand and some lie.
 
     A camera that looks straight down or up does not know which way is up, and says now this and now
@@ -140,5 +141,5 @@ def turn_alike(headers: list[decode.Header]) -> tuple[list[decode.Header], list[
     odd = [header.path.name for header in headers if header.orientation != most]
     notes = [f"{', '.join(odd)}: turned as the other photographs are, their EXIF says otherwise"]
     return [
-        one._replace(orientation=most, shape=(*shape, *one.shape[2:])) for one in headers
+        replace(one, orientation=most, shape=(*shape, *one.shape[2:])) for one in headers
     ], notes

@@ -1,14 +1,14 @@
-"""The pixels of one file as they are stored, by a decoder for each kind of file.
+"""Decode the pixels of one file as they are stored, by a decoder for each format.
 
-JPEG and PNG are decoded by imagecodecs, which keeps all 16 bits (Pillow cuts RGB to 8) and writes
-into an array that is there; so is AVIF of more bits than 8. Pillow decodes WebP and other AVIF,
-pillow-heif HEIC, tifffile TIFF.
+imagecodecs decodes JPEG and PNG, because it keeps all 16 bits (Pillow cuts RGB to 8) and writes into
+an array that is given, and AVIF of more than 8 bits. Pillow decodes WebP and other AVIF, pillow-heif
+HEIC, and tifffile TIFF.
 """
 
 import io
 import logging
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,95 +16,143 @@ from PIL import Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError
 from hdrlab.io import jpegxl
 
-for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
+# hdrlab's own errors report what is wrong with a file.
+for codec in ("tifffile", "imagecodecs"):
     logging.getLogger(codec).addHandler(logging.NullHandler())
 
-# of JPEG: what is neither a byte of coded pixels nor a restart within them
-MARKER = re.compile(rb"\xff([\x01-\xcf\xd8-\xfe])")
+# A marker of JPEG that is neither a coded 255 nor a restart within the coded pixels.
+JPEG_MARKER = re.compile(rb"\xff([\x01-\xcf\xd8-\xfe])")
+JPEG_END_OF_IMAGE = 0xD9
+PNG_BIT_DEPTH_OFFSET = 24
+PNG_COLOR_TYPE_OFFSET = 25
+PNG_ALPHA_FLAG = 4
+# The flags of av1C, the configuration of AV1 [AV1-ISOBMFF 2.3].
+AV1_FLAGS_OFFSET = 6
+AV1_HIGH_BITDEPTH_FLAG = 0x40
+AV1_TWELVE_BIT_FLAG = 0x20
+# A tile of a TIFF may be larger than the image, but not without limit.
+MAX_TILE_TO_IMAGE_RATIO = 4
+MIN_TILE_LIMIT_SAMPLES = 2**24
+
+Decoder = Callable[[bytes, Array | None], Array]
 
 
-def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
-    """Return the pixels of a file of that kind as they are stored, or raise a ValueError if it is damaged."""
-    data = path.read_bytes()
-    try:
-        return DECODERS[kind](data, out)
-    except ModuleNotFoundError:  # no codec: the file may be good
-        raise
-    except Exception as error:  # on damaged files the codecs raise what they like
-        why = str(error)[:200] or type(error).__name__
-        raise InputError(f"{path}: it is cut short or damaged ({why})") from None
+def decode_stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
+    """Return the pixels of a file as they are stored.
 
-
-def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
-    """Yield (marker, from, to) of what the JPEG at `start` is made of, without markers and lengths.
-
-    What stands between two segments has marker 0: coded pixels, bytes that fill, or what damage
-    left there.
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        Its format, a key of `DECODERS`.
+    out
+        An array for the pixels. Decoders that cannot write into one return another.
 
     Raises
     ------
-    ValueError
-        Where it has no end: libjpeg fills what is missing with gray, and only warns.
+    FileFormatError
+        For a damaged file.
     """
-    at = start + 2
-    while found := MARKER.search(data, at):
-        if found.start() > at:
-            yield 0, at, found.start()
-        at = found.end()
-        end = at if found[1] == b"\xd9" else at + int.from_bytes(data[at : at + 2])
-        yield found[1][0], min(at + 2, end), end
-        if found[1] == b"\xd9":
+    data = path.read_bytes()
+    try:
+        return DECODERS[kind](data, out)
+    except ModuleNotFoundError:  # without its codec, a file may still be good
+        raise
+    except MemoryError:
+        raise FileFormatError(f"{path}: there is not enough memory to decode it") from None
+    except Exception as error:  # on damaged files the codecs raise exceptions of any type
+        reason = str(error)[:200] or type(error).__name__
+        raise FileFormatError(f"{path}: it is cut short or damaged ({reason})") from None
+
+
+def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
+    """Yield (marker, start, end) of the parts of a JPEG, without markers and lengths.
+
+    What stands between two segments has the marker 0: coded pixels, fill bytes, or damage.
+
+    Raises
+    ------
+    FileFormatError
+        For a JPEG without an end: libjpeg fills what is missing with gray, and only warns.
+    """
+    offset = start + 2
+    while True:
+        match = JPEG_MARKER.search(data, offset)
+        if match is None:
+            raise FileFormatError("no end of image after its last scan")
+        if match.start() > offset:
+            yield 0, offset, match.start()
+        marker = match[1][0]
+        offset = match.end()
+        if marker == JPEG_END_OF_IMAGE:
+            yield marker, offset, offset
             return
-        at = end
-    raise InputError("no end of image after its last scan")
+        end = offset + int.from_bytes(data[offset : offset + 2], "big")
+        yield marker, min(offset + 2, end), end
+        offset = end
 
 
 def jpeg_end(data: bytes, start: int = 0) -> int:
     """Return where the JPEG at `start` ends, whatever follows it, such as a film or a gain map."""
-    *_, (_, _, end) = jpeg_parts(data, start)
+    end = start
+    for _, _, part_end in jpeg_parts(data, start):
+        end = part_end
     return end
 
 
-def _jpeg(data: bytes, out: Array | None) -> Array:
+def decode_jpeg(data: bytes, out: Array | None = None) -> Array:
+    """Decode a JPEG, without what follows it."""
     data = data[: jpeg_end(data)]
-    return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else _pillow(data)
+    return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else decode_by_pillow(data)
 
 
-def _png(data: bytes, out: Array | None) -> Array:
-    out = None if data[25] & 4 else out  # of the colour type: it has alpha, which `out` has not
-    return imagecodecs.png_decode(data, out=out) if imagecodecs or data[24] > 8 else _pillow(data)
+def decode_png(data: bytes, out: Array | None = None) -> Array:
+    """Decode a PNG; one with alpha is not decoded into `out`, which has no place for alpha."""
+    if data[PNG_COLOR_TYPE_OFFSET] & PNG_ALPHA_FLAG:
+        out = None
+    if imagecodecs or data[PNG_BIT_DEPTH_OFFSET] > 8:
+        return imagecodecs.png_decode(data, out=out)
+    return decode_by_pillow(data)
 
 
-def _pillow(data: bytes, out: Array | None = None) -> Array:
+def decode_by_pillow(data: bytes, out: Array | None = None) -> Array:
     """Decode 8 bits a channel: WebP and AVIF, and the others where imagecodecs is not installed."""
     with Image.open(io.BytesIO(data), formats=("JPEG", "PNG", "WEBP", "AVIF")) as image:
         return np.asarray(image)
 
 
-def _avif(data: bytes, out: Array | None) -> Array:
-    if (depth := avif_depth(data)) == 8 and not imagecodecs:
-        return _pillow(data)
+def decode_avif(data: bytes, out: Array | None = None) -> Array:
+    """Decode the first image of an AVIF."""
+    depth = avif_depth(data)
+    if depth == 8 and not imagecodecs:
+        return decode_by_pillow(data)
     pixels = imagecodecs.avif_decode(data, index=0)
-    return pixels if depth == 8 else _fill(pixels << (16 - depth), depth)
+    return pixels if depth == 8 else _fill_16_bits(pixels << (16 - depth), depth)
 
 
 def avif_depth(data: bytes) -> int:
-    """Return 8, 10 or 12 bits a channel: the flags high_bitdepth and twelve_bit [AV1-ISOBMFF 2.3]."""
-    at = data.find(b"av1C") + 6
-    return 8 + 2 * (data[at] >> 6 & 1) * (1 + (data[at] >> 5 & 1))
+    """Return how many bits a channel an AVIF has: 8, 10 or 12."""
+    flags = data[data.find(b"av1C") + AV1_FLAGS_OFFSET]
+    if not flags & AV1_HIGH_BITDEPTH_FLAG:
+        return 8
+    return 12 if flags & AV1_TWELVE_BIT_FLAG else 10
 
 
-def _heic(data: bytes, out: Array | None) -> Array:
+def decode_heic(data: bytes, out: Array | None = None) -> Array:
+    """Decode the first image of a HEIC."""
     image = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False)
     pixels = np.asarray(image)
-    return pixels if pixels.dtype == np.uint8 else _fill(pixels, image.info["bit_depth"])
+    if pixels.dtype == np.uint8:
+        return pixels
+    return _fill_16_bits(pixels, image.info["bit_depth"])
 
 
-def _jxl(data: bytes, out: Array | None) -> Array:
-    """Decode into an array of the size that was looked at: another is refused before a pixel is decoded."""
+def decode_jxl(data: bytes, out: Array | None = None) -> Array:
+    """Decode a JPEG XL into an array of the size that its header states, and refuse another size."""
     header = jpegxl.read_header("", data)
     if out is None:
         out = np.empty(header.shape, header.dtype)
@@ -112,36 +160,37 @@ def _jxl(data: bytes, out: Array | None) -> Array:
     if header.dtype != np.uint16:
         return pixels
     depth = header.bits_per_sample
-    return _fill(pixels << (16 - depth), depth)
+    return _fill_16_bits(pixels << (16 - depth), depth)
 
 
-def _fill(pixels: Array, depth: int) -> Array:
-    """Return levels of `depth` bits, which are the upper ones of 16, spread over all: white is 65535."""
+def _fill_16_bits(pixels: Array, depth: int) -> Array:
+    """Spread values of `depth` bits, which are the upper ones of 16, over all: white is 65535."""
     return pixels | pixels >> depth
 
 
-def _tiff(data: bytes, out: Array | None) -> Array:
+def decode_tiff(data: bytes, out: Array | None = None) -> Array:
+    """Decode the first page of a TIFF, in the byte order of this machine."""
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         page = file.pages.first
-        ends = map(sum, zip(page.dataoffsets, page.databytecounts, strict=True))
-        if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(
-            4 * np.prod(page.shape), 1 << 24
-        ):
-            raise InputError(
-                "its pixels go past the end of the file, or its tiles far beyond its picture"
-            )
+        strips = zip(page.dataoffsets, page.databytecounts, strict=True)
+        data_end = max((offset + size for offset, size in strips), default=0)
+        if data_end > len(data):
+            raise FileFormatError("its pixels go past the end of the file")
+        tile_limit = max(MAX_TILE_TO_IMAGE_RATIO * np.prod(page.shape), MIN_TILE_LIMIT_SAMPLES)
+        if np.prod(page.chunks) > tile_limit:
+            raise FileFormatError("its tiles go far beyond the image")
         pixels = page.asarray()
     if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
         pixels = np.moveaxis(pixels, 0, -1)
     return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
 
 
-DECODERS = {
-    "JPEG": _jpeg,
-    "PNG": _png,
-    "TIFF": _tiff,
-    "WEBP": _pillow,
-    "AVIF": _avif,
-    "HEIF": _heic,
+DECODERS: dict[str, Decoder] = {
+    "JPEG": decode_jpeg,
+    "PNG": decode_png,
+    "TIFF": decode_tiff,
+    "WEBP": decode_by_pillow,
+    "AVIF": decode_avif,
+    "HEIF": decode_heic,
+    "JXL": decode_jxl,
 }
-DECODERS["JXL"] = _jxl

@@ -1,57 +1,106 @@
-"""One photograph, in two steps: look at its header, then decode its pixels straight into their place.
+"""Read one photo in two steps: its header, then its pixels, straight into their place in an array.
 
-What a file is, its first bytes say and not its suffix. Its pixels are decoded by hdrlab.io.codecs,
-those of RAW by hdrlab.io.raw. Pillow reads EXIF. Colours of another space than sRGB are converted
-by their ICC profile, see hdrlab.io.profiles.
+The first bytes of a file tell its format, not its suffix. Only RAW files are known by their suffix,
+because most of them begin like TIFF. `hdrlab.io.codecs` decodes the pixels, `hdrlab.io.raw` those of
+RAW files, and Pillow reads EXIF. Colors of another space than sRGB are converted by their ICC
+profile, see `hdrlab.io.profiles`.
 """
 
 import re
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from PIL import ExifTags, Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import OtherPixels, check_size, require_no_folder
 
-# what the first bytes of a file of each kind are
-MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
-MAGIC |= {
+# What the files of each format begin with.
+MAGIC = {
+    "TIFF": rb"II\*\0|MM\0\*",
+    "JPEG": rb"\xff\xd8\xff",
+    "PNG": rb"\x89PNG\r\n\x1a\n",
     "WEBP": rb"RIFF....WEBP",
     "AVIF": rb"....ftyp.*avi[fs]",
     "HEIF": rb"....ftyp(he[iv]|mif1|msf1)",
+    "JXL": rb"\xff\n|\0\0\0\x0cJXL \r\n\x87\n",
 }
-MAGIC |= {"JXL": rb"\xff\n|\0\0\0\x0cJXL \r\n\x87\n"}
-# bytes of a picture in one of the file: more than any of these formats reaches
-BEST_COMPRESSION_RATIO = 1 << 12
-# ... and these, of which a black photograph takes hardly a kilobyte
-RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF", "JXL"), 1 << 16)
-# words that stand near the beginning of a file with a gain map: Adobe's, ISO 21496-1, Apple's
-GAIN_MAPS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
-CODED = "is coded for an HDR screen, by PQ or HLG"
-# ... as a PNG and an AVIF or HEIC say: the curve's number after that of the primaries
-BEYOND_GAMMA = re.compile(rb"cICP.[\x10\x12]|nclx\0.\0[\x10\x12]", re.DOTALL)
-LONGEST_HEADER = 1 << 18
-MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
-# EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of
-# Apple]
-BLENDED = (2, 3, 6, 7)
-MODES |= {"F": "floating point", "I": "32-bit integers"}
-KINDS = {1: "MINISBLACK", 3: "RGB"}  # channels without alpha, and what TIFF calls them
+MAGIC_BYTES = 32
+HEADER_BYTES = 2**18
+
+# Bytes of pixels for one byte of the file: no file of these formats reaches more.
+BEST_COMPRESSION_RATIO = 2**12
+# A black photo takes hardly a kilobyte in the newer formats.
+BEST_COMPRESSION_RATIOS = {"WEBP": 2**16, "AVIF": 2**16, "HEIF": 2**16, "JXL": 2**16}
+
+PNG_BIT_DEPTH_OFFSET = 24
+PNG_COLOR_TYPE_OFFSET = 25
+PNG_COLOR_FLAG = 2
+
+# Pillow's modes that hdrlab reads, and words for others.
+READ_MODES = ("L", "LA", "RGB", "RGBA", "I;16")
+MODE_NAMES = {
+    "1": "1-bit pixels",
+    "P": "a palette",
+    "PA": "a palette",
+    "LAB": "Lab",
+    "F": "floating point",
+    "I": "32-bit integers",
+}
+# TIFF's names of images with so many channels, without alpha.
+PHOTOMETRIC = {1: "MINISBLACK", 3: "RGB"}
+
+# Words near the beginning of a file with a gain map: Adobe's, those of ISO 21496-1, and Apple's.
+GAIN_MAP_WORDS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
+# PQ or HLG as a PNG, or AVIF and HEIC, state it: the transfer function behind the primaries.
+PQ_OR_HLG = re.compile(rb"cICP.[\x10\x12]|nclx\0.\0[\x10\x12]", re.DOTALL)
+# EXIF's CustomRendered for HDR, without and with the original, and for portraits and panoramas of
+# HDR, as Apple writes them.
+CUSTOM_RENDERED_HDR = (2, 3, 6, 7)
+# EXIF's interoperability index of Adobe RGB [DCF 2.0].
+INTEROP_INDEX_TAG = 1
+INTEROP_ADOBE_RGB = "R03"
+
+# Why a photo cannot be a frame of a bracket.
+HAS_GAIN_MAP = "has a gain map: the picture in it was tone-mapped locally"
+IS_PQ_OR_HLG = "is coded for an HDR screen, by PQ or HLG"
+IS_BLENDED = "was put together by the camera out of several exposures"
+
+Samples = Literal["integer", "floating", "any"]
 
 
-class Header(NamedTuple):
-    """What a photograph says before its pixels; `shape` is upright, (H, W) or (H, W, 3).
+@dataclass(frozen=True)
+class PhotoHeader:
+    """What a photo states before its pixels.
 
-    `icc` is the profile of its colours, empty for sRGB; `processing` says what makes it useless in
-    a bracket.
+    Attributes
+    ----------
+    path
+        The file.
+    kind
+        Its format, a key of `MAGIC` or "RAW".
+    shape
+        The upright shape, (H, W) or (H, W, 3).
+    dtype
+        The type of the stored samples.
+    orientation
+        EXIF's orientation, 1 to 8.
+    exposure
+        Seconds, f-number and ISO.
+    icc
+        The profile of its colors, empty for sRGB.
+    processing
+        Why the photo cannot be a frame of a bracket, empty if it can.
+    comments
+        The lines of a TIFF's description.
     """
 
     path: Path
@@ -65,68 +114,121 @@ class Header(NamedTuple):
     comments: Sequence[str] = ()
 
 
-def look(path: str | Path, *, light: bool | None = False) -> Header:
-    """Return the Header of the photograph at `path`, or raise a ValueError for what is not one.
+@dataclass(frozen=True)
+class ExifFacts:
+    """What hdrlab uses of EXIF."""
 
-    With `light` it is to hold floating-point samples, and with None any.
+    orientation: int = 1
+    exposure: Exposure = Exposure()
+    is_adobe_rgb: bool = False
+    is_blended: bool = False
+
+    def icc(self, stored: bytes | None) -> bytes:
+        """Return the profile of a file, or that of the space which EXIF names."""
+        if stored:
+            return stored
+        return profiles.ADOBE if self.is_adobe_rgb else b""
+
+    @property
+    def processing(self) -> str:
+        """Why the photo cannot be a frame of a bracket."""
+        return IS_BLENDED if self.is_blended else ""
+
+
+def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeader:
+    """Return what the photo at `path` states before its pixels.
+
+    Parameters
+    ----------
+    path
+        The file.
+    samples
+        Whether its samples have to be integers, as in a photo, floating-point numbers, as in a
+        radiance map, or any.
+
+    Raises
+    ------
+    FileFormatError
+        For a file that is no photo, or is damaged.
+    OtherPixels
+        For an image with other pixels than gray or RGB.
     """
     path = Path(path)
     require_no_folder(path, "a photo")
     if path.suffix.lower() in raw.SUFFIXES:
-        size, exposure = raw.look(path)
-        return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)
+        raw_shape, exposure = raw.look(path)
+        return PhotoHeader(path, "RAW", raw_shape, np.dtype(np.uint16), exposure=exposure)
     with open(path, "rb") as file:
-        head = file.read(LONGEST_HEADER)
-    kind = next(
-        (kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), ""
-    )
-    if not kind:
-        raise InputError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
-    header = {"TIFF": _look_tiff, "JXL": _look_jxl}.get(kind, _look_pillow)(path, kind, head)
-    shape, ratio = header.shape, RATIOS.get(kind, BEST_COMPRESSION_RATIO)
-    check_size(path, shape[0], shape[1], int(np.prod(shape)) * header.dtype.itemsize // ratio)
-    if light not in (None, header.dtype.kind == "f"):
-        wanted, n = "floating-point samples" if light else "8 or 16 bits", (*header.shape, 1)[2]
-        raise OtherPixels(
-            f"{path}: expected gray or RGB of {wanted}, got {n} x {header.dtype}, {KINDS[n]}"
-        )
+        head = file.read(HEADER_BYTES)
+    kind = _identify_format(path, head)
+    if kind == "TIFF":
+        header = _read_tiff_header(path)
+    elif kind == "JXL":
+        header = _read_jxl_header(path, head)
+    else:
+        header = _read_pillow_header(path, kind, head)
+    _check_header_size(header)
+    _require_samples(header, samples)
+    shape = header.shape
     if header.orientation > 4:
         shape = (shape[1], shape[0], *shape[2:])
-    gains = any(word in head for word in GAIN_MAPS)
-    processing = (
-        "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
-    )
-    processing = CODED if BEYOND_GAMMA.search(head) else processing
-    return header._replace(shape=shape, processing=processing)
+    return replace(header, shape=shape, processing=_find_processing(header, head))
 
 
-def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) -> None:
-    """Decode the photograph into `out`, of its upright shape; `balance` is a white balance for RAW."""
+def decode_photo(header: PhotoHeader, out: Array, *, balance: raw.Balance | None = None) -> None:
+    """Decode a photo into `out`, an array of its upright shape.
+
+    Parameters
+    ----------
+    header
+        What `read_header` returned.
+    out
+        The array for the pixels, of `header.shape` and `header.dtype`.
+    balance
+        The white balance for a RAW file, by default its own.
+
+    Raises
+    ------
+    FileFormatError
+        For a damaged file.
+    InputError
+        For transparent pixels.
+    """
     if header.kind == "RAW":
         pixels = raw.decode(header.path, balance)
     else:
-        stored = codecs.stored_pixels(
-            header.path, header.kind, out if header.orientation == 1 else None
-        )
-        pixels = upright(opaque(header.path, stored), header.orientation)
+        destination = out if header.orientation == 1 else None
+        stored = codecs.decode_stored_pixels(header.path, header.kind, destination)
+        pixels = upright(drop_alpha(header.path, stored), header.orientation)
         if header.icc and pixels.dtype.kind == "u":
             pixels = profiles.to_srgb(header.path, pixels, header.icc)
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
-        got = f"{pixels.shape} {pixels.dtype}"
-        raise InputError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
+        raise FileFormatError(
+            f"{header.path}: expected {out.shape} {out.dtype}, got {pixels.shape} {pixels.dtype}"
+        )
     if pixels is not out:
         out[...] = pixels
 
 
 def upright(pixels: Array, orientation: int) -> Array:
-    """Return stored pixels as they are to be seen: an EXIF orientation above 4 lies on its side."""
-    turned = pixels.swapaxes(0, 1) if orientation > 4 else pixels
-    down, across = orientation in (3, 4, 7, 8), orientation in (2, 3, 6, 7)
-    return pixels if orientation == 1 else turned[:: -1 if down else 1, :: -1 if across else 1]
+    """Return stored pixels as they are to be seen, by EXIF's orientation."""
+    if orientation == 1:
+        return pixels
+    if orientation > 4:
+        pixels = pixels.swapaxes(0, 1)
+    vertical_step = -1 if orientation in (3, 4, 7, 8) else 1
+    horizontal_step = -1 if orientation in (2, 3, 6, 7) else 1
+    return pixels[::vertical_step, ::horizontal_step]
 
 
-def opaque(path: Path, pixels: Array) -> Array:
-    """Return pixels without their alpha channel, or raise a ValueError where levels are transparent."""
+def drop_alpha(path: Path, pixels: Array) -> Array:
+    """Return pixels without their alpha channel.
+
+    Raises
+    ------
+    InputError
+        For integer pixels that are transparent.
+    """
     if pixels.ndim < 3 or pixels.shape[2] == 3:
         return pixels
     if pixels.dtype.kind == "u" and (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
@@ -136,96 +238,176 @@ def opaque(path: Path, pixels: Array) -> Array:
     return pixels[..., 0] if pixels.shape[2] < 3 else pixels[..., :3]
 
 
-def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
-    """Return what is stated by the header of a file that Pillow opens."""
+def _identify_format(path: Path, head: bytes) -> str:
+    for kind, magic in MAGIC.items():
+        if re.match(magic, head[:MAGIC_BYTES], re.DOTALL):
+            return kind
+    raise FileFormatError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
+
+
+def _check_header_size(header: PhotoHeader) -> None:
+    """Raise FileFormatError if the file is too short for the pixels that its header claims."""
+    ratio = BEST_COMPRESSION_RATIOS.get(header.kind, BEST_COMPRESSION_RATIO)
+    min_bytes = int(np.prod(header.shape)) * header.dtype.itemsize // ratio
+    check_size(header.path, header.shape[0], header.shape[1], min_bytes)
+
+
+def _require_samples(header: PhotoHeader, samples: Samples) -> None:
+    """Raise OtherPixels for integers where floating-point samples are needed, and vice versa."""
+    is_floating = header.dtype.kind == "f"
+    if samples == "any" or is_floating == (samples == "floating"):
+        return
+    wanted = "floating-point samples" if samples == "floating" else "8 or 16 bits"
+    channels = header.shape[2] if len(header.shape) == 3 else 1
+    pixels = f"{channels} x {header.dtype}, {PHOTOMETRIC[channels]}"
+    raise OtherPixels(f"{header.path}: expected gray or RGB of {wanted}, got {pixels}")
+
+
+def _find_processing(header: PhotoHeader, head: bytes) -> str:
+    """Return why a photo cannot be a frame of a bracket, or nothing."""
+    if PQ_OR_HLG.search(head):
+        return IS_PQ_OR_HLG
+    if any(word in head for word in GAIN_MAP_WORDS):
+        return HAS_GAIN_MAP
+    return header.processing
+
+
+def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
+    """Return the header of a format that Pillow opens."""
     if kind == "HEIF":
         pillow_heif.register_heif_opener()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
+            # Pillow warns of large sizes, which check_size judges, and of odd EXIF.
+            warnings.simplefilter("ignore")
             with Image.open(path, formats=(kind,)) as image:
-                (width, height), mode, info = image.size, image.mode, dict(image.info)
-        depth = {"PNG": lambda: head[24], "AVIF": lambda: codecs.avif_depth(head)}.get(
-            kind, lambda: 8
-        )()
+                width, height = image.size
+                mode = image.mode
+                info = dict(image.info)
+        depth = info.get("bit_depth", _read_bit_depth(kind, head))
     except Image.DecompressionBombError as error:
-        raise InputError(f"{path}: its header claims an absurd size ({error})") from None
-    except Exception as error:  # on damaged files Pillow raises what it likes
-        raise InputError(
+        raise FileFormatError(f"{path}: its header claims an absurd size ({error})") from None
+    except Exception as error:  # on damaged files Pillow raises exceptions of any type
+        raise FileFormatError(
             f"{path}: expected a photograph, its header is damaged ({error})"
         ) from None
-    depth = info.get("bit_depth", depth)
-    mode = "an alpha channel" if "transparency" in info else mode
-    if depth < 8 or mode not in ("L", "LA", "RGB", "RGBA", "I;16"):
-        what = MODES.get(mode, mode) if depth >= 8 else f"{depth}-bit pixels"
-        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
-    colour = (
-        head[25] & 2 if kind == "PNG" else mode.startswith("RGB")
-    )  # of deep gray Pillow makes RGBA
-    shape = (height, width, 3) if colour else (height, width)
-    dtype = np.dtype(np.uint8 if depth == 8 else np.uint16)
-    exif = _exif(lambda exif: exif.load(info.get("exif") or b""), info.get("icc_profile"))
-    return Header(path, kind, shape, dtype, **exif)
-
-
-def _look_jxl(path: Path, kind: str, head: bytes) -> Header:
-    """Return what is stated by a JPEG XL; how it is turned, it says itself, and not its EXIF."""
-    exif = _exif(lambda exif: exif.load(jpegxl.exif(head)), None)
-    header = jpegxl.read_header(path, head)
-    exif["orientation"] = header.orientation
-    exif["icc"] = profiles.DISPLAY_P3 if header.primaries == jpegxl.P3_PRIMARIES else b""
-    if header.transfer in (jpegxl.PQ_TRANSFER, jpegxl.HLG_TRANSFER):
-        exif["processing"] = CODED
-    return Header(path, kind, header.shape, header.dtype, **exif)
-
-
-def _look_tiff(path: Path, form: str, head: bytes) -> Header:
-    """Return what is stated by the first page of a TIFF file; floats may have any alpha channels."""
-    open_tiff = tifffile.TiffFile
-    try:
-        with open_tiff(path) as file:
-            page = file.pages.first
-            height, width, deep = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
-            channels, alpha = int(page.samplesperpixel), len(page.extrasamples)
-            kind = str(getattr(page.photometric, "name", page.photometric))[:40]
-            dtype, icc, comments = (
-                np.dtype(page.dtype),
-                page.iccprofile or b"",
-                page.description.splitlines(),
-            )
-    except Exception as error:  # on damaged files tifffile raises what it likes
-        why = str(error)[:200]
-        raise InputError(f"{path}: expected a photograph, its header is damaged ({why})") from None
-    light = dtype.kind == "f"
-    colours = channels - (alpha if light else alpha == 1)
-    if KINDS.get(colours) != kind or not (light or dtype in ("u1", "u2")):
-        raise OtherPixels(
-            f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {kind}"
-        )
-    if deep != 1:
-        raise OtherPixels(f"{path}: expected one picture, got {deep} on one another")
-    with open(path, "rb") as stream:
-        exif = _exif(lambda exif: exif.load_from_fp(stream), icc)
-    return Header(
-        path, form, (height, width, 3)[: 2 + (colours == 3)], dtype, comments=comments, **exif
+    _require_readable_mode(path, "an alpha channel" if "transparency" in info else mode, depth)
+    is_color = mode.startswith("RGB")
+    if kind == "PNG":  # Pillow turns gray of 16 bits with alpha into RGBA
+        is_color = bool(head[PNG_COLOR_TYPE_OFFSET] & PNG_COLOR_FLAG)
+    facts = _read_exif(lambda exif: exif.load(info.get("exif") or b""))
+    return PhotoHeader(
+        path,
+        kind,
+        shape=(height, width, 3) if is_color else (height, width),
+        dtype=np.dtype(np.uint8 if depth == 8 else np.uint16),
+        orientation=facts.orientation,
+        exposure=facts.exposure,
+        icc=facts.icc(info.get("icc_profile")),
+        processing=facts.processing,
     )
 
 
-def _exif(load: Callable[[Image.Exif], None], icc: bytes | None) -> dict[str, Any]:
-    """Return what EXIF adds to a Header; one that cannot be read adds nothing, the photograph may be good."""
+def _read_bit_depth(kind: str, head: bytes) -> int:
+    if kind == "PNG":
+        return head[PNG_BIT_DEPTH_OFFSET]
+    if kind == "AVIF":
+        return codecs.avif_depth(head)
+    return 8
+
+
+def _require_readable_mode(path: Path, mode: str, depth: int) -> None:
+    """Raise OtherPixels for a mode or a depth that hdrlab does not read."""
+    if depth < 8:
+        pixels = f"{depth}-bit pixels"
+    elif mode not in READ_MODES:
+        pixels = MODE_NAMES.get(mode, mode)
+    else:
+        return
+    raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {pixels}")
+
+
+def _read_jxl_header(path: Path, head: bytes) -> PhotoHeader:
+    """Return the header of a JPEG XL, which states its orientation itself, whatever EXIF says."""
+    facts = _read_exif(lambda exif: exif.load(jpegxl.exif(head)))
+    header = jpegxl.read_header(path, head)
+    is_pq_or_hlg = header.transfer in (jpegxl.PQ_TRANSFER, jpegxl.HLG_TRANSFER)
+    return PhotoHeader(
+        path,
+        "JXL",
+        header.shape,
+        header.dtype,
+        orientation=header.orientation,
+        exposure=facts.exposure,
+        icc=profiles.DISPLAY_P3 if header.primaries == jpegxl.P3_PRIMARIES else b"",
+        processing=IS_PQ_OR_HLG if is_pq_or_hlg else facts.processing,
+    )
+
+
+def _read_tiff_header(path: Path) -> PhotoHeader:
+    """Return the header of a TIFF's first page; floating-point pages may have any alpha channels."""
+    open_tiff = tifffile.TiffFile  # outside `try`: it may say what to install
+    try:
+        with open_tiff(path) as file:
+            page = file.pages.first
+            height = int(page.imagelength)
+            width = int(page.imagewidth)
+            slices = int(page.imagedepth)
+            channels = int(page.samplesperpixel)
+            alpha_channels = len(page.extrasamples)
+            photometric = str(getattr(page.photometric, "name", page.photometric))[:40]
+            dtype = np.dtype(page.dtype)
+            icc = page.iccprofile
+            comments = page.description.splitlines()
+    except Exception as error:  # on damaged files tifffile raises exceptions of any type
+        reason = str(error)[:200]
+        raise FileFormatError(
+            f"{path}: expected a photograph, its header is damaged ({reason})"
+        ) from None
+    is_floating = dtype.kind == "f"
+    color_channels = channels
+    if is_floating:
+        color_channels -= alpha_channels
+    elif alpha_channels == 1:
+        color_channels -= 1
+    is_readable_type = is_floating or dtype in (np.dtype("u1"), np.dtype("u2"))
+    if PHOTOMETRIC.get(color_channels) != photometric or not is_readable_type:
+        raise OtherPixels(
+            f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {photometric}"
+        )
+    if slices != 1:
+        raise OtherPixels(f"{path}: expected one picture, got a stack of {slices}")
+    with open(path, "rb") as stream:
+        facts = _read_exif(lambda exif: exif.load_from_fp(stream))
+    return PhotoHeader(
+        path,
+        "TIFF",
+        shape=(height, width, 3) if color_channels == 3 else (height, width),
+        dtype=dtype,
+        orientation=facts.orientation,
+        exposure=facts.exposure,
+        icc=facts.icc(icc),
+        processing=facts.processing,
+        comments=comments,
+    )
+
+
+def _read_exif(load: Callable[[Image.Exif], None]) -> ExifFacts:
+    """Return what hdrlab uses of EXIF; unreadable EXIF states nothing, the photo may still be good."""
     exif = Image.Exif()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             load(exif)
-            orientation, exposure = exif.get(ExifTags.Base.Orientation, 1), exif_exposure(exif)
-            adobe = exif.get_ifd(ExifTags.IFD.Interop).get(1) == "R03"  # [DCF 2.0]
-            blended = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered) in BLENDED
-    except Exception:
-        return {"icc": icc or b""}
-    return {
-        "orientation": orientation if orientation in range(1, 9) else 1,
-        "exposure": exposure,
-        "icc": icc or (profiles.ADOBE if adobe else b""),
-        "processing": "was put together by the camera out of several exposures" if blended else "",
-    }
+            orientation = exif.get(ExifTags.Base.Orientation, 1)
+            exposure = exif_exposure(exif)
+            interop_index = exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)
+            rendering = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered)
+    except Exception:  # on damaged EXIF Pillow raises exceptions of any type
+        return ExifFacts()
+    return ExifFacts(
+        orientation=orientation if orientation in range(1, 9) else 1,
+        exposure=exposure,
+        is_adobe_rgb=interop_index == INTEROP_ADOBE_RGB,
+        is_blended=rendering in CUSTOM_RENDERED_HDR,
+    )

@@ -18,7 +18,7 @@ from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, raw
-from hdrlab.io.decode import Header, decode, look
+from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
 PICTURES: dict[str, dict[str, Any]] = {".png": {"compress_level": 1}}
@@ -52,9 +52,9 @@ def read_photo(path: str | Path) -> Array:
     >>> read_photo(path).tolist()
     [[128, 128, 128], [128, 128, 128]]
     """
-    header = look(path)
+    header = read_header(path)
     image = np.empty(header.shape, header.dtype)
-    decode(header, image)
+    decode_photo(header, image)
     return image
 
 
@@ -102,7 +102,7 @@ def read_bracket(
     ('b.png', 'a.png')
     """
     found, notes = album.select(paths)
-    headers, more = album.turn_alike([look(path) for path in found])
+    headers, more = album.turn_alike([read_header(path) for path in found])
     _check_alike(headers)
     for said in (*notes, *more, *_processed(headers)):
         note(said)
@@ -121,7 +121,7 @@ def read_bracket(
     valid = None if mask is None else np.empty(images.shape[:3], bool)
 
     def fill(j: int) -> None:
-        decode(headers[j], images[j], balance=balance)
+        decode_photo(headers[j], images[j], balance=balance)
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
@@ -165,7 +165,7 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
             Image.fromarray(picture).save(name, **PICTURES[suffix])
 
 
-def _check_alike(headers: list[Header]) -> None:
+def _check_alike(headers: list[PhotoHeader]) -> None:
     """Raise a ValueError that names the first photograph and one that does not go with it."""
     first = headers[0]
     for other in headers[1:]:
@@ -180,7 +180,7 @@ def _check_alike(headers: list[Header]) -> None:
         raise InputError(f"{what}: {_short(first)}, {_short(other)}")
 
 
-def _processed(headers: list[Header]) -> list[str]:
+def _processed(headers: list[PhotoHeader]) -> list[str]:
     """Return one sentence on photographs of which no single response can be recovered."""
     found = [header for header in headers if header.processing]
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
@@ -188,7 +188,7 @@ def _processed(headers: list[Header]) -> list[str]:
     return [f"{one.path.name}{more} {one.processing}, {why}" for one in found[:1]]
 
 
-def _short(header: Header) -> str:
+def _short(header: PhotoHeader) -> str:
     height, width = header.shape[:2]
     colour = "RGB" if len(header.shape) == 3 else "gray"
     bits = 8 * header.dtype.itemsize

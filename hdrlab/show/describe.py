@@ -41,7 +41,7 @@ def describe_file(path: str | Path) -> dict[str, Any]:
 
 
 def _photo(path: str | Path) -> dict[str, Any]:
-    header = decode.look(path, light=None)
+    header = decode.read_header(path, samples="any")
     height, width, channels = (*header.shape, 1)[:3]
     return {
         "format": header.kind,

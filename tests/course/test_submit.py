@@ -18,7 +18,7 @@ from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import collect
 from hdrlab.course.projects import project, report as reports, review, submit as handing, words
 from hdrlab.io import radiance, response_files
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 
 TIMES = [1 / 250, 1 / 60, 1 / 15]
 REPORT = """# Dusk
@@ -157,7 +157,7 @@ def test_photographs_arrive_with_their_exposures_and_without_their_places(home, 
         ):
             assert bool(dict(now.getexif().get_ifd(0x8825))) == there
             assert np.array_equal(np.asarray(now), np.asarray(before))
-        assert look(tmp_path / "a.jpg").exposure.seconds == pytest.approx(TIMES[0])
+        assert read_header(tmp_path / "a.jpg").exposure.seconds == pytest.approx(TIMES[0])
 
 
 @pytest.mark.parametrize("suffix", ["webp", "avif", "jpe", "jpg", "png"])

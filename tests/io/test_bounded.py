@@ -146,7 +146,7 @@ def test_pictures_in_notebooks_are_read_as_pictures_alone():
 def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
     photos.write_picture(tmp_path / "a.png", np.zeros((4, 5, 3), np.uint8))
     monkeypatch.setitem(codecs.DECODERS, "PNG", lambda *_: (_ for _ in ()).throw(MemoryError()))
-    with pytest.raises(ValueError, match=r"a\.png: it is cut short or damaged \(MemoryError\)"):
+    with pytest.raises(ValueError, match=r"a\.png: .* memory"):
         photos.read_photo(tmp_path / "a.png")
 
 

@@ -18,7 +18,7 @@ import hdrlab
 from hdrlab.cli import run
 from hdrlab.core.colour import decode_srgb
 from hdrlab.io import photos, radiance, screens
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 
 PAGE = Path(hdrlab.__file__).parent / "course/site/pages/photographs.md"
 RGB = (
@@ -358,7 +358,11 @@ def test_a_jpeg_that_cjxl_packs_keeps_its_pixels_and_tells_its_exposure(tmp_path
     assert b"brobExif" in (tmp_path / "a.jxl").read_bytes()
     one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("a.jpg", "a.jxl"))
     assert one.shape == other.shape == (48, 32, 3) and np.abs(one - other).mean() < 2
-    assert look(tmp_path / "a.jxl").exposure == look(tmp_path / "a.jpg").exposure == (0.5, 8.0, 200)
+    assert (
+        read_header(tmp_path / "a.jxl").exposure
+        == read_header(tmp_path / "a.jpg").exposure
+        == (0.5, 8.0, 200)
+    )
 
 
 @pytest.mark.parametrize("depth", [8, 16])

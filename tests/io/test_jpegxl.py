@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from hdrlab.io import jpegxl, photos, radiance, screens
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 from hdrlab.io.files import MAX_PIXELS
 from hdrlab.show.describe import describe_file
 
@@ -109,7 +109,7 @@ def test_its_exif_tells_the_exposure_and_its_own_header_how_it_is_turned(tmp_pat
     tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
     (tmp_path / "x.jxl").write_bytes(boxed(imagecodecs.jpegxl_encode(RGB, lossless=True), tags))
     assert np.array_equal(imagecodecs.jpegxl_decode((tmp_path / "x.jxl").read_bytes()), RGB)
-    found = look(tmp_path / "x.jxl")
+    found = read_header(tmp_path / "x.jxl")
     assert found.exposure == (0.5, 8.0, 200) and found.orientation == 1
     assert np.array_equal(photos.read_photo(tmp_path / "x.jxl"), RGB)
 
@@ -239,7 +239,7 @@ def test_a_frame_of_several_passes_is_a_picture(passes, tmp_path):
         (1, 1),
     ]
     (tmp_path / "x.jxl").write_bytes(header(*USUAL, frame=frame))
-    assert look(tmp_path / "x.jxl").shape == (12, 17, 3)
+    assert read_header(tmp_path / "x.jxl").shape == (12, 17, 3)
 
 
 def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
@@ -259,14 +259,14 @@ def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
         (tmp_path / f"{name}.jxl").write_bytes(b"".join(box))
     assert np.array_equal(photos.read_photo(tmp_path / "good.jxl"), RGB)
     with pytest.raises(ValueError, match=r"big\.jxl: its header claims .*expected at most"):
-        look(tmp_path / "big.jxl")
+        read_header(tmp_path / "big.jxl")
 
 
 @pytest.mark.parametrize("curve", [[(2, 2), (14, 4)], [(3, 2), (0, 6)]], ids=["PQ", "HLG"])
 def test_codes_of_pq_and_hlg_are_named(curve, tmp_path):
     fields = [*SIZE, *AS_USUAL, *U8, *SRGB, (1, 2), (0, 1), *curve, (1, 2), (0, 2), (1, 1)]
     (tmp_path / "x.jxl").write_bytes(header(*fields))
-    assert look(tmp_path / "x.jxl").processing == "is coded for an HDR screen, by PQ or HLG"
+    assert read_header(tmp_path / "x.jxl").processing == "is coded for an HDR screen, by PQ or HLG"
 
 
 def test_one_that_is_cut_short_is_refused_by_name(tmp_path):

@@ -16,7 +16,7 @@ from PIL import Image, ImageCms
 from PIL.PngImagePlugin import PngInfo
 
 from hdrlab.io import metadata
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 from hdrlab.io.photos import read_photo
 
 XMP = b'<x:xmpmeta xmlns:x="adobe:ns:meta/">exif:GPSLatitude 51,30.5N XMP-PLACE</x:xmpmeta>'
@@ -252,7 +252,7 @@ def test_pixels_exposure_and_camera_are_unchanged(name, tmp_path):
     after = tmp_path / name
     after.write_bytes(metadata.strip_metadata(before).data)
     assert np.array_equal(read_photo(before), read_photo(after))
-    exposure = look(after).exposure
+    exposure = read_header(after).exposure
     assert exposure.seconds == pytest.approx(1 / 125)
     assert exposure.f_number == pytest.approx(5.6)
     assert exposure.iso == 200

@@ -10,7 +10,7 @@ import pytest
 import tifffile
 from PIL import Image, ImageOps
 
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 from hdrlab.io.photos import read_bracket, read_photo, write_picture
 
 RNG = np.random.default_rng(0)
@@ -110,7 +110,7 @@ def test_exif_orientation_is_applied(tmp_path, orientation, suffix, name):
     with Image.open(oracle) as image:  # gray TIFF is turned twice by Pillow
         upright = np.asarray(ImageOps.exif_transpose(image))
     read = read_photo(path)
-    assert look(path).shape == read.shape and np.array_equal(read, upright)
+    assert read_header(path).shape == read.shape and np.array_equal(read, upright)
 
 
 def tiff_with_exif(path):
@@ -138,7 +138,7 @@ def test_exposure_is_read_from_exif_of_every_format(tmp_path, suffix):
         tiff_with_exif(path)
     else:
         save(path, RGB8, seconds=0.0125, f_number=5.6, iso=400)
-    assert look(path).exposure == pytest.approx((0.0125, 5.6, 400))
+    assert read_header(path).exposure == pytest.approx((0.0125, 5.6, 400))
     assert np.array_equal(read_photo(path), RGB8) or suffix == "jpg"
 
 
@@ -146,7 +146,7 @@ def test_damaged_exif_does_not_spoil_the_photograph(tmp_path):
     Image.fromarray(RGB8).save(tmp_path / "x.png", exif=b"Exif\0\0II*\0\xff\xff\xff\xff" + bytes(9))
     assert (
         np.array_equal(read_photo(tmp_path / "x.png"), RGB8)
-        and look(tmp_path / "x.png").exposure[0] is None
+        and read_header(tmp_path / "x.png").exposure[0] is None
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 import tifffile
 
 from hdrlab.io import raw
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 from hdrlab.io.photos import read_bracket, read_photo, write_picture
 
 rawpy = pytest.importorskip("rawpy", reason="RAW photographs need the extra `raw`")
@@ -123,7 +123,7 @@ def test_colours_are_those_that_libraw_mixes(tmp_path):
 
 def test_orientation_is_applied(tmp_path):
     path = dng(tmp_path / "x.dng", flat(500), orientation=6)
-    assert look(path).shape == read_photo(path).shape == (96, 64, 3)
+    assert read_header(path).shape == read_photo(path).shape == (96, 64, 3)
 
 
 def test_a_bracket_is_linear_and_has_the_times_that_the_camera_wrote(tmp_path):
@@ -221,7 +221,7 @@ def test_a_dng_of_jpeg_xl_is_refused_by_name_with_what_to_do(order, tmp_path):
         none, packed = (struct.pack(">HHLH", 259, 3, 1, number) for number in (1, 52546))
         assert path.read_bytes().count(none) == 1
         path.write_bytes(path.read_bytes().replace(none, packed))
-    for read in (look, read_photo):
+    for read in (read_header, read_photo):
         with pytest.raises(
             ValueError, match=r"pro\.dng: .* JPEG XL, set the camera to lossless JPEG"
         ) as refused:

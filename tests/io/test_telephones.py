@@ -13,7 +13,7 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.core import gamut
 from hdrlab.core.colour import decode_srgb, encode_srgb
-from hdrlab.io.decode import look
+from hdrlab.io.decode import read_header
 from hdrlab.io.photos import read_bracket, read_photo, write_picture
 from hdrlab.radiance.merge import merge
 
@@ -79,7 +79,10 @@ def profile(primaries, gamma=None):
 @pytest.mark.parametrize("suffix", ["webp", "avif", "heic", "jfif", "JPG", "HEIC", "WebP"])
 def test_each_format_of_a_telephone_is_read_with_its_exposure(tmp_path, suffix):
     path = save(tmp_path / f"x.{suffix}")
-    assert look(path).exposure == pytest.approx((0.25, 2, 80)) and look(path).shape == RGB.shape
+    assert (
+        read_header(path).exposure == pytest.approx((0.25, 2, 80))
+        and read_header(path).shape == RGB.shape
+    )
     assert np.abs(read_photo(path).astype(int) - RGB).mean() < 2
     with Image.open(path) as image:
         assert np.abs(read_photo(path).astype(int) - np.asarray(image)).max() <= 1
@@ -93,7 +96,7 @@ def test_exif_orientation_of_a_new_format_is_applied(tmp_path, suffix, orientati
         ..., ::-1
     ]
     read = read_photo(path)
-    assert read.shape == look(path).shape == upright.shape
+    assert read.shape == read_header(path).shape == upright.shape
     assert np.abs(read.astype(int) - upright).mean() < 3
 
 
@@ -113,7 +116,7 @@ def test_a_heic_stands_upright_by_its_own_turn_and_not_twice(tmp_path):
 @pytest.mark.parametrize("kind", ["HEIF", "WEBP", "AVIF", "PNG", "JPEG"])
 def test_a_file_is_what_its_bytes_say_whatever_its_name(tmp_path, named, kind):
     path = save(tmp_path / named, format=kind)
-    assert look(path).kind == kind
+    assert read_header(path).kind == kind
     assert np.abs(read_photo(path).astype(int) - RGB).mean() < 2
 
 
@@ -170,7 +173,7 @@ def test_an_alpha_channel_that_is_opaque_is_no_hindrance(tmp_path, deep):
     )
     (tmp_path / "gray.png").write_bytes(imagecodecs.png_encode(np.dstack([image[..., :1], alpha])))
     for name in "x.png", "x.tif":
-        assert look(tmp_path / name).shape == RGB.shape and np.array_equal(
+        assert read_header(tmp_path / name).shape == RGB.shape and np.array_equal(
             read_photo(tmp_path / name), image
         )
     assert np.array_equal(read_photo(tmp_path / "gray.png"), image[..., 0])
@@ -271,6 +274,6 @@ def test_without_pillow_heif_an_error_says_what_to_install(tmp_path, monkeypatch
 
 def test_a_picture_written_here_has_no_profile_and_stays_as_it_is(tmp_path):
     write_picture(tmp_path / "x.png", RGB)
-    assert look(tmp_path / "x.png").icc == b"" and np.array_equal(
+    assert read_header(tmp_path / "x.png").icc == b"" and np.array_equal(
         read_photo(tmp_path / "x.png"), RGB
     )

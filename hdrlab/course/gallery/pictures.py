@@ -39,7 +39,7 @@ def prepare(path: str | Path) -> Prepared:
         raise InputError(f"{path.name}: expected a picture, this is no plain file")
     if (size := path.stat().st_size) > MOST_BYTES:
         raise InputError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
-    header = decode.look(path)
+    header = decode.read_header(path)
     if header.kind not in ("JPEG", "PNG", "TIFF"):
         raise InputError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:

@@ -102,7 +102,7 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
     """Return the photographs from the shortest exposure to the longest, one in memory at a time."""
     frames = []
     for path in paths:
-        header = decode.look(path)
+        header = decode.read_header(path)
         small = figures.fit(to_256(photos.read_photo(path)), 400)
         time = header.exposure.seconds
         alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")

@@ -176,7 +176,7 @@ def check_photographs(project: Project) -> PartReview:
     for path in project.photographs:
         name = project.name(path)
         try:
-            header = decode.look(path)
+            header = decode.read_header(path)
         except InputError as error:
             problems.append(f"{error}.".replace(f"{project.folder}{os.sep}", ""))
             continue
@@ -205,7 +205,7 @@ def check_artifact(project: Project) -> PartReview:
     if project.artifact is None:
         problem = "There is no artifact. Save your best tone-mapped image as artifact.jpg."
         return PartReview(problems=(problem,))
-    height, width = decode.look(project.artifact).shape[:2]
+    height, width = decode.read_header(project.artifact).shape[:2]
     return PartReview(f"{project.name(project.artifact)}, {width} x {height}")
 
 

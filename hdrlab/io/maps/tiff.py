@@ -37,12 +37,11 @@ def read(path: str | Path) -> arrays.F32:
     >>> read(file).tolist()
     [[0.25, 1000000.0]]
     """
-    header = decode.look(path, light=True)
+    header = decode.read_header(path, samples="floating")
     E = np.empty(header.shape, header.dtype)
-    decode.decode(header, E)
-    with np.errstate(
-        over="ignore"
-    ):  # what is too large for 32 bits becomes infinite, and is told as such
+    decode.decode_photo(header, E)
+    # What is too large for 32 bits becomes infinite, which `read_radiance` refuses.
+    with np.errstate(over="ignore"):
         return E.astype(np.float32, copy=False)
 
 
@@ -65,12 +64,14 @@ def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "light.tif"
     >>> write(file, np.full((2, 3, 3), 0.5), comments=["unit: cd/m2"])
-    >>> read(file).shape, decode.look(file, light=True).comments
+    >>> read(file).shape, decode.read_header(file, samples="floating").comments
     ((2, 3, 3), ['unit: cd/m2'])
     """
-    E, text = arrays.as_radiance(E), "\n".join(comments).encode()
+    E = arrays.as_radiance(E)
+    description = "\n".join(comments).encode() or None
+    channels = E.shape[2] if E.ndim == 3 else 1
+    photometric = decode.PHOTOMETRIC[channels].lower()
     with files.replacing(path) as name:
-        kind = decode.KINDS[E.shape[2] if E.ndim == 3 else 1].lower()
         optional.tifffile.imwrite(
-            name, E, photometric=kind, metadata=None, description=text or None
+            name, E, photometric=photometric, metadata=None, description=description
         )

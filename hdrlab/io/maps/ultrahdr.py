@@ -22,7 +22,7 @@ from hdrlab.core import colour, gainmap
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radiance, describe
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, web
-from hdrlab.io.codecs import DECODERS, jpeg_end
+from hdrlab.io.codecs import decode_jpeg, jpeg_end
 from hdrlab.io.photos import PICTURES, read_photo
 
 # What the segments of a JPEG begin with: binary metadata, XMP, and the index.
@@ -106,7 +106,7 @@ def read(path: str | Path) -> F32:
     >>> read(file).round(2)[0, 0].tolist()
     [0.5, 0.5, 0.5]
     """
-    header = decode.look(path)
+    header = decode.read_header(path)
     sdr = colour.decode_srgb(read_photo(path) / np.float32(255))
     try:
         second_jpeg = _find_gain_map_jpeg(Path(path).read_bytes())
@@ -160,7 +160,7 @@ def write_picture(
     if not 1 < headroom <= MAX_HEADROOM:
         raise InputError(f"expected a headroom of 1 to {MAX_HEADROOM}, got {headroom}")
     # The gains lead from the picture as it is decoded, with what JPEG has changed in it.
-    decoded_picture = DECODERS["JPEG"](_encode_jpeg(picture, encoding), None)
+    decoded_picture = decode_jpeg(_encode_jpeg(picture, encoding))
     sdr = colour.decode_srgb(decoded_picture / np.float32(255))
     hdr = gainmap.expose(E, sdr, headroom)
     low, high = gainmap.find_range(gainmap.log_gain(sdr, hdr))
@@ -305,7 +305,7 @@ def _xmp_numbers(jpeg: bytes, name: str, default: float) -> list[float]:
     return [float(number) for number in text.split()] or [default]
 
 
-def _decode_gain_map(header: decode.Header, jpeg: bytes) -> F32:
+def _decode_gain_map(header: decode.PhotoHeader, jpeg: bytes) -> F32:
     """Return the values of the gain map, upright, with the size and channels of the picture."""
     height, width = header.shape[:2]
     if header.orientation > 4:
