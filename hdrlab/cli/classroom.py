@@ -182,14 +182,16 @@ def run_jobs(
 def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Submission]") -> None:
     """Write similar.html, which compares all submissions of the class, old and new."""
     try:
-        from hdrlab.course.overlap import alike
+        from hdrlab.course.similarity import report
     except ImportError as error:
         common.echo_notes([f'similar.html needs {error.name}: pip install "hdrlab[class]"'])
         return
-    if len(submissions) > alike.MOST:
-        common.echo_notes([f"no similar.html: it compares at most {alike.MOST:,} submissions"])
+    if len(submissions) > report.MAX_SUBMISSIONS:
+        common.echo_notes(
+            [f"no similar.html: it compares at most {report.MAX_SUBMISSIONS:,} submissions"]
+        )
         return
-    steps = alike.write_steps(out, course.homework, submissions, course.conditions.secret)
+    steps = report.write_steps(out, course.homework, submissions, course.conditions.secret)
     for _ in common.progress(steps, "comparing", len(submissions)):
         pass
 

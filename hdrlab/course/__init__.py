@@ -9,7 +9,7 @@ reports                 what it is worth, for the student and for other systems
 material                notebooks and handouts, made of the prose and of the library's own functions
 code                    Python that is read as text, and never run
 classroom, archives     a whole class is graded, and what it sends is opened
-overlap                 what the works of a class have in common
+similarity              compares the code of all submissions of a class
 projects, gallery       the students' own photographs, and the vote
 export, site            other systems' forms of the course, and its pages
 wording                 words of strangers, safe to be shown

@@ -18,9 +18,9 @@ from hdrlab.course.classroom import roster
 from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.export import autograder
 from hdrlab.course.material import handouts, materials, solutions
-from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import csv_tables
+from hdrlab.course.similarity import comparison, report, student_code
 
 pytestmark = pytest.mark.grading
 
@@ -508,7 +508,7 @@ def written(folder, texts, course):
     for team, text in texts.items():
         (folder / f"{team}.py").write_text(text)
         handins[team] = Submission(team, (team,), folder / f"{team}.py", NOW, "digest")
-    list(alike.write_steps(folder, homework, handins, SECRET))
+    list(report.write_steps(folder, homework, handins, SECRET))
     return (folder / "similar.html").read_text(), csv_tables.read_csv(folder / "similar.csv")
 
 
@@ -542,5 +542,5 @@ def test_the_solution_of_any_variant_counts_as_the_librarys_and_for_no_pair(cour
     homework = HOMEWORK["shift"]._replace(tasks=(task,))
     for variant in rewording.every("shift"):
         text = misconceptions.solutions((task._replace(variant=variant),))["shift"]
-        prints = similarity.fingerprint(authored.own(text, "hw1", ()))
-        assert prints.hashes <= similarity.fingerprint(alike.library(homework)).hashes
+        prints = comparison.fingerprint(student_code.own_code(text, "hw1", ()))
+        assert prints.hashes <= comparison.fingerprint(report.library_code(homework)).hashes

@@ -1,1 +1,0 @@
-"""What the works of a class have in common, for instructors' eyes."""

@@ -1,0 +1,1 @@
+"""Compare the code of all submissions of a class, for instructors."""
