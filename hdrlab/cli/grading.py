@@ -256,19 +256,25 @@ def regrade(
     graded_class = classroom.load_graded_class(results, run_options, homework)
     course = graded_class.course
     all_jobs = graded_class.jobs
-    requested = regrading.requests(requests, course.roster)
+    requested = regrading.read_requests(requests, course.roster)
     listed = {course.roster.find_team(name) for name in only} | set(requested)
     with temporary_folder(), grading_jobs.lock_folder(results):
         _, changed = grading_jobs.split_finished(results / "results", all_jobs)
         new_results = classroom.run_jobs(graded_class, changed, results / "regrade")
         common.echo_warnings(classroom.describe_failures(new_results))
-        moves = regrading.moves(results, all_jobs, policy, listed, requested)
-        click.echo(regrading.text(moves))
-        click.echo(regrading.write(results, moves, course.homework.points, policy))
+        changes = regrading.find_score_changes(
+            results, all_jobs, policy=policy, listed=listed, requests=requested
+        )
+        click.echo(regrading.changes_text(changes))
+        max_score = course.homework.points
+        click.echo(regrading.write_changes_page(results, changes, max_score, policy))
         if is_applied:
             now = datetime.now(UTC).isoformat(timespec="seconds")
             secret = course.conditions.secret
-            regrading.apply(results, moves, all_jobs, secret, policy=policy, why=why, when=now)
+            notes = regrading.apply_changes(
+                results, changes, all_jobs, secret, policy=policy, why=why, when=now
+            )
+            common.echo_warnings(notes)
             for result in grading_jobs.split_finished(results / "results", all_jobs)[0]:
                 run.write_feedback(results, result)
             page, _ = classroom.write_books(graded_class)

@@ -167,13 +167,12 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
 def test_a_table_is_read_up_to_its_bound(tmp_path):
     (tmp_path / "a.csv").write_bytes(b" A ,b\n1\n\n 2 ,3\n")
     size = (tmp_path / "a.csv").stat().st_size
-    assert csv_tables.read_csv(tmp_path / "a.csv", most=size) == [
+    assert csv_tables.read_csv(tmp_path / "a.csv", max_bytes=size) == [
         {"a": "1", "b": ""},
         {"a": "2", "b": "3"},
     ]
     with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
-        csv_tables.read_csv(tmp_path / "a.csv", most=size - 1)
-    assert csv_tables.read_csv.__kwdefaults__ == {"most": 5_000_000}
+        csv_tables.read_csv(tmp_path / "a.csv", max_bytes=size - 1)
 
 
 def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):

@@ -126,7 +126,7 @@ def read(paths: Sequence[Path]) -> list[LateRecord]:
     """Return what gradebooks of earlier homeworks tell, in the order of the files."""
     handed = []
     for path in paths:
-        for row in csv_tables.read_csv(path, most=LARGE):
+        for row in csv_tables.read_csv(path, max_bytes=LARGE):
             try:
                 if row["received"] and not row["note"].startswith(NOT_GRADED):
                     student = (row["student"].removeprefix("'"),)

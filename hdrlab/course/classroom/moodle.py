@@ -48,7 +48,7 @@ def write(
         homework.
     """
     listed, both = (
-        csv_tables.read_csv(worksheet, most=1 << 27),
+        csv_tables.read_csv(worksheet, max_bytes=1 << 27),
         zip(rows, roster.students, strict=True),
     )
     known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}

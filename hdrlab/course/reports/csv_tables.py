@@ -1,8 +1,8 @@
-"""Tables for a spreadsheet: CSV whose cells are text, whatever a student put into a name or a title.
+"""Read and write CSV tables that are safe to open in a spreadsheet.
 
-A spreadsheet takes a cell that begins with =, +, - or @ for a formula and runs it when the file is
-opened. Such a cell is written with an apostrophe before it, which spreadsheets show as the text
-that follows. Numbers, negative ones too, stay numbers.
+A spreadsheet takes a cell that starts with =, +, - or @ for a formula and runs it when the file is
+opened. Text from students may start so. Such a cell is written with an apostrophe before it, which
+spreadsheets hide. Numbers, including negative ones, stay numbers.
 """
 
 import csv
@@ -16,33 +16,46 @@ from hdrlab.errors import InputError
 from hdrlab.io.files import write
 
 Cell = str | int | float | None
-FORMULA = re.compile(
-    r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]"
-)  # the wide forms are taken for the narrow ones
+MAX_TABLE_BYTES = 5_000_000
+# The last four are full-width forms, which spreadsheets take for the usual ones.
+FORMULA = re.compile(r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]")
 NUMBER = re.compile(r"^[+-]?\d+(\.\d+)?([eE][+-]?\d+)?$", re.ASCII)
-CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
+CONTROL_CHARACTERS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
+ESCAPE = "'"
 
 
-def safe(cell: Cell) -> str:
-    r"""Return a cell as text on one line that no spreadsheet takes for a formula.
+def escape_cell(cell: Cell) -> str:
+    r"""Return a cell as one line of text that no spreadsheet takes for a formula.
 
     Examples
     --------
-    >>> safe('=HYPERLINK("http://a")'), safe("-2"), safe(-2), safe(None)
+    >>> escape_cell('=HYPERLINK("http://a")'), escape_cell("-2"), escape_cell(-2), escape_cell(None)
     ('\'=HYPERLINK("http://a")', '-2', '-2', '')
     """
     if cell is None:
         return ""
-    text = CONTROLS.sub(" ", str(cell)).strip()
-    return "'" + text if FORMULA.match(text) and not NUMBER.match(text) else text
+    text = CONTROL_CHARACTERS.sub(" ", str(cell)).strip()
+    is_formula = FORMULA.match(text) and not NUMBER.match(text)
+    return ESCAPE + text if is_formula else text
+
+
+def unescape_cell(text: str) -> str:
+    """Return the text of a cell that `escape_cell` wrote.
+
+    Examples
+    --------
+    >>> unescape_cell("'=b2"), unescape_cell("b2")
+    ('=b2', 'b2')
+    """
+    return text.removeprefix(ESCAPE)
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table as CSV, with lines that end as RFC 4180 says."""
+    """Return a table as CSV, with the line ends of RFC 4180."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\r\n")
-    writer.writerow([safe(one) for one in header])
-    writer.writerows([safe(one) for one in row] for row in rows)
+    for row in [header, *rows]:
+        writer.writerow([escape_cell(cell) for cell in row])
     return file.getvalue()
 
 
@@ -53,39 +66,44 @@ def write_csv(
     *,
     private: bool = False,
 ) -> Path:
-    """Write a table whole or not at all, in UTF-8 with the mark that spreadsheets ask for.
+    """Write a table completely or not at all, in UTF-8 with the byte order mark of spreadsheets.
 
-    A private one is for its owner's eyes from the first byte on: links that vote, grades.
+    With `private`, only the owner of the file can read it, from the first byte on. Use it for
+    grades and for links that allow voting.
     """
     return write(path, csv_text(header, rows).encode("utf-8-sig"), private=private)
 
 
-def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]:
-    """Return the rows of a CSV file by the names of its header, in lower case; empty lines are left out.
+def read_csv(path: str | Path, *, max_bytes: int = MAX_TABLE_BYTES) -> list[dict[str, str]]:
+    """Read the rows of a CSV file, each by the lower-case names of its header.
+
+    Empty lines are left out.
 
     Raises
     ------
-    ValueError
-        For a file that is larger than `most` bytes, is not UTF-8, or has a row longer than its
+    InputError
+        For a file of more than `max_bytes`, that is not UTF-8, or with a row longer than its
         header.
     """
     path = Path(path)
-    if path.stat().st_size > most:
-        raise InputError(
-            f"{path}: expected a table of at most {most} bytes, got {path.stat().st_size}"
-        )
+    size = path.stat().st_size
+    if size > max_bytes:
+        raise InputError(f"{path}: expected a table of at most {max_bytes} bytes, got {size}")
     try:
         text = path.read_text(encoding="utf-8-sig")
-        lines = [
-            line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)
-        ]
+        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: expected a table in UTF-8 ({error})") from None
-    if not lines:
-        raise InputError(f"{path}: expected a header and rows, it is empty")
-    header = [name.strip().lower() for name in lines[0]]
-    if (longest := max(map(len, lines))) > len(header):
+    if not rows:
+        raise InputError(f"{path}: expected a header and rows, but it is empty")
+    header = [name.strip().lower() for name in rows[0]]
+    max_cells = max(len(row) for row in rows)
+    if max_cells > len(header):
         raise InputError(
-            f"{path}: expected {len(header)} cells a row, as in its header, got {longest}"
+            f"{path}: expected {len(header)} cells in each row, as in its header, got {max_cells}"
         )
-    return [dict(zip_longest(header, map(str.strip, line), fillvalue="")) for line in lines[1:]]
+    table = []
+    for row in rows[1:]:
+        cells = [cell.strip() for cell in row]
+        table.append(dict(zip_longest(header, cells, fillvalue="")))
+    return table
