@@ -56,7 +56,7 @@ SENTENCES = {
             round(20_000 / (2**6 - 1 - 2**2), -1) == 340
         ),
         "With 8 bits it is 84": lambda n: round(20_000 / (2**8 - 1 - 2**4)) == 84,
-        "Each photograph holds nearly twelve stops": lambda n: (
+        "Each photo holds nearly twelve stops": lambda n: (
             11.5 < ranges.sensor_range(n.GOOD)[1] < 12
         ),
         "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
@@ -178,7 +178,7 @@ SENTENCES = {
             for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
         ),
         "Motion is far off": lambda n: radiance_off(n, "motion") > 0.1,
-        "Reading the photograph as sRGB is worse than that": lambda n: (
+        "Reading the photo as sRGB is worse than that": lambda n: (
             radiance_off(n, "sRGB") > radiance_off(n, "motion")
         ),
     },
@@ -214,7 +214,7 @@ SENTENCES = {
         ),
     },
     "10": {
-        "Fifteen. The last photograph reaches twelve stops further down than the first": lambda n: (
+        "Fifteen. The last photo reaches twelve stops further down than the first": lambda n: (
             round(float(np.log2(n.light.max() / n.light.min()))) == 15
             and round(float(np.log2(n.inside.times.max() / n.inside.times.min()))) == 12
         ),
@@ -232,7 +232,7 @@ SENTENCES = {
     "11": {
         "A fifth of a degree": lambda n: round(float(np.abs(n.degrees).max()), 1) == 0.2,
         "the frames agree alike": lambda n: np.ptp([one.spread for one in n.both.values()]) < 0.002,
-        "the histograms of the two photographs tell nearly the same": lambda n: (
+        "the histograms of the two photos tell nearly the same": lambda n: (
             abs(n.light.exposure_ratio(n.dark, n.bright, n.g[:, 1]) / n.k0 - 1) < 0.01
         ),
     },
@@ -240,7 +240,7 @@ SENTENCES = {
         "will the error in the region shrink: two, five, or fifteen?": lambda n: (
             12 < errors_shrink(n) < 18
         ),
-        "Once, where he stood in the reference photograph": lambda n: len(n.result.references) == 1,
+        "Once, where he stood in the reference photo": lambda n: len(n.result.references) == 1,
     },
     "13": {
         "an error of one to two percent in the worst channel of half of the pixels": lambda n: (
