@@ -132,7 +132,8 @@ class Camera:
     white: ArrayLike = (1.0, 1.0, 1.0)
 
     def __post_init__(self) -> None:
-        electrons, levels = self.read_noise, self.gray_noise
+        electrons = self.read_noise
+        levels = self.gray_noise
         for valid, expected in (
             (self.bits in (8, 16), "8 or 16 bits"),
             (0 < self.sensitivity < np.inf, "a positive sensitivity"),
@@ -201,7 +202,8 @@ def shoot(
     (array([1., 2.]), array([[ 26, 128, 255],
            [ 51, 255, 255]], dtype=uint8))
     """
-    E, times = as_radiance(E), np.atleast_1d(np.asanyarray(times))
+    E = as_radiance(E)
+    times = np.atleast_1d(np.asanyarray(times))
     times = as_times(times, max(times.size, 1))
     moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
     if moves.shape[:1] != times.shape:
@@ -210,9 +212,11 @@ def shoot(
         raise InputError(
             f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}"
         )
-    rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")
+    rng = np.random.default_rng(rng)
+    order = np.argsort(times, kind="stable")
     light = views(E, moves[order])
-    stuck, pairs = rng.random(light[0].shape) < camera.hot, zip(light, times[order], strict=True)
+    stuck = rng.random(light[0].shape) < camera.hot
+    pairs = zip(light, times[order], strict=True)
     images = [photograph(view, time, camera, stuck, rng) for view, time in pairs]
     linear = responses.as_response(camera.response) is responses.as_response("linear")
     return bracket(np.stack(images), times[order], linear=linear)

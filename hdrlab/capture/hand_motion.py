@@ -33,7 +33,8 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     pairs = given.ndim == 2 and given.shape[1] == 2 and len(given) > 0
     if given.ndim == 3 or (pairs and given.dtype.kind == "f"):
         rows, columns = _shown(given, E.shape)
-        size, first = (rows.stop - rows.start, columns.stop - columns.start), _from((rows, columns))
+        size = (rows.stop - rows.start, columns.stop - columns.start)
+        first = _from((rows, columns))
         return [warp.sample(E, H @ first, size) for H in warp.as_homographies(given)]
     if not pairs or given.dtype.kind not in "iu":
         raise InputError(
@@ -93,7 +94,8 @@ def shake(
     >>> shake(3, (100, 150), radius=2, degrees=0, rng=1)[:, :2, 2].round(2).tolist()  # dx, dy
     [[1.8, 0.05], [0.0, 0.0], [1.15, -0.68]]
     """
-    rng, knobs = np.random.default_rng(rng), np.array([radius, degrees, zoom, tilt], float)
+    rng = np.random.default_rng(rng)
+    knobs = np.array([radius, degrees, zoom, tilt], float)
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
         raise InputError(

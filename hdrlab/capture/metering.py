@@ -79,7 +79,8 @@ def centre(
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = spot(shape, at=at, share=share) > 0
-    low, high = 0.01, 100.0
+    low = 0.01
+    high = 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
         w = _normal(np.exp(-squared / (2 * sigma**2)))
@@ -91,7 +92,8 @@ def _honeycomb(down: Array, right: Array) -> Array:
     """Hexagons: each pixel belongs to the nearest of centres in five staggered rows of six and five."""
     rows = np.repeat(np.arange(5), [6, 5, 6, 5, 6])
     columns = np.concatenate([np.arange(6), np.arange(5) + 0.5] * 2 + [np.arange(6)])
-    tall, wide = down[..., None] - (rows / 5 - 0.4), right[..., None] - ((columns + 0.5) / 6 - 0.5)
+    tall = down[..., None] - (rows / 5 - 0.4)
+    wide = right[..., None] - ((columns + 0.5) / 6 - 0.5)
     return np.argmin((2 * tall) ** 2 + (3 * wide) ** 2, axis=-1)
 
 
@@ -150,7 +152,8 @@ def _blind(mode: str, shape: tuple[int, int], at: At) -> F64:
 
 def reading(B: ArrayLike, w: ArrayLike) -> float:
     """Return B_pre = sum w B / sum w."""
-    B, w = as_luminance(B), np.asarray(w, np.float64)
+    B = as_luminance(B)
+    w = np.asarray(w, np.float64)
     if w.shape != B.shape or not np.all(w >= 0) or not w.sum() > 0:
         raise InputError(
             f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}"
@@ -180,7 +183,8 @@ def correction(B: ArrayLike, w: F64, B_opt: float = MIDDLE_GRAY, *, most: float 
 
     Where nothing is full, and nothing will be, this is log2 B_opt - log2 B_pre, eq. 1.2.
     """
-    low, high = -most, most
+    low = -most
+    high = most
     for _ in range(40):
         middle = (low + high) / 2
         low, high = (middle, high) if predict_reading(B, w, middle) < B_opt else (low, middle)

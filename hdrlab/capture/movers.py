@@ -84,7 +84,8 @@ def ball(
     >>> thrown.light.shape, float(thrown.mask.max())
     ((40, 60, 3), 1.0)
     """
-    colour, middle = np.asarray(radiance, np.float32), np.asarray(centre, float)
+    colour = np.asarray(radiance, np.float32)
+    middle = np.asarray(centre, float)
     if colour.shape not in ((), (3,)) or not np.all((colour > 0) & (colour < np.inf)):
         raise InputError(f"expected one positive radiance or three, got {describe(colour)}")
     if not (0 < radius < np.inf) or middle.shape != (2,) or stripes < 0:
@@ -120,7 +121,9 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
 
 def shift_layer(layer: Array, at: ArrayLike) -> Array:
     """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
-    (h, w), (dy, dx), out = layer.shape[:2], np.asarray(at).tolist(), np.zeros_like(layer)
+    (h, w) = layer.shape[:2]
+    (dy, dx) = np.asarray(at).tolist()
+    out = np.zeros_like(layer)
     there = layer[max(-dy, 0) : max(h - dy, 0), max(-dx, 0) : max(w - dx, 0)]
     out[max(dy, 0) : max(h + dy, 0), max(dx, 0) : max(w + dx, 0)] = there
     return out
@@ -128,7 +131,8 @@ def shift_layer(layer: Array, at: ArrayLike) -> Array:
 
 def compose_moment(E: F32, figure: Figure, at: ArrayLike) -> tuple[F32, F32]:
     """Return E_j = light + (1 - mask) E with the figure at (dy, dx), and its mask there [Porter84 sec. 4]."""
-    light, mask = shift_layer(figure.light, at), shift_layer(figure.mask, at)
+    light = shift_layer(figure.light, at)
+    mask = shift_layer(figure.mask, at)
     return light + (1 - (mask if E.ndim == 2 else mask[..., None])) * E, mask
 
 
@@ -188,11 +192,11 @@ def shoot(
         raise InputError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
     if model.hot:
         raise InputError("expected no hot pixels: here each photograph would have others")
-    rng, still = (
-        np.random.default_rng(rng),
-        views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))],
-    )
-    moments, masks, shots = [], [], []
+    rng = np.random.default_rng(rng)
+    still = views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
+    moments = []
+    masks = []
+    shots = []
     for j in np.argsort(seconds, kind="stable"):
         E_j, mask = (views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
         shots.append(camera.shoot(E_j, seconds[j], model, rng=rng))
@@ -201,10 +205,8 @@ def shoot(
     images, taken = (
         np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times")
     )
-    order, taken_in_order = (
-        short_to_long(images, taken),
-        bracket(images, taken, linear=shots[0].linear),
-    )
+    order = short_to_long(images, taken)
+    taken_in_order = bracket(images, taken, linear=shots[0].linear)
     return Moving(taken_in_order, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
 
 

@@ -110,7 +110,8 @@ def calibrate(Z: ArrayLike) -> Transfer:
             f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}"
         )
     mean = Z.mean(axis=(1, 2, 3))
-    S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
+    S = mean - mean[0]
+    V = np.array([variance(pair) for pair in Z])
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
         got = S.round(1).tolist()

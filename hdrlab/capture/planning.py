@@ -147,7 +147,8 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     >>> around(1 / 60, exposure.shutter_series().values, 3, 2.0).tolist()
     [13, 11, 9]
     """
-    known, wanted = np.log2(times), np.log2(middle) + stops * (np.arange(frames) - (frames - 1) / 2)
+    known = np.log2(times)
+    wanted = np.log2(middle) + stops * (np.arange(frames) - (frames - 1) / 2)
     wanted += max(known.min() - wanted[0], 0) + min(known.max() - wanted[-1], 0)
     chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
     if len(set(chosen)) < frames:
@@ -173,7 +174,8 @@ def settings(L_low: float, L_high: float, snr: float, camera: Model) -> tuple[F6
     fills = np.array(
         [exposure.saturating_luminance(1, F=camera.aperture, S=one) for one in camera.speeds]
     )
-    first, last = fills.min() / L_high * min(snr**2 / camera.full_well, 1), fills.max() / L_low
+    first = fills.min() / L_high * min(snr**2 / camera.full_well, 1)
+    last = fills.max() / L_low
     stops = np.arange(np.floor(np.log2(first)), np.ceil(np.log2(last)) + 1)
     t, S = np.meshgrid(2.0**stops, camera.speeds, indexing="ij")
     return t.ravel(), S.ravel()
@@ -232,7 +234,9 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
         )
     t, S = settings(L_low, L_high, snr, camera)
     A = np.minimum(squared_snr(hardest(L_low, L_high, t, S, camera), t, S, camera) / snr**2, 1)
-    enough, whole, some = LinearConstraint(A, 1), np.ones(t.size), Bounds(0, MOST)
+    enough = LinearConstraint(A, 1)
+    whole = np.ones(t.size)
+    some = Bounds(0, MOST)
     with silence(1):  # HiGHS speaks of its own rounding
         found = milp(
             t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH}

@@ -87,7 +87,8 @@ def expose_levels(
     ValueError
         For luminances, a time or a sensor that mean nothing.
     """
-    L, sensor = np.asarray(L, np.float64), as_sensor(sensor)
+    L = np.asarray(L, np.float64)
+    sensor = as_sensor(sensor)
     if not np.all((L >= 0) & np.isfinite(L)) or not (
         0 < time < np.inf and 0 < sensitivity < np.inf
     ):
@@ -96,7 +97,8 @@ def expose_levels(
         )
     X = sensitivity * time * L
     N = np.minimum(sensor.full_well * X, full_electrons(sensor))
-    Z, ratio = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black, snr(X, sensor)
+    Z = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black
+    ratio = snr(X, sensor)
     return ExposedLevels(Z, ratio, sensor.full_well * X >= full_electrons(sensor), ratio < 1)
 
 

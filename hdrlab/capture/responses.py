@@ -55,11 +55,13 @@ def bisect(f: Curve) -> Curve:
     """Return the inverse of a rising f, found by halving [0, 1] until it is exact in float64."""
 
     def inverse(M: Array) -> Array:
-        low, high = np.zeros(np.shape(M)), np.ones(np.shape(M))
+        low = np.zeros(np.shape(M))
+        high = np.ones(np.shape(M))
         for _ in range(60):
             middle = (low + high) / 2
             below = f(middle) < M
-            low, high = np.where(below, middle, low), np.where(below, high, middle)
+            low = np.where(below, middle, low)
+            high = np.where(below, high, middle)
         return high
 
     return inverse

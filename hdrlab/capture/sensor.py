@@ -145,7 +145,8 @@ def raw(
     >>> raw(np.full((1, 3), [0.0, 0.5, 2.0]), 1.0, Sensor(read_noise=0))[0, [0, 2]]
     array([  64, 4064], dtype=uint16)
     """
-    E, sensor = as_radiance(E), as_sensor(sensor)
+    E = as_radiance(E)
+    sensor = as_sensor(sensor)
     if not (0 <= time < np.inf and 0 < sensitivity < np.inf and 0 <= vignetting <= 1):
         got = f"{time} s, {sensitivity} and {vignetting}"
         raise InputError(
@@ -185,7 +186,9 @@ def develop(
     >>> develop(np.uint16([[64, 2064, 4064]]), Sensor(full_well=20_000, gain=5, black=64)).tolist()
     [[0.0, 0.5, 1.0]]
     """
-    Z, gains, sensor = np.asarray(Z), np.asarray(white, np.float64), as_sensor(sensor)
+    Z = np.asarray(Z)
+    gains = np.asarray(white, np.float64)
+    sensor = as_sensor(sensor)
     if Z.dtype != np.uint16 or Z.ndim not in (2, 3) or Z.size == 0 or (bayer and Z.ndim == 3):
         raise InputError(f"expected RAW levels uint16, (H, W) of a mosaic, got {describe(Z)}")
     if gains.shape != (3,) or not np.all((gains > 0) & np.isfinite(gains)):

@@ -129,7 +129,8 @@ def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
 
 def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
-    Z, why = np.asarray(picture), hidden(picture)
+    Z = np.asarray(picture)
+    why = hidden(picture)
     if why or Z.dtype != np.uint8 or Z.ndim < 2 or Z.shape[2:] not in ((), (3,)) or not Z.size:
         raise InputError(
             f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}"
@@ -200,6 +201,7 @@ def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
         )
     if len(array) == n:
         return array
-    at, own = np.linspace(0, 1, n), np.linspace(0, 1, len(array))
+    at = np.linspace(0, 1, n)
+    own = np.linspace(0, 1, len(array))
     columns = [np.interp(at, own, column) for column in array.reshape(len(array), -1).T]
     return np.stack(columns, axis=-1).reshape(n, *array.shape[1:])

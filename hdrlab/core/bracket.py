@@ -61,9 +61,12 @@ def bracket(
     )
     if len(names) != len(images):
         raise InputError(f"expected {len(images)} names, one per image, got {len(names)}")
-    mask, order = as_mask(valid, images), short_to_long(images, times)
+    mask = as_mask(valid, images)
+    order = short_to_long(images, times)
     if np.any(order != np.arange(len(order))):
-        images, times, names = images[order], times[order], tuple(names[j] for j in order)
+        images = images[order]
+        times = times[order]
+        names = tuple(names[j] for j in order)
         mask = mask[order] if mask is not None else None
     return Bracket(images, times, names, mask, linear)
 

@@ -145,7 +145,8 @@ def _ratio(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
 
 
 def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
-    dark, s = L < DARK, np.float32(saturation)
+    dark = L < DARK
+    s = np.float32(saturation)
     scale = s * Ld / np.maximum(L, DARK)
     gray = (1 - s) * Ld
     if dark.any():
@@ -163,7 +164,9 @@ def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
 def _pale(C: F32, M: F32, Ld: F32) -> F32:
     """Return colours (N, 3) whose largest channel M, (N, 1) like Ld, no longer exceeds 1."""
     fit = _power(np.maximum(M, 1), -0.85)
-    C, M, Ld = C * fit, M * fit, Ld * fit
+    C = C * fit
+    M = M * fit
+    Ld = Ld * fit
     full = np.minimum(
         (M - Ld) / np.maximum(1 - Ld, DARK), 1000
     )  # of the room between the luminance and 1
@@ -188,7 +191,9 @@ def _codes(display: F32) -> Array:
 def _as_fitting(
     E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float
 ) -> tuple[F32, F32, F32]:
-    E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
+    E = as_radiance(E)
+    L = as_luminance(L)
+    Ld = as_luminance(Ld)
     if not E.shape[:2] == L.shape == Ld.shape:
         raise InputError(
             f"expected L and Ld of shape {E.shape[:2]}, got {describe(L)} and {describe(Ld)}"

@@ -96,7 +96,8 @@ def apply_gain(
 
 def expose(E: F32, sdr: Array, headroom: float) -> F32:
     """Return hdr = min(s E, headroom), where s gives the light the log average of the picture's."""
-    L, Ld = luminance(E), luminance(sdr)
+    L = luminance(E)
+    Ld = luminance(sdr)
     lit = (L > 0) & (Ld > 0)
     s = np.exp(np.mean(np.log(Ld[lit] / L[lit]))) if lit.any() else 1.0
     return np.minimum(np.float32(s) * E, np.float32(headroom))

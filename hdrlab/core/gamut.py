@@ -122,7 +122,8 @@ def desaturate(E: F32, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> F32
     """
     planes = E.reshape(*E.shape[:2], -1)
     below = planes.min(axis=-1) < 0
-    lost, repaired = planes[below].astype(np.float64), planes.copy()
+    lost = planes[below].astype(np.float64)
+    repaired = planes.copy()
     w = np.asarray(weights, np.float64) if planes.shape[2] == 3 else np.ones(1)
     L = np.maximum(lost @ w, np.maximum(lost, 0) @ np.maximum(w, 0) / 2)
     t = (L / (L - lost.min(axis=-1))) ** power
@@ -139,7 +140,8 @@ def xyz_matrix(primaries: Sequence[float]) -> F64:
 
 def conversion_matrix(primaries: Sequence[float], target: Sequence[float] = SRGB) -> F64:
     """Return the matrix from linear RGB of these primaries to that of others, white to white (Bradford)."""
-    source, sink = xyz_matrix(primaries), xyz_matrix(target)
+    source = xyz_matrix(primaries)
+    sink = xyz_matrix(target)
     scale = (BRADFORD @ sink.sum(axis=1)) / (BRADFORD @ source.sum(axis=1))
     return np.linalg.inv(sink) @ np.linalg.inv(BRADFORD) @ np.diag(scale) @ BRADFORD @ source
 

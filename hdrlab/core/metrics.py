@@ -18,7 +18,8 @@ from hdrlab.core.arrays import F64, Array, ArrayLike, NDArray
 from hdrlab.errors import InputError
 
 # Of 256 levels: noise dominates below, the cut of the weights above.
-LOW_LEVEL, HIGH_LEVEL = 10, 250
+LOW_LEVEL = 10
+HIGH_LEVEL = 250
 RELIABLE_LEVELS = slice(LOW_LEVEL, HIGH_LEVEL + 1)
 
 
@@ -97,7 +98,8 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     >>> radiance_errors([[10.0, 20.0, 44.0]], truth, truth > 0).round(3)
     array([[0. , 0. , 0.1]])
     """
-    E, truth = arrays.as_radiance(E).astype(np.float64), arrays.as_radiance(truth)
+    E = arrays.as_radiance(E).astype(np.float64)
+    truth = arrays.as_radiance(truth)
     well = np.asarray(well)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
         raise InputError(
@@ -114,7 +116,8 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
 
 def offset_errors(found: ArrayLike, truth: ArrayLike) -> NDArray[np.int64]:
     """Return found - truth (P, 2) in pixels, less the shift that most frames share: the whole map's."""
-    found, truth = np.asarray(found, np.int64), np.asarray(truth, np.int64)
+    found = np.asarray(found, np.int64)
+    truth = np.asarray(truth, np.int64)
     if found.shape != truth.shape or found.ndim != 2 or found.shape[1] != 2:
         raise InputError(
             f"expected offsets (P, 2) twice, got {arrays.describe(found)} and {arrays.describe(truth)}"

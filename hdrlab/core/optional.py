@@ -28,7 +28,8 @@ class OptionalModule:
     """A module that is there, or says what to install when something of it is used."""
 
     def __init__(self, name: str) -> None:
-        self._name, self._root = name, name.partition(".")[0]
+        self._name = name
+        self._root = name.partition(".")[0]
 
     def __bool__(self) -> bool:
         return find_spec(self._root) is not None

@@ -51,5 +51,6 @@ def statistics(picture: ArrayLike) -> Statistics:
     channels = picture.reshape(*picture.shape[:2], -1)
     p = np.bincount(np.rint(y).astype(np.intp).ravel(), minlength=256) / y.size
     bits = -np.sum(p[p > 0] * np.log2(p[p > 0])) + 0.0  # of a constant 0, and not -0
-    black, white = np.all(channels == 0, axis=-1), np.any(channels == 255, axis=-1)
+    black = np.all(channels == 0, axis=-1)
+    white = np.any(channels == 255, axis=-1)
     return Statistics(*map(float, (black.mean(), white.mean(), y.mean(), y.std(), bits)))

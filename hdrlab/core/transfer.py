@@ -28,7 +28,8 @@ def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:
     pixels = stack.reshape(len(stack), -1, stack[0, 0, 0].size)
     if mask is not None:
         pixels = pixels[:, mask.all(axis=0).ravel()]
-    n, channels = levels(stack), np.moveaxis(pixels, -1, 0)
+    n = levels(stack)
+    channels = np.moveaxis(pixels, -1, 0)
     return np.array([[np.bincount(Z, minlength=n) for Z in frames] for frames in channels])
 
 
@@ -52,8 +53,10 @@ def brightness_transfer(h_A: ArrayLike, h_B: ArrayLike) -> F64:
     2.0
     """
     n = len(np.asarray(h_A))
-    H_A, H_B = cumulate(h_A, n), cumulate(h_B, n)
-    middle, edges = (H_A[1:] + H_A[:-1]) / 2, np.arange(n + 1) - 0.5
+    H_A = cumulate(h_A, n)
+    H_B = cumulate(h_B, n)
+    middle = (H_A[1:] + H_A[:-1]) / 2
+    edges = np.arange(n + 1) - 0.5
     T = np.interp(middle, H_B, edges)
     return np.where((middle > 0) & (middle < 1) & (T > edges[1]) & (T <= edges[-2]), T, np.nan)
 
@@ -61,6 +64,7 @@ def brightness_transfer(h_A: ArrayLike, h_B: ArrayLike) -> F64:
 def literal_transfer(h_A: ArrayLike, h_B: ArrayLike) -> F64:
     """Return T(m), where H_B reaches H_A(m), on lines between B's levels."""
     n = len(np.asarray(h_A))
-    H_A, H_B = cumulate(h_A, n), cumulate(h_B, n)
+    H_A = cumulate(h_A, n)
+    H_B = cumulate(h_B, n)
     occupied = np.flatnonzero(np.diff(H_B))
     return np.interp(H_A[1:], H_B[1:][occupied], occupied)

@@ -71,7 +71,8 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
             "expected a response that rises, got one that ends where it began, or below"
         )
     z = np.arange(len(g))
-    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    low = np.maximum(z - span, 0)
+    high = np.minimum(z + span, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
     w = f / np.maximum(slope, least)
     w[[0, -1]] = 0
@@ -98,5 +99,6 @@ def make_monotone(g: F64) -> F64:
     [-2.0, -2.0, 0.0, 2.0, 2.0]
     """
     m = len(g) // 2
-    up, down = np.maximum.accumulate(g[m:], axis=0), np.minimum.accumulate(g[m::-1], axis=0)
+    up = np.maximum.accumulate(g[m:], axis=0)
+    down = np.minimum.accumulate(g[m::-1], axis=0)
     return np.concatenate([down[::-1], up[1:]])

@@ -106,10 +106,8 @@ def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -
     ValueError
         For curves that do not rise from 0 to 1.
     """
-    X, M = (
-        np.atleast_2d(np.asarray(exposure, np.float64)),
-        np.atleast_2d(np.asarray(brightness, np.float64)),
-    )
+    X = np.atleast_2d(np.asarray(exposure, np.float64))
+    M = np.atleast_2d(np.asarray(brightness, np.float64))
     if X.shape != M.shape or not np.all(np.isfinite([X, M])):
         raise InputError(
             f"expected exposure and brightness (C, m), finite, got {describe(X)}, {describe(M)}"

@@ -71,7 +71,8 @@ def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
     f^-1(m) = rho f^-1(x), differentiated: the slope at m times dm is (rho b_n(x) - b_n(m)) dc_n +
     rho f^-1(x) d ln rho. Clipped, m stays.
     """
-    order, P = len(c) + 1, len(tau)
+    order = len(c) + 1
+    P = len(tau)
     rho = np.exp(tau[:, None] - tau[at.at])
     X = rho * mitsunaga.value(at.x, c)
     m = polynomial.brightness(X, c)
@@ -85,8 +86,10 @@ def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
 
 def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[F64, F64, F64]:
     """Return P(z | m), and the derivatives of its logarithm by m and by ln sigma; m and z broadcast."""
-    z, m = np.asarray(z, dtype=np.intp), np.asarray(m)
-    low, high = (EDGES[z] - m) / sigma, (EDGES[z + 1] - m) / sigma
+    z = np.asarray(z, dtype=np.intp)
+    m = np.asarray(m)
+    low = (EDGES[z] - m) / sigma
+    high = (EDGES[z + 1] - m) / sigma
     bell_low, bell_high = (np.exp(-(u**2) / 2) / np.sqrt(2 * np.pi) for u in (low, high))
     P = ndtr(high) - ndtr(low) + STRAY
     tilt = bell_high * np.where(high < np.inf, high, 0) - bell_low * np.where(low > -np.inf, low, 0)

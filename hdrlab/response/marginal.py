@@ -32,7 +32,8 @@ LEAST = 2e-3
 # sigma, half a level: below it the nodes stand too far apart
 FINEST = 2e-3
 # sigma to begin with, and how many nodes
-NOISE, NODES = 0.005, 400
+NOISE = 0.005
+NODES = 400
 
 
 class State(NamedTuple):
@@ -110,7 +111,8 @@ def begin(Z: Indices, theta: F64, blur: float) -> tuple[likelihood.Nodes, likeli
     m = likelihood.predict(c, tau, at)[0]
     near = likelihood.support(Z, likelihood.table(m, blur * sigma))
     q, k, z = near.cells
-    P, p = likelihood.masses(m[q, k], sigma, z)[0], np.full(len(at.x), 1 / len(at.x))
+    P = likelihood.masses(m[q, k], sigma, z)[0]
+    p = np.full(len(at.x), 1 / len(at.x))
     for _ in range(5):
         p = likelihood.density(likelihood.posterior(P, p, near)[1], near, len(p))
     return at, near, p
@@ -132,7 +134,9 @@ def fit_steps(
     come to. Each ln R is drawn to the `stated` one (R itself by default) as to a measurement with
     error `trust`.
     """
-    Z, c, R = np.asarray(Z), np.asarray(c, dtype=np.float64), np.asarray(R, dtype=np.float64)
+    Z = np.asarray(Z)
+    c = np.asarray(c, dtype=np.float64)
+    R = np.asarray(R, dtype=np.float64)
     stated = R if stated is None else np.asarray(stated, dtype=np.float64)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
         raise InputError(

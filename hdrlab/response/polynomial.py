@@ -22,7 +22,8 @@ def slope(M: ArrayLike, c: ArrayLike) -> F64:
     >>> slope([0, 0.5, 1], []).tolist()  # of a straight line
     [1.0, 1.0, 1.0]
     """
-    M, c = np.asarray(M, np.float64), np.append(c, 0)
+    M = np.asarray(M, np.float64)
+    c = np.append(c, 0)
     T, dT = (chebval(2 * M - 1, one) for one in (c, 2 * chebder(c)))
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
 
@@ -32,7 +33,8 @@ def misfit(M: F64, R: F64 | float, c: F64) -> F64:
 
     (f^-1(M_q) - R f^-1(M_q+1)) over the square root of the sum of their squared derivatives by M.
     """
-    X, dX = value(M, c), slope(M, c)
+    X = value(M, c)
+    dX = slope(M, c)
     return (X[:, :-1] - R * X[:, 1:]) / np.maximum(np.hypot(dX[:, :-1], R * dX[:, 1:]), 1e-9)
 
 

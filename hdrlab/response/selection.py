@@ -125,7 +125,8 @@ def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 4
     """
     a, b = to_256(as_stack([A, B])).astype(np.float64)
     r = radius(a.shape[:2])
-    outer, usable = r.max(), (a > 4) & (a < 250) & (b > 4) & (b < 250)
+    outer = r.max()
+    usable = (a > 4) & (a < 250) & (b > 4) & (b < 250)
     heart = usable & (r < outer / 4)
     count = np.bincount(a[heart].astype(int), minlength=256)
     known = np.flatnonzero(count)
@@ -134,7 +135,8 @@ def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 4
     T = np.bincount(a[heart].astype(int), b[heart], 256)[known] / count[known]
     usable &= (a >= known[0]) & (a <= known[-1])
     miss = b - np.interp(a, known, T)
-    edges, off = np.linspace(outer / 4, outer, rings + 1), np.zeros(rings + 1, bool)
+    edges = np.linspace(outer / 4, outer, rings + 1)
+    off = np.zeros(rings + 1, bool)
     for i in range(rings):
         ring = miss[usable & (r >= edges[i]) & (r < edges[i + 1])]
         off[i] = len(ring) > 0 and abs(np.median(ring)) > tolerance

@@ -33,7 +33,8 @@ HIGHEST = 10
 # few
 CLIPPED = 0.1
 # of the picture, for the choice of the order: a part is every fifth stripe
-PARTS, STRIPES = 5, 20
+PARTS = 5
+STRIPES = 20
 # in brightness, a hundredth of a level: what is less is no difference
 FINEST = 0.01 / 255
 

@@ -112,7 +112,8 @@ def fit_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: fl
     >>> bool(np.abs(curve - x**0.45).max() < 0.03)
     True
     """
-    places, values = np.asarray(places, np.float64), np.asarray(values, np.float64)
+    places = np.asarray(places, np.float64)
+    values = np.asarray(values, np.float64)
     if (
         places.ndim != 1
         or places.shape != values.shape

@@ -38,9 +38,11 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     """
     v = np.asarray(v, np.float32)
     require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
-    (H, W), r = v.shape, min(int(np.ceil(3 * sigma_s)), max(v.shape))
+    (H, W) = v.shape
+    r = min(int(np.ceil(3 * sigma_s)), max(v.shape))
     padded = np.pad(v, r, constant_values=FAR)
-    total, k = np.zeros_like(v), np.zeros_like(v)
+    total = np.zeros_like(v)
+    k = np.zeros_like(v)
     for dy in range(-r, r + 1):
         for dx in range(-r, r + 1):
             q = padded[r + dy : r + dy + H, r + dx : r + dx + W]

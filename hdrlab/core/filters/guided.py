@@ -41,7 +41,8 @@ def lines(I: F64, p: F64, *, radius: int, epsilon: float) -> Lines:  # noqa: E74
 
     It is the least squares of (a I + b - p)^2 + eps a^2, summed over the window [He13 eq. 4].
     """
-    mean_I, mean_p = window_mean(I, radius), window_mean(p, radius)
+    mean_I = window_mean(I, radius)
+    mean_p = window_mean(p, radius)
     cov = window_mean(I * p, radius) - mean_I * mean_p
     var = window_mean(I * I, radius) - mean_I**2
     a = cov / (var + epsilon)

@@ -46,7 +46,8 @@ def expand(image: F32, shape: Sequence[int]) -> F32:
 
 def _expand_rows(g: F32, n: int) -> Array:
     """Return n rows: an even one is (1 6 1) / 8 of three coarse ones, an odd one the mean of two."""
-    before, after = g[..., :2, :][..., -1:, :], g[..., -1:, :]
+    before = g[..., :2, :][..., -1:, :]
+    after = g[..., -1:, :]
     g = np.concatenate([before, g, after], axis=-2)
     even = (g[..., :-2, :] + 6 * g[..., 1:-1, :] + g[..., 2:, :]) / 8
     odd = (g[..., 1:-1, :] + g[..., 2:, :]) / 2

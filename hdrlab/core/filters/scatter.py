@@ -46,7 +46,8 @@ def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) ->
     y, x = (np.minimum(np.arange(n), n - np.arange(n)).astype(np.float32) for n in size)
     K = (1 + (y[:, None] ** 2 + x**2) / np.float32(core**2)) ** np.float32(-power / 2)
     K[0, 0] = 0
-    K[shape[0] : size[0] - shape[0] + 1], K[:, shape[1] : size[1] - shape[1] + 1] = 0, 0
+    K[shape[0] : size[0] - shape[0] + 1] = 0
+    K[:, shape[1] : size[1] - shape[1] + 1] = 0
     return np.asarray(scipy.fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
 
 

@@ -54,8 +54,10 @@ def turn(
     shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0
 ) -> F64:
     """Return H of a picture (H, W) turned about its middle, clockwise as seen, enlarged, then shifted."""
-    (dy, dx), phi = np.asarray(offset, float), np.deg2rad(degrees)
-    cos, sin = scale * np.cos(phi), scale * np.sin(phi)
+    (dy, dx) = np.asarray(offset, float)
+    phi = np.deg2rad(degrees)
+    cos = scale * np.cos(phi)
+    sin = scale * np.sin(phi)
     y, x = (np.array(shape[:2]) - 1) / 2
     return np.array(
         [[cos, -sin, x - cos * x + sin * y + dx], [sin, cos, y - sin * x - cos * y + dy], [0, 0, 1]]
@@ -64,14 +66,17 @@ def turn(
 
 def corners(shape: tuple[int, ...]) -> F64:
     """Return (x, y) of a picture's four corner pixels, (4, 2), in turn."""
-    h, w = shape[0] - 1, shape[1] - 1
+    h = shape[0] - 1
+    w = shape[1] - 1
     return np.array([[0, 0], [w, 0], [w, h], [0, h]], float)
 
 
 def apply(H: ArrayLike, points: ArrayLike) -> F64:
     """Return where points (..., n, 2), (x, y), lie after H (..., 3, 3)."""
-    H, points = np.asarray(H, float), np.asarray(points, float)
-    x, y = points[..., 0], points[..., 1]
+    H = np.asarray(H, float)
+    points = np.asarray(points, float)
+    x = points[..., 0]
+    y = points[..., 1]
     u, v, w = (H[..., row, :1] * x + H[..., row, 1:2] * y + H[..., row, 2:] for row in range(3))
     return np.stack([u / w, v / w], axis=-1)
 
@@ -82,8 +87,10 @@ def through(source: F64, target: F64) -> F64:
     x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear
     in H.
     """
-    (u, v), (x, y) = source.T, target.T
-    zero, one = np.zeros(4), np.ones(4)
+    (u, v) = source.T
+    (x, y) = target.T
+    zero = np.zeros(4)
+    one = np.ones(4)
     rows_x = np.column_stack([u, v, one, zero, zero, zero, -x * u, -x * v])
     rows_y = np.column_stack([zero, zero, zero, u, v, one, -y * u, -y * v])
     return np.append(np.linalg.solve(np.vstack([rows_x, rows_y]), np.r_[x, y]), 1.0).reshape(3, 3)
@@ -106,7 +113,8 @@ def chain_homographies(order: ArrayLike, steps: Sequence[F64]) -> F64:
 
     Step k lays image order[k] on order[k + 1].
     """
-    H, order = np.tile(np.eye(3), (len(steps) + 1, 1, 1)), np.asarray(order)
+    H = np.tile(np.eye(3), (len(steps) + 1, 1, 1))
+    order = np.asarray(order)
     middle = len(order) // 2
     for k in reversed(range(middle)):
         H[order[k]] = H[order[k + 1]] @ steps[k]
@@ -125,7 +133,8 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     ValueError
         Where no pixel is covered by all of them.
     """
-    H, wide = as_homographies(homographies), corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
+    H = as_homographies(homographies)
+    wide = corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
     if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
         raise InputError(
             "expected homographies that keep a picture in front of the camera, got another"
@@ -193,7 +202,8 @@ def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
 def before(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w[, C]) whose pixel p is the pixel of `image` just above and left of H p."""
     found = np.empty((*shape[:2], *image.shape[2:]), image.dtype)
-    across, last = H[:, :1] * np.arange(shape[1]), np.array(image.shape[1::-1])[:, None] - 1
+    across = H[:, :1] * np.arange(shape[1])
+    last = np.array(image.shape[1::-1])[:, None] - 1
     for y, row in enumerate(found):  # a row at a time stays in the processor's cache
         u, v, w = across + H[:, 1:2] * y + H[:, 2:]
         column, line = np.floor([u / w, v / w]).clip(0, last).astype(np.intp)
