@@ -25,50 +25,37 @@ Labels = NDArray[np.int32]
 Indices = NDArray[np.intp]
 Image = NDArray[np.uint8] | NDArray[np.uint16]
 
-# e^80 is near the end of float32, in which radiance is kept
-LARGEST_LN_EXPOSURE = 80
+# e^80 is close to the largest float32, the type of radiance maps
+MAX_LN_EXPOSURE = 80
+# the bits of infinity in float32; NaN and negative numbers have larger ones
+_INFINITY_BITS = 0x7F800000
 
 
 def hidden(array: object) -> str:
-    """Return what keeps the values from being levels: a mask, or the palette of a Pillow picture; else ""."""
-    return (
-        "a palette"
-        if getattr(array, "mode", "") == "P"
-        else "some of it masked" * np.ma.is_masked(array)
-    )
+    """Return why the values are no pixel levels: a Pillow picture's palette, or a mask; else ""."""
+    if getattr(array, "mode", "") == "P":
+        return "a palette"
+    return "some of it masked" if np.ma.is_masked(array) else ""
 
 
 def describe(array: ArrayLike) -> str:
-    """Return what came, for an error message: shape, dtype and range, or that some of it is masked."""
-    array, masked = np.asarray(array), np.ma.is_masked(array)
-    if array.size == 0 or array.dtype.kind not in "biuf" or masked:
-        return f"shape {array.shape}, dtype {array.dtype}" + ", some of it masked" * masked
-    return (
-        f"shape {array.shape}, dtype {array.dtype}, values {array.min():.6g} to {array.max():.6g}"
-    )
+    """Describe an array for an error message: shape, dtype and range, or that some of it is masked."""
+    is_masked = np.ma.is_masked(array)
+    array = np.asarray(array)
+    text = f"shape {array.shape}, dtype {array.dtype}"
+    if is_masked:
+        return f"{text}, some of it masked"
+    if array.size == 0 or array.dtype.kind not in "biuf":
+        return text
+    return f"{text}, values {array.min():.6g} to {array.max():.6g}"
 
 
 def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     """Return `images` as one array (P, H, W[, 3]) of uint8 or uint16, or raise a ValueError."""
     if not isinstance(images, np.ndarray):
-        given = list(images) if isinstance(images, Iterable) else [images]
-        frames = list(map(np.asanyarray, given))
-        kinds = {f"{frame.shape} {frame.dtype}" for frame in frames} | {
-            *filter(None, map(hidden, given))
-        }
-        # np.stack would take 8 and 16 bits together, and make the former nearly black; and it
-        # forgets masks
-        if len(kinds) > 1:
-            got = ", ".join(sorted(kinds))
-            raise InputError(
-                f"expected frames of one size and type, no mask and no palette, got {got}"
-            )
-        images = np.stack(frames) if frames else np.empty(0)
-    if (
-        images.ndim not in (3, 4)
-        or (images.ndim == 4 and images.shape[-1] != 3)
-        or 0 in images.shape
-    ):
+        images = _stack(list(images) if isinstance(images, Iterable) else [images])
+    is_stack = images.ndim == 3 or (images.ndim == 4 and images.shape[-1] == 3)
+    if not is_stack or 0 in images.shape:
         raise InputError(
             f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}"
         )
@@ -77,19 +64,33 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     return np.asarray(images)
 
 
+def _stack(images: Sequence[ArrayLike]) -> Array:
+    """Return frames of one size and type as one array.
+
+    np.stack alone would convert 8 bits to 16 bits, which makes them nearly black, and would drop
+    masks.
+    """
+    frames = [np.asanyarray(image) for image in images]
+    kinds = {f"{frame.shape} {frame.dtype}" for frame in frames}
+    kinds |= {hidden(image) for image in images if hidden(image)}
+    if len(kinds) > 1:
+        got = ", ".join(sorted(kinds))
+        raise InputError(f"expected frames of one size and type, no mask and no palette, got {got}")
+    return np.stack(frames) if frames else np.empty(0)
+
+
 def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.float64]:
-    """Return `times` as float64 (count,), positive, so many of them distinct, or raise a ValueError.
+    """Return `times` as float64 (count,), positive, at least `distinct` of them different.
+
+    Anything else is a ValueError.
 
     Examples
     --------
     >>> as_times([0.5, 1], 2).tolist()
     [0.5, 1.0]
     """
-    if (
-        np.shape(times) != (count,)
-        or np.asarray(times).dtype.kind not in "biufO"
-        or np.ma.is_masked(times)
-    ):
+    is_numeric = np.asarray(times).dtype.kind in "biufO" and not np.ma.is_masked(times)
+    if np.shape(times) != (count,) or not is_numeric:
         raise InputError(f"expected {count} exposure times, one per image, got {describe(times)}")
     checked = np.asarray(times, dtype=np.float64)
     if not np.all(np.isfinite(checked) & (checked > 0)):
@@ -102,7 +103,7 @@ def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.f
 
 
 def as_mask(valid: ArrayLike | None, images: Array) -> NDArray[np.bool_] | None:
-    """Return `valid` as bool (P, H, W), one mask per image; None, all is picture, passes."""
+    """Return `valid` as bool (P, H, W), one mask per image, or None where every pixel is valid."""
     if valid is None:
         return None
     checked = np.asarray(valid, dtype=bool)
@@ -114,7 +115,8 @@ def as_mask(valid: ArrayLike | None, images: Array) -> NDArray[np.bool_] | None:
 def as_radiance(E: ArrayLike) -> NDArray[np.float32]:
     """Return `E` as float32 (H, W) or (H, W, 3), finite and not negative, or raise a ValueError."""
     array = np.asanyarray(E)
-    if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] != 3) or 0 in array.shape:
+    is_map = array.ndim == 2 or (array.ndim == 3 and array.shape[-1] == 3)
+    if not is_map or 0 in array.shape:
         raise InputError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
     return _finite(array, "radiance")
 
@@ -131,7 +133,8 @@ def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
     Z = np.asarray(picture)
     why = hidden(picture)
-    if why or Z.dtype != np.uint8 or Z.ndim < 2 or Z.shape[2:] not in ((), (3,)) or not Z.size:
+    is_picture = Z.ndim >= 2 and Z.shape[2:] in ((), (3,)) and Z.size > 0
+    if why or not is_picture or Z.dtype != np.uint8:
         raise InputError(
             f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}"
         )
@@ -144,12 +147,13 @@ def _finite(array: Array, what: str) -> NDArray[np.float32]:
         raise InputError(f"expected {what} as numbers, got {describe(array)}")
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
         array = np.asarray(array).astype(np.float32, copy=False)
-    # one pass tells it in most cases: infinity, NaN and what has a minus have the largest bits
-    if array.view(np.uint32).max() >= 0x7F800000 and not (
-        array.min() >= 0 and array.max() < np.inf
-    ):
-        wrong = map(np.count_nonzero, (np.isnan(array), np.isinf(array), array < 0))
-        counts = "{} NaN, {} infinite and {} negative values".format(*wrong)
+    # One pass over the bits is enough for nearly all arrays; -0.0 needs the second comparison.
+    is_suspect = array.view(np.uint32).max() >= _INFINITY_BITS
+    if is_suspect and not (array.min() >= 0 and array.max() < np.inf):
+        nans = np.count_nonzero(np.isnan(array))
+        infinities = np.count_nonzero(np.isinf(array))
+        negatives = np.count_nonzero(array < 0)
+        counts = f"{nans} NaN, {infinities} infinite and {negatives} negative values"
         raise InputError(
             f"expected finite {what} that is not negative, got {counts} in shape {array.shape}"
         )
@@ -163,11 +167,9 @@ def levels(images: Array) -> int:
 
 def to_256(images: Array) -> NDArray[np.uint8]:
     """Return the images at 256 levels: 16-bit level z becomes round(z / 257)."""
-    return (
-        images
-        if images.dtype == np.uint8
-        else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
-    )
+    if images.dtype == np.uint8:
+        return images
+    return ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
 
 
 def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
@@ -178,23 +180,22 @@ def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
         raise InputError(f"expected a response {wanted}, got shape {table.shape}")
     if len(np.asarray(g)) not in (n, 256, 65536):
         raise InputError(f"expected a response of {n} levels, or of 256, got {describe(g)}")
-    if not np.all(table[-1] > table[0]) or np.abs(table).max() > LARGEST_LN_EXPOSURE:
-        most = LARGEST_LN_EXPOSURE
+    if not np.all(table[-1] > table[0]) or np.abs(table).max() > MAX_LN_EXPOSURE:
+        limit = MAX_LN_EXPOSURE
         raise InputError(
-            f"expected ln exposures that rise, from -{most} to {most}, got {describe(table)}"
+            f"expected ln exposures that rise, from -{limit} to {limit}, got {describe(table)}"
         )
     return np.broadcast_to(table, (n, channels))
 
 
 def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
-    """Return a table over pixel levels with n rows, (n,) or (n, C): as it is, or read between its levels.
+    """Return a table over pixel levels, (n,) or (n, C), interpolated to n rows where it has others.
 
-    A response of 256 levels serves 16-bit photographs so: level z of 65536 is level z / 257 of 256.
+    So a response of 256 levels serves 16-bit photographs: level z of 65536 is level z / 257 of 256.
     """
-    given = np.asanyarray(table)
-    if given.dtype.kind not in "biuf" or np.ma.is_masked(given):
-        raise InputError(f"expected a table of numbers, all of them known, got {describe(given)}")
-    array = np.asarray(given, dtype=np.float64)
+    if np.asanyarray(table).dtype.kind not in "biuf" or np.ma.is_masked(table):
+        raise InputError(f"expected a table of numbers, all of them known, got {describe(table)}")
+    array = np.asarray(table, dtype=np.float64)
     if array.ndim not in (1, 2) or len(array) < 2 or not np.all(np.isfinite(array)):
         raise InputError(
             f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}"

@@ -56,9 +56,9 @@ def bracket(
     """
     images = as_stack(images)
     times = as_times(times, len(images))
-    names = (
-        tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
-    )
+    if names is None:
+        names = [f"frame {j + 1}" for j in range(len(images))]
+    names = tuple(names)
     if len(names) != len(images):
         raise InputError(f"expected {len(images)} names, one per image, got {len(names)}")
     mask = as_mask(valid, images)
@@ -67,15 +67,16 @@ def bracket(
         images = images[order]
         times = times[order]
         names = tuple(names[j] for j in order)
-        mask = mask[order] if mask is not None else None
+        if mask is not None:
+            mask = mask[order]
     return Bracket(images, times, names, mask, linear)
 
 
 def short_to_long(images: Array, times: F64) -> Indices:
-    """Return the order of the frames (P,) that makes all that follows independent of the order given.
+    """Return the order (P,) of frames by exposure time, whatever the order in which they came.
 
-    Frames of one time are ordered by their checksums, for even a sum depends on its order in the
-    last bit.
+    Frames of equal times are ordered by their checksums, because even the last bit of a sum depends
+    on the order of its terms.
     """
     if len(np.unique(times)) == len(times):
         return np.argsort(times)

@@ -1,4 +1,4 @@
-"""Colour around an operator that sees luminance alone, and the way from light to a display's 8 bits.
+"""Color for operators that map luminance alone, and conversion of linear light to 8-bit sRGB.
 
 E        radiance            (H, W, 3), linear, primaries of sRGB; or (H, W), gray
 L        luminance           (H, W), same unit
@@ -6,15 +6,15 @@ Ld       display luminance   (H, W), linear, 1 = white
 display  linear display RGB  (H, W, 3) in [0, 1], or (H, W)
 s        saturation          1 keeps the colour's ratios, 0 is gray
 
-A saturated colour may want more of a channel than the display has. There are two policies, in `WAYS`:
+A saturated color may need more of a channel than the display has. There are two policies, in `WAYS`:
 
-ratio  `recolour` clips the channel: the luminance drops and the hue turns, a blue sky toward cyan and a flame
-       from orange to yellow, but what is bright stays colourful
-hue    C = (1 + s (E / L - 1)) Ld [Mantiuk09], a length along the direction away from gray. Where the largest
-       channel is M > 1 the colour darkens, by M^0.85, and then pales, by and by before that channel meets 1:
-       hue and gradation stay, and lamps and glass keep a colour
+ratio  `recolour` clips the channel: the luminance drops and the hue shifts, a blue sky toward cyan
+       and a flame from orange to yellow, but bright colors stay saturated
+hue    C = (1 + s (E / L - 1)) Ld [Mantiuk09], a distance along the direction away from gray. Where
+       the largest channel is M > 1 the color is darkened by M^0.85, and then desaturated, smoothly
+       before that channel reaches 1: hue and gradation stay, and lamps and glass keep a color
 
-Out-of-gamut colours, with a channel below 0, become gray as far as they must: `core.gamut`.
+Out-of-gamut colors, with a channel below 0, move toward gray as far as necessary: `core.gamut`.
 
 Mantiuk et al., Color correction for tone mapping, Eurographics 2009.
 """
@@ -27,9 +27,16 @@ from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance,
 from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
-DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
-ROWS = 16  # a band of rows that stays in the processor's cache
+# weights of R, G and B [ITU-R BT.709], the primaries of sRGB
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+# below this luminance a pixel has no color: it is gray
+_MIN_COLOR_LUMINANCE = np.float32(1e-30)
+# a band of this many rows stays in the processor's cache
+_BAND_ROWS = 16
+# `hue` divides a color by M to this power, where its largest channel is M > 1
+_HUE_DARKENING_POWER = 0.85
+# `hue` starts to desaturate where the largest channel takes this fraction of the room above Ld
+_HUE_KNEE_FRACTION = np.float32(0.5)
 
 
 def luminance(E: ArrayLike) -> F32:
@@ -73,21 +80,22 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
     array([[[0.8, 0.4, 0.2]]], dtype=float32)
     """
     E, L, Ld = _as_fitting(E, L, Ld, saturation)
-    return np.clip(Ld if E.ndim == 2 else _ratio(E, L, Ld, saturation), 0, 1)
+    C = Ld if E.ndim == 2 else _ratio(E, L, Ld, saturation)
+    return np.clip(C, 0, 1)
 
 
 def encode_srgb(linear: ArrayLike) -> Array:
     """Return 12.92 c up to c = 0.0031308 and 1.055 c^(1/2.4) - 0.055 above it [IEC 61966-2-1]."""
     c = np.asarray(linear)
-    return np.where(
-        c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055
-    )
+    curve = 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055
+    return np.where(c <= 0.0031308, 12.92 * c, curve)
 
 
 def decode_srgb(encoded: ArrayLike) -> Array:
     """Return v / 12.92 up to v = 0.04045 and ((v + 0.055) / 1.055)^2.4 above it [IEC 61966-2-1]."""
     v = np.asarray(encoded)
-    return np.where(v <= 0.04045, v / 12.92, ((np.maximum(v, 0.04045) + 0.055) / 1.055) ** 2.4)
+    curve = ((np.maximum(v, 0.04045) + 0.055) / 1.055) ** 2.4
+    return np.where(v <= 0.04045, v / 12.92, curve)
 
 
 # sRGB codes of 65536 steps of linear light. Where the curve is steepest a step is 1/20 of a code.
@@ -95,16 +103,19 @@ CODES = np.floor(255 * encode_srgb(np.arange(65536) / 65535) + 0.5).astype(np.ui
 
 
 def to_8bit(display: ArrayLike) -> Array:
-    """Return floor(255 encode_srgb(display) + 0.5), and 255 above 1, by table: within 0.53 of a code."""
+    """Return the sRGB codes floor(255 encode_srgb(display) + 0.5), and 255 above 1.
+
+    They are read from a table, and within 0.53 of the exact value.
+    """
     return _codes(as_radiance(display))
 
 
 def render(
     E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0, way: str = "ratio"
 ) -> Array:
-    """Return to_8bit(recolour(E, L, Ld)), band by band, so that the picture in floats never stands in memory.
+    """Return to_8bit(recolour(E, L, Ld)), computed band by band, which saves memory.
 
-    Parameters, errors : as for `recolour`; way : "ratio", or "hue" instead
+    Parameters and errors are those of `recolour`. With way="hue", colors keep their hue.
 
     Returns
     -------
@@ -122,19 +133,18 @@ def render(
     picture = np.empty(E.shape, np.uint8)
 
     def fill(top: int) -> None:
-        band = slice(top, top + ROWS)
-        picture[band] = _codes(
-            Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation)
-        )
+        band = slice(top, top + _BAND_ROWS)
+        C = Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation)
+        picture[band] = _codes(C)
 
-    for _ in map_in_threads(fill, range(0, len(E), ROWS), pixels=L.size):
+    for _ in map_in_threads(fill, range(0, len(E), _BAND_ROWS), pixels=L.size):
         pass
     return picture
 
 
 def _ratio(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
-    dark = L < DARK
-    L = np.maximum(L, DARK)
+    dark = L < _MIN_COLOR_LUMINANCE
+    L = np.maximum(L, _MIN_COLOR_LUMINANCE)
     if saturation == 1:
         C = E * np.stack([Ld / L] * 3, axis=-1)  # faster than an inner loop over three channels
     else:
@@ -145,34 +155,36 @@ def _ratio(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
 
 
 def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
-    dark = L < DARK
+    dark = L < _MIN_COLOR_LUMINANCE
     s = np.float32(saturation)
-    scale = s * Ld / np.maximum(L, DARK)
+    scale = s * Ld / np.maximum(L, _MIN_COLOR_LUMINANCE)
     gray = (1 - s) * Ld
     if dark.any():
-        scale[dark], gray[dark] = 0, Ld[dark]
+        scale[dark] = 0
+        gray[dark] = Ld[dark]
     C = E * np.stack([scale] * 3, axis=-1)
     if saturation != 1 or dark.any():
         C += np.stack([gray] * 3, axis=-1)
     M = np.maximum(np.maximum(C[..., 0], C[..., 1]), C[..., 2])
-    bright = M - Ld > np.float32(0.5) * (1 - Ld)
+    bright = M - Ld > _HUE_KNEE_FRACTION * (1 - Ld)
     if bright.any():
         C[bright] = _pale(C[bright], M[bright, None], Ld[bright, None])
     return np.clip(C, 0, 1)
 
 
 def _pale(C: F32, M: F32, Ld: F32) -> F32:
-    """Return colours (N, 3) whose largest channel M, (N, 1) like Ld, no longer exceeds 1."""
-    fit = _power(np.maximum(M, 1), -0.85)
+    """Return colors (N, 3), of largest channel M (N, 1), desaturated until no channel exceeds 1.
+
+    Ld is (N, 1), too.
+    """
+    fit = _power(np.maximum(M, 1), -_HUE_DARKENING_POWER)
     C = C * fit
     M = M * fit
     Ld = Ld * fit
-    full = np.minimum(
-        (M - Ld) / np.maximum(1 - Ld, DARK), 1000
-    )  # of the room between the luminance and 1
-    return np.asarray(
-        Ld + (C - Ld) * _power(1 + np.square(np.square(np.square(full))), -1 / 8), np.float32
-    )
+    room = np.maximum(1 - Ld, _MIN_COLOR_LUMINANCE)
+    fraction = np.minimum((M - Ld) / room, 1000)
+    eighth_power = np.square(np.square(np.square(fraction)))
+    return np.asarray(Ld + (C - Ld) * _power(1 + eighth_power, -1 / 8), np.float32)
 
 
 def _power(x: F32, exponent: float) -> F32:
@@ -185,7 +197,7 @@ WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "hue"
 
 def _codes(display: F32) -> Array:
     index = (np.minimum(display, 1) * 65535 + 0.5).astype(np.uint16)
-    return CODES.take(index, mode="clip")  # which is faster than to look for an index out of range
+    return CODES.take(index, mode="clip")  # faster than checking for indices out of range
 
 
 def _as_fitting(

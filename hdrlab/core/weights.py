@@ -4,8 +4,8 @@ z  pixel level, 0 ... n - 1
 w  weight (n,), how far to trust it; 0 at both ends, where a value is only a bound
 g  response (n, ...), ln exposure of each level
 
-Which pixels are clipped is another question, and it is asked elsewhere (`radiance.merge`): a weight
-says how much, validity says whether.
+Which pixels are clipped is another question (see `radiance.merge`): a weight says how much a pixel
+counts, validity whether it counts at all.
 """
 
 import numpy as np
@@ -27,14 +27,14 @@ def hat(n: int = 256) -> F64:
 
 
 def gaussian(n: int = 256) -> F64:
-    """Return w(z) = exp(-4 (z - m)^2 / m^2), m the middle, brought to 0 at both ends [Robertson03 sec. 3]."""
+    """Return w(z) = exp(-4 (z - m)^2 / m^2), m the middle, shifted to 0 at both ends [Robertson03 sec. 3]."""
     m = (n - 1) / 2
     bell = np.exp(-4 * ((np.arange(n) - m) / m) ** 2)
     return (bell - bell[0]) / (1 - bell[0])
 
 
 def flat(n: int = 256) -> F64:
-    """Return w(z) = 1, and 0 at both ends: every value that is not clipped counts the same."""
+    """Return w(z) = 1, and 0 at both ends: all levels that are not clipped count the same."""
     w = np.ones(n)
     w[[0, -1]] = 0
     return w
@@ -43,8 +43,8 @@ def flat(n: int = 256) -> F64:
 def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
     """Return w with 0 above and below these fractions of the top level [Cerman06 sec. 4.2 cuts above 0.98].
 
-    Noise turns clipped pixels into nearly clipped ones, so a photograph lies a little below its top
-    level too.
+    Noise turns clipped pixels into nearly clipped ones, so pixels just below the top level may be
+    clipped, too.
     """
     if not 0 <= below < above <= 1:
         raise InputError(f"expected 0 <= below < above <= 1, got below={below} and above={above}")
@@ -54,13 +54,12 @@ def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
 
 
 def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
-    """Return w = f / f', the signal over a noise that has one size at all levels [Mitsunaga99 eq. 14].
+    """Return w = f / f', the signal-to-noise ratio for equal noise at all levels [Mitsunaga99 eq. 14].
 
-    f = exp g is the exposure of each level, of the channels' mean where g is (n, 3). Its slope f'
-    is taken over `span` levels on either side, in units of the mean slope, and held at `least` or
-    above: where a curve was levelled it is not certain without bound. Scaled to 1 in the middle,
-    and 0 at both ends. It grows with the level: noise that is not clipped matters least in bright
-    pixels.
+    f = exp g is the exposure of each level; where g is (n, 3) it is the mean of the channels. Its
+    slope f' is taken over `span` levels on either side, in units of the mean slope, and is at least
+    `least`: where a curve is flat, the weight must stay finite. w is 1 in the middle, and 0 at both
+    ends. It grows with the level, because the same noise matters less in brighter pixels.
     """
     g = np.asarray(g, dtype=np.float64)
     if g.ndim not in (1, 2) or len(g) < 3 or not np.all(np.isfinite(g)):
@@ -80,7 +79,7 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
 
 
 def second_differences(w: F64, smoothness: float) -> F64:
-    """Return the rows (n - 2, n) of lambda w(z) g''(z), which gsolve keeps small [Debevec97 eq. 3].
+    """Return the matrix (n - 2, n) of lambda w(z) g''(z), which gsolve keeps small [Debevec97 eq. 3].
 
     Examples
     --------
@@ -91,7 +90,7 @@ def second_differences(w: F64, smoothness: float) -> F64:
 
 
 def make_monotone(g: F64) -> F64:
-    """Return g (n, ...) with every fall levelled, outward from the middle, which keeps its value.
+    """Return g (n, ...) made monotone: each fall becomes flat, outward from the middle level.
 
     Examples
     --------

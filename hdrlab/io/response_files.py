@@ -16,7 +16,7 @@ from typing import TextIO
 
 import numpy as np
 
-from hdrlab.core.arrays import F64, LARGEST_LN_EXPOSURE, ArrayLike, describe
+from hdrlab.core.arrays import F64, MAX_LN_EXPOSURE, ArrayLike, describe
 from hdrlab.core.weights import gaussian
 from hdrlab.errors import InputError
 from hdrlab.io.files import replacing, require_no_folder, require_suffix
@@ -116,8 +116,8 @@ def as_curve(g: ArrayLike) -> F64:
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
         raise InputError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
-    if not np.all(np.abs(curve) <= LARGEST_LN_EXPOSURE):  # NaN neither
-        limits = f"-{LARGEST_LN_EXPOSURE} to {LARGEST_LN_EXPOSURE}"
+    if not np.all(np.abs(curve) <= MAX_LN_EXPOSURE):  # NaN neither
+        limits = f"-{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}"
         raise InputError(f"expected ln exposures from {limits}, got {describe(curve)}")
     return curve.astype(np.float64)
 

@@ -10,15 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, ArrayLike
+from hdrlab.core.arrays import F32, ArrayLike, describe
 from hdrlab.errors import InputError
 
-# beyond the edge: too different from any pixel to have weight
-FAR = 1e9
+# Beyond the edge the signal has this value, which differs too much from any pixel to have weight.
+BORDER_VALUE = 1e9
 
 
 class Filtered(NamedTuple):
-    """Attributes: mean (H, W), v smoothed but for its edges; k (H, W), the pixels that each mean rests on."""
+    """The filtered signal, `mean` (H, W), and the sum of weights that each mean rests on, `k` (H, W)."""
 
     mean: F32
     k: F32
@@ -27,8 +27,8 @@ class Filtered(NamedTuple):
 def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     """Return mean = 1/k sum_q g w v_q, k = sum_q g w, over a square of 3 sigma_s [Battiato08 eq. 1.31].
 
-    sigma_s is in pixels, sigma_r in the unit of v; both are above 0, and v is finite, or it is a
-    ValueError.
+    sigma_s is in pixels, sigma_r in the unit of v. Both must be positive, and v finite: anything
+    else is a ValueError.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
     (H, W) = v.shape
     r = min(int(np.ceil(3 * sigma_s)), max(v.shape))
-    padded = np.pad(v, r, constant_values=FAR)
+    padded = np.pad(v, r, constant_values=BORDER_VALUE)
     total = np.zeros_like(v)
     k = np.zeros_like(v)
     for dy in range(-r, r + 1):
@@ -54,8 +54,7 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
 
 def require_signal(v: F32, *, sigma_s: float, sigma_r: float) -> None:
     """Raise a ValueError unless v is (H, W) and finite, and the sigmas are positive."""
-    if v.ndim != 2 or not (
-        v.size and np.isfinite(v).all() and 0 < sigma_s < np.inf and 0 < sigma_r < np.inf
-    ):
-        expected = "expected a finite signal (H, W) and sigmas above 0"
-        raise InputError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")
+    if v.ndim != 2 or not v.size or not np.isfinite(v).all():
+        raise InputError(f"expected a finite signal (H, W), got {describe(v)}")
+    if not (0 < sigma_s < np.inf and 0 < sigma_r < np.inf):
+        raise InputError(f"expected positive, finite sigmas, got {sigma_s=}, {sigma_r=}")

@@ -7,8 +7,8 @@ eps      what variance is an edge  in squares of the unit of I: windows that var
 a, b     line of each window       (H, W), p = a I + b as well as it goes; a = 1 keeps I, a = 0 is its mean
 q        p, smoothed               (H, W)
 
-All lines come from means, whose cost does not depend on r. The bilateral filter asks pixel by pixel
-who is alike; here one answer holds for a whole window: beside an edge fine detail stays in q, and
+All lines are computed from means, whose cost does not depend on r. The bilateral filter compares
+pixel by pixel; here one line holds for a whole window. So next to an edge fine detail stays in q and
 is not smoothed.
 """
 
@@ -22,17 +22,17 @@ from hdrlab.errors import InputError
 
 
 class Lines(NamedTuple):
-    """Attributes: a, b (H, W), slope and offset of the line of the window around each pixel."""
+    """Slope a (H, W) and offset b (H, W) of the line of the window around each pixel."""
 
     a: F64
     b: F64
 
 
 def window_mean(v: F64, radius: int) -> F64:
-    """Return the mean of v (H, W) over the window of each pixel, as far as it lies in the picture."""
-    total, count = (
-        uniform_filter(x, 2 * radius + 1, mode="constant") for x in (v, np.ones_like(v))
-    )
+    """Return the mean of v (H, W) over the part of each pixel's window that lies in the picture."""
+    size = 2 * radius + 1
+    total = uniform_filter(v, size, mode="constant")
+    count = uniform_filter(np.ones_like(v), size, mode="constant")
     return total / count
 
 
@@ -52,8 +52,8 @@ def lines(I: F64, p: F64, *, radius: int, epsilon: float) -> Lines:  # noqa: E74
 def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: float) -> F64:  # noqa: E741
     """Return q = mean(a) I + mean(b), means over all windows that hold the pixel [He13 eq. 8].
 
-    p is I where none is given. Both are finite and of one shape (H, W), radius >= 1 and epsilon >
-    0, or it is a ValueError.
+    Without p, the guide itself is filtered. I and p must be finite and of one shape (H, W), with
+    radius >= 1 and epsilon > 0: anything else is a ValueError.
 
     Examples
     --------
@@ -63,7 +63,8 @@ def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: fl
     """
     I = np.asarray(I, np.float64)  # noqa: E741
     p = I if p is None else np.asarray(p, np.float64)
-    if I.ndim != 2 or p.shape != I.shape or not (np.isfinite(I).all() and np.isfinite(p).all()):
+    is_finite = np.isfinite(I).all() and np.isfinite(p).all()
+    if I.ndim != 2 or p.shape != I.shape or not is_finite:
         raise InputError(
             f"expected a finite guide (H, W) and p of its shape, got {I.shape} and {p.shape}"
         )

@@ -1,15 +1,15 @@
-"""The picture that has given gradients: a Poisson equation, solved with cosines.
+"""A picture from its gradients: the Poisson equation, solved by the cosine transform.
 
 u     picture                    (H, W)
 G     gradient field, (Gy, Gx)   (2, H, W), of the steps down and right of each pixel
 divG  divergence of G            (H, W)
 
-No gradient need be the gradient of a picture. Of all pictures, the u with Laplacian u = div G has
-the gradients nearest to G in the sense of least squares. Nothing flows through the edges (Neumann):
-there is no step beyond the last row and column. `divergence` is minus the transpose of `gradient`,
-hence it sums to 0, and the cosines of the DCT-II, which are even about the edges of the picture,
-are the eigenvectors of `laplacian`. A u plus a constant has the same gradients; the one with the
-mean 0 is meant.
+A gradient field G need not be the gradient of any picture. Of all pictures, the u with Laplacian
+u = div G has the gradients nearest to G in the sense of least squares. Nothing flows through the
+edges (Neumann boundary): there is no step beyond the last row and column. `divergence` is minus the
+transpose of `gradient`, hence it sums to 0. The cosines of the DCT-II, which are even about the edges
+of the picture, are the eigenvectors of `laplacian`. u plus a constant has the same gradients; `solve`
+returns the one of mean 0.
 """
 
 import numpy as np
@@ -37,20 +37,22 @@ def divergence(G: Array) -> Array:
 
 
 def laplacian(u: Array) -> Array:
-    """Return div grad u: the sum over a pixel's neighbours inside the picture of their difference to it."""
+    """Return div grad u: the sum of the differences of a pixel's neighbors in the picture to it."""
     return divergence(gradient(u))
 
 
 def eigenvalues(n: int) -> Array:
     """Return 2 cos(pi i / n) - 2, i = 0 ... n - 1: what `laplacian` makes of cos(pi i (x + 1/2) / n)."""
-    return -4 * np.sin(np.pi * np.arange(n) / (2 * n)) ** 2  # the same, and exact where it is small
+    return (
+        -4 * np.sin(np.pi * np.arange(n) / (2 * n)) ** 2
+    )  # equal to it, and exact where it is small
 
 
 def solve(divG: Array) -> Array:
     """Return the u of mean 0 whose Laplacian is div G.
 
-    In cosines the Laplacian is a factor, so the equation is solved by a division. A mean of div G,
-    which no u can have, is left out.
+    In the cosine transform the Laplacian is a multiplication, so the equation is solved by a
+    division. A mean of div G other than 0, which no u can have, is removed.
 
     Parameters
     ----------
@@ -80,6 +82,9 @@ def solve(divG: Array) -> Array:
     if divG.ndim != 2 or 0 in divG.shape:
         raise InputError(f"expected a picture (H, W), got shape {divG.shape}")
     coefficients = dctn(divG, type=2)
-    factors = np.add.outer(*(eigenvalues(n).astype(coefficients.dtype) for n in divG.shape))
+    H, W = divG.shape
+    rows = eigenvalues(H).astype(coefficients.dtype)
+    columns = eigenvalues(W).astype(coefficients.dtype)
+    factors = np.add.outer(rows, columns)
     factors[0, 0] = np.inf
     return idctn(coefficients / factors, type=2, overwrite_x=True)

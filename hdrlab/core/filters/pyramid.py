@@ -45,7 +45,7 @@ def expand(image: F32, shape: Sequence[int]) -> F32:
 
 
 def _expand_rows(g: F32, n: int) -> Array:
-    """Return n rows: an even one is (1 6 1) / 8 of three coarse ones, an odd one the mean of two."""
+    """Return n rows: an even row is (1 6 1) / 8 of three coarse ones, an odd row the mean of two."""
     before = g[..., :2, :][..., -1:, :]
     after = g[..., -1:, :]
     g = np.concatenate([before, g, after], axis=-2)
@@ -60,7 +60,7 @@ def interpolate(image: F32, shape: Sequence[int]) -> F32:
 
 
 def gaussian(image: F32, levels: int) -> list[F32]:
-    """Return g_0, g_1, ...: `levels` of them, each the one before it reduced; fewer where one is a pixel."""
+    """Return the Gaussian pyramid g_0, g_1, ... of `levels` levels, or fewer if one is a single pixel."""
     pyramid = [np.asarray(image, np.float32)]
     while len(pyramid) < levels and pyramid[-1].shape[-2:] != (1, 1):
         pyramid.append(reduce(pyramid[-1]))
@@ -68,7 +68,7 @@ def gaussian(image: F32, levels: int) -> list[F32]:
 
 
 def laplacian(image: F32, levels: int) -> list[F32]:
-    """Return L_k = g_k - expand(g_(k+1)), and last the coarsest g itself [Burt83 eq. 3]."""
+    """Return the Laplacian pyramid: L_k = g_k - expand(g_(k+1)), and last the coarsest g [Burt83 eq. 3]."""
     pyramid = gaussian(image, levels)
     return [fine - expand(coarse, fine.shape) for fine, coarse in pairwise(pyramid)] + pyramid[-1:]
 

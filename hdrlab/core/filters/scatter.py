@@ -1,13 +1,13 @@
-"""Veiling glare, the light that a lens scatters: every point spreads over all of the picture.
+"""Veiling glare: light that a lens scatters from every point over the whole picture.
 
 E      radiance                (H, W[, 3]) float32
 r      distance                pixels
 K      glare spread function   (H', W'), K(r) = 1 / (1 + (r / core)^2)^(power / 2), without its middle, sum 1
 share  of the light that is scattered, 0 to 1
 
-What the sensor gets is (1 - share) E + share (K * E). In a lens of dust, fingerprints and many
-surfaces K falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a window lifts
-the darkest corner.
+The sensor receives (1 - share) E + share (K * E). In a lens with dust, fingerprints and many surfaces
+K falls off with a power of two to three [Talvala07 fig. 3]: so slowly that a bright window lifts the
+darkest corner.
 """
 
 from typing import NamedTuple
@@ -38,12 +38,12 @@ def validate_spread(spread: GlareSpread) -> GlareSpread:
 
 
 def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) -> Array:
-    """Return the transform of K over twice a frame, so that no light comes round its edges.
+    """Return the Fourier transform of K over twice the frame, so that no light wraps around its edges.
 
-    K is cut off where it leaves the frame from one side to the other, and its sum is 1 there.
+    K is cut off at distances that no two pixels of the frame have, and its sum is 1 within them.
     """
     size = [scipy.fft.next_fast_len(2 * n, real=True) for n in shape[:2]]
-    y, x = (np.minimum(np.arange(n), n - np.arange(n)).astype(np.float32) for n in size)
+    y, x = [np.minimum(np.arange(n), n - np.arange(n)).astype(np.float32) for n in size]
     K = (1 + (y[:, None] ** 2 + x**2) / np.float32(core**2)) ** np.float32(-power / 2)
     K[0, 0] = 0
     K[shape[0] : size[0] - shape[0] + 1] = 0
@@ -52,7 +52,7 @@ def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) ->
 
 
 def scatter(E: F32, transform: Array) -> F32:
-    """Return K * E, channel by channel; light from outside the frame is not known, and left out.
+    """Return K * E, channel by channel, without the unknown light from outside the frame.
 
     Examples
     --------
