@@ -58,7 +58,7 @@ def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float
     true = families.invert_curves(exposure, brightness)[0][RELIABLE_LEVELS, None]
     for name in METHODS:
         choice = recovery.choose_response(name, taken)
-        g = recovery.find_response(name, choice, taken)[0]
+        g = recovery.find_response(name, choice, taken).g
         off = (g[RELIABLE_LEVELS] - true) / np.log(2)
         error = np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
         E = merge_with_quality(taken.images, taken.times, g, weights.gaussian()).E

@@ -123,7 +123,7 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float,
     for way in range(len(WAYS)):
         g, noise = true_g, known
         if way == 2:
-            g = recovery.find_response("auto", recovery.choose_response("auto", taken), taken)[0]
+            g = recovery.find_response("auto", recovery.choose_response("auto", taken), taken).g
         if way:
             m = merge_with_quality(Z, t, g, weights.gaussian()).E
             noise = estimate_noise(Z, t, g, m)

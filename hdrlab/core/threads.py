@@ -32,9 +32,10 @@ class DeferredTask(Generic[Answer]):
         return self._work()
 
 
-def run_in_background(
-    work: Callable[[], Answer], *, pixels: int = PIXELS
-) -> "Future[Answer] | DeferredTask[Answer]":
+Task = Future[Answer] | DeferredTask[Answer]
+
+
+def run_in_background(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Task[Answer]:
     """Start work() in a thread and return a task, whose result() waits for it.
 
     Where a thread would not help (one processor, or fewer than PIXELS pixels), work() runs when

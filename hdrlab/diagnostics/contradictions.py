@@ -1,106 +1,142 @@
-"""Which frame's exposure time is wrong, or does no time explain the images?
+"""Which photo has a wrong exposure time, or can no time explain the images?
 
 x        corrections   (P,), what the pixels add to ln times: see `response_steps`
-stops    errors        (P,), log2(exposure by the pixels / exposure stated), most of them 0
-regions  disagreement  (P - 1,), stops by which parts of the picture disagree, under the best of factors
-significance           (P - 1,), the same over the standard error of a part's median
-corners  change        (P - 1,), stops from the middle to the corners
-tints    another white balance   (P,), stops by which one channel is too bright, and another too dark
-cost     in the map    stops, RMS over the picture: what the errors change where each frame has its weight
+stops    errors        (P,), log2(exposure by the pixels / stated exposure), most of them 0
+regions  disagreement  (P - 1,), stops by which parts of the image disagree, with the best factors
+significance           (P - 1,), the same divided by the standard error of a part's median
+corners  change        (P - 1,), stops from the center to the corners
+tints    white balance (P,), stops by which one channel is too bright, and another too dark
+cost     in the map    stops, RMS over the image: what the errors change where each photo has its weight
 
-The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in
-the deviations of `consistency` as .1. Neighbours are compared here by themselves, through a
-response that fits them as well as any response and one factor per frame can. The factors hold an
-unknown straight line in ln t (unit and exponent of the response). As most times of a bracket are
-right, the line taken is that of least square roots, which passes through most frames and leaves the
-wrong ones standing out: one large error is likelier than several middling ones.
+The map follows its photos: a photo at the end of a bracket that is 0.7 stops off pulls the map with
+it, and shows up as 0.1 in the deviations of `consistency`. So this module compares neighbors directly,
+with a response that fits them as well as any response and one factor per photo can. The factors
+contain an unknown straight line in ln t (the unit and the exponent of the response). As most times of
+a bracket are right, it is the line with the least sum of square roots: it passes through most photos,
+and the wrong ones stand out. One large error is more likely than several medium ones.
 
-If factors explain all, times are wrong. If parts of one picture ask for different factors, none
-are: the corners, where the aperture changed and with it the vignetting; or light, or a camera's
-processing by place. If channels ask for factors of their own, one up and one down in the same
-frame, white balance changed. A curve for each channel hides that from the map's spread.
+If factors explain everything, times are wrong. If parts of one image need different factors, the
+times are right: the aperture changed, and with it the vignetting in the corners; or the light, or the
+camera's processing by place. If channels need factors of their own, one up and one down in the same
+photo, the white balance changed. A curve for each channel hides that from the map's spread.
 
-An error counts by what it costs. An end frame that is nearly black measures little, and bends by a
-camera's own processing: half a stop there leaves the map sound.
+An error counts by what it costs. A photo at the end that is nearly black measures little, and the
+camera's own processing bends it: half a stop there does not harm the map.
+
+Lamps that flicker brighten bands of a photo, see `motion`, so they also look like light that changed in
+parts of it, or like a wrong time. Where the two explanations are about equally good, the warning says
+that the pixels do not show which is true.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_stack, to_256
-from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.doubts import say
+from hdrlab.diagnostics import flat_patches, motion, response_steps
+from hdrlab.diagnostics.doubts import warning_text
 
-# side of a part of the picture, in patches
+# side of a part of the image, in patches
 TILE = 12
-# patches that make the median of a part
-FEWEST = 10
-# flat patches of a pair, without which all take their place, and only what is large counts
-ENOUGH = 50
-# of a frame, on an even grid, that stand for the whole
-PIXELS = 30_000
-# stops, the prior: here times are free, for the question is what is wrong and not what is likely
-LOOSE = 4.0
-# stops: true times of real brackets stay within 0.24, and tints of one white balance within 0.16
-WRONG = 0.25
-# stops in the map, RMS: a smaller error leaves it sound
-COST = 0.05
-# stops: real brackets of one response stay within 0.08
-LOCAL = 0.1
-# stops, and standard errors: brackets of one response stay within 3.7
-SLIGHT, SIGNIFICANT = 0.02, 4.0
-# stops: no standard error of a part is smaller, for patches have whole levels
-SMALLEST_ERROR = 0.003
-# of the variance by place, that the distance from the middle explains
-CORNERS = 0.5
-# stops of the map's spread: below, the map explains its photographs, and what is slight needs no
-# word
-SOUND = 0.1
-# stops of the map's spread: below, no time can be wrong that matters
-EXPLAINED = 0.015
+# patches in a part, without which it has no median
+MIN_PATCHES_PER_TILE = 10
+# Where a pair has fewer flat patches, all patches are used, and only large differences count.
+MIN_FLAT_PATCHES = 50
+# pixels of a photo, on an even grid, that are used to measure the cost
+MAX_PIXELS = 30_000
+# stops; prior of a time's error. It is wide, for the question is what is wrong and not what is likely.
+PRIOR_STOPS = 4.0
+# stops; true times of real brackets stay within 0.24, and tints of one white balance within 0.16
+MIN_WRONG_STOPS = 0.25
+# stops in the map, RMS; a smaller error does not harm it
+MIN_COST_STOPS = 0.05
+# stops; real brackets with one response stay within 0.08
+MIN_LOCAL_STOPS = 0.1
+# A smaller disagreement counts if it is significant.
+MIN_SLIGHT_STOPS = 0.02
+# standard errors; brackets with one response stay within 3.7
+MIN_SIGNIFICANCE = 4.0
+# stops; the standard error of a part is at least this, because patches have whole pixel values
+MIN_STANDARD_ERROR = 0.003
+# fraction of the variance over the image that the distance from the center must explain
+MIN_EXPLAINED_BY_RADIUS = 0.5
+# stops of the map's spread; below, the map explains its photos, and slight differences do not matter
+MAX_SOUND_SPREAD = 0.1
+# stops of the map's spread; below, no time can be wrong that matters
+MAX_EXACT_SPREAD = 0.015
+# Flicker and another cause are equally good explanations if the other one's evidence is between its
+# limit divided and multiplied by this factor.
+UNDECIDED_FACTOR = 2.0
 
 
-class Contradictions(NamedTuple):
-    """stops (P,); regions, significance, corners (P - 1,), NaN where not known; cost; tints (P,)."""
+def _no_values() -> F64:
+    return np.zeros(0)
+
+
+def _no_tint() -> F64:
+    return np.zeros(1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Contradictions:
+    """What contradicts the exposure times of a bracket; the module explains the fields.
+
+    stops, tints : (P,)
+    regions, significance, corners : (P - 1,)
+    cost : float
+
+    Values that are not known are NaN.
+    """
 
     stops: F64
     regions: F64
-    significance: F64 = np.zeros(0)
-    corners: F64 = np.zeros(0)
+    significance: F64 = field(default_factory=_no_values)
+    corners: F64 = field(default_factory=_no_values)
     cost: float = np.inf
-    tints: F64 = np.zeros(1)
+    tints: F64 = field(default_factory=_no_tint)
 
     @property
     def wrong(self) -> tuple[int, ...]:
-        """The frames whose times are wrong, at a cost."""
-        return tuple(np.flatnonzero((np.abs(self.stops) > WRONG) & (self.cost > COST)).tolist())
+        """The photos whose times are wrong, and change the map."""
+        if self.cost <= MIN_COST_STOPS:
+            return ()
+        return tuple(np.flatnonzero(np.abs(self.stops) > MIN_WRONG_STOPS).tolist())
 
     @property
     def local(self) -> bool:
-        """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
-        slight = len(by) > 0 and np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT
-        return bool(slight or (len(by) and np.median(by) > LOCAL))
+        """Whether no response with one factor per photo can explain the bracket."""
+        regions = self.regions[np.isfinite(self.regions)]
+        significance = self.significance[np.isfinite(self.significance)]
+        if not len(regions):
+            return False
+        typical = np.median(regions)
+        if typical > MIN_LOCAL_STOPS:
+            return True
+        if not len(significance):
+            return False
+        return bool(typical > MIN_SLIGHT_STOPS and np.median(significance) > MIN_SIGNIFICANCE)
 
 
 def find_contradictions(
     images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
 ) -> Contradictions:
-    """Return where the pixels of aligned photographs, from short to long, contradict their times.
+    """Find out where the pixels of aligned photos contradict their exposure times.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-    times : (P,) seconds, as stated
-    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+        Aligned photos, from short to long.
+    times : (P,) float
+        Stated times in seconds.
+    valid : (P, H, W) bool, optional
+        False where a photo has no image.
 
     Returns
     -------
     Contradictions
-        Of the longest run of frames that patches or histograms connect, if these are three or more.
-        Of three frames any one may be wrong: then the middle one is named, or an end by twice as
+        Of the longest run of photos that patches or histograms connect, if these are three or more.
+        With three photos any one may be wrong: then the middle one is named, or an end by twice as
         much.
 
     Examples
@@ -114,111 +150,199 @@ def find_contradictions(
     """
     stack = as_stack(images)
     B = np.log(response_steps.as_ascending_times(times, len(stack)))
-    found = flat_patches.find_flat_patches(stack, valid=valid)
-    H = flat_patches.count_pairs(found.Z, found.best)
-    few = ~response_steps.find_informative(H)
-    if few.any():
+    patches = flat_patches.find_flat_patches(stack, valid=valid)
+    H = flat_patches.count_pairs(patches.Z, patches.best)
+    has_few = ~response_steps.find_informative(H)
+    if has_few.any():
+        # Values of equal rank take the place of flat patches [Grossberg03].
         ranks = flat_patches.rank_levels(stack, valid=valid)
-        H[few] = flat_patches.count_pairs(ranks, np.ones(ranks.shape[2:], bool))[few]
-    stops, places = np.full(len(B), np.nan), np.full((3, len(B) - 1), np.nan)
+        all_ranks = np.ones(ranks.shape[2:], bool)
+        H[has_few] = flat_patches.count_pairs(ranks, all_ranks)[has_few]
+    unknown = Contradictions(
+        stops=np.full(len(B), np.nan),
+        regions=np.full(len(B) - 1, np.nan),
+        significance=np.full(len(B) - 1, np.nan),
+        corners=np.full(len(B) - 1, np.nan),
+    )
     start, stop = find_longest_run(response_steps.find_informative(H))
-    frames, pairs = slice(start, stop + 1), slice(start, stop)
+    frames = slice(start, stop + 1)
+    pairs = slice(start, stop)
     if stop - start < 2 or np.ptp(B[frames]) == 0:
-        return Contradictions(stops, *places)
-    here, Q, tints = B[frames], response_steps.free_directions(B[frames]), np.zeros(len(B))
-    tables = H[pairs], *np.split(H[pairs], H.shape[1], axis=1)  # of all channels, and of each
-    best, *each = (response_steps.fit_steps(one, here, Q, sd=LOOSE) for one in tables)
-    x = np.stack([response_steps.remove_trend(one.x, here) for one in (best, *each)]) / np.log(2)
-    stops[frames], tints[frames] = x[0], np.minimum(x[1:].max(axis=0), -x[1:].min(axis=0))
-    places[:, pairs] = measure_disagreement(found.of(frames), here, best)
-    return Contradictions(stops, *places)._replace(cost=measure_cost(stack, stops), tints=tints)
+        return unknown
+    B_run = B[frames]
+    Q = response_steps.free_directions(B_run)
+    fit = response_steps.fit_steps(H[pairs], B_run, Q, sd=PRIOR_STOPS)
+    channel_fits = [
+        response_steps.fit_steps(table, B_run, Q, sd=PRIOR_STOPS)
+        for table in np.split(H[pairs], H.shape[1], axis=1)
+    ]
+    stops = unknown.stops.copy()
+    stops[frames] = _corrections_in_stops(fit, B_run)
+    channel_stops = np.stack(
+        [_corrections_in_stops(channel_fit, B_run) for channel_fit in channel_fits]
+    )
+    tints = np.zeros(len(B))
+    tints[frames] = np.minimum(channel_stops.max(axis=0), -channel_stops.min(axis=0))
+    places = np.full((3, len(B) - 1), np.nan)
+    places[:, pairs] = measure_disagreement(patches.of(frames), B_run, fit)
+    regions, significance, corners = places
+    return Contradictions(
+        stops=stops,
+        regions=regions,
+        significance=significance,
+        corners=corners,
+        cost=measure_cost(stack, stops),
+        tints=tints,
+    )
+
+
+def _corrections_in_stops(fit: response_steps.Fit, B: F64) -> F64:
+    """Return the corrections of a fit without their straight line in B, in stops."""
+    return response_steps.remove_trend(fit.x, B) / np.log(2)
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
-    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over pixels."""
-    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
-    Z = to_256(stack[:, ::every, ::every])
+    """Return what errors of the photos, stops (P,), change in the map up to a factor: RMS over pixels."""
+    step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / MAX_PIXELS)))
+    Z = to_256(stack[:, ::step, ::step])
     w = response_steps.W[Z.reshape(len(Z), Z.shape[1] * Z.shape[2], -1)].mean(axis=-1)
     total = w.sum(axis=0)
-    off = (np.nan_to_num(stops) @ w)[total > 0] / total[total > 0]
-    return float(off.std()) if off.size else 0.0
+    is_measured = total > 0
+    change = (np.nan_to_num(stops) @ w)[is_measured] / total[is_measured]
+    return float(change.std()) if change.size else 0.0
 
 
 def find_longest_run(informative: Mask) -> tuple[int, int]:
-    """Return start and stop of the longest run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], informative, [False]]).astype(int)))
-    start, stop = max(
-        edges.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0], default=(0, 0)
-    )
+    """Return start and stop of the longest run of True; the first one of several."""
+    padded = np.concatenate([[False], informative, [False]]).astype(int)
+    runs = np.flatnonzero(np.diff(padded)).reshape(-1, 2)
+    if not len(runs):
+        return 0, 0
+    start, stop = runs[np.argmax(runs[:, 1] - runs[:, 0])].tolist()
     return start, stop
 
 
-def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
-    """Return each pair's disagreement by place, (3, P - 1).
+def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: response_steps.Fit) -> F64:
+    """Return by how much the places of each pair of photos disagree, (3, P - 1).
 
-    Where a quarter of the tiles are off by more, in stops and in standard errors, 0 where few are
-    flat; and in stops from the middle to the corners, 0 where that distance does not explain most.
+    The first two rows say by how much a quarter of the tiles are off or more, in stops and in standard
+    errors; 0 where few patches are flat. The third is the change from the center to the corners in
+    stops; 0 where the distance from the center does not explain most of it.
     """
-    h, w = found.Z.shape[2:]
-    y, x = np.indices((h, w)) // TILE
-    tile = y * (w // TILE + 1) + x
-    r2 = (2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2
-    channel, out = np.arange(found.Z.shape[1])[:, None, None], np.full((3, len(B) - 1), np.nan)
-    for j, step in enumerate(np.diff(B + best.x)):
-        a, b = found.Z[j], found.Z[j + 1]
-        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
-        flat = trusted & found.flat.all(axis=0)
-        if np.count_nonzero(flat) < ENOUGH:
-            flat = trusted & found.flat[j] & found.flat[j + 1]
-        sure = np.count_nonzero(flat) >= ENOUGH
-        chosen = flat if sure else trusted
-        r = ((best.g[channel, b] - best.g[channel, a]).mean(axis=0) - step)[chosen] / np.log(2)
-        medians, errors = _tile_medians(r, tile[chosen])
-        if len(medians):
-            off = np.quantile(np.abs([medians, sure * medians / errors]), 0.75, axis=1)
-            out[:2, j] = off if sure else 0
-            slope = np.polyfit(r2[chosen], r, 1)[0]
-            explained = (slope * r2[chosen].std()) ** 2 > CORNERS * r.var()
-            out[2, j] = 2 * abs(slope) * explained
-    return out
+    height, width = patches.Z.shape[2:]
+    y, x = np.indices((height, width)) // TILE
+    tile = y * (width // TILE + 1) + x
+    y_relative = 2 * np.arange(height) / height - 1
+    x_relative = 2 * np.arange(width) / width - 1
+    squared_radius = y_relative[:, None] ** 2 + x_relative**2
+    channel = np.arange(patches.Z.shape[1])[:, None, None]
+    flat_in_all = patches.flat.all(axis=0)
+    disagreement = np.full((3, len(B) - 1), np.nan)
+    for j, step in enumerate(np.diff(B + fit.x)):
+        a = patches.Z[j]
+        b = patches.Z[j + 1]
+        is_trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
+        is_flat = is_trusted & flat_in_all
+        if np.count_nonzero(is_flat) < MIN_FLAT_PATCHES:
+            is_flat = is_trusted & patches.flat[j] & patches.flat[j + 1]
+        has_flat = np.count_nonzero(is_flat) >= MIN_FLAT_PATCHES
+        chosen = is_flat if has_flat else is_trusted
+        measured_step = (fit.g[channel, b] - fit.g[channel, a]).mean(axis=0)
+        residuals = (measured_step - step)[chosen] / np.log(2)
+        medians, errors = _tile_medians(residuals, tile[chosen])
+        if not len(medians):
+            continue
+        disagreement[:2, j] = 0
+        if has_flat:
+            sizes = np.abs([medians, medians / errors])
+            disagreement[:2, j] = np.quantile(sizes, 0.75, axis=1)
+        r2 = squared_radius[chosen]
+        slope = np.polyfit(r2, residuals, 1)[0]
+        is_radial = (slope * r2.std()) ** 2 > MIN_EXPLAINED_BY_RADIUS * residuals.var()
+        disagreement[2, j] = 2 * abs(slope) if is_radial else 0
+    return disagreement
 
 
-def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
-    """Return the median of r over each tile of at least FEWEST patches, and its standard error.
+def _tile_medians(residuals: F64, tile: Indices) -> tuple[F64, F64]:
+    """Return the median of each tile with at least MIN_PATCHES_PER_TILE patches, and its standard error.
 
-    That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal
-    errors.
+    For normal errors the standard error of a median is 1.25 sigma / sqrt(n), and sigma is 1.48 times
+    the median deviation.
     """
-    _, place, n = np.unique(tile, return_inverse=True, return_counts=True)
-    first = np.cumsum(n) - n
+    _, place, counts = np.unique(tile, return_inverse=True, return_counts=True)
+    first = np.cumsum(counts) - counts
 
     def find_medians(values: F64) -> F64:
         ordered = values[np.lexsort((values, place))]  # tile after tile, each from low to high
-        return (ordered[first + (n - 1) // 2] + ordered[first + n // 2]) / 2
+        lower = ordered[first + (counts - 1) // 2]
+        upper = ordered[first + counts // 2]
+        return (lower + upper) / 2
 
-    medians, large = find_medians(r), n >= FEWEST
-    sigma = 1.48 * find_medians(np.abs(r - medians[place]))
-    return medians[large], np.maximum(1.25 * sigma / np.sqrt(n), SMALLEST_ERROR)[large]
+    medians = find_medians(residuals)
+    sigma = 1.48 * find_medians(np.abs(residuals - medians[place]))
+    errors = np.maximum(1.25 * sigma / np.sqrt(counts), MIN_STANDARD_ERROR)
+    is_large = counts >= MIN_PATCHES_PER_TILE
+    return medians[is_large], errors[is_large]
 
 
 def warn_of_contradictions(
-    found: Contradictions, names: Sequence[str], spread: float = np.inf
+    found: Contradictions,
+    names: Sequence[str],
+    spread: float = np.inf,
+    *,
+    band_stops: float = 0.0,
 ) -> str:
-    """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing.
+    """Return the warning about what is wrong, in which photo and by how much; "" if nothing is.
 
-    Of a map whose spread is small, stops, only times that are wrong need a word, and places that
-    differ much.
+    Parameters
+    ----------
+    found : Contradictions
+    names : sequence of str
+        Names of the photos.
+    spread : float
+        The map's spread in stops. If it is small, only wrong times and large differences matter.
+    band_stops : float
+        Stops by which the light changes in horizontal bands, see `motion.measure_motion`.
     """
-    if found.tints.max() > WRONG:
-        return say("white_balance", frame=names[int(found.tints.argmax())], stops=found.tints.max())
+    if found.tints.max() > MIN_WRONG_STOPS:
+        frame = names[int(found.tints.argmax())]
+        return warning_text("white_balance", frame=frame, stops=found.tints.max())
     corners = found.corners[np.isfinite(found.corners)]
-    if len(corners) and np.median(corners) > SLIGHT:
-        return say("corners", stops=np.median(corners))
-    by = np.nanmedian(found.regions) if found.local else 0.0
-    if by > LOCAL or (found.local and spread > SOUND):
-        j = int(np.nanargmax(found.regions))
-        return say("local", stops=by, dark=names[j], bright=names[j + 1])
-    if not found.wrong or spread < EXPLAINED:
+    if len(corners) and np.median(corners) > MIN_SLIGHT_STOPS:
+        return warning_text("corners", stops=np.median(corners))
+    has_bands = band_stops > motion.BANDED
+    if found.local:
+        text = _warn_of_local_changes(found, names, spread, band_stops if has_bands else 0.0)
+        if text:
+            return text
+    if not found.wrong or spread < MAX_EXACT_SPREAD:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
-    return say("times", off=off + (say("of_three") if np.isfinite(found.stops).sum() == 3 else ""))
+    largest = float(np.abs(found.stops[list(found.wrong)]).max())
+    if has_bands and largest < UNDECIDED_FACTOR * MIN_WRONG_STOPS:
+        return warning_text("flicker_or_times", bands=band_stops, off=off)
+    if np.isfinite(found.stops).sum() == 3:
+        off += warning_text("of_three")
+    return warning_text("times", off=off)
+
+
+def _warn_of_local_changes(
+    found: Contradictions, names: Sequence[str], spread: float, band_stops: float
+) -> str:
+    """Return the warning about light that changed in parts of the image, or ""."""
+    stops = float(np.nanmedian(found.regions))
+    j = int(np.nanargmax(found.regions))
+    if band_stops:
+        if stops < MIN_LOCAL_STOPS / UNDECIDED_FACTOR:
+            return ""
+        if stops < MIN_LOCAL_STOPS * UNDECIDED_FACTOR:
+            return warning_text(
+                "flicker_or_local",
+                bands=band_stops,
+                stops=stops,
+                dark=names[j],
+                bright=names[j + 1],
+            )
+    if stops > MIN_LOCAL_STOPS or spread > MAX_SOUND_SPREAD:
+        return warning_text("local", stops=stops, dark=names[j], bright=names[j + 1])
+    return ""

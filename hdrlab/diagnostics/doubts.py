@@ -1,4 +1,4 @@
-"""The sentences that say why not to trust a map, in one file, to be read beside each other."""
+"""The texts of warnings and notes, kept together in doubts.toml so that they read alike."""
 
 import tomllib
 from pathlib import Path
@@ -6,12 +6,12 @@ from pathlib import Path
 SENTENCES: dict[str, str] = tomllib.loads(Path(__file__).with_name("doubts.toml").read_text("utf8"))
 
 
-def say(name: str, **found: object) -> str:
-    """Return a sentence with what was found.
+def warning_text(name: str, **values: object) -> str:
+    """Return a text of doubts.toml with `values` filled in.
 
     Examples
     --------
-    >>> say("rivals", frames="a.jpg")
-    '; it may also be a.jpg that is wrong, and with it the map'
+    >>> warning_text("rivals", frames="a.jpg")
+    '; a.jpg may be the wrong photo instead, and then the map is wrong, too'
     """
-    return SENTENCES[name].format(**found)
+    return SENTENCES[name].format(**values)

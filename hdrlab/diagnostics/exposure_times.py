@@ -16,7 +16,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, as_response, as_stack
 from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.doubts import say
+from hdrlab.diagnostics.doubts import warning_text
 
 # stops: a time that was this far off is more than rough
 FAR = 0.5
@@ -192,5 +192,5 @@ def doubts(found: Estimate) -> tuple[str, ...]:
     if not found.accepted or far <= (ROUNDED if len(found.stops) == 3 else FAR):
         return ()
     if far <= FAR:
-        return (say("one_of_three", middle=1.5 * far, end=3 * far),)
-    return (say("far", stops=far),)
+        return (warning_text("one_of_three", middle=1.5 * far, end=3 * far),)
+    return (warning_text("far", stops=far),)

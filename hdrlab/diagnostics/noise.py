@@ -24,8 +24,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance
-from hdrlab.diagnostics.doubts import say
-from hdrlab.errors import InputError
+from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.errors import CalibrationError, InputError
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a channel, on an even grid, that stand for all
@@ -148,7 +148,7 @@ def _fit(
         rows.append([*scatter(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
     S, bias, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 7).T
     if len(S) < 6:
-        raise InputError(say("few", count=len(S)))
+        raise CalibrationError(warning_text("few", count=len(S)))
     N, R, rho = _solve(S, a0, np.array(a), count)
     return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0) / MEDIAN)
 

@@ -29,8 +29,8 @@ from hdrlab.core.arrays import (
     as_stack,
     as_times,
 )
-from hdrlab.diagnostics.doubts import say
-from hdrlab.errors import InputError
+from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.errors import CalibrationError
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
 NEIGHBOUR_ERROR_LIMIT = 4.0
@@ -107,7 +107,7 @@ def validate_response(
     True
     >>> validate_response(g, images, [1, 200])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: expected times consistent with the images: between 1 s and 200 s the response ...
+    hdrlab.errors.CalibrationError: the exposure times contradict the images: between 1 s and 200 s ...
     """
     stack = as_stack(images)
     t, curve = as_times(times, len(stack)), as_response(g, 256, stack[0, 0, 0].size)
@@ -115,16 +115,18 @@ def validate_response(
     Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
     error, darker_share = neighbour_errors(Z, t, curve)
     if np.any(darker_share > 0.5):
-        raise InputError(say("darker", pair=_pair(t, darker_share)))
+        raise CalibrationError(warning_text("darker", pair=_pair(t, darker_share)))
     measured = error[np.isfinite(error)]
     if np.any(measured > NEIGHBOUR_ERROR_LIMIT) or (
         len(measured) > 2 and np.median(measured) > MEDIAN_ERROR_LIMIT
     ):
-        raise InputError(say("steep", pair=_pair(t, error), stops=measured.max()))
+        raise CalibrationError(warning_text("steep", pair=_pair(t, error), stops=measured.max()))
     low, high = INNER_LEVELS
     span = float(np.max(curve[high] - curve[low]) / np.log(2))
     if span > SPAN_LIMIT:
-        raise InputError(say("wide", stops=span, low=low, high=high, widest=WIDEST_CAMERA))
+        raise CalibrationError(
+            warning_text("wide", stops=span, low=low, high=high, widest=WIDEST_CAMERA)
+        )
     return g
 
 

@@ -1,24 +1,94 @@
-"""Where the chapters meet: a bracket of photographs -> a radiance map -> a picture.
+"""Where the chapters meet: a bracket of photos becomes a radiance map, and the map a picture.
 
-Its functions are loaded when they are first used, so that the command line lists the methods at
-once.
+Each name is imported from its module when it is first used, so that the command line starts
+quickly.
 """
 
+import warnings
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-PLACES = {
-    "assembly": ("Assembly", "Method"),
-    "certainty": ("measure_deviation",),
-    "pictures": ("develop", "develop_and_describe", "find_operator", "settle"),
-    "registration": ("aligned", "moved"),
-    "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps", "calibrate"),
-    "timing": ("space_by_stops",),
+if TYPE_CHECKING:
+    from hdrlab.pipeline.assembly import Assembly, Method
+    from hdrlab.pipeline.certainty import measure_deviation
+    from hdrlab.pipeline.options import WEIGHTS
+    from hdrlab.pipeline.pictures import (
+        develop,
+        develop_and_describe,
+        find_operator,
+        resolve_settings,
+    )
+    from hdrlab.pipeline.registration import align_bracket, apply_alignment
+    from hdrlab.pipeline.stages import (
+        CONTRADICTION,
+        STAGES,
+        assemble,
+        assemble_steps,
+        calibrate,
+    )
+    from hdrlab.pipeline.timing import space_by_stops
+
+__all__ = [
+    "CONTRADICTION",
+    "STAGES",
+    "WEIGHTS",
+    "Assembly",
+    "Method",
+    "align_bracket",
+    "apply_alignment",
+    "assemble",
+    "assemble_steps",
+    "calibrate",
+    "develop",
+    "develop_and_describe",
+    "find_operator",
+    "measure_deviation",
+    "resolve_settings",
+    "space_by_stops",
+]
+
+# The module of each public name.
+_MODULES = {
+    "Assembly": "assembly",
+    "Method": "assembly",
+    "measure_deviation": "certainty",
+    "WEIGHTS": "options",
+    "develop": "pictures",
+    "develop_and_describe": "pictures",
+    "find_operator": "pictures",
+    "resolve_settings": "pictures",
+    "align_bracket": "registration",
+    "apply_alignment": "registration",
+    "CONTRADICTION": "stages",
+    "STAGES": "stages",
+    "assemble": "stages",
+    "assemble_steps": "stages",
+    "calibrate": "stages",
+    "space_by_stops": "timing",
+}
+
+# The new name of each deprecated one.
+_DEPRECATED = {
+    "aligned": "align_bracket",
+    "moved": "apply_alignment",
+    "settle": "resolve_settings",
 }
 
 
 def __getattr__(name: str) -> Any:
-    for module, names in PLACES.items():
-        if name in names:
-            return getattr(import_module(f"{__name__}.{module}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _DEPRECATED:
+        new_name = _DEPRECATED[name]
+        warnings.warn(
+            f"hdrlab.pipeline.{name} is deprecated; use {new_name}",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        name = new_name
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = import_module(f"{__name__}.{_MODULES[name]}")
+    return getattr(module, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_MODULES})

@@ -1,80 +1,89 @@
-"""Alignment of a bracket pair by pair, where every answer is validated.
+"""Align a bracket pair by pair, and validate each result.
 
-"mtb" shifts by whole pixels. "auto" does so, too, and looks once more at the pairs that no shift
-lays on each other: with rotation, then with a homography, in an overview of half a megapixel. It
-takes their answer where the light of the two photographs then agrees clearly better than after the
-shift.
+"mtb" shifts by whole pixels. So does "auto", and for the pairs that no shift aligns it tries more:
+rotation, then a homography, in an overview of half a megapixel. It accepts the result if the light of
+the two photos then agrees clearly better than after the shift.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from itertools import pairwise, starmap
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from hdrlab.align import cerman, homography, light, mtb
 from hdrlab.core import colour, steps, transfer
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, as_times, levels
+from hdrlab.core.choices import require_choice
 from hdrlab.core.filters import warp
 from hdrlab.core.threads import map_in_threads
-from hdrlab.diagnostics import registration as judgement
-from hdrlab.errors import InputError
+from hdrlab.diagnostics import registration as validation
+from hdrlab.diagnostics.registration import Validation
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
 
 METHODS = ("auto", *catalogue.names("align"))
+# The methods that compare light, from the simplest to the most general.
 SEARCHES: dict[str, Callable[[list[F32]], Iterator[Any]]] = {
     "cerman": cerman.search,
     "homography": homography.search,
 }
-# levels of a pyramid: more than any picture has, so the range grows with the picture
-BITS = 16
-# percentiles that are tried where the search by the median fails
-OTHERS = (0.83, 0.17)
-# confidence of what is taken from them
-CERTAIN = 0.9
-Curve = ArrayLike | Callable[[], F64 | None] | None  # of one's own, or found where it is asked for
-# from the numbers and the gray photographs of a darker and a brighter one to the pyramid of their
-# light
-AsLight = Callable[[int, int, Array, Array], list[F32]]
+# Levels of an image pyramid: more than any image has, so the range of the search grows with the image.
+PYRAMID_LEVELS = 16
+# percentiles of Ward's threshold that are tried if the search with the median fails
+OTHER_PERCENTILES = (0.83, 0.17)
+# Results with these percentiles need a higher confidence.
+MIN_OTHER_CONFIDENCE = 0.9
+
+# A response, or a function that finds it when light is compared.
+Curve = ArrayLike | Callable[[], F64 | None] | None
+# From the indices and the gray images of a darker and a brighter photo to the pyramid of their light.
+MakePyramid = Callable[[int, int, Array, Array], list[F32]]
 
 
-class Registration(NamedTuple):
-    """The homographies (P, 3, 3) of a bracket, the Validation of each pair, and the method.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Registration:
+    """The alignment of a bracket.
 
-    Of "auto" it is the least simple that a pair took, and "none" where all photographs stay.
+    Attributes
+    ----------
+    homographies : (P, 3, 3)
+    pairs : tuple of Validation
+        One for each pair of neighbors, from dark to bright.
+    method : str
+        With "auto", the most general method that a pair needed; "none" if all photos stay in place.
     """
 
     homographies: F64
-    pairs: tuple[judgement.Validation, ...]
+    pairs: tuple[Validation, ...]
     method: str
 
 
 def register(
     images: ArrayLike, method: str = "auto", *, times: ArrayLike | None = None, g: Curve = None
 ) -> Registration:
-    """Return the Registration of photographs by a method of METHODS.
+    """Align photos by a method of METHODS, and validate the alignment of each pair.
 
-    A pair's homography counts only where the photographs then agree clearly better than without.
+    A pair's homography is accepted only if the photos then agree clearly better than without it.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
-        Photographs of one scene with different exposures, in any order.
+        Photos of one scene with different exposures, in any order.
     method : str
         "mtb", "cerman", "homography", or "auto": "mtb", and the others for pairs that no shift
-        serves.
-    times : (P,) seconds, optional
-        Their exposures. Without them the ratios come out of the histograms.
-    g : (n,) or (n, 3), optional
-        The camera's response, ln exposure of each level, or a function that finds it where light is
-        compared. Without it the histograms of each pair are matched.
+        aligns.
+    times : (P,) float, optional
+        Exposure times in seconds. Without them, exposure ratios come from the histograms.
+    g : (n,) or (n, 3) float, or function, optional
+        The camera's response, ln exposure of each pixel value, or a function that finds it when light
+        is compared. Without it, the histograms of each pair are matched.
 
     Raises
     ------
-    ValueError
-        For images that are not a stack of photographs, and for times or a response that do not fit
-        them.
+    InputError
+        If images is not a stack of photos, or times or the response do not fit them.
 
     Examples
     --------
@@ -86,130 +95,164 @@ def register(
     ('mtb', [-4.0, 3.0])
     """
     images = as_stack(images)
-    if method not in METHODS:
-        raise InputError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
-    as_light, by_bits = (
-        light_scale(images, times, g),
-        starmap(best_percentile, photograph_pairs(images)),
-    )
-    pairs = tuple(register_by_light(images, as_light, method) if method in SEARCHES else by_bits)
+    require_choice("align", method, METHODS)
+    make_pyramid = pyramid_maker(images, times, g)
+    if method in SEARCHES:
+        pairs = tuple(register_by_light(images, make_pyramid, method))
+    else:
+        pairs = tuple(starmap(best_percentile, photograph_pairs(images)))
     if method == "auto":
-        names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
-        if any(one.apart for one in pairs):  # a hand that rotates once does so in every pair
-            each = zip(pairs, names, photograph_pairs(images), strict=True)
-            found = [improve(one, name, B, A, as_light) for one, name, (_, B, _, A) in each]
-            pairs, names = tuple(one for one, _ in found), [name for _, name in found]
-        method = next((name for name in ("homography", "cerman", "mtb") if name in names), "none")
-    order = [pairs[0].moving, *(one.fixed for one in pairs)] if pairs else [0]
-    return Registration(warp.chain_homographies(order, [one.step for one in pairs]), pairs, method)
+        pairs, method = _improve_pairs(images, pairs, make_pyramid)
+    order = [pairs[0].moving, *(pair.fixed for pair in pairs)] if pairs else [0]
+    homographies = warp.chain_homographies(order, [pair.step for pair in pairs])
+    return Registration(homographies=homographies, pairs=pairs, method=method)
+
+
+def _improve_pairs(
+    images: Array, pairs: tuple[Validation, ...], make_pyramid: MakePyramid
+) -> tuple[tuple[Validation, ...], str]:
+    """Return the pairs, improved where needed, and the most general method that one of them needed."""
+    methods = ["mtb" if np.any(pair.step != np.eye(3)) else "none" for pair in pairs]
+    # A hand that rotates the camera once does so in every pair, so all of them are tried.
+    if any(pair.apart for pair in pairs):
+        photos = photograph_pairs(images)
+        improved = [
+            improve(pair, method, B, A, make_pyramid)
+            for pair, method, (_, B, _, A) in zip(pairs, methods, photos, strict=True)
+        ]
+        pairs = tuple(pair for pair, _ in improved)
+        methods = [method for _, method in improved]
+    for method in ("homography", "cerman", "mtb"):
+        if method in methods:
+            return pairs, method
+    return pairs, "none"
 
 
 def photograph_pairs(
-    images: Array, bits: int = BITS
+    images: Array, bits: int = PYRAMID_LEVELS
 ) -> Iterator[tuple[int, Photograph, int, Photograph]]:
-    """Yield the numbers and Photographs of neighbours from dark to bright, a few at a time in memory."""
-    taken = map_in_threads(
-        lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images)
-    )
-    yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
+    """Yield index and Photograph of both neighbors, from dark to bright, with few in memory at a time."""
+
+    def load(image: int) -> tuple[int, Photograph]:
+        return image, Photograph(images[image], bits=bits)
+
+    loaded = map_in_threads(load, mtb.by_brightness(images))
+    for (moving, B), (fixed, A) in pairwise(loaded):
+        yield moving, B, fixed, A
 
 
 def register_by_light(
-    images: Array, as_light: AsLight, method: str
-) -> Iterator[judgement.Validation]:
-    """Yield the Validation of pair after pair from dark to bright, by one of SEARCHES at full resolution."""
-    Z = images if images.ndim == 3 else images[..., 1]
+    images: Array, make_pyramid: MakePyramid, method: str
+) -> Iterator[Validation]:
+    """Yield the Validation of each pair from dark to bright, by one of SEARCHES at full resolution."""
+    gray = images if images.ndim == 3 else images[..., 1]
     for moving, fixed in pairwise(mtb.by_brightness(images)):
-        pyramid = as_light(moving, fixed, Z[moving], Z[fixed])
-        pair = judgement.compare_light(moving, fixed, pyramid[0])
-        yield judgement.validate(pair, steps.last(SEARCHES[method](pyramid)).H)
+        pyramid = make_pyramid(moving, fixed, gray[moving], gray[fixed])
+        comparison = validation.compare_light(moving, fixed, pyramid[0])
+        H = steps.last(SEARCHES[method](pyramid)).H
+        yield validation.validate(comparison, H)
 
 
 def improve(
-    best: judgement.Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
-) -> tuple[judgement.Validation, str]:
-    """Return the Validation of a pair by the simplest method that serves, and its name."""
-    scale, pyramid = (
-        2**A.overview,
-        as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview]),
-    )
-    pair = judgement.compare_light(best.moving, best.fixed, pyramid[0], scale)
-    d = pair.differences(best.step)
+    best: Validation, best_method: str, B: Photograph, A: Photograph, make_pyramid: MakePyramid
+) -> tuple[Validation, str]:
+    """Return the Validation of a pair by the simplest method that aligns it, and the method's name."""
+    scale = 2**A.overview
+    pyramid = make_pyramid(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
+    comparison = validation.compare_light(best.moving, best.fixed, pyramid[0], scale)
+    best_differences = comparison.differences(best.step)
     for method, search in SEARCHES.items():
-        found = judgement.validate(pair, homography.enlarge(steps.last(search(pyramid)).H, scale))
-        left, overlaps = (
-            pair.differences(found.H),
-            max(map(abs, found.offset)) < min(B.Y[0].shape) / 2,
-        )
-        if (
-            found.known
-            and overlaps
-            and found.confidence >= judgement.LOST
-            and pair.lower(left, d)[-1]
-        ):
-            best, name, d = found, method, left
+        H = homography.enlarge(steps.last(search(pyramid)).H, scale)
+        found = validation.validate(comparison, H)
+        differences = comparison.differences(found.H)
+        overlaps = max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
+        is_lower = comparison.lower(differences, best_differences)[-1]
+        if found.known and overlaps and is_lower:
+            best = found
+            best_method = method
+            best_differences = differences
         if not best.apart:
             break
-    return best, name
+    return best, best_method
 
 
-def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> judgement.Validation:
-    """Return the Validation at the median; where that fails, at Ward's other percentiles, if one is certain.
+def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:
+    """Return the Validation with thresholds at the median, or else at another percentile of Ward's.
 
-    Its answer must lie elsewhere: photographs that turned fit nearby, too.
+    Another percentile counts if its result is certain and lies elsewhere: photos that were rotated
+    also fit nearby.
     """
-
-    def attempt(near: float) -> judgement.Validation:
-        q = mtb.percentile(A.h[0], B.h[0], near=near)
-        if q is None:
-            return judgement.uninformative(moving, fixed)
-
-        def count(offset: Array, level: int) -> Array:
-            return B.count_differences(A, (int(offset[0]), int(offset[1])), level, q)
-
-        t = A.threshold(q, A.overview)
-        both = judgement.compare_bits(moving, fixed, A.Y, A.overview, t, count)
-        H = warp.as_homographies([B.offset_onto(A, q)])[0]
-        return judgement.validate(both, H, limit=2 ** len(A.Y) - 1)
-
-    first = attempt(0.5)
-    for one in (attempt(q) for q in OTHERS if not first.reliable):
-        apart = np.max(np.abs(np.subtract(one.offset, first.offset))) > judgement.NEAR
-        if one.reliable and one.confidence > CERTAIN and apart:
-            return one
+    first = _validate_at_percentile(moving, B, fixed, A, 0.5)
+    if first.reliable:
+        return first
+    for percentile in OTHER_PERCENTILES:
+        other = _validate_at_percentile(moving, B, fixed, A, percentile)
+        distance = np.max(np.abs(np.subtract(other.offset, first.offset)))
+        is_certain = other.reliable and other.confidence > MIN_OTHER_CONFIDENCE
+        if is_certain and distance > validation.NEAR:
+            return other
     return first
 
 
-def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
-    """Return the function that brings the light of two photographs to one scale, at every size.
+def _validate_at_percentile(
+    moving: int, B: Photograph, fixed: int, A: Photograph, near: float
+) -> Validation:
+    """Return the Validation of a pair whose thresholds are near this percentile."""
+    q = mtb.percentile(A.h[0], B.h[0], near=near)
+    if q is None:
+        return validation.uninformative(moving, fixed)
 
-    Without a response the darker photograph is brought to the brighter one by histograms alone,
-    both are read by the curve of sRGB, and each pixel is divided by the mean around it: what is
-    wrong with that is wrong in both alike, and cancels.
+    def count(offset: Array, level: int) -> Array:
+        return B.count_differences(A, (int(offset[0]), int(offset[1])), level, q)
+
+    threshold = A.threshold(q, A.overview)
+    comparison = validation.compare_bits(moving, fixed, A.Y, A.overview, threshold, count)
+    H = warp.as_homographies([B.offset_onto(A, q)])[0]
+    return validation.validate(comparison, H, limit=2 ** len(A.Y) - 1)
+
+
+def pyramid_maker(images: Array, times: ArrayLike | None, g: Curve) -> MakePyramid:
+    """Return the function that brings the light of two photos to one scale, at every size.
+
+    Without a response, the histogram of the darker photo is matched to that of the brighter one, both
+    are decoded by the curve of sRGB, and each pixel is divided by the mean around it: errors of the
+    curve are the same in both photos, and cancel.
     """
-    n, seconds = levels(images), None if times is None else as_times(times, len(images))
-    given = g if g is None or callable(g) else as_table(g, n)
+    n = levels(images)
+    seconds = None if times is None else as_times(times, len(images))
+    get_curve: Callable[[], F64 | None]
+    if callable(g):
+        get_curve = g
+    else:
+        fixed_curve = None if g is None else as_table(g, n)
 
-    def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
-        table, curve = (
-            colour.decode_srgb(np.arange(n) / (n - 1)),
-            given() if callable(given) else given,
-        )
-        if curve is not None:
-            table = np.exp(
-                as_table(curve, n).reshape(n, -1)[:, :2][:, -1]
-            )  # the only one, or green
-        f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
+        def get_curve() -> F64 | None:
+            return fixed_curve
+
+    def make_pyramid(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
+        step = (n - 1) // np.iinfo(dark.dtype).max  # an overview has 8 bits
+        curve = get_curve()
         if curve is None:
-            T = transfer.brightness_transfer(*transfer.histograms([dark, bright])[0])
-            T[0], T[-1] = 0, len(f_inv) - 1
-            z, known = np.arange(len(f_inv)), np.flatnonzero(np.isfinite(T))
-            matched = np.interp(np.interp(z, known, T[known]), z, f_inv)
-            pair = light.pair(bright, dark, f_inv, matched)
-            return [np.stack([x / light.local_mean(x) for x in X]) for X in pair]
-        k = light.exposure_ratio(dark, bright, np.log(f_inv))
+            f_inv = colour.decode_srgb(np.arange(n) / (n - 1))[::step]
+            return _pair_by_histograms(dark, bright, f_inv)
+        channels = as_table(curve, n).reshape(n, -1)
+        green = channels[:, min(1, channels.shape[1] - 1)]  # the only channel of a gray image
+        f_inv = np.exp(green)[::step]
+        ratio = light.exposure_ratio(dark, bright, np.log(f_inv))
         if seconds is not None:
-            k = seconds[fixed] / seconds[moving]
-        return light.pair(bright, dark, f_inv, k * f_inv)
+            ratio = seconds[fixed] / seconds[moving]
+        return light.pair(bright, dark, f_inv, ratio * f_inv)
 
-    return as_light
+    return make_pyramid
+
+
+def _pair_by_histograms(dark: Array, bright: Array, f_inv: F64) -> list[F32]:
+    """Return the pyramid of the light of two photos, relative to its mean around each pixel."""
+    T = transfer.brightness_transfer(*transfer.histograms([dark, bright])[0])
+    T[0] = 0
+    T[-1] = len(f_inv) - 1
+    z = np.arange(len(f_inv))
+    known = np.flatnonzero(np.isfinite(T))
+    matched = np.interp(np.interp(z, known, T[known]), z, f_inv)
+    pyramid = light.pair(bright, dark, f_inv, matched)
+    return [np.stack([x / light.local_mean(x) for x in X]) for X in pyramid]

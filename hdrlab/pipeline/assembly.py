@@ -1,7 +1,8 @@
-"""What is known of a bracket, stage after stage."""
+"""Assembly: what is known of a bracket after each stage of the pipeline."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,46 +10,59 @@ from numpy.typing import NDArray
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency
 
+# The name of a method, or a function with the same signature.
 Method = str | Callable[..., Any]
-Table = NDArray[np.float64]
 
 
-class Assembly(NamedTuple):
-    """What is known of a bracket after a stage; what is not known yet is None.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Assembly:
+    """What is known of a bracket after a stage. A field that is not known yet is None.
 
     Attributes
     ----------
-    stage : the one of STAGES that was done last; "ghosts" or "flare" after "merge" where these are
-        removed
-    bracket : the photographs, moved and cut to what all of them show
-    offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
-    g : (n,) or (n, 3), response, ln exposure of each level
-    E : (h, w) or (h, w, 3) float32, radiance
-    quality : (h, w) uint8, how each pixel is known: flags of `radiance.merge.Quality`
-    medians : (P, C, 256), log2 exposure of each level by each frame: see `diagnostics.consistency`
-    notes : sentences, what to know about this map
-    doubts : sentences, reasons not to trust it
-    homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions
-        included
-    moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody
-        asked
-    glare : (h, w) bool, where veiling glare was removed; None where nobody asked
-    s : (h, w) or (h, w, 3) float32, standard deviation of E, infinite where unknown; None where
-        nobody asked
-    fallback : why the map is not worth a picture, and the photographs are fused instead; "" where
-        it is
+    stage : str
+        The last stage that is done: one of STAGES, or "ghosts" or "flare" after "merge" where
+        these are removed.
+    bracket : Bracket
+        The aligned photos, cropped to the area that all of them show.
+    offsets : (P, 2) int
+        (dy, dx) in pixels by which each photo, or its center, was shifted.
+    homographies : (P, 3, 3)
+        The same as homographies, with rotation, scale and fractions of a pixel.
+    g : (n,) or (n, 3)
+        Response: ln exposure of each pixel value.
+    E : (h, w) or (h, w, 3) float32
+        Radiance map.
+    quality : (h, w) uint8
+        How each pixel was measured: flags of `radiance.merge.Quality`.
+    medians : (P, C, 256)
+        log2 exposure of each pixel value in each photo, see `diagnostics.consistency`.
+    notes : tuple of str
+        Remarks on the map, as sentences.
+    doubts : tuple of str
+        Warnings, as sentences; an empty tuple means that no problem was found.
+    moving : (h, w) int32 or None
+        Numbered regions in which something moved, 0 elsewhere; None if ghosts were not removed.
+    glare : (h, w) bool or None
+        Where veiling glare was removed; None if it was not.
+    s : (h, w) or (h, w, 3) float32 or None
+        Standard deviation of E, infinite where unknown; None if it was not computed.
+    fallback : str
+        Why the map is not worth tone mapping, so that a picture is made by exposure fusion of the
+        photos instead; "" if the map is usable.
     """
 
     stage: str
     bracket: Bracket
     offsets: NDArray[np.int64]
-    g: NDArray[np.float64] = None  # type: ignore[assignment]  # typed as what each stage makes of it
+    # The following fields are None until their stage is done, and arrays from then on.
+    homographies: NDArray[np.float64] = None  # type: ignore[assignment]
+    g: NDArray[np.float64] = None  # type: ignore[assignment]
     E: NDArray[np.float32] = None  # type: ignore[assignment]
     quality: NDArray[np.uint8] = None  # type: ignore[assignment]
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
-    homographies: NDArray[np.float64] = None  # type: ignore[assignment]
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
     s: NDArray[np.float32] | None = None
@@ -56,19 +70,34 @@ class Assembly(NamedTuple):
 
     @property
     def spread(self) -> float:
-        """How far the frames contradict each other, in stops; NaN before the last stage."""
-        return (
-            consistency.measure_spread(self.medians) if self.medians is not None else float("nan")
-        )
+        """How far the photos contradict each other, in stops; NaN before the last stage."""
+        if self.medians is None:
+            return float("nan")
+        return consistency.measure_spread(self.medians)
+
+    def with_note(self, note: str) -> "Assembly":
+        """Return a copy with one more note."""
+        return replace(self, notes=(*self.notes, note))
+
+    def with_doubt(self, doubt: str) -> "Assembly":
+        """Return a copy with one more warning."""
+        return replace(self, doubts=(*self.doubts, doubt))
 
 
-def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
-    """Return the Assembly of some frames, in this order."""
+def select_photos(state: Assembly, order: NDArray[np.intp]) -> Assembly:
+    """Return the Assembly of some of its photos, in this order."""
     if np.array_equal(order, np.arange(len(state.offsets))):
         return state
-    images, times, names, valid, linear = state.bracket
-    valid = None if valid is None else valid[order]
-    some = Bracket(images[order], times[order], tuple(names[j] for j in order), valid, linear)
-    return state._replace(
-        bracket=some, offsets=state.offsets[order], homographies=state.homographies[order]
+    bracket = state.bracket
+    selected = bracket._replace(
+        images=bracket.images[order],
+        times=bracket.times[order],
+        names=tuple(bracket.names[j] for j in order),
+        valid=None if bracket.valid is None else bracket.valid[order],
+    )
+    return replace(
+        state,
+        bracket=selected,
+        offsets=state.offsets[order],
+        homographies=state.homographies[order],
     )

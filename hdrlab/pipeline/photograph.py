@@ -1,18 +1,19 @@
-"""A picture for photographers: light compressed where it must be, exposure and contrast set from the map.
+"""A picture for photographers: illumination compressed as needed, exposure and contrast set from the map.
 
-L       luminance                 (H, W), any linear unit; lL its decades, log10 L
-light   large-scale light of lL   (H, W), a lL + b of a guided filter: smooth but for its edges
-x       lL - (1 - share) light    (H, W): the light's contrast is multiplied by `share`, all detail stays
-Lm      scaled luminance          key 10^(CONTRAST (x - mean of x)), 1 about where the curve bends
-Ld      (curve of Lm - black) / (1 - black), by the curve of `tonemap.reinhard` and its `white`
+L       luminance                  (H, W), any linear unit; lL is log10 L, in decades
+light   large-scale light of lL    (H, W), a lL + b of a guided filter: smooth except at its edges
+x       lL - (1 - share) light     (H, W): the contrast of the light is multiplied by `share`, detail stays
+Lm      scaled luminance           key 10^(CONTRAST (x - mean of x)), about 1 where the curve bends
+Ld      (curve of Lm - black) / (1 - black), with the curve of `tonemap.reinhard` and its `white`
 
-The defaults of Reinhard's paper are flat for a photograph: black is not set, and half of the
-display's range is kept for the brightest pixels. A guided filter reverses no gradients beside soft
-edges, unlike a bilateral one; its a and b are found on a coarse grid (He and Sun, Fast guided
-filter, 2015).
+The defaults of Reinhard's paper look flat for a photograph: the black point is not set, and half of
+the display's range is kept for the brightest pixels. A guided filter does not reverse gradients next
+to soft edges, unlike a bilateral filter. Its a and b are computed on a coarse grid (He and Sun, Fast
+guided filter, 2015).
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,33 +24,74 @@ from hdrlab.errors import InputError
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
 
-# half of the guided filter's window, of the longer side; nodes of the coarse grid in that half
-REACH, NODES = 0.03, 4
-# of the median luminance: what is darker has no more detail
-DARK = 1e-6
-# decades: a step of light that stays an edge
-EDGE = 0.35
-# decades of light that a display shows with ease, and the least share that stays of more
-RANGE, LEAST = 1.9, 0.45
-# key of a map whose log luminance lies evenly about its mean
-MIDDLE = 0.24
-# contrast of the picture over that of x
+# half of the guided filter's window, as a fraction of the longer side
+WINDOW_FRACTION = 0.03
+# nodes of the coarse grid in half a window
+NODES_PER_RADIUS = 4
+# Darker pixels than this fraction of the median luminance have no more detail.
+MIN_LUMINANCE_FRACTION = 1e-6
+# decades; a step of light that remains an edge
+EDGE_DECADES = 0.35
+# decades of light that a display shows easily
+DISPLAY_DECADES = 1.9
+# least fraction of the light's contrast that remains
+MIN_SHARE = 0.45
+# quantiles of the light that count as its range
+LIGHT_QUANTILES = (0.005, 0.995)
+# quantiles of x that count as its range
+LEVEL_QUANTILES = (0.01, 0.99)
+# key of a map whose log luminance is symmetric about its mean
+MIDDLE_KEY = 0.24
+# contrast of the picture relative to that of x
 CONTRAST = 1.25
-# shares of the pixels that are white and black, and the most that is taken off as black
-WHITE, BLACK, DEEPEST = 0.005, 0.002, 0.012
-# pixels along a side that settings are chosen by, at least
-ENOUGH = 360
+# fraction of the pixels that become white
+WHITE_FRACTION = 0.005
+# fraction of the pixels that become black
+BLACK_FRACTION = 0.002
+# largest display luminance that becomes black
+MAX_BLACK = 0.012
+# largest scaled luminance, to avoid an overflow
+MAX_SCALED_LUMINANCE = 1e15
+# Settings are chosen from at least this many pixels along the shorter side, where there are so many.
+MIN_SAMPLED_SIDE = 360
+
+
+@dataclass(frozen=True, kw_only=True)
+class Light:
+    """The large-scale light of an image, a lL + b, with a and b at the nodes of a coarse grid.
+
+    slope, offset : (h, W), a and b at h nodes of each column
+    row_weights : (H, h), weights of the nodes in each row of the image
+    """
+
+    slope: Array
+    offset: Array
+    row_weights: F32
+
+    def evaluate(self, lL: F32) -> Array:
+        """Return the light of an image lL (H, W)."""
+        return self.row_weights @ self.slope * lL + self.row_weights @ self.offset
+
+
+@dataclass(frozen=True, kw_only=True)
+class Levels:
+    """The first and the last percentile of x, and the mean of x clipped at these."""
+
+    low: float
+    mean: float
+    high: float
 
 
 def choose_settings(E: ArrayLike) -> dict[str, float]:
-    """Return the knobs of `photograph` for a map E (H, W[, 3]), and its saturation, all from percentiles.
+    """Choose the settings of `photograph`, and the saturation, for a radiance map E (H, W[, 3]).
 
-    share : of the light's contrast that stays, 1 where it spans at most RANGE decades
-    key : MIDDLE; up to twice that where most of the map is bright for its range, half of it where
-        dark
-    white, black : the scaled and the display luminance that WHITE and BLACK of the pixels lie
-        beyond
-    saturation : 1.25 of grays, 0.95 where half of the pixels have the purest of colours
+    share : the fraction of the light's contrast that remains, 1 where it spans at most
+        DISPLAY_DECADES
+    key : MIDDLE_KEY; up to twice that if most of the map is bright for its range, down to half of it
+        if most is dark
+    white, black : the scaled and the display luminance beyond which WHITE_FRACTION and
+        BLACK_FRACTION of the pixels lie
+    saturation : 1.25 for grays, 0.95 if half of the pixels have fully saturated colors
 
     Examples
     --------
@@ -58,99 +100,138 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     {'share': 0.67, 'key': 0.24, 'white': 4.37, 'black': 0.01, 'saturation': 1.0}
     """
     E = as_radiance(E)
-    every = max(1, min(E.shape[:2]) // ENOUGH)
-    E = E[::every, ::every]
-    L, share = colour.luminance(E), 1.0
+    step = max(1, min(E.shape[:2]) // MIN_SAMPLED_SIDE)
+    E = E[::step, ::step]
+    L = colour.luminance(E)
     lL = find_logarithm(L)(L)
-    a, b, down = light = filter_light(lL)
-    low, high = np.quantile(down @ a * lL + down @ b, [0.005, 0.995])
-    if high - low > RANGE:
-        share = max(LEAST, RANGE / float(high - low))
-    low, mean, high = find_levels(x := compress_light(lL, share, *light))
-    key = MIDDLE * 2 ** ((2 * mean - low - high) / max(high - low, 1e-6))
-    Lm = scale(x, mean, key)
-    white = max(1.0, float(np.quantile(Lm, 1 - WHITE)))
-    black, saturation = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK))), 1.0
+    light = filter_light(lL)
+    darkest, brightest = np.quantile(light.evaluate(lL), LIGHT_QUANTILES)
+    share = 1.0
+    if brightest - darkest > DISPLAY_DECADES:
+        share = max(MIN_SHARE, DISPLAY_DECADES / float(brightest - darkest))
+    x = compress_light(lL, share, light)
+    levels = find_levels(x)
+    skew = (2 * levels.mean - levels.low - levels.high) / max(levels.high - levels.low, 1e-6)
+    key = MIDDLE_KEY * 2**skew
+    Lm = scale(x, levels.mean, key)
+    white = max(1.0, float(np.quantile(Lm, 1 - WHITE_FRACTION)))
+    black = min(MAX_BLACK, float(np.quantile(display(Lm, Lm, white), BLACK_FRACTION)))
+    saturation = 1.0
     if E.ndim == 3 and L.any():
-        colours = E[L > 0]
-        saturation = 1.25 - 0.3 * float(np.median(1 - colours.min(axis=-1) / colours.max(axis=-1)))
+        colors = E[L > 0]
+        purity = 1 - colors.min(axis=-1) / colors.max(axis=-1)
+        saturation = 1.25 - 0.3 * float(np.median(purity))
     return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
 
 
 def find_logarithm(L: F32) -> Callable[[F32], F32]:
-    """Return the function to lL = log10 L, for which black is a millionth of the median of this L."""
-    floor = np.float32(max(DARK * extremes.positive_median(L), 1e-37))
-    return lambda L: np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10))
+    """Return the function from L to lL = log10 L, with a lower bound from the median of this L."""
+    floor = np.float32(max(MIN_LUMINANCE_FRACTION * extremes.positive_median(L), 1e-37))
+
+    def logarithm(L: F32) -> F32:
+        return np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10))
+
+    return logarithm
 
 
-def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> tuple[Array, Array, F32]:
-    """Return the light's a and b at nodes, (h, W), and the weights (H, h) of these in each row [He15].
+def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> Light:
+    """Return the Light of an image by a guided filter on a coarse grid [He15].
 
-    `take` returns lL from L (H, W), which is looked at in nodes; a is near 1 at edges of light, 0
-    in detail.
+    `take` computes lL from L (H, W); it is called for the nodes alone. The slope a is near 1 at
+    edges of light, and near 0 in detail.
     """
-    reach = max(1, round(REACH * max(L.shape)))
-    step = max(1, reach // NODES)
-    few, width = take(L[::step, ::step]), 2 * (reach // step) + 1
-    H, W = (blur_matrix(n, np.full(width, 1 / width)) for n in few.shape)
-    mean: Array = H @ few @ W
-    variance: Array = np.maximum(H @ (few * few) @ W - mean * mean, 0)
-    a = variance / (variance + np.float32(EDGE**2))
-    down, across = (draw_lines(n, m, step) for n, m in zip(L.shape, few.shape, strict=True))
-    across = W @ across.T
-    return H @ a @ across, H @ (mean - a * mean) @ across, down
+    radius = max(1, round(WINDOW_FRACTION * max(L.shape)))
+    step = max(1, radius // NODES_PER_RADIUS)
+    nodes = take(L[::step, ::step])
+    width = 2 * (radius // step) + 1
+    kernel = np.full(width, 1 / width)
+    blur_rows = blur_matrix(nodes.shape[0], kernel)
+    blur_columns = blur_matrix(nodes.shape[1], kernel)
+    mean: Array = blur_rows @ nodes @ blur_columns
+    variance: Array = np.maximum(blur_rows @ (nodes * nodes) @ blur_columns - mean * mean, 0)
+    a = variance / (variance + np.float32(EDGE_DECADES**2))
+    b = mean - a * mean
+    row_weights = interpolation_weights(L.shape[0], nodes.shape[0], step)
+    column_weights = interpolation_weights(L.shape[1], nodes.shape[1], step)
+    blur_and_enlarge = blur_columns @ column_weights.T
+    return Light(
+        slope=blur_rows @ a @ blur_and_enlarge,
+        offset=blur_rows @ b @ blur_and_enlarge,
+        row_weights=row_weights,
+    )
 
 
-def draw_lines(n: int, m: int, step: int) -> F32:
-    """Return (n, m): from m values, at every `step`-th of n pixels, those at all, on lines between them."""
-    at = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
-    return np.maximum(1 - np.abs(at[:, None] - np.arange(m, dtype=np.float32)), 0)
+def interpolation_weights(n: int, m: int, step: int) -> F32:
+    """Return the weights (n, m) of linear interpolation at n pixels from m nodes, `step` pixels apart.
+
+    Pixels beyond the last node take its value.
+    """
+    position = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
+    distance = np.abs(position[:, None] - np.arange(m, dtype=np.float32))
+    return np.maximum(1 - distance, 0)
 
 
-def compress_light(lL: F32, share: float, a: Array, b: Array, down: F32) -> F32:
-    """Return x = lL - (1 - share) (a lL + b) of some rows (n, W), by their weights (n, h) of the nodes."""
+def compress_light(lL: F32, share: float, light: Light, row_weights: F32 | None = None) -> F32:
+    """Return x = lL - (1 - share) (a lL + b).
+
+    For some rows (n, W) of an image, give the weights (n, h) of the nodes in these rows.
+    """
     if share == 1:
         return lL
-    near = np.flatnonzero(down.any(axis=0))
-    a, b = (down[:, near] @ (np.float32(1 - share) * one[near]) for one in (a, b))
+    if row_weights is None:
+        row_weights = light.row_weights
+    # A few rows depend on a few nodes only.
+    nodes = np.flatnonzero(row_weights.any(axis=0))
+    weights = row_weights[:, nodes]
+    a = weights @ (np.float32(1 - share) * light.slope[nodes])
+    b = weights @ (np.float32(1 - share) * light.offset[nodes])
     return np.asarray(lL - (a * lL + b), np.float32)
 
 
-def find_levels(x: F32) -> tuple[float, float, float]:
-    """Return the first percentile of x, the mean of x cut at its first and its last, and the last."""
-    few = x[:: max(1, len(x) // ENOUGH), :: max(1, x.shape[1] // ENOUGH)]
-    low, high = np.quantile(few, [0.01, 0.99])
-    return float(low), float(np.clip(few, low, high).mean(dtype=np.float64)), float(high)
+def find_levels(x: F32) -> Levels:
+    """Return the Levels of x, from an even grid of its pixels."""
+    row_step = max(1, x.shape[0] // MIN_SAMPLED_SIDE)
+    column_step = max(1, x.shape[1] // MIN_SAMPLED_SIDE)
+    sample = x[::row_step, ::column_step]
+    low, high = np.quantile(sample, LEVEL_QUANTILES)
+    mean = np.clip(sample, low, high).mean(dtype=np.float64)
+    return Levels(low=float(low), mean=float(mean), high=float(high))
 
 
 def scale(x: F32, mean: float, key: float) -> F32:
-    """Return Lm = key 10^(CONTRAST (x - mean)), at most 1e15."""
-    exponent = np.log(np.float32(key)) + np.float32(CONTRAST * np.log(10)) * (x - np.float32(mean))
-    return np.exp(np.minimum(exponent, np.log(np.float32(1e15))))
+    """Return Lm = key 10^(CONTRAST (x - mean)), at most MAX_SCALED_LUMINANCE."""
+    gain = np.float32(CONTRAST * np.log(10))
+    exponent = np.log(np.float32(key)) + gain * (x - np.float32(mean))
+    return np.exp(np.minimum(exponent, np.log(np.float32(MAX_SCALED_LUMINANCE))))
 
 
 def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: float) -> F32:
-    """Return display luminance (H, W) in [0, 1] of luminance L (H, W); the knobs: see `choose_settings`.
+    """Return display luminance (H, W) in [0, 1] of luminance L (H, W).
+
+    `choose_settings` describes the settings, and chooses them for a map.
 
     Raises
     ------
-    ValueError
-        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+    InputError
+        If luminance is not (H, W), finite and not negative, or a setting is out of its range.
     """
-    numbers = all(isinstance(knob, int | float) for knob in (share, key, white, black))
-    if not (numbers and 0 < share <= 1 and key > 0 and white > 0 and 0 <= black < 1):
-        got = f"{share=}, {key=}, {white=}, {black=}"
+    settings = (share, key, white, black)
+    are_numbers = all(isinstance(setting, int | float) for setting in settings)
+    if not (are_numbers and 0 < share <= 1 and key > 0 and white > 0 and 0 <= black < 1):
         raise InputError(
-            f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}"
+            "expected share in (0, 1], key and white above 0, black in [0, 1), "
+            f"got {share=}, {key=}, {white=}, {black=}"
         )
     L = as_luminance(L)
-    take, some = find_logarithm(L), np.s_[:: max(1, len(L) // ENOUGH)]
-    a, b, down = filter_light(L, take)
-    _, mean, _ = find_levels(compress_light(take(L[some]), share, a, b, down[some]))
+    logarithm = find_logarithm(L)
+    light = filter_light(L, logarithm)
+    sample = np.s_[:: max(1, len(L) // MIN_SAMPLED_SIDE)]
+    x = compress_light(logarithm(L[sample]), share, light, light.row_weights[sample])
+    mean = find_levels(x).mean
 
-    def curve(L: F32, down: F32) -> F32:
-        Lm = scale(compress_light(take(L), share, a, b, down), mean, key)
-        Ld = np.clip((display(Lm, Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
-        return np.where(L > 0, Ld, 0)
+    def tone_map_rows(L: F32, row_weights: F32) -> F32:
+        Lm = scale(compress_light(logarithm(L), share, light, row_weights), mean, key)
+        scaled = (display(Lm, Lm, white) - np.float32(black)) / np.float32(1 - black)
+        return np.where(L > 0, np.clip(scaled, 0, 1), 0)
 
-    return banded(curve, L, down)
+    return banded(tone_map_rows, L, light.row_weights)

@@ -1,5 +1,6 @@
-"""A radiance map becomes a picture: by `photograph`, an operator of `tonemap` or a function of yours."""
+"""Tone mapping: a radiance map becomes a picture, by `photograph`, a method of `tonemap` or your function."""
 
+import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import MappingProxyType
@@ -13,35 +14,43 @@ from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.pipeline.photograph import choose_settings, photograph
 
-# the default: settings from the map, see `photograph`
+# The default operator, which chooses its settings for the map.
 AUTO = "photograph"
+DEFAULT_SATURATION = 1.0
 
 
 class Developed(NamedTuple):
-    """A picture (H, W[, 3]) uint8, and how it was made, in words: "photograph, share 0.62, key 0.24, ..."."""
+    """A picture (H, W[, 3]) uint8, and its settings in words: "photograph, share 0.62, key 0.24, ..."."""
 
     picture: NDArray[np.uint8]
     settings: str
 
 
-def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.uint8]:
-    """Return the picture of a radiance map: tone-mapped luminance, its colours, sRGB in 8 bits.
+def develop(
+    E: ArrayLike,
+    tonemap: Method = AUTO,
+    *,
+    saturation: float | None = None,
+    way: str = "hue",
+    **knobs: Any,
+) -> NDArray[np.uint8]:
+    """Tone-map a radiance map to a picture, sRGB in 8 bits.
 
     Parameters
     ----------
     E : (H, W) or (H, W, 3)
-        Radiance, any linear unit.
+        Radiance, in any linear unit.
     tonemap : str or function
-        "photograph", which chooses its settings by the map; a method of `tonemap`, with the
+        "photograph", which chooses its settings for the map; a method of `tonemap`, with the
         defaults of its paper; or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
     saturation : float, optional
-        1 keeps the ratios of the channels, 0 is gray. By default "photograph" chooses it, and an
-        operator has the SATURATION of its module, or else 1.
+        1 keeps the ratios of the channels, 0 is gray. By default, "photograph" chooses it, and
+        another operator has the SATURATION of its module, or else 1.
     way : {"hue", "ratio"}
-        How colour comes back, and what becomes of colours beyond the display: "hue" darkens them a
-        little and makes them paler, "ratio" clips a channel; see `core.colour`.
+        How colors are restored, and what happens to colors that the display cannot show: "hue"
+        makes them a little darker and paler, "ratio" clips a channel; see `core.colour`.
     **knobs
-        Those of the operator; of "photograph" share, key, white and black, instead of what it
+        Settings of the operator; for "photograph" share, key, white and black, instead of what it
         chooses.
 
     Returns
@@ -50,10 +59,10 @@ def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.
 
     Raises
     ------
-    ValueError
-        For radiance that is not finite or negative, and for knobs out of their range.
+    InputError
+        If the radiance is not finite or is negative, or a setting is out of its range.
     """
-    return develop_and_describe(E, tonemap, **options).picture
+    return develop_and_describe(E, tonemap, saturation=saturation, way=way, **knobs).picture
 
 
 def develop_and_describe(
@@ -64,7 +73,7 @@ def develop_and_describe(
     way: str = "hue",
     **knobs: Any,
 ) -> Developed:
-    """Return the picture of `develop`, and its settings in words, for a report; the parameters are the same.
+    """Return the picture of `develop`, and its settings in words for a report; same parameters.
 
     Examples
     --------
@@ -75,34 +84,62 @@ def develop_and_describe(
     'reinhard, key 0.36, saturation 1'
     """
     operator = find_operator(tonemap)
-    settings, own = settle(operator, E, knobs)
-    saturation = own if saturation is None else float(saturation)
+    settings, default_saturation = resolve_settings(operator, E, knobs)
+    if saturation is None:
+        saturation = default_saturation
     L = colour.luminance(E)
-    picture = colour.render(E, L, operator(L, **settings), saturation=saturation, way=way)
-    name = (
-        tonemap if isinstance(tonemap, str) else getattr(tonemap, "__name__", "your own operator")
-    )
-    said = (
-        f"{knob} {value:.2g}" if isinstance(value, float) else f"{knob} {value}"
-        for knob, value in (settings | {"saturation": saturation}).items()
-    )
-    return Developed(picture, ", ".join((name, *said)))
+    Ld = operator(L, **settings)
+    picture = colour.render(E, L, Ld, saturation=float(saturation), way=way)
+    name = _name_operator(tonemap)
+    described = settings | {"saturation": float(saturation)}
+    parts = [name, *(_describe_setting(knob, value) for knob, value in described.items())]
+    return Developed(picture, ", ".join(parts))
+
+
+def _name_operator(tonemap: Method) -> str:
+    if isinstance(tonemap, str):
+        return tonemap
+    return getattr(tonemap, "__name__", "your own operator")
+
+
+def _describe_setting(knob: str, value: object) -> str:
+    if isinstance(value, float):
+        return f"{knob} {value:.2g}"
+    return f"{knob} {value}"
 
 
 def find_operator(tonemap: Method) -> Callable[..., Any]:
     """Return `photograph` for its name, and else what `catalogue.method` finds."""
-    return photograph if tonemap == AUTO else catalogue.method("tonemap", tonemap)
+    if isinstance(tonemap, str) and tonemap == AUTO:
+        return photograph
+    return catalogue.method("tonemap", tonemap)
 
 
-def settle(
+def resolve_settings(
     operator: Callable[..., Any], E: ArrayLike, knobs: Mapping[str, Any] = MappingProxyType({})
 ) -> tuple[dict[str, Any], float]:
-    """Return an operator's knobs for a map, those given and what `photograph` chooses, and its saturation.
+    """Return an operator's settings for a map, and its default saturation.
 
-    That is the SATURATION that the chapter's module of an operator states, or 1.
+    The settings are `knobs`, and for `photograph` also those that it chooses.
     """
     if operator is photograph:
         settings = choose_settings(E) | dict(knobs)
-        return settings, settings.pop("saturation")
-    module = operator.__module__.replace("hdrlab.fast.", "hdrlab.tonemap.")
-    return dict(knobs), float(getattr(import_module(module), "SATURATION", 1.0))
+        saturation = settings.pop("saturation")
+        return settings, saturation
+    return dict(knobs), _default_saturation(operator)
+
+
+def _default_saturation(operator: Callable[..., Any]) -> float:
+    """Return the SATURATION of the module that defines an operator, or else 1.
+
+    For an operator of `hdrlab.fast`, it is that of the chapter's module. A function of yours may
+    come from a file that is not importable by name, so its own globals count.
+    """
+    name = getattr(operator, "__module__", None) or ""
+    if name.startswith("hdrlab.fast."):
+        module: object = import_module(name.replace("hdrlab.fast.", "hdrlab.tonemap."))
+    else:
+        module = sys.modules.get(name)
+    own_globals = getattr(operator, "__globals__", {})
+    default = own_globals.get("SATURATION", DEFAULT_SATURATION)
+    return float(getattr(module, "SATURATION", default))

@@ -1,200 +1,282 @@
-"""The response of a bracket: by a method of `response`, by a function of the reader's, or "auto".
+"""The response of a bracket: by a method of `response`, by your own function, or by "auto".
 
-For "auto" held-out pixels choose, and of two that explain them alike, the simpler is taken. A
-neutral surface has one level in all channels, and so should have one radiance. Three curves, each
-recovered by itself, disagree where few frames leave them open, and a gray wall gets coloured
-patches. One curve for all channels cannot. Cameras have one, as a rule; scanned film has three. So
-one curve is taken where it explains pixels that it was not recovered from nearly as well as three
-do, by `consistency.measure_spread` of each channel.
+With "auto", held-out pixels choose the method. Of two methods that explain them about equally well,
+the simpler one wins. A gray surface has the same value in all channels, and so it should have the
+same radiance. Three curves that are recovered separately disagree where few photos constrain them,
+and then a gray wall gets colored patches. One curve for all channels cannot do that. Digital
+cameras usually have one curve; scanned film has three. So one curve is chosen if it explains
+held-out pixels nearly as well as three do, by the mean of `consistency.measure_spread` over the
+channels.
 
-A map needs some response. So where a method finds none, or one that no camera has, one that a prior
-settles takes its place, with a doubt: that of `response.space`.
+A map needs some response. If a method finds none, or one that no camera has, the response that a
+prior makes most likely takes its place, with a warning: that of `response.space`.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
 from hdrlab.core import metrics, sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
-from hdrlab.diagnostics import consistency, doubts, plausibility
-from hdrlab.errors import InputError
+from hdrlab.diagnostics import consistency, plausibility
+from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.errors import CalibrationError, InputError
 from hdrlab.fast import debevec, merge, robertson
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.response import self_calibration, space
 
 Recover = Callable[..., F64]
-# pixels of a frame, on an even grid; every other stripe is held out
-PIXELS, STRIPES = 2**16, 20
-# how much more spread one curve for all channels may leave: a share, and stops
-SLACK, FINEST = 0.05, 0.003
-# levels in a row that smoothness alone connects
-WIDEST_GAP = 20
-# samples that show which levels two frames share
-SAMPLES = 1000
+
+# pixels of a photo, on an even grid, that are used to compare methods
+MAX_PIXELS = 2**16
+# stripes of rows in a photo; every other one is held out
+STRIPE_COUNT = 20
+# How much more spread a simpler method may leave: relative to the best, and in stops.
+MAX_RELATIVE_LOSS = 0.05
+MAX_LOSS_STOPS = 0.003
+# consecutive pixel values that smoothness alone may connect
+MAX_GAP = 20
+# samples that show which pixel values two photos share
+SAMPLE_COUNT = 1000
 
 
-class Choice(NamedTuple):
-    """A method, the spread in stops that it leaves in held-out pixels, and notes on it."""
+@dataclass(frozen=True, kw_only=True)
+class ResponseChoice:
+    """A method, the spread in stops that it leaves in held-out pixels, and notes on the choice."""
 
     method: Recover
     spread: float
     notes: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True)
+class FoundResponse:
+    """The response g of a bracket, warnings, and why no map that it makes is usable, or ""."""
+
+    g: F64
+    doubts: tuple[str, ...] = ()
+    fallback: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidate:
+    """A method that "auto" may choose."""
+
+    name: str
+    method: Recover
+    has_curve_per_channel: bool
+    # Whether smoothness alone connects pixel values that no two photos share.
+    needs_shared_values: bool
+
+
 def find_method(response: Method) -> Recover:
-    """Return a method by its name, EXTENDED where it is; a function is taken as it is."""
-    return EXTENDED.get(response) or catalogue.method("response", response)
+    """Return a method by its name, with the extensions of EXTENDED; a function is returned as it is."""
+    if isinstance(response, str) and response in EXTENDED:
+        return EXTENDED[response]
+    return catalogue.method("response", response)
 
 
 def find_validated_method(response: Method) -> Recover:
-    """Return `recover(images, times, *, valid) -> g`, which refuses a response that the images contradict.
+    """Return a method that raises a CalibrationError for a response that contradicts the photos.
 
-    A function is taken as it is, and so is "linear", which does not ask the images.
+    Your own function is returned as it is, and so is "linear", which does not look at the photos.
     """
-    found = find_method(response)
-    return found if callable(response) or response == "linear" else partial(_recover, found)
+    method = find_method(response)
+    if callable(response) or response == "linear":
+        return method
+    return partial(_recover_validated, method)
 
 
-def _recover(
+def _recover_validated(
     method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
 ) -> F64:
-    """Return the response that a method finds, or raise a ValueError: see `validate_response`."""
-    return plausibility.validate_response(
-        method(images, times, valid=valid), images, times, valid=valid
-    )
+    """Return the response that a method finds, checked by `validate_response`."""
+    g = method(images, times, valid=valid)
+    return plausibility.validate_response(g, images, times, valid=valid)
 
 
 def share_curve(method: Recover) -> Recover:
-    """Return a method that recovers one curve from the levels of all channels together."""
+    """Return a method that recovers one curve from the pixel values of all channels together."""
 
     def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
         stack = as_stack(images)
-        mask, shape = as_mask(valid, stack), stack.shape[3:]
-        shown = None if mask is None else np.repeat(mask, np.prod(shape, dtype=int), axis=2)
-        g = method(stack.reshape(*stack.shape[:2], -1), times, valid=shown)
-        return np.multiply.outer(g, np.ones(shape))
+        mask = as_mask(valid, stack)
+        channels = stack.shape[3:]
+        gray = stack.reshape(*stack.shape[:2], -1)
+        if mask is not None:
+            mask = np.repeat(mask, np.prod(channels, dtype=int), axis=2)
+        g = method(gray, times, valid=mask)
+        return np.multiply.outer(g, np.ones(channels))
 
     return recover
 
 
-# methods that need more than their paper for photographs as people take them
-EXTENDED: dict[Method, Recover] = {
+# Methods that need more than their paper for photos of everyday cameras.
+EXTENDED: dict[str, Recover] = {
     "robertson": partial(robertson.recover, steps=robertson.Smooth(100)),
     "mitsunaga": self_calibration.find_response,
 }
-CANDIDATES: dict[str, Recover] = {  # three curves first, which set the spread to compare with
-    "a curve for each channel by debevec": debevec.recover,
-    "a curve for each channel by space": space.recover,
-    "one curve by space": share_curve(space.recover),
-    "one curve by debevec": share_curve(debevec.recover),
-}
+
+# Three curves come first, because their spread is the one to compare with.
+CANDIDATES = (
+    Candidate(
+        name="a curve for each channel by debevec",
+        method=debevec.recover,
+        has_curve_per_channel=True,
+        needs_shared_values=True,
+    ),
+    Candidate(
+        name="a curve for each channel by space",
+        method=space.recover,
+        has_curve_per_channel=True,
+        needs_shared_values=False,
+    ),
+    Candidate(
+        name="one curve by space",
+        method=share_curve(space.recover),
+        has_curve_per_channel=False,
+        needs_shared_values=False,
+    ),
+    Candidate(
+        name="one curve by debevec",
+        method=share_curve(debevec.recover),
+        has_curve_per_channel=False,
+        needs_shared_values=True,
+    ),
+)
 
 
 def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
-    """Return every other stripe of a bracket, thinned to PIXELS, and those between."""
-    images, _, _, valid, _ = bracket
-    height, width = images.shape[1:3]
-    step = max(1, int(np.sqrt(height * width / PIXELS)))
+    """Return every other stripe of rows of a bracket, thinned to MAX_PIXELS, and the stripes between."""
+    height, width = bracket.images.shape[1:3]
+    step = max(1, int(np.sqrt(height * width / MAX_PIXELS)))
     rows = np.arange(0, height, step)
-    odd = rows * STRIPES // height % 2 == 1
+    is_held_out = rows * STRIPE_COUNT // height % 2 == 1
 
-    def keep(own: Indices) -> Bracket:
-        shown = None if valid is None else valid[:, own, ::step]
-        return bracket._replace(images=images[:, own, ::step], valid=shown)
+    def take_rows(chosen: Indices) -> Bracket:
+        images = bracket.images[:, chosen, ::step]
+        valid = None if bracket.valid is None else bracket.valid[:, chosen, ::step]
+        return bracket._replace(images=images, valid=valid)
 
-    return keep(rows[~odd]), keep(rows[odd])
+    return take_rows(rows[~is_held_out]), take_rows(rows[is_held_out])
 
 
 def find_widest_gap(Z: ArrayLike) -> int:
-    """Return how many levels in a row, of those that samples Z (N, P) show, no sample shows in two frames.
+    """Return the most consecutive pixel values that no sample of Z (N, P) shows in two photos.
+
+    Only values between the darkest and the brightest one in Z count.
 
     Examples
     --------
-    >>> find_widest_gap([[100, 200], [101, 201], [20, 255]])  # 20 stands in one frame alone
+    >>> find_widest_gap([[100, 200], [101, 201], [20, 255]])  # only one photo shows 20
     99
     """
     Z = np.asarray(Z)
-    inside = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
-    shared, shown = Z[inside & (inside.sum(axis=1, keepdims=True) > 1)], Z[inside]
+    is_inside = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
+    is_shared = is_inside & (is_inside.sum(axis=1, keepdims=True) > 1)
+    shown = Z[is_inside]
     if not len(shown):
         return 256
-    return int(np.diff(np.unique([shown.min(), *shared, shown.max()])).max(initial=1))
+    connected = np.unique([shown.min(), *Z[is_shared], shown.max()])
+    return int(np.diff(connected).max(initial=1))
 
 
-def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
-    """Return the spread in stops that a method's response leaves in held-out pixels; inf if there is none.
+def measure_spread(method: Recover, fit: Bracket, held_out: Bracket) -> float:
+    """Return the spread in stops that a method's response leaves in held-out pixels.
 
-    It is the mean of the channels' spreads: the median over all levels hides a curve that one
-    channel denies.
+    It is infinite if the method finds no response. It is the mean over the channels, because the
+    median over all pixel values would hide a curve that one channel contradicts.
     """
     try:
         g = method(fit.images, fit.times, valid=fit.valid)
-    except ValueError:
+    except InputError:
         return np.inf
     E = merge.merge_with_quality(
-        held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid
+        held_out.images, held_out.times, g, weights.gaussian(len(g)), valid=held_out.valid
     ).E
-    medians = consistency.measure_level_exposures(held.images, held.times, E, valid=held.valid)
-    spreads = [consistency.measure_spread(one[:, None]) for one in medians.swapaxes(0, 1)]
+    medians = consistency.measure_level_exposures(
+        held_out.images, held_out.times, E, valid=held_out.valid
+    )
+    spreads = [
+        consistency.measure_spread(medians[:, channel : channel + 1])
+        for channel in range(medians.shape[1])
+    ]
     return float(np.nan_to_num(np.mean(spreads), nan=np.inf))
 
 
-def choose_response(response: Method, bracket: Bracket) -> Choice:
-    """Return the Choice for an aligned bracket: what "auto" stands for, or the method that was named.
+def choose_response(response: Method, bracket: Bracket) -> ResponseChoice:
+    """Return the method for an aligned bracket: the one that is named, or the best one for "auto".
 
-    Debevec's curve does not count where smoothness alone connects its levels: a prior settles them.
-    Where nothing can be compared it is taken.
+    Debevec's method is not a candidate where smoothness alone would connect its pixel values. If no
+    method can be compared, it is used all the same.
     """
-    fit, held = split_stripes(bracket)
+    fit, held_out = split_stripes(bracket)
     if response != "auto" or bracket.linear:
         method = find_validated_method("linear" if response == "auto" else response)
-        return Choice(method, measure_spread(method, fit, held))
-    Z = sampling.by_rank(fit.images, SAMPLES, valid=fit.valid).reshape(SAMPLES, len(fit.times), -1)
-    open_levels = any(find_widest_gap(Z[..., c]) > WIDEST_GAP for c in range(Z.shape[-1]))
-    name, enough, spreads = "", np.inf, {}
-    for one, method in CANDIDATES.items():
-        separate = not one.startswith("one")
-        if (open_levels and "debevec" in one) or (separate and np.isfinite(enough)):
+        return ResponseChoice(method=method, spread=measure_spread(method, fit, held_out))
+    has_gap = _has_wide_gap(fit)
+    best: Candidate | None = None
+    max_spread = np.inf
+    spreads: dict[str, float] = {}
+    for candidate in CANDIDATES:
+        if has_gap and candidate.needs_shared_values:
             continue
-        spreads[one] = measure_spread(partial(_recover, method), fit, held)
-        if spreads[one] < np.inf and spreads[one] <= enough:
-            name, enough = one, (1 + SLACK) * spreads[one] + FINEST
-            if not separate:
-                break
-    if not name:
-        return Choice(find_validated_method("debevec"), np.inf)
-    compared = ", ".join(f"{one} {spread:.3f}" for one, spread in spreads.items())
-    said = f"response: {name}, chosen by the spread that each leaves in held-out pixels, in stops: {compared}"
-    return Choice(partial(_recover, CANDIDATES[name]), spreads[name], (said,))
+        if candidate.has_curve_per_channel and best is not None:
+            continue
+        method = partial(_recover_validated, candidate.method)
+        spread = measure_spread(method, fit, held_out)
+        spreads[candidate.name] = spread
+        if np.isinf(spread) or spread > max_spread:
+            continue
+        best = candidate
+        max_spread = (1 + MAX_RELATIVE_LOSS) * spread + MAX_LOSS_STOPS
+        if not candidate.has_curve_per_channel:
+            break
+    if best is None:
+        return ResponseChoice(method=find_validated_method("debevec"), spread=np.inf)
+    compared = ", ".join(f"{name} {spread:.3f}" for name, spread in spreads.items())
+    note = f"response: {best.name}, chosen by the spread in held-out pixels, in stops: {compared}"
+    return ResponseChoice(
+        method=partial(_recover_validated, best.method), spread=spreads[best.name], notes=(note,)
+    )
 
 
-def find_response(
-    response: Method, choice: Choice, bracket: Bracket
-) -> tuple[F64, tuple[str, ...], str]:
-    """Return the response of an aligned bracket, doubts about it, and why it is worth no map, or "".
+def _has_wide_gap(bracket: Bracket) -> bool:
+    """Return whether in any channel more than MAX_GAP pixel values in a row are not shared."""
+    Z = sampling.by_rank(bracket.images, SAMPLE_COUNT, valid=bracket.valid)
+    Z = Z.reshape(SAMPLE_COUNT, len(bracket.times), -1)
+    return any(find_widest_gap(Z[..., channel]) > MAX_GAP for channel in range(Z.shape[-1]))
+
+
+def find_response(response: Method, choice: ResponseChoice, bracket: Bracket) -> FoundResponse:
+    """Return the response of an aligned bracket, with warnings.
+
+    Errors of your own function are not caught.
 
     Raises
     ------
-    ValueError
-        For photographs of which no two see anything well, and what a reader's own function raises.
+    CalibrationError
+        If no pixel is well exposed in two photos.
     """
-    images, times, _, valid, _ = bracket
+    images = bracket.images
+    times = bracket.times
+    valid = bracket.valid
     try:
-        return choice.method(images, times, valid=valid), (), ""
-    except ValueError as error:
+        return FoundResponse(g=choice.method(images, times, valid=valid))
+    except InputError as error:
         if callable(response):
             raise
-        said = f"no response was found ({error}), so that of the likeliest camera was taken: check the times"
+        doubt = warning_text("no_response", error=error)
     try:
         g = space.recover(images, times, valid=valid)
-    except ValueError as error:
-        raise InputError(doubts.say("in_common", error=error)) from None
+    except InputError as error:
+        raise CalibrationError(warning_text("in_common", error=error)) from None
     try:
-        return plausibility.validate_response(g, images, times, valid=valid), (said,), ""
-    except ValueError:
-        return g, (said,), said
+        plausibility.validate_response(g, images, times, valid=valid)
+    except CalibrationError:
+        return FoundResponse(g=g, doubts=(doubt,), fallback=doubt)
+    return FoundResponse(g=g, doubts=(doubt,))

@@ -1,6 +1,7 @@
-"""The photographs brought to lie on each other, by a method of `align` or a function of yours."""
+"""Align the photos of a bracket, by a method of `align` or by your own function."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
@@ -10,114 +11,161 @@ from hdrlab.align.shift import as_offsets, crop, shift
 from hdrlab.core.arrays import F64, Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
+from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.registration import Validation
+from hdrlab.errors import InputError
 from hdrlab.pipeline import alignment, recovery
 from hdrlab.pipeline.assembly import Assembly, Method
 
-# what to do where photographs do not lie on each other, by the method
-ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
-LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
-# of a photograph, which are moved at once
-ROWS = 32
+# What to do about photos that could not be aligned, depending on the method.
+ADVICE_AFTER_MTB = "use --align auto, which also rotates photos, or leave one out"
+ADVICE = "leave one out, or use --align none if it was the scene that moved"
+# rows of a photo that are shifted at a time
+ROWS_PER_COPY = 32
 
 
-def aligned(
+@dataclass(frozen=True, kw_only=True)
+class Alignment:
+    """Offsets (P, 2) or homographies (P, 3, 3), the validation of each pair of photos, and notes."""
+
+    transforms: Array
+    pairs: tuple[Validation, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def align_bracket(
     bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False
 ) -> Assembly:
-    """Return the Assembly after alignment: by a method's name, a function, or "none"; see `moved`."""
-    curve = cache(partial(provisional, bracket, response))  # found where it is asked for, and once
-    H, pairs, notes = registered(bracket, align, curve)
-    g = curve() if H.ndim == 3 else None
-    doubts, more = describe(pairs, bracket.names, ADVICE.get(str(align), LEAVE))
-    taken, H = moved(bracket, H, g, in_place=in_place), warp.as_homographies(H)
-    middle = (np.array(bracket.images.shape[2:0:-1]) - 1) / 2
-    offsets = np.rint(warp.apply(H, [middle])[:, 0] - middle).astype(np.int64)[:, ::-1]
-    return Assembly("align", taken, offsets, notes=notes + more, doubts=doubts, homographies=H)
+    """Return the Assembly after alignment by a method's name, your own function or "none".
 
-
-def describe(
-    pairs: tuple[Validation, ...], names: Sequence[str], advice: str
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return doubts and notes on the pairs of a bracket, one sentence at most in both together.
-
-    A pair of which nothing is known is no reason for a doubt: it stays as it is, and where its
-    neighbours stand still this is where it belongs.
+    `in_place` is the option of `apply_alignment`.
     """
+    # A homography needs the response, an offset does not. So it is found on demand, and once.
+    get_response = cache(partial(find_provisional_response, bracket, response))
+    found = estimate_alignment(bracket, align, get_response)
+    g = get_response() if found.transforms.ndim == 3 else None
+    advice = ADVICE_AFTER_MTB if align == "mtb" else ADVICE
+    doubts, notes = describe_pairs(found.pairs, bracket.names, advice)
+    aligned = apply_alignment(bracket, found.transforms, g, in_place=in_place)
+    homographies = warp.as_homographies(found.transforms)
+    height, width = bracket.images.shape[1:3]
+    center = (np.array([width, height]) - 1) / 2
+    shifts = warp.apply(homographies, [center])[:, 0] - center
+    return Assembly(
+        stage="align",
+        bracket=aligned,
+        offsets=np.rint(shifts).astype(np.int64)[:, ::-1],
+        homographies=homographies,
+        notes=found.notes + notes,
+        doubts=doubts,
+    )
 
-    def which(found: list[Validation]) -> str:
-        first, more = found[0], len(found) - 1
-        and_more = f" (and {more} more pair{'s' * (more > 1)})" if more else ""
-        return f"{names[first.moving]} and {names[first.fixed]}{and_more}"
 
-    if apart := [one for one in pairs if one.apart]:
-        return (f"{which(apart)} do not lie on each other: {apart[0].failure}; {advice}",), ()
-    unknown = [one for one in pairs if not one.known]
-    if unknown and any(np.any(one.step != np.eye(3)) for one in pairs):
-        return (), (
-            f"{which(unknown)}: too dark or too bright to be laid on each other; moved as one",
+def describe_pairs(
+    pairs: Sequence[Validation], names: Sequence[str], advice: str
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return warnings and notes about pairs of photos: at most one sentence in total.
+
+    A pair of which nothing is known is no reason for a warning: it stays as it is, and where its
+    neighbors did not move either this is where it belongs.
+    """
+    misaligned = [pair for pair in pairs if pair.apart]
+    if misaligned:
+        doubt = warning_text(
+            "misaligned",
+            pair=_name_pairs(misaligned, names),
+            reason=misaligned[0].failure,
+            advice=advice,
         )
+        return (doubt,), ()
+    unknown = [pair for pair in pairs if not pair.known]
+    something_moved = any(np.any(pair.step != np.eye(3)) for pair in pairs)
+    if unknown and something_moved:
+        return (), (warning_text("not_aligned", pair=_name_pairs(unknown, names)),)
     return (), ()
 
 
-def registered(
-    bracket: Bracket, align: Method, g: Callable[[], F64 | None]
-) -> tuple[Array, tuple[Validation, ...], tuple[str, ...]]:
-    """Return offsets (P, 2) or homographies (P, 3, 3), the validation of each pair, and notes."""
-    images, times = bracket.images, bracket.times
+def _name_pairs(pairs: Sequence[Validation], names: Sequence[str]) -> str:
+    """Return the names of the first pair, and how many more there are."""
+    first = pairs[0]
+    text = f"{names[first.moving]} and {names[first.fixed]}"
+    more = len(pairs) - 1
+    if more == 1:
+        return f"{text} (and 1 more pair)"
+    if more > 1:
+        return f"{text} (and {more} more pairs)"
+    return text
+
+
+def estimate_alignment(
+    bracket: Bracket, align: Method, get_response: Callable[[], F64 | None]
+) -> Alignment:
+    """Return the Alignment of a bracket by a method's name, your own function or "none"."""
+    images = bracket.images
     if align == "none":
-        return np.zeros((len(images), 2), np.int64), (), ()
+        return Alignment(transforms=np.zeros((len(images), 2), np.int64))
     if callable(align):
-        answer = np.asarray(align(images))
-        return (
-            (warp.as_homographies if answer.ndim == 3 else as_offsets)(answer, len(images)),
-            (),
-            (),
-        )
-    found = alignment.register(images, align, times=times, g=g)
+        transforms = np.asarray(align(images))
+        if transforms.ndim == 3:
+            return Alignment(transforms=warp.as_homographies(transforms, len(images)))
+        return Alignment(transforms=as_offsets(transforms, len(images)))
+    found = alignment.register(images, align, times=bracket.times, g=get_response)
     if found.method in ("none", "mtb"):
-        return found.homographies[:, 1::-1, 2].astype(np.int64), found.pairs, ()
-    rotated = f'aligned by "{found.method}", since no shift lays the photographs on each other'
-    return found.homographies, found.pairs, (rotated,) if align == "auto" else ()
+        offsets = found.homographies[:, 1::-1, 2].astype(np.int64)
+        return Alignment(transforms=offsets, pairs=found.pairs)
+    notes: tuple[str, ...] = ()
+    if align == "auto":
+        notes = (f'aligned by "{found.method}", because no shift aligns the photos',)
+    return Alignment(transforms=found.homographies, pairs=found.pairs, notes=notes)
 
 
-def provisional(bracket: Bracket, response: Method) -> F64 | None:
-    """Return a response out of photographs that are not aligned, by histograms [Cerman06 sec. 6], or None.
+def find_provisional_response(bracket: Bracket, response: Method) -> F64 | None:
+    """Return a response from the histograms of photos that are not aligned [Cerman06 sec. 6].
 
-    A function is asked for its own.
+    Your own function finds its own. The result is None if no pixel is well exposed in two photos:
+    alignment works without a response, too.
     """
-    if not callable(response):
-        response = (
-            "linear"
-            if response == "linear" or (response == "auto" and bracket.linear)
-            else "debevec"
-        )
-    recover = recovery.find_validated_method(response)
+    if callable(response):
+        method = response
+    elif response == "linear" or (response == "auto" and bracket.linear):
+        method = recovery.find_validated_method("linear")
+    else:
+        method = recovery.find_validated_method("debevec")
     try:
-        return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
-    except ValueError:  # nothing that two photographs see well: alignment can do without
+        g = method(bracket.images, bracket.times, valid=bracket.valid)
+    except InputError:
         return None
+    return np.asarray(g, np.float64)
 
 
-def moved(bracket: Bracket, H: Array, g: F64 | None = None, *, in_place: bool = False) -> Bracket:
-    """Return the bracket with its photographs, and their masks, moved and cut to what all of them show.
+def apply_alignment(
+    bracket: Bracket, transforms: Array, g: F64 | None = None, *, in_place: bool = False
+) -> Bracket:
+    """Return the bracket with aligned images and masks, cropped to the area that all photos show.
 
-    Offsets (P, 2) shift them as they are, `in_place` in the memory of those given, which are lost
-    then; homographies resample their light by the response g.
+    Offsets (P, 2) shift the images without changing pixel values; with `in_place`, the result is in
+    the memory of the images, which are lost. Homographies (P, 3, 3) resample the radiance of the
+    images by the response g.
     """
-    images, valid = bracket.images, bracket.valid
-    if H.ndim == 3:
-        images, valid = photographs(images, H, g, valid=valid)
+    images = bracket.images
+    valid = bracket.valid
+    if transforms.ndim == 3:
+        images, valid = photographs(images, transforms, g, valid=valid)
         return bracket._replace(images=images, valid=valid)
-    valid = None if valid is None else shift(valid, H)
-    return bracket._replace(images=(shift_in_place if in_place else shift)(images, H), valid=valid)
+    if valid is not None:
+        valid = shift(valid, transforms)
+    images = shift_in_place(images, transforms) if in_place else shift(images, transforms)
+    return bracket._replace(images=images, valid=valid)
 
 
 def shift_in_place(images: Array, offsets: Array) -> Array:
     """Return `shift(images, offsets)` in the memory of the images, which are lost."""
-    shown = crop(offsets, images.shape[1:3])
-    shape = images[:, *shown].shape
-    out = images.reshape(-1)[: np.prod(shape)].reshape(shape)
-    for one, image, by in zip(out, images, offsets.tolist(), strict=True):
-        for y in range(0, len(one), ROWS):  # none goes further than where it came from
-            one[y : y + ROWS] = cut(image, by, shown)[y : y + ROWS]
-    return out
+    area = crop(offsets, images.shape[1:3])
+    shape = images[:, *area].shape
+    shifted_images = images.reshape(-1)[: np.prod(shape)].reshape(shape)
+    for shifted, image, offset in zip(shifted_images, images, offsets.tolist(), strict=True):
+        # No row moves beyond the place where it came from, so a few rows at a time are safe.
+        for top in range(0, len(shifted), ROWS_PER_COPY):
+            rows = slice(top, top + ROWS_PER_COPY)
+            shifted[rows] = cut(image, offset, area)[rows]
+    return shifted_images

@@ -1,11 +1,12 @@
-"""Exposure times by the pixels: stated ones corrected, and relative ones for photographs that come with none.
+"""Exposure times from the pixels: corrections of stated times, and relative times where there are none.
 
-The histograms of two photographs of one scene give their exposure ratio, if the response is known.
-Taken is that of a usual camera: its JPEGs are steeper than the curve of sRGB, in three by a power
-of 1.3 to 1.5. So these times are true up to a power, and `diagnostics.exposure_times` then improves
-each of them.
+The histograms of two photos of one scene give their exposure ratio, if the response is known. Here
+it is the response of a typical camera: JPEGs are steeper than the curve of sRGB, by a power of 1.3
+to 1.5 in three cameras. So these times are right up to a power. `diagnostics.exposure_times` then
+refines each of them.
 """
 
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,133 +15,185 @@ from hdrlab.align import light, mtb
 from hdrlab.core import arrays, colour
 from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.diagnostics import exposure_times, plausibility
-from hdrlab.diagnostics.doubts import say
+from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.exposure_times import Estimate
 from hdrlab.errors import InputError
 from hdrlab.pipeline import recovery
-from hdrlab.pipeline.assembly import Assembly, Method, take_frames
+from hdrlab.pipeline.assembly import Assembly, Method, select_photos
+from hdrlab.pipeline.checks import MIN_WORTHLESS_STOPS
 
-# stops by sRGB's curve over stops of exposure
-STEEPNESS = 1.4
-# stops: less between the darkest and the brightest photograph is one exposure
-LEAST_SPAN = 0.3
-# stops of spread in held-out pixels: what true times show, and a map that shows what no photograph
-# does
-TRUE, WORTHLESS = 0.01, 0.5
-# pixels of a frame, on an even grid
-PIXELS = 400_000
+# stops by the curve of sRGB, for each stop of exposure
+TYPICAL_STEEPNESS = 1.4
+# stops between the darkest and the brightest photo; less is one exposure
+MIN_SPAN_STOPS = 0.3
+# stops of spread in held-out pixels that true times leave at most
+MAX_CONSISTENT_STOPS = 0.01
+# pixels of a photo, on an even grid
+MAX_PIXELS = 400_000
 
 
-def usual_response(n: int, linear: bool = False) -> arrays.F64:
-    """Return ln exposure of n levels for a usual camera, or a linear one; level 0 has a quarter level's."""
+def typical_response(n: int, linear: bool = False) -> arrays.F64:
+    """Return ln exposure of n pixel values for a typical camera, or for a linear one.
+
+    The value 0 gets the exposure of a quarter of a value.
+    """
     z = np.maximum(np.arange(n), 0.25) / (n - 1)
-    return np.log(z) if linear else np.log(colour.decode_srgb(z)) / STEEPNESS
+    if linear:
+        return np.log(z)
+    return np.log(colour.decode_srgb(z)) / TYPICAL_STEEPNESS
 
 
 def space_by_stops(bracket: Bracket, stops: arrays.ArrayLike) -> Bracket:
-    """Return the bracket with relative times: from dark to bright, each so many stops above the last.
+    """Return the bracket with relative times, from the darkest to the brightest photo.
 
     Parameters
     ----------
-    bracket : Bracket, whose times do not count
-    stops : one number, or one a step
+    bracket : Bracket
+        Its times are ignored.
+    stops : float or (P - 1,) float
+        Stops from each photo to the next brighter one: one number for all, or one for each.
 
     Examples
     --------
     >>> space_by_stops(make_bracket(np.uint8([[[90]], [[9]]]), [1, 1]), 2).times.tolist()
     [1.0, 4.0]
     """
-    images, _, names, valid, linear = bracket
+    images = bracket.images
     if not np.all(np.asarray(stops) >= 0):
         raise InputError(f"expected positive steps between the photographs in stops, got {stops!r}")
-    times, steps = (
-        np.empty(len(images)),
-        np.broadcast_to(np.asarray(stops, float), (len(images) - 1,)),
-    )
+    steps = np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
+    times = np.empty(len(images))
     times[mtb.by_brightness(images)] = 2 ** np.cumsum([0, *steps])
-    return make_bracket(images, times, names, valid=valid, linear=linear)
+    return make_bracket(images, times, bracket.names, valid=bracket.valid, linear=bracket.linear)
 
 
 def estimate_relative_times(bracket: Bracket) -> Bracket:
-    """Return the bracket with the times that histograms give under a usual response, the shortest being 1."""
-    images = bracket.images if bracket.images.ndim == 3 else bracket.images[..., 1]
-    every = max(1, int(np.sqrt(images[0].size / PIXELS)))
-    Z, g = images[:, ::every, ::every], usual_response(arrays.levels(images), bracket.linear)
-    pairs = pairwise(mtb.by_brightness(bracket.images))
-    k = [light.exposure_ratio(Z[dark], Z[bright], g) for dark, bright in pairs]
-    return space_by_stops(bracket, np.maximum(np.log2(k), 0))
+    """Return the bracket with times from histograms and a typical response; the shortest is 1."""
+    images = bracket.images
+    gray = images if images.ndim == 3 else images[..., 1]
+    step = max(1, int(np.sqrt(gray[0].size / MAX_PIXELS)))
+    Z = gray[:, ::step, ::step]
+    g = typical_response(arrays.levels(images), bracket.linear)
+    ratios = [
+        light.exposure_ratio(Z[darker], Z[brighter], g)
+        for darker, brighter in pairwise(mtb.by_brightness(images))
+    ]
+    return space_by_stops(bracket, np.maximum(np.log2(ratios), 0))
 
 
 def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ...]]:
-    """Return the bracket with times that mean something, and a note where they are relative.
+    """Return the bracket with usable times, and a note if they are relative.
+
+    `times` is the option of `assemble`.
 
     Raises
     ------
-    ValueError
-        For photographs of one exposure, for times that fall while the photographs get brighter,
-        unless they are to be estimated, and for times that are all the same, if "stated".
+    InputError
+        If all photos have one exposure, if the times fall while the photos get brighter (unless
+        they are to be estimated), or if all times are equal and to be used as stated.
     """
-    images, seconds, names, valid, _ = bracket
-    equal, falls = np.ptp(seconds) == 0, np.zeros(0, np.intp)
-    if not equal:
-        Z = plausibility.ranks(images, valid)
-        darker = plausibility.neighbour_errors(Z, seconds, np.zeros((256, Z.shape[-1])))[1]
-        falls = np.flatnonzero(darker > 0.5)
-        if not len(falls):
+    seconds = bracket.times
+    names = bracket.names
+    all_equal = np.ptp(seconds) == 0
+    if not all_equal:
+        falling = _find_falling(bracket)
+        if not len(falling):
             return bracket, ()
-    if len(falls) and times != "estimate":
-        pair = " and ".join(f"{names[j]} ({seconds[j]:.4g} s)" for j in (falls[0], falls[0] + 1))
-        raise InputError(say("order", pair=pair))
-    found = estimate_relative_times(bracket)
-    if len(seconds) < 2 or np.log2(found.times[-1]) < LEAST_SPAN or (equal and times == "stated"):
-        got = ", ".join(f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True))
-        raise InputError(f"expected photographs of at least two different exposures, got {got}")
-    same = "all stated times are the same, so: " if equal and times == "correct" else ""
-    return found, (same + describe_steps(found.times),)
+        if times != "estimate":
+            j = int(falling[0])
+            pair = f"{names[j]} ({seconds[j]:.4g} s) and {names[j + 1]} ({seconds[j + 1]:.4g} s)"
+            raise InputError(warning_text("order", pair=pair))
+    relative = estimate_relative_times(bracket)
+    is_one_exposure = len(seconds) < 2 or np.log2(relative.times[-1]) < MIN_SPAN_STOPS
+    if is_one_exposure or (all_equal and times == "stated"):
+        stated = ", ".join(
+            f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True)
+        )
+        raise InputError(f"expected photographs of at least two different exposures, got {stated}")
+    note = describe_relative_times(relative.times)
+    if all_equal and times == "correct":
+        note = f"all stated times are the same, so: {note}"
+    return relative, (note,)
 
 
-def describe_steps(times: arrays.F64) -> str:
-    """Return the sentence on relative times: how they were found, and how far to trust them."""
-    return say("relative", steps=", ".join(f"{step:.1f}" for step in np.diff(np.log2(times))))
+def _find_falling(bracket: Bracket) -> arrays.Indices:
+    """Return the photos that are brighter than the next one, which has a longer time."""
+    Z = plausibility.ranks(bracket.images, bracket.valid)
+    no_response = np.zeros((256, Z.shape[-1]))
+    darker_fraction = plausibility.neighbour_errors(Z, bracket.times, no_response)[1]
+    return np.flatnonzero(darker_fraction > 0.5)
 
 
-def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
-    """Return the Assembly with times by the pixels, where these prove it, and a note on what was found.
+def describe_relative_times(times: arrays.F64) -> str:
+    """Return a sentence on relative times: how they were found, and how far to trust them."""
+    steps = ", ".join(f"{step:.1f}" for step in np.diff(np.log2(times)))
+    return warning_text("relative", steps=steps)
 
-    `before` is the spread that its times leave in held-out pixels. Where that is of a map worth
-    nothing, and corrections do not help, relative times take their place, with a doubt.
+
+@dataclass(frozen=True, kw_only=True)
+class CorrectedTimes:
+    """An Estimate of exposure times, and the spread in stops that its times leave."""
+
+    estimate: Estimate
+    spread: float
+
+
+def refine_times(state: Assembly, response: Method, stated_spread: float) -> Assembly:
+    """Return the Assembly with times from the pixels, if held-out pixels confirm them, and a note.
+
+    Where the stated times make a worthless map, and corrections do not help, relative times replace
+    them, with a warning. `stated_spread` is the spread that the stated times leave in held-out
+    pixels.
     """
-    found, spread = correct_times(state.bracket, response, before)
-    doubts = exposure_times.doubts(found)
-    if spread > WORTHLESS:
-        rising = take_frames(state, np.array(mtb.by_brightness(state.bracket.images)))
-        relative = estimate_relative_times(state.bracket).times
-        other, spread = correct_times(rising.bracket._replace(times=relative), response, None)
-        if spread < WORTHLESS / 2:
-            off = f"the stated times contradict the pixels by {before:.2f} stops, so they were not used"
-            off = off.replace("by inf stops", "beyond measure")
-            state, found, doubts = rising, other, (f"{off}, but {describe_steps(relative)}",)
-    notes = (*state.notes, exposure_times.note(found, state.bracket.names))
-    state = state._replace(
-        bracket=state.bracket._replace(times=found.times),
-        notes=notes,
+    corrected = correct_times(state.bracket, response, stated_spread)
+    doubts = exposure_times.doubts(corrected.estimate)
+    if corrected.spread > MIN_WORTHLESS_STOPS:
+        rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
+        relative_times = estimate_relative_times(state.bracket).times
+        relative = correct_times(rising.bracket._replace(times=relative_times), response)
+        if relative.spread < MIN_WORTHLESS_STOPS / 2:
+            state = rising
+            corrected = relative
+            doubts = (_describe_replaced_times(stated_spread, relative_times),)
+    estimate = corrected.estimate
+    state = replace(
+        state,
+        bracket=state.bracket._replace(times=estimate.times),
+        notes=(*state.notes, exposure_times.note(estimate, state.bracket.names)),
         doubts=(*state.doubts, *doubts),
     )
-    return take_frames(state, np.argsort(found.times, kind="stable"))
+    return select_photos(state, np.argsort(estimate.times, kind="stable"))
+
+
+def _describe_replaced_times(spread: float, times: arrays.F64) -> str:
+    """Return the warning that relative times replace the stated ones."""
+    amount = "beyond measure" if np.isinf(spread) else f"by {spread:.2f} stops"
+    return (
+        f"the stated times contradict the pixels {amount}, so they were not used, but "
+        f"{describe_relative_times(times)}"
+    )
 
 
 def correct_times(
-    bracket: Bracket, response: Method, before: float | None
-) -> tuple[Estimate, float]:
-    """Return the Estimate of an aligned bracket's times, and the spread that its times leave."""
+    bracket: Bracket, response: Method, stated_spread: float | None = None
+) -> CorrectedTimes:
+    """Return the times of an aligned bracket, refined by its pixels.
 
-    def measure(times: arrays.F64) -> float:
+    `stated_spread` is the spread of its own times, where it is known already.
+    """
+
+    def measure_spread(times: arrays.F64) -> float:
         return recovery.choose_response(response, bracket._replace(times=times)).spread
 
-    images, times, _, valid, linear = bracket
-    known = response == "linear" or (response == "auto" and linear)
-    g = recovery.find_method("linear")(images, times) if known else None
-    found = exposure_times.estimate_times(images, times, measure, g=g, valid=valid)
-    if found.accepted:
-        return found, found.spread_after
-    return found, measure(times) if before is None else before
+    images = bracket.images
+    times = bracket.times
+    is_linear = response == "linear" or (response == "auto" and bracket.linear)
+    g = recovery.find_method("linear")(images, times) if is_linear else None
+    estimate = exposure_times.estimate_times(
+        images, times, measure_spread, g=g, valid=bracket.valid
+    )
+    if estimate.accepted:
+        return CorrectedTimes(estimate=estimate, spread=estimate.spread_after)
+    if stated_spread is None:
+        stated_spread = measure_spread(times)
+    return CorrectedTimes(estimate=estimate, spread=stated_spread)

@@ -527,7 +527,7 @@ def test_real_photographs_agree_better_with_estimated_times_or_keep_those_stated
 
 def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(photographs):
     taken = photographs("tripod_phone")
-    taken = pipeline.aligned(taken, "mtb").bracket
+    taken = pipeline.align_bracket(taken, "mtb").bracket
     found = find_contradictions(taken.images, taken.times)
     assert not found.local and np.nanmax(found.regions) < 0.1
     assert {taken.names[j] for j in found.wrong} >= {"img-3.jpeg", "img-1.jpeg"}

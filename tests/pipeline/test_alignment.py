@@ -24,7 +24,7 @@ TIMES = 4.0 ** np.linspace(-6, 3, 7)
 
 def aligned(images, align="auto"):
     """Return the first stage of `assemble` of photographs a factor of 16 apart."""
-    return pipeline.aligned(bracket(images, 16.0 ** np.arange(len(images))), align)
+    return pipeline.align_bracket(bracket(images, 16.0 ** np.arange(len(images))), align)
 
 
 def night(offsets, seed=0):

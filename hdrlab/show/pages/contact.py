@@ -59,7 +59,7 @@ def entry_steps(
         operators
     ).items():  # imported by now: that is no part of the time
         begun = perf_counter()
-        settings, saturation = pipeline.settle(tonemap, E)
+        settings, saturation = pipeline.resolve_settings(tonemap, E)
         Ld = tonemap(L, **settings)
         seconds = perf_counter() - begun
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)

@@ -114,7 +114,7 @@ def calibrate_shaken(
     offsets = camera.shake(count, radius=radius)
     times = camera.times_around(L, count, stops=stops)
     taken = camera.shoot(L, times, NOISY, offsets=offsets)
-    found = pipeline.aligned(taken, "mtb")
+    found = pipeline.align_bracket(taken, "mtb")
     wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
     both = [
         debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)

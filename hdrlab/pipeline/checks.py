@@ -1,0 +1,101 @@
+"""Checks of a finished radiance map: the warnings and notes of the last stage."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from hdrlab.core.arrays import F64
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.threads import Task, run_in_background
+from hdrlab.diagnostics import consistency, contradictions, motion
+from hdrlab.diagnostics.contradictions import Contradictions
+from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.pipeline.assembly import Assembly
+
+# stops of spread; brackets with true times stay below 0.2, those of scanned film included
+MAX_EXPLAINED_SPREAD = 0.25
+# stops of spread of a map that shows what no photo shows
+MIN_WORTHLESS_STOPS = 0.5
+# stops by which a photo must deviate to be named in a warning
+MIN_NAMED_DEVIATION = 0.1
+
+
+def start_finding_contradictions(bracket: Bracket) -> Task[Contradictions]:
+    """Start looking for contradictions in a bracket, in the background; no response is needed."""
+    find = partial(
+        contradictions.find_contradictions, bracket.images, bracket.times, valid=bracket.valid
+    )
+    return run_in_background(find, pixels=bracket.images[0].size)
+
+
+def is_worthless(medians: F64) -> bool:
+    """Return whether the photos contradict each other so much that the map is of no use."""
+    spread = consistency.measure_spread(medians)
+    return not spread <= MIN_WORTHLESS_STOPS
+
+
+def check_map(
+    state: Assembly,
+    medians: F64,
+    found: Contradictions,
+    moving_fraction: float,
+    band_stops: float,
+) -> Assembly:
+    """Return the Assembly with `medians`, and with warnings and notes from what the checks found.
+
+    Parameters
+    ----------
+    state : Assembly
+        It has a radiance map.
+    medians : (P, C, 256)
+        See `diagnostics.consistency.measure_level_exposures`.
+    found : Contradictions
+        See `diagnostics.contradictions.find_contradictions`.
+    moving_fraction : float
+        Fraction of the image in which ghosts are left.
+    band_stops : float
+        Stops by which the light changes in horizontal bands.
+    """
+    state = replace(state, stage="compare", medians=medians)
+    spread = state.spread
+    if np.isnan(spread):
+        text = warning_text("alone")
+        return replace(state.with_doubt(text), fallback=text)
+    if is_worthless(medians) and not state.fallback:
+        reason = f"the photos contradict each other by {spread:.2f} stops"
+        state = replace(state, fallback=reason)
+    text = _describe_problem(state, found, moving_fraction, band_stops)
+    if text:
+        return state.with_doubt(text)
+    names = state.bracket.names
+    unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
+    if unchecked:
+        return state.with_note(
+            f"the pixels could not confirm the exposure times of {', '.join(unchecked)}"
+        )
+    return state
+
+
+def _describe_problem(
+    state: Assembly, found: Contradictions, moving_fraction: float, band_stops: float
+) -> str:
+    """Return the warning about the most likely cause of contradictions, or ""."""
+    names = state.bracket.names
+    spread = state.spread
+    text = contradictions.warn_of_contradictions(found, names, spread, band_stops=band_stops)
+    if text:
+        return text
+    if moving_fraction > motion.MOVED:
+        return warning_text("moved", percent=100 * moving_fraction)
+    if band_stops > motion.BANDED:
+        return warning_text("flicker", stops=band_stops)
+    if spread > MAX_EXPLAINED_SPREAD:
+        deviations = consistency.measure_deviations(state.medians)
+        off = ", ".join(
+            f"{name} by {stops:+.2f}"
+            for name, stops in zip(names, deviations, strict=True)
+            if abs(stops) > MIN_NAMED_DEVIATION
+        )
+        return warning_text("unexplained", stops=spread, off=off)
+    return ""
