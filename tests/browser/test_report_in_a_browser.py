@@ -1,5 +1,7 @@
 """The report as a reader sees it: on a wide screen and on a telephone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,7 @@ def report(tmp_path_factory):
     found = pipeline.assemble(
         bracket([ramp, 2 * ramp], [1 / 8000, 1 / 4000], names), align="none", response="linear"
     )
-    found = found._replace(doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",))
+    found = replace(found, doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",))
     return write_report(tmp_path_factory.mktemp("report"), found, pipeline.develop(found.E))
 
 

@@ -190,12 +190,9 @@ def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
         code, _, said = hdrlab(*common, out, "--report", page, capsys=capsys)
         warnings = [line for line in said.splitlines() if line.startswith("warning: ")]
         assert code == 0 and 1 <= len(warnings) <= 3
-        assert any(
-            "contradict their exposure times" in one and "frame2.png" in one for one in warnings
-        )
-        assert "contradict their exposure times" in (page / "report.html").read_text(
-            encoding="utf8"
-        )
+        about_times = [line for line in warnings if "exposure times" in line]
+        assert any("frame2.png" in line for line in about_times)
+        assert "exposure times" in (page / "report.html").read_text(encoding="utf8")
         about = hdrlab("info", out, capsys=capsys)[1]
         assert ("doubt: " in about) == (out.suffix != ".pfm")
         assert radiance.read_radiance(out).any()
@@ -269,7 +266,7 @@ def test_times_that_nobody_knows_are_steps_or_the_pixels(photographs, tmp_path, 
     code, _, said = hdrlab("assemble", folder, "-o", steps, "--stops", 2, capsys=capsys)
     assert code == 0 and "warning" not in said
     code, _, said = hdrlab("assemble", folder, "-o", pixels, "--times", "estimate", capsys=capsys)
-    assert code == 0 and "relative times, the shortest is 1" in said and "--stops" in said
+    assert code == 0 and "relative exposure times" in said and "--stops" in said
 
 
 def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
@@ -597,7 +594,7 @@ def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, ca
         luminance(radiance.read_radiance(tmp_path / "a.exr")),
         luminance(scenes.room((96, 144))),
     )
-    assert code == 0 and "50 cd/m^2 were read at 20,30" in said
+    assert code == 0 and "50 cd/m^2 at 20,30" in said
     assert np.isclose(L[29:32, 19:22].mean(), 50, rtol=1e-3)
     assert np.isclose(np.median(L / truth), 50 / truth[29:32, 19:22].mean(), rtol=0.15)
 

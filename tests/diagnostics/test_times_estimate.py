@@ -177,14 +177,14 @@ def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken,
 def test_of_three_photographs_a_correction_is_doubted_for_it_may_be_another_time(taken):
     three = taken(3)
     found = pipeline.assemble(three._replace(times=three.times * [1, 1, 1.3]))
-    assert any("of three photographs, one time is wrong" in doubt for doubt in found.doubts)
+    assert any("exposure times" in doubt for doubt in found.doubts)
     assert pipeline.assemble(three).doubts == ()
     rounded = exposure_times.Estimate(three.times, np.array([-0.03, 0.06, -0.03]), True, "")
     assert exposure_times.doubts(rounded) == ()  # as cameras round 1/32 s to 1/30
 
 
 def test_a_wrong_time_is_told_also_where_the_frames_that_share_levels_agree_well(taken):
-    off = Contradictions(np.array([0, 0.33, 0.0]), np.full(2, np.nan), cost=0.06)
+    off = Contradictions(stops=np.array([0, 0.33, 0.0]), regions=np.full(2, np.nan), cost=0.06)
     assert "b by +0.33" in warn_of_contradictions(off, "abc", 0.02)
     assert warn_of_contradictions(off, "abc", 0.002) == ""
 
@@ -288,14 +288,14 @@ def test_true_times_are_not_contradicted(taken, count):
 def test_of_three_frames_the_doubt_names_one_and_says_that_it_may_be_another(taken):
     images, times, names = taken(3)[:3]
     said = warn_of_contradictions(find_contradictions(images, times * [1, 2, 1]), names)
-    assert "frame 2 by -" in said and "of three it may also be" in said
+    assert "frame 2 by -" in said and "first or the last" in said
 
 
 @pytest.mark.parametrize("count", [3, 5])
 def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
     images, times, names = taken(count)[:3]
     found = find_contradictions(tone_mapped(images), times)
-    assert found.local and "stops in parts of the picture" in warn_of_contradictions(found, names)
+    assert found.local and "shoot RAW" in warn_of_contradictions(found, names)
     curve = np.round(255 * (np.arange(256) / 255) ** 0.7).astype(np.uint8)
     same = find_contradictions(
         curve[images], times
@@ -328,7 +328,12 @@ def test_what_is_slight_counts_only_where_it_is_sure():
         (0.01, 9, False),
         (0.2, 1, True),
     ):
-        assert Contradictions(stops, np.full(2, regions), np.full(2, signs)).local == local
+        assert (
+            Contradictions(
+                stops=stops, regions=np.full(2, regions), significance=np.full(2, signs)
+            ).local
+            == local
+        )
 
 
 def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping():
@@ -353,7 +358,7 @@ def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
     said = warn_of_contradictions(
         found, names, 0.001
     )  # also where the map explains its photographs
-    assert said.startswith(f"{names[frame]} has another white balance")
+    assert "white balance" in said and names[frame] in said
     assert find_contradictions(images, times).tints.max() < 0.05
 
 
@@ -413,7 +418,7 @@ def test_frames_that_no_patch_ties_to_others_are_left_open():
     assert np.isnan(found.stops).all() and np.isnan(found.regions).all()
     assert found.wrong == () and not found.local and warn_of_contradictions(found, "abc") == ""
     assert warn_of_contradictions(
-        Contradictions(np.array([0, np.nan, 1.0]), np.full(2, np.nan)), "abc"
+        Contradictions(stops=np.array([0, np.nan, 1.0]), regions=np.full(2, np.nan)), "abc"
     )
 
 
@@ -461,7 +466,7 @@ def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
 
 
 def test_other_words_than_correct_stated_and_estimate_are_refused(taken):
-    with pytest.raises(ValueError, match="times out of correct, stated, estimate, got 'guess'"):
+    with pytest.raises(ValueError, match="times .*correct, stated, estimate.*guess"):
         pipeline.assemble(taken(3), times="guess")
 
 
@@ -531,7 +536,7 @@ def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(phot
     found = find_contradictions(taken.images, taken.times)
     assert not found.local and np.nanmax(found.regions) < 0.1
     assert {taken.names[j] for j in found.wrong} >= {"img-3.jpeg", "img-1.jpeg"}
-    assert "contradict their exposure times" in warn_of_contradictions(found, taken.names)
+    assert "--times estimate" in warn_of_contradictions(found, taken.names)
     other = estimate_times(taken.images, taken.times)
     assert other.accepted and other.bias_after < 0.1 * other.bias_before
 

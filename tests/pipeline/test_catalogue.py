@@ -42,7 +42,7 @@ def test_a_readers_own_function_is_taken_as_it_is():
 
 @pytest.mark.parametrize("name", ["nobody", "", "__init__", "shift", "../core/arrays"])
 def test_an_unknown_name_is_refused_with_those_there_are(name):
-    with pytest.raises(ValueError, match="method of align out of .*mtb.*, got"):
+    with pytest.raises(ValueError, match="align .*mtb"):
         catalogue.method("align", name)
 
 

@@ -34,7 +34,7 @@ def plain(moving):
 
 def test_what_moved_stays_where_that_is_asked_and_is_doubted(plain):
     assert plain.moving is None and plain.glare is None and plain.stage == "compare"
-    assert any("% of the picture, as where leaves" in doubt for doubt in plain.doubts)
+    assert any("--ghosts regions" in doubt for doubt in plain.doubts)
 
 
 @pytest.mark.parametrize("way", ["regions", "reference"])
@@ -77,9 +77,7 @@ def test_auto_leaves_a_map_that_contradicts_itself_nearly_everywhere_and_doubts_
 ):
     monkeypatch.setattr("hdrlab.radiance.deghosting.ghosts.WIDESPREAD", 1)
     auto, none = (pipeline.assemble(moving, align="none", ghosts=way) for way in ("auto", "none"))
-    assert np.array_equal(auto.E, none.E) and any(
-        "--ghosts regions shows one" in one for one in auto.doubts
-    )
+    assert np.array_equal(auto.E, none.E) and any("--ghosts regions" in one for one in auto.doubts)
 
 
 def test_flare_is_the_last_stage_before_they_are_compared():
@@ -97,15 +95,13 @@ def test_flare_is_the_last_stage_before_they_are_compared():
 def test_wrong_times_are_not_called_motion(moving):
     wrong = moving._replace(times=moving.times * np.array([1, 1, 8, 9, 10]))
     found = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
-    assert len(found.doubts) == 1 and "contradict their exposure times" in found.doubts[0]
+    assert len(found.doubts) == 1 and "--times estimate" in found.doubts[0]
 
 
 def test_ways_that_there_are_not_are_refused(moving):
-    with pytest.raises(
-        ValueError, match="ghosts out of none, auto, regions, reference, got 'some'"
-    ):
+    with pytest.raises(ValueError, match="ghosts .*none, auto, regions, reference.*'some'"):
         pipeline.assemble(moving, ghosts="some")
-    with pytest.raises(ValueError, match="flare out of none, glare, got 'sun'"):
+    with pytest.raises(ValueError, match="flare .*none, glare.*'sun'"):
         pipeline.assemble(moving, flare="sun")
 
 

@@ -11,9 +11,9 @@ from hdrlab.pipeline import develop, develop_and_describe
 from hdrlab.pipeline.photograph import (
     choose_settings,
     compress_light,
-    draw_lines,
     filter_light,
     find_logarithm,
+    interpolation_weights,
     photograph,
 )
 from hdrlab.tonemap import durand
@@ -81,15 +81,19 @@ def test_light_is_compressed_and_detail_is_not():
     stripes = 0.05 * (np.arange(200) % 2)
     lL = (np.where(np.arange(200) < 100, 0, 4) + stripes + np.zeros((150, 1))).astype(np.float32)
     light = filter_light(lL)
-    x = compress_light(lL, 0.5, *light)[75]
+    x = compress_light(lL, 0.5, light)[75]
     assert np.median(x[150:]) - np.median(x[:50]) == pytest.approx(2, abs=0.1)
     assert np.ptp(x[20:22]) == pytest.approx(0.05, rel=0.1) and np.array_equal(
-        compress_light(lL, 1.0, *light), lL
+        compress_light(lL, 1.0, light), lL
     )
 
 
 def test_a_grid_is_enlarged_along_straight_lines_and_past_its_end_stays():
-    large = draw_lines(5, 2, 3) @ np.float32([[0, 3, 6], [10, 13, 16]]) @ draw_lines(8, 3, 3).T
+    large = (
+        interpolation_weights(5, 2, 3)
+        @ np.float32([[0, 3, 6], [10, 13, 16]])
+        @ interpolation_weights(8, 3, 3).T
+    )
     assert np.allclose(large[0, [0, 1, 6, 7]], [0, 1, 6, 6]) and np.allclose(large[[3, 4], 7], 16)
     assert large[1, 0] == pytest.approx(10 / 3)
 
@@ -100,9 +104,12 @@ def test_the_light_is_that_of_the_guided_filter_on_a_grid_whose_means_are_those_
     mean = uniform_filter(few, width)
     variance = np.maximum(uniform_filter(few * few, width) - mean * mean, 0)
     slope = variance / (variance + 0.35**2)
-    a, b, down = filter_light(lL)
-    for found, plain in (a, slope), (b, mean - slope * mean):
-        assert np.abs((down @ found)[::2, ::2] - uniform_filter(plain, width)).max() < 1e-4
+    light = filter_light(lL)
+    for found, plain in (light.slope, slope), (light.offset, mean - slope * mean):
+        assert (
+            np.abs((light.row_weights @ found)[::2, ::2] - uniform_filter(plain, width)).max()
+            < 1e-4
+        )
 
 
 def test_the_settings_are_told_and_can_be_replaced():

@@ -1,5 +1,7 @@
 """A response that its photographs contradict is replaced, with a doubt; a reader's own is taken as it is."""
 
+from dataclasses import replace
+
 import laws
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import pytest
 from hdrlab import pipeline
 from hdrlab.capture import camera
 from hdrlab.capture.responses import RESPONSES, true_g
+from hdrlab.errors import InputError
 from hdrlab.fast import debevec
 from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import linear
@@ -35,19 +38,18 @@ def taken(decades):
 def test_a_usual_response_serves_where_the_photographs_contradict_their_times(taken, method):
     wrong = taken._replace(times=taken.times * [1, 1, 1, 10_000])
     found = pipeline.assemble(wrong, align="none", response=method)
-    assert any("no response was found" in doubt for doubt in found.doubts)
+    assert any("check the exposure times" in doubt for doubt in found.doubts)
     assert found.fallback and np.all(np.isfinite(found.E)) and found.E.any()
 
 
 def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken, monkeypatch):
     def refuse(*_, **__):
-        raise ValueError("expected the moon")
+        raise InputError("expected the moon")
 
     monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
-    g, (doubt,), fallback = recovery.find_response(
-        "mann", recovery.choose_response("mann", taken), taken
-    )
-    assert laws.curve_error(g, true_g("film")) < 0.05 and not fallback
+    found = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
+    assert laws.curve_error(found.g, true_g("film")) < 0.05 and not found.fallback
+    (doubt,) = found.doubts
     assert "expected the moon" in doubt
 
 
@@ -86,8 +88,11 @@ ENOUGH = 1.05 * 0.1 + 0.003
 def test_one_curve_is_taken_where_it_explains_nearly_as_much_and_debevec_s_where_few_levels_are_open(
     spreads, gap, name, taken, monkeypatch
 ):
-    names = [one.replace("three", "a curve for each channel") for one in ASKED]
-    monkeypatch.setattr(recovery, "CANDIDATES", dict(zip(names, ASKED, strict=True)))
+    candidates = [
+        replace(candidate, method=label)
+        for candidate, label in zip(recovery.CANDIDATES, ASKED, strict=True)
+    ]
+    monkeypatch.setattr(recovery, "CANDIDATES", candidates)
     monkeypatch.setattr(recovery, "find_widest_gap", lambda Z: gap)
     monkeypatch.setattr(
         recovery, "measure_spread", lambda one, *_: spreads[ASKED.index(one.args[0])]

@@ -106,5 +106,5 @@ def test_held_out_stripes_share_no_pixel_with_those_that_make_a_response(three):
 @pytest.mark.parametrize("level", [0, 255])
 def test_photographs_that_show_nothing_in_common_are_refused_with_what_to_do(level):
     taken = bracket(np.full((3, 40, 60, 3), level, np.uint8), [0.1, 0.2, 0.4])
-    with pytest.raises(ValueError, match="take some in between, 1 to 2 stops"):
+    with pytest.raises(ValueError, match="1 to 2 stops apart"):
         pipeline.assemble(taken)

@@ -6,13 +6,15 @@ import pytest
 from hdrlab.core.bracket import bracket
 from hdrlab.diagnostics import outlying_frames
 from hdrlab.diagnostics.exposure_times import Estimate
-from hdrlab.pipeline import stages, timing
+from hdrlab.pipeline import corrections, timing
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.deghosting import ghosts
 
 TAKEN = bracket(np.full((5, 20, 20), 9, np.uint8), [1, 2, 3, 4, 5], "abcde")
 STATE = Assembly(
-    *("merge", TAKEN, np.zeros((5, 2), int)),
+    stage="merge",
+    bracket=TAKEN,
+    offsets=np.zeros((5, 2), int),
     g=np.zeros(256),
     E=np.zeros((20, 20), np.float32),
     quality=np.zeros((20, 20), np.uint8),
@@ -28,14 +30,11 @@ def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_t
     rivals, relative, doubted, monkeypatch
 ):
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((3,), rivals))
-    found = stages.leave_out_contrary(STATE, relative=relative)
+    found = corrections.drop_outlying_frames(STATE, has_relative_times=relative)
     assert found.bracket.names == ("a", "b", "c", "e")
     assert (len(found.doubts), len(found.notes)) == (doubted, not doubted)
     (said,) = found.doubts + found.notes
-    assert (
-        ": d; see whether its time is right" in said
-        and ("it may also be b or c that is wrong" in said) == doubted
-    )
+    assert ": d;" in said and ("b or c" in said) == doubted
 
 
 @pytest.mark.parametrize(
@@ -56,10 +55,10 @@ def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_
 
     asked = []
     monkeypatch.setattr(ghosts, "remove_ghosts", remove)
-    found = stages.deghost(STATE, way, np.ones_like, None)
+    found = corrections.remove_ghosts(STATE, way, np.ones(256), None)
     assert asked == [(fixed, most)] and found.E.all() and found.moving.sum() == moved
     moved += 1
-    found = stages.deghost(STATE, way, np.ones_like, None)
+    found = corrections.remove_ghosts(STATE, way, np.ones(256), None)
     assert bool(found.E.any()) == (found.moving is not None) == (way != "auto")
 
 
@@ -69,17 +68,17 @@ def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_
 def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_than_half_of_that(
     spread, other, replaced, monkeypatch
 ):
-    def correct(taken, response, before):
-        return Estimate(taken.times, np.zeros(5), False, ""), other if before is None else spread
+    def correct(taken, response, stated_spread=None):
+        estimate = Estimate(taken.times, np.zeros(5), False, "")
+        left = other if stated_spread is None else spread
+        return timing.CorrectedTimes(estimate=estimate, spread=left)
 
     relative = TAKEN._replace(times=2.0 ** np.arange(5))
     monkeypatch.setattr(timing, "correct_times", correct)
     monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
     found = timing.refine_times(STATE, "auto", 0.7)
     assert np.array_equal(found.bracket.times, (relative if replaced else TAKEN).times)
-    assert ["contradict the pixels by 0.70 stops" in one for one in found.doubts] == [
-        True
-    ] * replaced
+    assert ["0.70 stops" in doubt for doubt in found.doubts] == [True] * replaced
 
 
 def test_photographs_that_get_darker_while_the_times_rise_are_named():

@@ -2,6 +2,7 @@
 
 import base64
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import cv2
@@ -124,7 +125,7 @@ def test_how_sure_each_pixel_is_stands_there_where_it_was_asked(room, tmp_path):
 
 def test_where_no_pixel_is_sure_the_page_says_so_without_a_picture(tmp_path):
     state = flat()
-    page = report(tmp_path, state._replace(s=np.full_like(state.E, np.inf)))
+    page = report(tmp_path, replace(state, s=np.full_like(state.E, np.inf)))
     assert "how sure each pixel is, is not known" in page.text
     assert not any("How sure" in one["alt"] for one in page.images)
 
@@ -215,7 +216,7 @@ def test_pixels_that_were_not_measured_are_counted_and_shown(tmp_path):
         Quality.UNSEEN,
     )
     quality[20, 20] = Quality.CLIPPED | Quality.DARK
-    shown = report(tmp_path, found._replace(quality=quality))
+    shown = report(tmp_path, replace(found, quality=quality))
     counts = dict(
         re.findall(
             r"<b>([\w ]+)</b> <span.{0,120}?</th><td class=\"right\">([\d,]+)</td>", shown.source
@@ -239,20 +240,20 @@ def test_a_map_that_is_measured_everywhere_needs_no_picture_of_it(tmp_path):
 
 def test_doubts_stand_before_the_picture_and_notes_are_told(tmp_path):
     shown = report(
-        tmp_path, flat()._replace(doubts=("the times are wrong",), notes=("a frame is dark",))
+        tmp_path, replace(flat(), doubts=("the times are wrong",), notes=("a frame is dark",))
     )
     assert shown.source.index("the times are wrong") < shown.source.index("<img")
     assert "What is doubtful about this map" in shown.text and "a frame is dark" in shown.text
 
 
 def test_without_doubts_and_notes_none_are_raised(tmp_path):
-    shown = report(tmp_path, flat()._replace(doubts=(), notes=()))
+    shown = report(tmp_path, replace(flat(), doubts=(), notes=()))
     assert "doubtful" not in shown.text and "Good to know" not in shown.text
 
 
 def test_names_and_notes_cannot_write_into_the_page(tmp_path):
     evil = ['<script>alert("x")</script>.jpg', "\" onerror='alert(1)'&amp;.jpg"]
-    found = flat(names=evil)._replace(doubts=("<b>bold</b>",), notes=("<img src=x>",))
+    found = replace(flat(names=evil), doubts=("<b>bold</b>",), notes=("<img src=x>",))
     shown = report(tmp_path, found, recipe={"<i>": "</style>"})
     assert shown.wrong == [] and shown.open == []
     assert not {"script", "i"} & {tag for tag, attrs in shown.tags if "style" not in attrs}
@@ -319,7 +320,7 @@ def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
         ValueError, match="expected a finished assembly, got one after the stage 'merge'"
     ):
         write_report(
-            tmp_path, flat()._replace(stage="merge", medians=None), np.zeros((40, 60), np.uint8)
+            tmp_path, replace(flat(), stage="merge", medians=None), np.zeros((40, 60), np.uint8)
         )
 
 
@@ -381,7 +382,7 @@ def test_a_spread_is_judged_in_words(spread, says):
 
 def test_frames_that_share_no_level_are_not_said_to_agree(tmp_path):
     found = flat()
-    shown = report(tmp_path, found._replace(medians=np.full_like(found.medians, np.nan)))
+    shown = report(tmp_path, replace(found, medians=np.full_like(found.medians, np.nan)))
     assert (
         "not known" in shown.text and "they agree" not in shown.text and "0.000" not in shown.text
     )
