@@ -149,7 +149,7 @@ def test_an_import_of_another_layer_is_found():
 
 def test_what_is_read_here_are_the_imports():
     """The reader of imports sees plain ones, those from a package, and those inside functions."""
-    found = {target for _, _, target in imports(HOME / "pipeline/stages.py")}
+    found = {target for _, _, target in imports(HOME / "pipeline/corrections.py")}
     assert {
         ("numpy",),
         ("hdrlab", "radiance", "deghosting", "ghosts"),

@@ -1,5 +1,6 @@
 """Option types, file checks, messages and progress that the commands share."""
 
+import itertools
 import os
 import re
 import sys
@@ -184,19 +185,22 @@ def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iter
 
 
 def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
-    """Yield `items`, while a terminal shows which of `names` is being made, and for how long.
+    """Yield all `items`, and show on a terminal which of `names` is computed, and for how long.
 
-    A bar moves when an item is done; where there are few and each takes seconds, that looks like
-    standstill.
+    A progress bar moves when an item is done, so it stands still where each item takes seconds.
+    Items beyond the last name are shown under that name.
     """
     from hdrlab.cli.terminal import elapsed
 
-    made = iter(items)
-    for j, name in enumerate(names, 1):
-        with elapsed(f"{j} of {len(names)}, {name}"):
-            item = next(made, None)
-        if item is None:
-            return
+    iterator = iter(items)
+    for number in itertools.count(1):
+        name = names[min(number, len(names)) - 1]
+        count = max(number, len(names))
+        with elapsed(f"{number} of {count}, {name}"):
+            try:
+                item = next(iterator)
+            except StopIteration:
+                return
         yield item
 
 

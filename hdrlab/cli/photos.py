@@ -166,7 +166,7 @@ def assemble(
         response=recover,
         times=times_mode,
         weight=weight,
-        method=merge,
+        merge=merge,
         ghosts=ghosts,
         flare=flare,
     )
@@ -179,8 +179,7 @@ def assemble(
     if meter_reading:
         assembly = pipeline.calibrate(assembly, *meter_reading)
     if assembly.fallback and (picture or report):
-        fusion_note = f"{FUSION_NOTE}, for {assembly.fallback}"
-        assembly = assembly._replace(notes=(*assembly.notes, fusion_note))
+        assembly = assembly.with_note(f"{FUSION_NOTE}, because {assembly.fallback}")
     common.echo_notes(assembly.notes)
     common.echo_warnings(_shorten(assembly.doubts))
 
@@ -208,7 +207,7 @@ def assemble(
                 "weight": weight,
                 "ghosts": ghosts,
                 "flare": flare,
-                "method": merge,
+                "merge": merge,
                 "times": times_mode,
                 "tonemap": developed.settings,
             }

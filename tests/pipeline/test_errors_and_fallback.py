@@ -10,7 +10,7 @@ from PIL import Image
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.cli import main
+from hdrlab.cli import common, main
 from hdrlab.errors import InputError
 from hdrlab.fast import debevec
 from hdrlab.pipeline import options, pictures
@@ -166,3 +166,8 @@ def test_values_of_a_light_meter_scale_the_map_and_its_deviation(taken):
         y, x = unmeasured[0]
         with pytest.raises(InputError, match=f"{x},{y}"):
             pipeline.calibrate(state, int(x), int(y), 100.0)
+
+
+@pytest.mark.parametrize("names", [["first"], ["first", "second"], ["a", "b", "c", "d", "e"]])
+def test_progress_keeps_every_item_however_many_names_there_are(names):
+    assert list(common.one_by_one(iter([1, None, 3]), names)) == [1, None, 3]
