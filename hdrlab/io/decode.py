@@ -20,7 +20,7 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw
-from hdrlab.io.exif_exposure import Exposure, exif_exposure
+from hdrlab.io.exif_exposure import Exposure, read_exposure
 from hdrlab.io.files import OtherPixels, check_size, require_no_folder
 
 # What the files of each format begin with.
@@ -400,7 +400,7 @@ def _read_exif(load: Callable[[Image.Exif], None]) -> ExifFacts:
             warnings.simplefilter("ignore")
             load(exif)
             orientation = exif.get(ExifTags.Base.Orientation, 1)
-            exposure = exif_exposure(exif)
+            exposure = read_exposure(exif)
             interop_index = exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)
             rendering = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered)
     except Exception:  # on damaged EXIF Pillow raises exceptions of any type

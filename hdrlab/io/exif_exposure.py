@@ -1,114 +1,128 @@
-"""How much light a photograph was given, as its EXIF says.
+"""The exposure of a photo, as its EXIF states it.
 
-t   shutter time    seconds
-N   f-number        focal length over aperture
-S   ISO speed       what the sensor's signal was amplified by, 100 = 1
-Tv, Av   the APEX values (EXIF 2.3, annex C), t = 2^-Tv and N = 2^(Av / 2)
+t       exposure time, in seconds
+N       f-number, focal length over aperture
+S       ISO speed, 100 = 1
+Tv, Av  APEX values (EXIF 2.3, annex C): t = 2^-Tv and N = 2^(Av / 2)
 
-The equivalent exposure t S / N^2 is given in seconds at the first photograph's S and N. The
-exposure bias of EXIF is never used: it says what the photographer wished for, not what the camera
-did.
+The equivalent exposure t S / N^2 is given in seconds at the S and N of the first photo. EXIF's
+exposure bias is never used: it states what the photographer asked for, not what the camera did.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from PIL import ExifTags, Image
+from PIL import Image
+from PIL.ExifTags import IFD, Base
 
 from hdrlab.errors import InputError
 
-HINT = "give them by --times FILE (times= in Python), or without a list by --stops 2 or --times estimate"
-SHUTTER, SHUTTER_APEX = ExifTags.Base.ExposureTime, ExifTags.Base.ShutterSpeedValue
-APERTURE, APERTURE_APEX = ExifTags.Base.FNumber, ExifTags.Base.ApertureValue
-SPEEDS = (
-    ExifTags.Base.ISOSpeedRatings,
-    34867,
-    34866,
-    34865,
-)  # and ISO speed, recommended index, output
-UNKNOWN_SPEED = 65535  # what the first tag holds when the speed does not fit its 16 bits
+HINT = "pass --times FILE (times= in Python), or, without a list, --stops 2 or --times estimate"
+# The first of these that states a speed is used.
+ISO_TAGS = (
+    Base.ISOSpeedRatings,
+    Base.ISOSpeed,
+    Base.RecommendedExposureIndex,
+    Base.StandardOutputSensitivity,
+)
+# What ISOSpeedRatings holds if the speed does not fit into its 16 bits.
+UNKNOWN_ISO = 65535
+MAX_APEX = 40
+MIN_VALUE = 1e-12
+MAX_VALUE = 1e12
 
 
 class Exposure(NamedTuple):
-    """What a photograph or a list says: seconds, f-number and ISO, each None where it says nothing."""
+    """The exposure that a photo or a list states: each value is None if it states none."""
 
     seconds: float | None = None
     f_number: float | None = None
     iso: float | None = None
 
 
-def exif_exposure(exif: Image.Exif) -> Exposure:
-    """Return the Exposure that EXIF states; the APEX values serve where the plain ones are missing.
+def read_exposure(exif: Image.Exif) -> Exposure:
+    """Return the exposure that EXIF states; APEX values serve where the plain ones are missing.
 
-    An f-number of 0 is a lens without contacts, and its APEX value says nothing either.
+    An f-number of 0 means a lens without contacts; its APEX value is not used either.
     """
-    tags = {**dict(exif), **dict(exif.get_ifd(ExifTags.IFD.Exif))}
-    speeds = (positive(tags.get(tag)) for tag in SPEEDS)
-    speed = next((speed for speed in speeds if speed and speed != UNKNOWN_SPEED), None)
-    seconds = positive(tags.get(SHUTTER)) or _apex(tags.get(SHUTTER_APEX), lambda Tv: 2**-Tv)
-    stated = APERTURE in tags
-    N = (
-        positive(tags[APERTURE])
-        if stated
-        else _apex(tags.get(APERTURE_APEX), lambda Av: 2 ** (Av / 2))
-    )
-    return Exposure(seconds, N, speed)
+    tags = {**dict(exif), **dict(exif.get_ifd(IFD.Exif))}
+    seconds = positive(tags.get(Base.ExposureTime))
+    if seconds is None:
+        Tv = _apex(tags.get(Base.ShutterSpeedValue))
+        seconds = None if Tv is None else 2**-Tv
+    if Base.FNumber in tags:
+        f_number = positive(tags[Base.FNumber])
+    else:
+        Av = _apex(tags.get(Base.ApertureValue))
+        f_number = None if Av is None else 2 ** (Av / 2)
+    return Exposure(seconds, f_number, _read_iso(tags))
 
 
-def equivalent(names: Sequence[str], exposures: Sequence[Exposure]) -> list[float]:
-    """Return t S / N^2 in seconds, relative to the first photograph's S and N.
+def _read_iso(tags: dict[int, Any]) -> float | None:
+    for tag in ISO_TAGS:
+        speed = positive(tags.get(tag))
+        if speed is not None and speed != UNKNOWN_ISO:
+            return speed
+    return None
 
-    Where no photograph states S, or none states N, it is taken to be the same in all.
+
+def equivalent_seconds(names: Sequence[str], exposures: Sequence[Exposure]) -> list[float]:
+    """Return t S / N^2 in seconds, relative to the S and N of the first photo.
+
+    If no photo states S, or none states N, it is taken to be the same in all of them.
 
     Raises
     ------
-    ValueError
-        Where a time is missing, or S or N is known of some photographs only.
+    InputError
+        If a time is missing, or if only some photos state S or N.
     """
-    if untimed := [name for name, one in zip(names, exposures, strict=True) if one.seconds is None]:
-        raise InputError(
-            f"{untimed[0]}: expected an exposure time in its EXIF, there is none; {HINT}"
-        )
-    seconds = [exposure.seconds for exposure in exposures if exposure.seconds is not None]
-    stops = _alike(names, [exposure.f_number for exposure in exposures], "f-number")
-    speeds = _alike(names, [exposure.iso for exposure in exposures], "ISO speed")
+    times = []
+    for name, exposure in zip(names, exposures, strict=True):
+        if exposure.seconds is None:
+            raise InputError(f"{name}: no exposure time in EXIF; {HINT}")
+        times.append(exposure.seconds)
+    f_numbers = _all_or_none(names, [exposure.f_number for exposure in exposures], "f-number")
+    speeds = _all_or_none(names, [exposure.iso for exposure in exposures], "ISO speed")
     return [
-        t * (S / speeds[0]) * (stops[0] / N) ** 2
-        for t, S, N in zip(seconds, speeds, stops, strict=True)
+        t * (S / speeds[0]) * (f_numbers[0] / N) ** 2
+        for t, S, N in zip(times, speeds, f_numbers, strict=True)
     ]
 
 
-def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> list[float]:
-    """Return the values where all are known, or 1 for each where none is."""
+def _all_or_none(names: Sequence[str], values: Sequence[float | None], what: str) -> list[float]:
+    """Return the values if all are known, or 1 for each if none is."""
     known = [value for value in values if value is not None]
-    if known and len(known) < len(values):
-        missing = names[values.index(None)]
-        raise InputError(
-            f"{missing[:200]}: expected the {what}, which other photographs state; {HINT}"
-        )
-    return known or [1.0] * len(values)
+    if not known:
+        return [1.0] * len(values)
+    if len(known) < len(values):
+        name = names[values.index(None)]
+        raise InputError(f"{name[:200]}: no {what}, which other photos state; {HINT}")
+    return known
 
 
 def positive(value: Any) -> float | None:
-    """Return a tag or a text as a number, or None where it is none, 0 (no contacts in the lens), or n/0.
+    """Return a tag or a text as a positive number, or None if it is none.
 
     Examples
     --------
     >>> positive("0.5"), positive(0)
     (0.5, None)
     """
-    number = _number(value[0] if isinstance(value, tuple | list) and value else value)
-    return number if 1e-12 < number < 1e12 else None
+    if isinstance(value, tuple | list) and value:
+        value = value[0]
+    number = _as_float(value)
+    return number if MIN_VALUE < number < MAX_VALUE else None
 
 
-def _apex(value: Any, meaning: Callable[[float], float]) -> float | None:
-    """Return what an APEX value means, or None; 0 and negative ones are as good as others."""
-    apex = _number(value)
-    return meaning(apex) if abs(apex) < 40 else None
+def _apex(value: Any) -> float | None:
+    """Return an APEX value, which may be 0 or negative, or None if there is none."""
+    apex = _as_float(value)
+    return apex if abs(apex) < MAX_APEX else None
 
 
-def _number(value: Any) -> float:
+def _as_float(value: Any) -> float:
+    """Return a value as a number, or NaN."""
     try:
         return float(value)
     except (TypeError, ValueError, ArithmeticError):

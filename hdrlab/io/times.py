@@ -1,8 +1,7 @@
-"""Lists of exposure times, and which times a bracket takes: those given explicitly before those of EXIF."""
+"""Lists of exposure times, and the times of a bracket: given ones come before those of EXIF."""
 
 import csv
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -10,26 +9,47 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.errors import InputError
-from hdrlab.io.exif_exposure import HINT, Exposure, equivalent, positive
+from hdrlab.errors import FileFormatError, InputError
+from hdrlab.io.exif_exposure import HINT, Exposure, equivalent_seconds, positive
 from hdrlab.io.files import require_no_folder
 
 Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Path
 
-# 0.5, 1/60, 0,5 and each of them with a unit, as `_tidy` writes them
+# A number (0.5 or 0,5), a fraction (1/60), each with or without the unit "s".
 VALUE = re.compile(r"([\d.,]+(?:e[-+]?\d+)?)(?:/([\d.]+))?(s?)", re.IGNORECASE)
-KNOWN = tomllib.loads(Path(__file__).with_name("times.toml").read_text("utf8"))
-HEADINGS, COLUMNS = KNOWN["headings"], KNOWN["columns"]
-# the least ISO speed, and more than any f-number
-LEAST_ISO = 50
-# of the brightness of the photographs with the times of a list: less decides nothing
-CORRELATION = 0.5
-# letters: a name and a few numbers
-LONGEST_LINE = 10_000
+# What a column holds, by its heading; the first pattern that fits decides. A "rate" is a number
+# such as 60, which may mean 60 s or 1/60 s.
+HEADINGS = {
+    "inverse": r"^1\s*/|inverse",
+    "iso": r"iso",
+    "rate": r"speed",
+    "seconds": r"time|second|exposure|shutter|^t$|^s$",
+    "f_number": r"^f\b|f[-_ /]?(number|stop)|aperture",
+    "file": r"file|name|image|photo|picture",
+}
+NUMBER_COLUMNS = ("inverse", "iso", "rate", "seconds", "f_number")
+# What the columns hold if there is no heading, by their number. Six are Debevec's list.
+COLUMNS = {
+    2: ["file", "rate"],
+    3: ["file", "rate", "f_number"],
+    4: ["file", "rate", "f_number", "iso"],
+    6: ["file", "", "inverse", "f_number", "gain", "filters"],
+}
+# The lowest ISO speed, which is above any f-number.
+MIN_ISO = 50
+# A weaker correlation between brightness and times does not tell seconds from 1/seconds.
+MIN_CORRELATION = 0.5
+# A time and its inverse, beside each other, multiply to 1 within this tolerance.
+INVERSE_TOLERANCE = 0.05
+MAX_LINE_LENGTH = 10_000
 
 
 class TimeList(NamedTuple):
-    """Equivalent exposure in seconds of each file name; and the same of numbers that may be 1/seconds."""
+    """Equivalent exposures in seconds, by file name.
+
+    `inverse` holds the exposures if the list's numbers are 1/seconds. It is None if the list says
+    which they are.
+    """
 
     seconds: dict[str, float]
     inverse: dict[str, float] | None = None
@@ -38,45 +58,67 @@ class TimeList(NamedTuple):
 def bracket_times(
     names: Sequence[str], exposures: Sequence[Exposure], times: Times | None
 ) -> tuple[list[float], list[float] | None]:
-    """Return the equivalent exposure of each photograph: what was given, else what its EXIF says.
+    """Return the equivalent exposure of each photo: as given, else as its EXIF states.
 
-    The second list is there where a list of numbers may as well be 1/seconds, and EXIF does not
-    decide it.
+    Parameters
+    ----------
+    names
+        The file names of the photos.
+    exposures
+        What the EXIF of each photo states.
+    times
+        Times in the order of the photos or by name, the path of a list, or None for EXIF.
+
+    Returns
+    -------
+    seconds
+        The equivalent exposures.
+    inverse
+        The equivalent exposures if the list's numbers are 1/seconds; None unless that is open.
 
     Raises
     ------
-    ValueError
-        Naming the photograph whose time is missing or not positive.
+    InputError
+        Naming the photo whose time is missing or not positive.
     """
     if times is None:
-        return equivalent(names, exposures), None
-    where, inverse = "the times given", None
+        return equivalent_seconds(names, exposures), None
+    source = "the given times"
+    inverse = None
     if isinstance(times, str | Path):
-        where, (times, inverse) = str(times), read_times(times)
+        source = str(times)
+        times, inverse = read_times(times)
     if isinstance(times, Mapping):
-        times = _look_up(times, names, where)
+        times = _look_up_times(times, names, source)
     if len(times) != len(names):
         raise InputError(
             f"expected {len(names)} exposure times, one per photograph, got {len(times)}"
         )
-    for name, t in zip(names, times, strict=True):
-        if not 0 < t < np.inf:
+    for name, seconds in zip(names, times, strict=True):
+        if not 0 < seconds < np.inf:
             raise InputError(
-                f"{name}: expected a positive exposure time in seconds, got {t}; {HINT}"
+                f"{name}: expected a positive exposure time in seconds, got {seconds}; {HINT}"
             )
-    seconds = [float(t) for t in times]
+    listed = [float(seconds) for seconds in times]
     if inverse is None:
-        return seconds, None
-    other = _look_up(inverse, names, where)
-    if any(one.seconds is None for one in exposures):
-        return seconds, other
-    return (other if are_inverse(seconds, equivalent(names, exposures), where) else seconds), None
+        return listed, None
+    inverted = _look_up_times(inverse, names, source)
+    if any(exposure.seconds is None for exposure in exposures):
+        return listed, inverted
+    if are_inverse(listed, equivalent_seconds(names, exposures), source):
+        return inverted, None
+    return listed, None
 
 
 def are_inverse(
     seconds: Sequence[float], brightness: ArrayLike, where: str = "the list of times"
 ) -> bool:
-    """Return whether numbers are 1/seconds: where the photographs get darker as they rise.
+    """Return whether numbers are 1/seconds, because the photos get darker as the numbers rise.
+
+    Raises
+    ------
+    InputError
+        If the brightness of the photos neither rises nor falls with the numbers.
 
     Examples
     --------
@@ -85,36 +127,41 @@ def are_inverse(
     """
     if np.ptp(seconds) == 0 or np.ptp(brightness) == 0:
         return False
-    r = float(
-        np.corrcoef(np.argsort(np.argsort(seconds)), np.argsort(np.argsort(brightness)))[0, 1]
-    )
-    if abs(r) < CORRELATION:
-        why = "to distinguish seconds from 1/seconds; write them as 1/60 or as 0.5 s"
+    correlation = float(np.corrcoef(_ranks(seconds), _ranks(brightness))[0, 1])
+    if abs(correlation) < MIN_CORRELATION:
         raise InputError(
-            f"{where}: expected numbers that rise or fall with the photographs' brightness, {why}"
+            f"{where}: the numbers neither rise nor fall with the photos' brightness, so that they "
+            "may be seconds or 1/seconds; write them as 1/60 or as 0.5 s"
         )
-    return r < 0
+    return correlation < 0
+
+
+def _ranks(values: ArrayLike) -> NDArray[np.intp]:
+    return np.argsort(np.argsort(values))
 
 
 def read_times(path: str | Path) -> TimeList:
     """Read a list of exposure times that comes with a bracket.
 
+    Each line names a photo and its time, with a comma, a semicolon, a tab or a space between them.
+    A time is 1/60, 1/60 s, 0.0166, or 60, which may mean 60 s or 1/60 s. There may be a heading
+    (file, exposure_time_s or 1/seconds, f_number, iso), or the f-number and the ISO speed behind
+    the time. Debevec's list (name, exposure, 1/seconds, f-stop, gain in dB, ND filters) is read,
+    too. A # begins a comment.
+
     Parameters
     ----------
-    path : a text file, a photograph a line: its name and its time, between them a comma, semicolon,
-        tab or
-        space. A time is 1/60, 1/60 s, 0.0166, or 60, which may mean either 60 s or 1/60 s. There
-        may be a heading (file, exposure_time_s or 1/seconds, f_number, iso), or the f-number and
-        the ISO speed behind the time. Debevec's list (name, exposure, 1/seconds, f-stop, gain in
-        dB, ND filters) is read, too. # begins a comment.
+    path : str or Path
+        A text file.
 
     Returns
     -------
-    TimeList : exposures relative to the first one's ISO and f-number
+    TimeList
+        Exposures relative to the ISO speed and f-number of the first photo.
 
     Raises
     ------
-    ValueError
+    FileFormatError
         Naming the file, the line, and what was expected there.
 
     Examples
@@ -125,63 +172,73 @@ def read_times(path: str | Path) -> TimeList:
     >>> read_times(file)
     TimeList(seconds={'night.png': 0.5}, inverse=None)
     """
+    rows = _read_rows(path)
+    heading = _read_heading(rows[0][1]) if rows else None
+    if heading:
+        rows = rows[1:]
+    exposures: dict[str, Exposure] = {}
+    has_explicit_unit = False
+    for where, cells in rows:
+        columns = _name_cells(where, heading, cells)
+        name = columns["file"]
+        if name in exposures:
+            raise FileFormatError(f"{where}: expected each file once, got {name:.80} again")
+        numbers = {}
+        for column in NUMBER_COLUMNS:
+            if columns.get(column):
+                numbers[column] = _parse_number(where, columns[column])
+        seconds = numbers.get("seconds") or numbers.get("rate")
+        if seconds is None:
+            seconds = 1 / _parse_number(where, columns.get("inverse", ""))
+        exposures[name] = Exposure(seconds, numbers.get("f_number"), numbers.get("iso"))
+        if "rate" not in numbers or _is_fraction_or_has_unit(columns["rate"]):
+            has_explicit_unit = True
+    if not exposures:
+        raise FileFormatError(f"{path}: expected a list of exposure times, it is empty")
+    listed = _equivalent_by_name(path, exposures)
+    if has_explicit_unit:
+        return TimeList(listed)
+    inverted = {}
+    for name, exposure in exposures.items():
+        if exposure.seconds is not None:
+            inverted[name] = exposure._replace(seconds=1 / exposure.seconds)
+    return TimeList(listed, inverse=_equivalent_by_name(path, inverted))
+
+
+def _equivalent_by_name(path: str | Path, exposures: dict[str, Exposure]) -> dict[str, float]:
+    names_in_errors = [f"{path}: {name}" for name in exposures]
+    seconds = equivalent_seconds(names_in_errors, list(exposures.values()))
+    return dict(zip(exposures, seconds, strict=True))
+
+
+def _is_fraction_or_has_unit(text: str) -> bool:
+    """Return whether a time says itself that it is in seconds, as 1/60 and 0.5s do."""
+    return "/" in text or not text[-1:].isdigit()
+
+
+def _read_rows(path: str | Path) -> list[tuple[str, list[str]]]:
+    """Return the cells of each line that is not empty, with the file and line for errors."""
     require_no_folder(path, "a list of exposure times")
     try:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(
+        raise FileFormatError(
             f"{path}: expected a list of exposure times, this is not a text file"
         ) from None
-    lines = text.splitlines()
-    if (longest := max(map(len, lines), default=0)) > LONGEST_LINE:
-        raise InputError(
-            f"{path}: expected lines with a file and its time, got one of {longest} letters"
-        )
-    numbered = [(n, _split(line.partition("#")[0])) for n, line in enumerate(lines, 1)]
-    rows = [(f"{path}, line {n}", cells) for n, cells in numbered if cells]
-    heading = _heading(rows[0][1]) if rows else None
-    read, certain = dict[str, Exposure](), False
-    for where, cells in rows[bool(heading) :]:
-        cell = _named_cells(where, heading, cells)
-        if cell["file"] in read:
-            raise InputError(f"{where}: expected each file once, got {cell['file']:.80} again")
-        number = {
-            what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)
-        }
-        certain |= "rate" not in number or not cell["rate"][-1:].isdigit() or "/" in cell["rate"]
-        seconds = (
-            number.get("seconds")
-            or number.get("rate")
-            or 1 / _number(where, cell.get("inverse", ""))
-        )
-        read[cell["file"]] = Exposure(seconds, number.get("f_number"), number.get("iso"))
-    if not read:
-        raise InputError(f"{path}: expected a list of exposure times, it is empty")
-    each = list(read.values())
-    given, inverted = (
-        dict(zip(read, equivalent([f"{path}: {name}" for name in read], one), strict=True))
-        for one in (each, [one._replace(seconds=1 / one.seconds) for one in each if one.seconds])
-    )
-    return TimeList(given, None if certain else inverted)
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > MAX_LINE_LENGTH:
+            raise FileFormatError(
+                f"{path}, line {number}: expected a file and its time, got {len(line)} characters"
+            )
+        cells = _split_line(line.partition("#")[0])
+        if cells:
+            rows.append((f"{path}, line {number}", cells))
+    return rows
 
 
-def _look_up(times: Mapping[str, float], names: Sequence[str], where: str) -> list[float]:
-    """Return the time of each name; the list may leave out folders and suffixes, and differ in case."""
-    known = {Path(name).stem.lower(): t for name, t in times.items()}
-    known |= {Path(name).name.lower(): t for name, t in times.items()}
-    found = [
-        times.get(name, known.get(name.lower(), known.get(Path(name).stem.lower())))
-        for name in names
-    ]
-    if missing := [name for name, t in zip(names, found, strict=True) if t is None]:
-        raise InputError(
-            f"{where}: expected a time for each photograph, none for {', '.join(missing)}"
-        )
-    return [t for t in found if t is not None]
-
-
-def _split(line: str) -> list[str]:
-    """Return the cells of a line; those of `a b.png 1 / 60 s` are a b.png and 1/60s."""
+def _split_line(line: str) -> list[str]:
+    """Return the cells of a line; those of `a b.png 1 / 60 s` are `a b.png` and `1/60s`."""
     line = re.sub(r"(?<=\d)\s*/\s*(?=\d)", "/", line.strip())
     line = re.sub(r"(?<=[\d.])\s*(?:s|sec|seconds?|\")(?=$|[\s,;])", "s", line, flags=re.IGNORECASE)
     for separator in "\t;,":
@@ -189,49 +246,84 @@ def _split(line: str) -> list[str]:
             row = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
             return [cell.strip() for cell in row]
     words = line.split()
-    count = next((j for j in range(len(words), 1, -1) if not VALUE.fullmatch(words[j - 1])), 1)
-    return [" ".join(words[:count]), *words[count:]] if count < len(words) else words
+    # The numbers at the end are cells; the words before them are the name, which has one at least.
+    name_length = len(words)
+    while name_length > 1 and VALUE.fullmatch(words[name_length - 1]):
+        name_length -= 1
+    if name_length == len(words):
+        return words
+    return [" ".join(words[:name_length]), *words[name_length:]]
 
 
-def _heading(cells: list[str]) -> list[str] | None:
-    """Return what each column holds, where these cells head a table of times."""
-    found = [
-        next((key for key, how in HEADINGS.items() if re.search(how, one.lower())), "")
-        for one in cells
-    ]
-    timed = {"seconds", "rate", "inverse"} & set(found) and not any(map(VALUE.fullmatch, cells))
-    return found if "file" in found and timed else None
+def _read_heading(cells: list[str]) -> list[str] | None:
+    """Return what each column holds if these cells are the heading of a list, else None."""
+    columns = [_column_of_heading(cell.lower()) for cell in cells]
+    has_times = not {"seconds", "rate", "inverse"}.isdisjoint(columns)
+    has_numbers = any(VALUE.fullmatch(cell) for cell in cells)
+    is_heading = "file" in columns and has_times and not has_numbers
+    return columns if is_heading else None
 
 
-def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dict[str, str]:
-    """Return the cells of a line by what they hold; of three, the last is found by its size."""
-    columns = heading or COLUMNS.get(str(len(cells)), COLUMNS["3"])
-    if len(columns) != len(cells):
-        what = f"{len(heading)} columns" if heading else "a file name and its time, such as 1/60"
-        raise InputError(f"{where}: expected {what}, got {' '.join(cells):.80}")
-    cell = dict(zip(columns, cells, strict=True))
-    if cell.get("gain", "0").strip("0.") or cell.get("filters", "0").strip("0."):
+def _column_of_heading(cell: str) -> str:
+    for column, pattern in HEADINGS.items():
+        if re.search(pattern, cell):
+            return column
+    return ""
+
+
+def _name_cells(where: str, heading: list[str] | None, cells: list[str]) -> dict[str, str]:
+    """Return the cells of a line by what they hold; the size of a third one tells what it is."""
+    columns = heading or COLUMNS.get(len(cells))
+    if columns is None or len(columns) != len(cells):
+        expected = "a file name and its time, such as 1/60"
+        if heading:
+            expected = f"{len(heading)} columns"
+        raise FileFormatError(f"{where}: expected {expected}, got {' '.join(cells):.80}")
+    named = dict(zip(columns, cells, strict=True))
+    for column in ("gain", "filters"):
+        if named.get(column, "0").strip("0."):
+            raise FileFormatError(
+                f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}"
+            )
+    if heading or len(cells) != 3:
+        return named
+    name, time, third = cells
+    time_value = _parse_number(where, time)
+    third_value = _parse_number(where, third)
+    if abs(time_value * third_value - 1) < INVERSE_TOLERANCE:
+        return {"file": name, "seconds": time}
+    third_column = "iso" if third_value >= MIN_ISO else "f_number"
+    return {"file": name, "rate": time, third_column: third}
+
+
+def _parse_number(where: str, text: str) -> float:
+    """Return the positive number of a cell: 0.5, 0,5, 1/60 or one of them with its unit."""
+    match = VALUE.fullmatch(text)
+    if match:
+        numerator = positive(match[1].replace(",", "."))
+        denominator = positive((match[2] or "1").replace(",", "."))
+        if numerator is not None and denominator is not None:
+            return numerator / denominator
+    number = text[:80] or "nothing"
+    raise FileFormatError(f"{where}: expected a positive number such as 0.5 or 1/60, got {number}")
+
+
+def _look_up_times(times: Mapping[str, float], names: Sequence[str], source: str) -> list[float]:
+    """Return the time of each name; a list may leave out folders and suffixes, and ignore case."""
+    by_stem = {Path(name).stem.lower(): seconds for name, seconds in times.items()}
+    by_name = {Path(name).name.lower(): seconds for name, seconds in times.items()}
+    known = by_stem | by_name
+    seconds = []
+    missing = []
+    for name in names:
+        fallback = known.get(name.lower(), known.get(Path(name).stem.lower()))
+        value = times.get(name, fallback)
+        if value is None:
+            missing.append(name)
+        else:
+            seconds.append(value)
+    if missing:
         raise InputError(
-            f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}"
+            f"{source}: expected a time for each photograph, none for {', '.join(missing)}"
         )
-    if not heading and len(cells) == 3:
-        t, other = (_number(where, one) for one in cells[1:])
-        if abs(t * other - 1) < 0.05:  # the beginning of Debevec's list: a time and its inverse
-            return {"file": cells[0], "seconds": cells[1]}
-        return {
-            "file": cells[0],
-            "rate": cells[1],
-            "iso" if other >= LEAST_ISO else "f_number": cells[2],
-        }
-    return cell
-
-
-def _number(where: str, text: str) -> float:
-    """Return the positive number that a cell holds: 0.5, 0,5, 1/60 or one of them with its unit."""
-    found = VALUE.fullmatch(text)
-    parts = (found[1], found[2] or "1") if found else ("", "1")
-    value, below = (positive(one.replace(",", ".")) for one in parts)
-    if value is None or below is None:
-        got = text[:80] or "nothing"
-        raise InputError(f"{where}: expected a positive number such as 0.5 or 1/60, got {got}")
-    return value / below
+    return seconds

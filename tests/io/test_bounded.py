@@ -85,7 +85,7 @@ def test_a_list_of_times_is_read_line_by_line_and_a_line_of_any_length_is_not(tm
     file.write_text("".join(f"f{j}.jpg 1/{j + 1}\n" for j in range(3000)))
     assert len(times.read_times(file).seconds) == 3000
     file.write_text("a.jpg," + "1" * 200_000)
-    with pytest.raises(ValueError, match=r"times\.txt: expected lines .* 200006 letters"):
+    with pytest.raises(ValueError, match=r"times\.txt, line 1: .* 200006 characters"):
         times.read_times(file)
 
 
