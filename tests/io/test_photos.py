@@ -275,9 +275,7 @@ def test_frames_that_do_not_go_together_are_both_named(tmp_path, first, second, 
 def test_a_photograph_without_a_time_is_named_with_the_way_out(tmp_path, missing):
     save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     save(tmp_path / "b.jpg", RGB8, seconds=missing)
-    with pytest.raises(
-        ValueError, match="b.jpg.*EXIF.*--times"
-    ):
+    with pytest.raises(ValueError, match="b.jpg.*EXIF.*--times"):
         read_bracket(tmp_path)
 
 
@@ -424,7 +422,5 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
 
 
 def test_the_crusader_bracket_without_times_says_what_to_do(shared):
-    with pytest.raises(
-        ValueError, match="1.jpeg.*EXIF.*--times"
-    ):
+    with pytest.raises(ValueError, match="1.jpeg.*EXIF.*--times"):
         read_bracket(shared("crusader") / "frames")
