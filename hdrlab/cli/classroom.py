@@ -140,13 +140,13 @@ def write_books(graded_class: GradedClass, failures: Sequence[str] = ()) -> tupl
     course = graded_class.course
     out = graded_class.run.out
     worksheet = graded_class.options.moodle
-    tally = overview.tally(run.read_results(out, graded_class.jobs))
-    *_, page = overview.write(out, course, graded_class.found, tally, failures)
+    statistics = overview.collect_statistics(run.read_results(out, graded_class.jobs))
+    *_, page = overview.write_class_files(out, course, graded_class.found, statistics, failures)
     if worksheet:
-        rows = overview.marks_of(course, graded_class.found, tally)
+        rows = overview.gradebook_rows(course, graded_class.found, statistics)
         notes = moodle.write(out, worksheet, rows, course.roster, course.homework)
         common.echo_notes(notes)
-    return page, len(tally.points)
+    return page, len(statistics.points)
 
 
 def run_jobs(

@@ -97,43 +97,21 @@ def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
     came = {
         "t": Submission("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")
     }
-    first, second, third = marks.marks(course, came, {"t": 8.0}, {"b3": "refused"})
-    assert first == (
-        "b1",
-        "Ada",
-        "t",
-        "hw2",
-        "2026-03-02T13:00+00:00",
-        2,
-        1,
-        8.0,
-        10.0,
-        2.0,
-        6.0,
-        0,
-        "a note",
-    )
-    assert second[5:] == first[5:]
-    assert third == (
-        "b3",
-        "Cy",
-        "b3",
-        "hw2",
-        "",
-        0,
-        0,
-        0.0,
-        10.0,
-        0.0,
-        0.0,
-        0,
-        "not handed in; refused",
-    )
-    ungraded = marks.marks(course, came, {})[0]
+    first, second, third = marks.gradebook_rows(course, came, {"t": 8.0}, {"b3": "refused"})
+    assert (first.student, first.name, first.team) == ("b1", "Ada", "t")
+    assert first.received == "2026-03-02T13:00+00:00"
+    assert (first.late, first.excused, first.left) == (2, 1, 0)
+    assert (first.work, first.of, first.penalty, first.score) == (8, 10, 2, 6)
+    assert first.note == "a note"
+    assert second.cells[5:] == first.cells[5:]
+    assert (third.student, third.received, third.score) == ("b3", "", 0)
+    assert third.note == "not handed in; refused"
+    assert dict(zip(marks.COLUMNS, first.cells, strict=True))["grace left"] == 0
+    ungraded = marks.gradebook_rows(course, came, {})[0]
     assert (ungraded.work, ungraded.penalty, ungraded.note) == (0, 0, "not graded; a note")
     _, rows = moodle.gradebook([first], CLASS, HOMEWORK)
     assert rows == [["b1", "b1", "a@x", 6.0]]
-    header, table = marks.what_if(course, {"t": 8.0})
+    header, table = marks.what_if_table(course, {"t": 8.0})
     assert (
         header[:6] == ["student", "name", "team", "homework", "work", "late 0"]
         and len(header) == 20
@@ -154,9 +132,9 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
         result("b", "missing", "missing", problems=("no file", "more")),
         result("c", "missing", "", problems=("a problem",)),
     ]
-    found = overview.tally(each)
+    found = overview.collect_statistics(each)
     assert found.points == {"a": 1, "b": 0, "c": 1} and found.refused == {"b": "no file"}
-    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.met == {
+    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.misconceptions == {
         ("hat", "S"): 1
     }
     assert overview.histogram([0, 0.99, 1, 9.99, 10, 12], 10) == [

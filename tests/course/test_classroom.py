@@ -55,7 +55,7 @@ def test_each_member_of_a_team_pays_with_their_own_days():
         LateRecord("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 3))
     ]
     course = replace(COURSE, before=before)
-    rows = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0})
+    rows = marks.gradebook_rows(course, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0})
     assert [(row.late, row.excused, row.penalty, row.score, row.left) for row in rows[:2]] == [
         (4, 2, 2.0, 78.0, 0),
         (4, 4, 0.0, 80.0, 6),
@@ -64,8 +64,8 @@ def test_each_member_of_a_team_pays_with_their_own_days():
 
 
 def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
-    rows = marks.marks(COURSE, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0})
-    csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, rows)
+    rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0})
+    csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, [row.cells for row in rows])
     assert marks.read([tmp_path / "gradebook.csv"]) == [
         LateRecord("hw2", 7, ("b1",), 80.0),
         LateRecord("hw2", 7, ("b2",), 80.0),
@@ -76,8 +76,8 @@ def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
 
 
 def test_canvas_gets_a_line_of_points_and_no_formula():
-    rows = marks.marks(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
-    lines = list(csv.reader(csv_tables.csv_text(*marks.canvas(rows, HOMEWORK)).splitlines()))
+    rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
+    lines = list(csv.reader(csv_tables.csv_text(*marks.canvas_table(rows, HOMEWORK)).splitlines()))
     assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][
         5
     ].startswith("hw2")
@@ -90,7 +90,7 @@ def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
         LateRecord("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))
     ]
     course, points = replace(COURSE, before=before), {"t": 80.0}
-    header, rows = marks.what_if(course, points)
+    header, rows = marks.what_if_table(course, points)
     table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
     assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
     assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
@@ -98,7 +98,7 @@ def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
         100,
         97,
     ]  # nothing came: were it all right
-    came = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
+    came = marks.gradebook_rows(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
     scores = {row.student: row.score for row in came}
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
 
@@ -110,7 +110,7 @@ def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
         result("b3", (1, 1), {"hat": script}),
         result("x", (0, 0)),
     ]
-    text = overview.page(HOMEWORK, overview.tally(each), [f"{script} came late"])
+    text = overview.class_page(HOMEWORK, overview.collect_statistics(each), [f"{script} came late"])
     assert "script" not in {tag for tag, _ in tags(text)} and text.count("&lt;script&gt;") == 2
     assert "<b>2</b> in <b>hat</b>" in text and "2 of 3" in text and "1 of 3" in text
     assert (
@@ -277,7 +277,8 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert links == ["feedback/t/feedback.html"] * 2 + ["feedback/b3/feedback.html"]
     assert all((folder / "out" / link).is_file() for link in links)
     assert (
-        "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
+        "<h2>Not handed in</h2><p>b4 (Di)</p>" in page
+        and "<li>b3 (Cy): 3 days, 3 of them free" in page
     )
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
     names = {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"}

@@ -1,11 +1,12 @@
 """Late days: ten in all, then a point a day, down to zero for each project; each member pays their own."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import pytest
 from hypothesis import given, strategies as st
 
-from hdrlab.course.classroom.late import LateRecord, accounts, lateness, what_if
+from hdrlab.course.classroom.late import LateRecord, charge_late_days, days_late, what_if
 
 ANNA, BEN, CY = "anna", "ben", "cy"
 days, points = st.integers(0, 40), st.floats(0, 100)
@@ -15,7 +16,7 @@ terms = st.lists(
 
 
 def costs(handed, **knobs):
-    return {(one.student, one.project): one for one in accounts(handed, **knobs)}
+    return {(one.student, one.project): one for one in charge_late_days(handed, **knobs)}
 
 
 def test_ten_days_in_all_are_free_and_the_eleventh_costs_a_point():
@@ -48,7 +49,7 @@ def test_in_a_team_each_pays_with_their_own_days():
 
 @given(terms)
 def test_what_a_partner_did_before_changes_nothing_for_the_other(term):
-    alone = [one._replace(students=(ANNA,)) for one in term if ANNA in one.students]
+    alone = [replace(one, students=(ANNA,)) for one in term if ANNA in one.students]
     together = {key: one for key, one in costs(term).items() if key[0] == ANNA}
     assert together == costs(alone)
 
@@ -75,7 +76,7 @@ def test_a_later_project_does_not_change_an_earlier_one(term, late, worth):
 @given(terms, days)
 def test_another_day_late_never_raises_a_score(term, late):
     if term:
-        term = [one._replace(project=f"hw{k}") for k, one in enumerate(term)]
+        term = [replace(one, project=f"hw{k}") for k, one in enumerate(term)]
         rows = what_if(term, "hw0", (late, late + 1))
         assert all(rows[1][1][student].score <= one.score for student, one in rows[0][1].items())
 
@@ -84,7 +85,7 @@ def test_the_what_if_table_holds_what_would_come_of_it():
     term = [LateRecord("hw1", 7, (ANNA,), 100), LateRecord("project", 0, (ANNA, BEN), 90)]
     for late, rows in what_if(term, "project"):
         assert rows == {
-            who: costs([term[0], term[1]._replace(late=late)])[who, "project"]
+            who: costs([term[0], replace(term[1], late=late)])[who, "project"]
             for who in (ANNA, BEN)
         }
     assert [rows[ANNA].penalty for _, rows in what_if(term, "project", (3, 4, 99))] == [0, 1, 90]
@@ -93,14 +94,14 @@ def test_the_what_if_table_holds_what_would_come_of_it():
 def test_a_day_begun_is_a_day_late_whatever_zone_it_began_in():
     due = datetime.fromisoformat("2026-03-28T23:59:00+01:00")  # the clocks change in this night
     received = datetime.fromisoformat("2026-03-29T23:59:00+02:00")  # 23 hours later
-    assert lateness(due, received) == 1
-    assert lateness(due, due - timedelta(days=3)) == 0
-    assert lateness(due, due + timedelta(days=2, seconds=1)) == 3
+    assert days_late(due, received) == 1
+    assert days_late(due, due - timedelta(days=3)) == 0
+    assert days_late(due, due + timedelta(days=2, seconds=1)) == 3
 
 
 def test_times_without_a_zone_are_refused():
     with pytest.raises(ValueError, match="zone"):
-        lateness(datetime(2026, 3, 1), datetime(2026, 3, 2))
+        days_late(datetime(2026, 3, 1), datetime(2026, 3, 2))
 
 
 @pytest.mark.parametrize(
@@ -113,7 +114,7 @@ def test_times_without_a_zone_are_refused():
 )
 def test_what_makes_no_sense_is_refused(handed, said):
     with pytest.raises(ValueError, match=said):
-        list(accounts(handed))
+        list(charge_late_days(handed))
     with pytest.raises(ValueError, match="handed in"):
         what_if([], "hw1")
 
@@ -122,6 +123,6 @@ def test_what_makes_no_sense_is_refused(handed, said):
 def test_days_and_points_below_zero_are_refused_and_none_of_both_is_not(terms):
     handed = [LateRecord("hw1", 2, (ANNA,), 9)]
     with pytest.raises(ValueError, match="at least 0"):
-        list(accounts(handed, **terms))
-    (account,) = accounts(handed, **dict.fromkeys(terms, 0))
+        list(charge_late_days(handed, **terms))
+    (account,) = charge_late_days(handed, **dict.fromkeys(terms, 0))
     assert account.score == (7 if "grace" in terms else 9)

@@ -1,27 +1,28 @@
-"""Late days: so many in all without penalty, then a point a day, down to zero for each project.
+"""Late days: each student has some free late days for the term, then each extra day costs points.
 
-late     days by which a project came after its time, each one begun counted whole
-grace    days without penalty, for the whole term: 10, unless the course says otherwise
-points   what the project's work is worth before the penalty; the penalty takes it to zero and no further
+A project that is received after its due date is late by a number of days; each day that has begun
+counts as a whole day. Free late days are used in the order of the due dates, as long as they last.
+Each further day costs a number of points, but a project never costs more than it is worth.
 
-Days of grace are spent in the order in which the projects were due, as far as they last. A team's
-late day is a late day of each member, and each pays with their own days: nobody's grade hangs on
-what the partner has spent before, or will spend in another team, and nobody's days are spent for
-somebody else.
+If a team is late, each member is charged the same number of days, but pays with their own free
+days. So a student's grade never depends on the free days that a partner used elsewhere.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from typing import Any, NamedTuple
 
 from hdrlab.errors import InputError
 
-GRACE = 10
-DAY = timedelta(days=1)
+FREE_LATE_DAYS = 10
+POINTS_PER_DAY = 1.0
+ONE_DAY = timedelta(days=1)
+WHAT_IF_DAYS = range(15)
 
 
-class LateRecord(NamedTuple):
-    """A project as it came in: how late, by whom, and the points of the work."""
+@dataclass(frozen=True)
+class LateRecord:
+    """A project that was handed in: how many days late, by which students, and its points."""
 
     project: str
     late: int
@@ -29,8 +30,19 @@ class LateRecord(NamedTuple):
     points: float
 
 
-class LateDayCharge(NamedTuple):
-    """What a student's late days came to in one project; `left` is the grace that remains after it."""
+@dataclass(frozen=True)
+class LateDayCharge:
+    """What the late days of a project cost one of its students.
+
+    Attributes
+    ----------
+    student, project : who, and for what
+    late : days after the due date
+    excused : those of the days that are free
+    penalty : points taken off for the others
+    score : the points that remain
+    left : the free days that the student still has afterwards
+    """
 
     student: str
     project: str
@@ -41,94 +53,134 @@ class LateDayCharge(NamedTuple):
     left: int
 
 
-def lateness(due: datetime, received: datetime) -> int:
-    """Return late = ceil((received - due) / 1 day), or 0.
+def days_late(due: datetime, received: datetime) -> int:
+    """Return how many days late a project is: ceil((received - due) / 1 day), or 0.
 
-    Both times name their zone: a class is spread over more than one, and the clocks change in
+    Both times must have a time zone: students may be in several zones, and clocks change in
     autumn.
 
     Examples
     --------
     >>> due = datetime.fromisoformat("2026-03-20T23:59+08:00")
-    >>> [lateness(due, due + timedelta(minutes=m)) for m in (0, 1, 24 * 60, 24 * 60 + 1)]
+    >>> [days_late(due, due + timedelta(minutes=m)) for m in (0, 1, 24 * 60, 24 * 60 + 1)]
     [0, 1, 1, 2]
     """
     if due.tzinfo is None or received.tzinfo is None:
         raise InputError(
-            f"expected times with a zone, such as 2026-03-20T23:59+08:00, got {due}, {received}"
+            f"expected times with a time zone, such as 2026-03-20T23:59+08:00, "
+            f"got {due}, {received}"
         )
-    return max(0, -((due - received) // DAY))
+    whole_days_rounded_up = -((due - received) // ONE_DAY)
+    return max(0, whole_days_rounded_up)
 
 
-def penalty(late: int, left: int, points: float, *, per_day: float = 1.0) -> tuple[int, float]:
-    """Return the days that grace excuses, min(late, left), and min(points, per_day (late - excused)).
+def late_penalty(
+    late: int, left: int, points: float, *, per_day: float = POINTS_PER_DAY
+) -> tuple[int, float]:
+    """Return how many late days are free, and how many points the others cost.
+
+    These are min(late, left) and min(points, per_day (late - excused)).
 
     Examples
     --------
-    >>> penalty(4, left=1, points=100), penalty(200, left=0, points=90.0)
+    >>> late_penalty(4, left=1, points=100), late_penalty(200, left=0, points=90.0)
     ((1, 3.0), (0, 90.0))
     """
     excused = min(late, left)
-    return excused, min(max(points, 0.0), per_day * (late - excused))
+    penalty = min(max(points, 0.0), per_day * (late - excused))
+    return excused, penalty
 
 
-def accounts(
-    handed: Iterable[LateRecord], *, grace: int = GRACE, per_day: float = 1.0
+def charge_late_days(
+    records: Iterable[LateRecord],
+    *,
+    grace: int = FREE_LATE_DAYS,
+    per_day: float = POINTS_PER_DAY,
 ) -> Iterator[LateDayCharge]:
-    """Yield what each project costs each of its students, with the projects in the order they were due.
+    """Yield what the late days of each project cost each of its students.
 
     Parameters
     ----------
-    handed : the projects, in the order they were due; teams may differ from one to the next
-    grace : days without penalty for each student, in all
-    per_day : points for each day beyond them
+    records : in the order of the due dates; teams may differ from one project to the next
+    grace : free late days of each student for the term
+    per_day : points for each further day
 
     Raises
     ------
-    ValueError
-        For days below zero, a team that names a student twice, or a project handed in twice by a
-        student.
+    InputError
+        For a negative number of days or points, or a student who handed in a project twice.
     """
     if grace < 0 or per_day < 0:
         raise InputError(
-            f"expected grace and points a day of at least 0, got {grace} and {per_day}"
+            f"expected free days and points a day of at least 0, got {grace} and {per_day}"
         )
-    left: dict[str, int] = {}
+    days_left: dict[str, int] = {}
     seen: set[tuple[str, str]] = set()
-    for project, late, students, points in handed:
-        if late < 0:
-            raise InputError(f"{project}: expected late days of at least 0, got {late}")
-        for student in students:
-            if (student, project) in seen:
-                raise InputError(f"{project}: expected {student} once, got it twice")
-            seen.add((student, project))
-            before = left.get(student, grace)
-            excused, lost = penalty(late, before, points, per_day=per_day)
-            left[student] = before - excused
-            yield LateDayCharge(student, project, late, excused, lost, points - lost, left[student])
+    for record in records:
+        if record.late < 0:
+            raise InputError(
+                f"{record.project}: expected late days of at least 0, got {record.late}"
+            )
+        for student in record.students:
+            if (student, record.project) in seen:
+                raise InputError(f"{record.project}: expected {student} once, got it twice")
+            seen.add((student, record.project))
+            left_before = days_left.get(student, grace)
+            excused, penalty = late_penalty(
+                record.late, left_before, record.points, per_day=per_day
+            )
+            days_left[student] = left_before - excused
+            yield LateDayCharge(
+                student=student,
+                project=record.project,
+                late=record.late,
+                excused=excused,
+                penalty=penalty,
+                score=record.points - penalty,
+                left=days_left[student],
+            )
 
 
 def what_if(
-    handed: Sequence[LateRecord], project: str, days: Iterable[int] = range(15), **terms: Any
+    records: Sequence[LateRecord],
+    project: str,
+    days: Iterable[int] = WHAT_IF_DAYS,
+    *,
+    grace: int = FREE_LATE_DAYS,
+    per_day: float = POINTS_PER_DAY,
 ) -> list[tuple[int, dict[str, LateDayCharge]]]:
-    """Return what `project` would cost each of its students were it so many days late, and else all as it is.
+    """Return what a project would cost each student if it were 0, 1, 2, ... days late.
 
-    `terms` are those of `accounts`.
+    Parameters
+    ----------
+    records, grace, per_day : see `charge_late_days`
+    project : the name of the project
+    days : the numbers of days to try
+
+    Returns
+    -------
+    list of (days, dict)
+        For each number of days, the charge of each student by name.
 
     Examples
     --------
-    >>> before = [Handed("hw1", 8, ("b1",), 100), Handed("project", 0, ("b1", "b2"), 90)]
-    >>> for late, rows in what_if(before, "project", (0, 2, 5)):
-    ...     print(late, {student: (row.penalty, row.left) for student, row in rows.items()})
+    >>> before = [LateRecord("hw1", 8, ("b1",), 100), LateRecord("project", 0, ("b1", "b2"), 90)]
+    >>> for late, charges in what_if(before, "project", (0, 2, 5)):
+    ...     print(late, {student: (row.penalty, row.left) for student, row in charges.items()})
     0 {'b1': (0.0, 2), 'b2': (0.0, 10)}
     2 {'b1': (0.0, 0), 'b2': (0.0, 8)}
     5 {'b1': (3.0, 0), 'b2': (0.0, 5)}
     """
-    if project not in {one.project for one in handed}:
+    if project not in {record.project for record in records}:
         raise InputError(f"expected a project that was handed in, got {project!r}")
     table = []
     for late in days:
-        supposed = [one._replace(late=late) if one.project == project else one for one in handed]
-        rows = accounts(supposed, **terms)
-        table.append((late, {row.student: row for row in rows if row.project == project}))
+        supposed = [
+            replace(record, late=late) if record.project == project else record
+            for record in records
+        ]
+        charges = charge_late_days(supposed, grace=grace, per_day=per_day)
+        table.append(
+            (late, {charge.student: charge for charge in charges if charge.project == project})
+        )
     return table

@@ -1,20 +1,22 @@
-"""From results to a gradebook: what each student of a team earned, and what being late took off.
+"""The gradebook: each student's points, late days, penalty and score.
 
-A row of the gradebook holds what the next homework's needs, so gradebooks add up over a term.
+A gradebook holds what the gradebook of the next homework needs, so that late days add up over a
+term.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
 
 from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.classroom.late import (
+    WHAT_IF_DAYS,
     LateDayCharge,
     LateRecord,
-    accounts,
-    lateness,
-    what_if as late_days,
+    charge_late_days,
+    days_late,
+    what_if as late_days_what_if,
 )
 from hdrlab.course.classroom.run import GradingContext
 from hdrlab.course.plan import Homework
@@ -22,12 +24,26 @@ from hdrlab.course.reports import csv_tables
 from hdrlab.errors import InputError
 
 NOT_GRADED = "not graded"
-LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
-DAYS = range(15)  # of the what-if table
+NOT_HANDED_IN = "not handed in"
+MAX_GRADEBOOK_BYTES = 128 * 2**20  # enough for a class of any size
 
 
-class GradebookRow(NamedTuple):
-    """A student's row: `work` are the points before the penalty, `score` those after it."""
+@dataclass(frozen=True)
+class GradebookRow:
+    """The row of a student.
+
+    Attributes
+    ----------
+    student, name, team, homework : who, and for what
+    received : when the submission was received, or "" without one
+    late, excused : late days, and those of them that are free
+    work : points before the penalty
+    of : points that the homework can give
+    penalty : points taken off for late days
+    score : points after the penalty
+    left : free late days that remain
+    note : what went wrong, if anything
+    """
 
     student: str
     name: str
@@ -43,13 +59,33 @@ class GradebookRow(NamedTuple):
     left: int
     note: str = ""
 
+    @property
+    def cells(self) -> list[csv_tables.Cell]:
+        """The row as it is written to gradebook.csv, in the order of `COLUMNS`."""
+        return [getattr(self, field.name) for field in fields(self)]
 
-COLUMNS = (*GradebookRow._fields[:-2], "grace left", "note")
+
+# As the fields of GradebookRow, in words.
+COLUMNS = (
+    "student",
+    "name",
+    "team",
+    "homework",
+    "received",
+    "late",
+    "excused",
+    "work",
+    "of",
+    "penalty",
+    "score",
+    "grace left",
+    "note",
+)
 
 
-def marks(
-    course: GradingContext,
-    handins: Mapping[str, Submission],
+def gradebook_rows(
+    context: GradingContext,
+    submissions: Mapping[str, Submission],
     points: Mapping[str, float],
     remarks: Mapping[str, str] = MappingProxyType({}),
 ) -> list[GradebookRow]:
@@ -57,97 +93,137 @@ def marks(
 
     Parameters
     ----------
-    course : of whom, of what, and by which rule for what comes late
-    handins : what counts of each team
-    points : of the work, by team; a team without is noted
-    remarks : by team, why a file was refused, or what else stands in its note
+    context : the roster, the homework and the rule for late submissions
+    submissions : by team
+    points : of the work, by team; a team without points is noted as not graded
+    remarks : more for the notes, by team, such as why a file was refused
     """
-    homework, late = course.homework, course.late
-    handed = [*course.before]
-    for team, one in handins.items():
-        days = lateness(homework.due, one.received)
-        handed.append(LateRecord(homework.name, days, one.students, points.get(team, 0.0)))
-    bills = list(accounts(handed, grace=late.free_days, per_day=late.points_a_day))
-    left = {bill.student: bill.left for bill in bills}
-    mine, rows = {bill.student: bill for bill in bills if bill.project == homework.name}, []
-    for id, name, team, _ in course.roster.students:
-        bill = mine.get(
-            id, LateDayCharge(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days))
-        )
-        received, work, notes = "", 0.0, ["not handed in"]
-        if id in mine:
-            received, work = (
-                handins[team].received.isoformat(timespec="minutes"),
-                points.get(team, 0.0),
+    homework = context.homework
+    records = list(context.before)
+    for team, submission in submissions.items():
+        late = days_late(homework.due, submission.received)
+        team_points = points.get(team, 0.0)
+        records.append(LateRecord(homework.name, late, submission.students, team_points))
+    charges = list(
+        charge_late_days(records, grace=context.late.free_days, per_day=context.late.points_a_day)
+    )
+    days_left = {charge.student: charge.left for charge in charges}
+    homework_charges = {
+        charge.student: charge for charge in charges if charge.project == homework.name
+    }
+    rows = []
+    for student in context.roster.students:
+        charge = homework_charges.get(student.id)
+        if charge is None:
+            charge = LateDayCharge(
+                student=student.id,
+                project=homework.name,
+                late=0,
+                excused=0,
+                penalty=0.0,
+                score=0.0,
+                left=days_left.get(student.id, context.late.free_days),
             )
-            notes = ["" if team in points else NOT_GRADED, handins[team].note]
-        note = "; ".join(filter(None, (*notes, remarks.get(team, ""))))
-        earned = (work, homework.points, bill.penalty, bill.score, bill.left, note)
+            received = ""
+            notes = [NOT_HANDED_IN]
+            work = 0.0
+        else:
+            submission = submissions[student.team]
+            received = submission.received.isoformat(timespec="minutes")
+            notes = ["" if student.team in points else NOT_GRADED, submission.note]
+            work = points.get(student.team, 0.0)
+        notes.append(remarks.get(student.team, ""))
         rows.append(
-            GradebookRow(id, name, team, homework.name, received, bill.late, bill.excused, *earned)
+            GradebookRow(
+                student=student.id,
+                name=student.name,
+                team=student.team,
+                homework=homework.name,
+                received=received,
+                late=charge.late,
+                excused=charge.excused,
+                work=work,
+                of=homework.points,
+                penalty=charge.penalty,
+                score=charge.score,
+                left=charge.left,
+                note="; ".join(note for note in notes if note),
+            )
         )
     return rows
 
 
-def what_if(
-    course: GradingContext, points: Mapping[str, float]
+def what_if_table(
+    context: GradingContext, points: Mapping[str, float]
 ) -> tuple[list[str], list[list[csv_tables.Cell]]]:
-    """Return header and rows of a table: each student's score, had the work come so many days late.
+    """Return header and rows of a table with each student's score for 0, 1, 2, ... days late.
 
-    Work that has not come, or is not graded, is taken for one that earns all points. The parameters
-    are those of `marks`.
+    A team that has not handed in, or is not graded, is shown with all points.
     """
-    homework, late = course.homework, course.late
-    teams = {
-        team: tuple(one.id for one in members) for team, members in course.roster.teams().items()
-    }
-    work = {team: points.get(team, homework.points) for team in teams}
+    homework = context.homework
+    teams = context.roster.teams()
+    team_points = {team: points.get(team, homework.points) for team in teams}
     supposed = [
-        LateRecord(homework.name, 0, members, work[team]) for team, members in teams.items()
+        LateRecord(homework.name, 0, tuple(student.id for student in members), team_points[team])
+        for team, members in teams.items()
     ]
-    handed = [*course.before, *supposed]
-    table = late_days(handed, homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day)
-    header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
-    rows: list[list[csv_tables.Cell]] = [
-        [
-            one.id,
-            one.name,
-            one.team,
+    table = late_days_what_if(
+        [*context.before, *supposed],
+        homework.name,
+        WHAT_IF_DAYS,
+        grace=context.late.free_days,
+        per_day=context.late.points_a_day,
+    )
+    header = ["student", "name", "team", "homework", "work"]
+    header.extend(f"late {days}" for days in WHAT_IF_DAYS)
+    rows = []
+    for student in context.roster.students:
+        row: list[csv_tables.Cell] = [
+            student.id,
+            student.name,
+            student.team,
             homework.name,
-            work[one.team],
-            *(by[one.id].score for _, by in table),
+            team_points[student.team],
         ]
-        for one in course.roster.students
-    ]
+        row.extend(charges[student.id].score for _, charges in table)
+        rows.append(row)
     return header, rows
 
 
 def read(paths: Sequence[Path]) -> list[LateRecord]:
-    """Return what gradebooks of earlier homeworks tell, in the order of the files."""
-    handed = []
+    """Read the late records of earlier homeworks from their gradebooks, in the order of the files.
+
+    Raises
+    ------
+    InputError
+        For a file that is no gradebook.
+    """
+    records = []
     for path in paths:
-        for row in csv_tables.read_csv(path, max_bytes=LARGE):
+        for row in csv_tables.read_csv(path, max_bytes=MAX_GRADEBOOK_BYTES):
             try:
-                if row["received"] and not row["note"].startswith(NOT_GRADED):
-                    student = (row["student"].removeprefix("'"),)
-                    handed.append(
-                        LateRecord(row["homework"], int(row["late"]), student, float(row["work"]))
-                    )
+                if not row["received"] or row["note"].startswith(NOT_GRADED):
+                    continue
+                student = csv_tables.unescape_cell(row["student"])
+                late = int(row["late"])
+                points = float(row["work"])
+                records.append(LateRecord(row["homework"], late, (student,), points))
             except (KeyError, ValueError):
                 raise InputError(
                     f"{path}: expected a gradebook that `hdrlab grade` has written"
                 ) from None
-    return handed
+    return records
 
 
-def canvas(
+def canvas_table(
     rows: Sequence[GradebookRow], homework: Homework
 ) -> tuple[list[str], list[list[csv_tables.Cell]]]:
-    """Return header and rows of the table that Canvas imports: the second line holds the points possible."""
+    """Return header and rows of the table that Canvas imports.
+
+    The first row holds the points that are possible.
+    """
     title = f"{homework.name}: {homework.title}"
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title]
-    possible: list[csv_tables.Cell] = ["    Points Possible", "", "", "", "", homework.points]
-    lines: list[list[csv_tables.Cell]] = [
-        [one.name, "", one.student, one.student, "", one.score] for one in rows
-    ]
-    return header, [possible, *lines]
+    table: list[list[csv_tables.Cell]] = [["    Points Possible", "", "", "", "", homework.points]]
+    table.extend([row.name, "", row.student, row.student, "", row.score] for row in rows)
+    return header, table

@@ -1,10 +1,10 @@
-"""Moodle: a table for its gradebook, its own grading worksheet filled in, and an archive of the feedback.
+"""Tables and feedback files for Moodle.
 
-The gradebook takes any table whose columns are then mapped [Moodle Docs, Grade import]. An
-assignment knows students by numbers of its own, which stand in the worksheet that it gives out: so
-worksheet and archive of feedback files are made from that file [Moodle Docs, Using Assignment; the
-archive's names as in assignfeedback_file_zip_importer]. An import without a column of comments
-leaves a teacher's comments alone.
+Moodle's gradebook imports any table whose columns are then mapped [Moodle Docs, Grade import]. An
+assignment knows students only by its own numbers, which are in the grading worksheet that it
+exports. So hdrlab fills in that worksheet and names the feedback files by it [Moodle Docs, Using
+Assignment; the names in the archive as in assignfeedback_file_zip_importer]. The filled worksheet
+has no column of comments, so an import leaves a teacher's comments as they are.
 """
 
 import re
@@ -13,16 +13,17 @@ from pathlib import Path
 
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.classroom import jobs
-from hdrlab.course.classroom.marks import NOT_GRADED, GradebookRow
+from hdrlab.course.classroom.marks import MAX_GRADEBOOK_BYTES, NOT_GRADED, GradebookRow
 from hdrlab.course.classroom.roster import Roster, fold
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import csv_tables
 from hdrlab.errors import InputError
 
-WHO = ("id number", "username", "email address")  # columns of a worksheet that may say who it is
-NEEDED = ("identifier", "grade", "maximum grade", "last modified (grade)")
-COLUMNS = ("Identifier", "Full name", "Grade", "Last modified (grade)")
-FEEDBACK = "Participant_{}_assignsubmission_file_feedback.html"
+# Columns of a worksheet that may identify a student.
+ID_COLUMNS = ("id number", "username", "email address")
+REQUIRED_COLUMNS = ("identifier", "grade", "maximum grade", "last modified (grade)")
+WORKSHEET_COLUMNS = ("Identifier", "Full name", "Grade", "Last modified (grade)")
+FEEDBACK_NAME = "Participant_{}_assignsubmission_file_feedback.html"
 
 
 def gradebook(
@@ -30,58 +31,74 @@ def gradebook(
 ) -> tuple[list[str], list[list[csv_tables.Cell]]]:
     """Return header and rows of the table that Moodle's gradebook imports."""
     header = ["ID number", "Username", "Email address", f"{homework.name}: {homework.title}"]
-    emails = {one.id: one.email for one in roster.students}
+    emails = {student.id: student.email for student in roster.students}
     return header, [[row.student, row.student, emails[row.student], row.score] for row in rows]
 
 
 def write(
-    out: Path, worksheet: Path, rows: Sequence[GradebookRow], roster: Roster, homework: Homework
+    out: Path,
+    worksheet: Path,
+    rows: Sequence[GradebookRow],
+    roster: Roster,
+    homework: Homework,
 ) -> list[str]:
-    """Write moodle_worksheet.csv and moodle_feedback.zip, and return notes on whom the roster does not know.
+    """Write moodle_worksheet.csv and moodle_feedback.zip; return a note for each unknown student.
 
-    A participant whose work has not been graded keeps the grade that the worksheet has.
+    A student whose work has not been graded keeps the grade that the worksheet has.
 
     Raises
     ------
-    ValueError
-        For another table, and where the assignment gives another number of points than the
-        homework.
+    InputError
+        For a file that is no grading worksheet, or whose maximum grade differs from the points of
+        the homework.
     """
-    listed, both = (
-        csv_tables.read_csv(worksheet, max_bytes=1 << 27),
-        zip(rows, roster.students, strict=True),
-    )
-    known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}
+    rows_by_name: dict[str, GradebookRow] = {}
+    for row, student in zip(rows, roster.students, strict=True):
+        for name in (student.id, student.email):
+            if name:
+                rows_by_name[fold(name)] = row
     lines: list[list[csv_tables.Cell]] = []
-    files, lost = {}, []
-    for line in listed:
-        if missing := [name for name in NEEDED if name not in line]:
-            raise InputError(
-                f"{worksheet}: expected Moodle's worksheet in English, got no {missing[0]!r}"
-            )
-        if line["maximum grade"] and float(line["maximum grade"]) != homework.points:
-            points = (
-                f"{homework.points:g} points as {homework.name} gives, got {line['maximum grade']}"
-            )
-            raise InputError(
-                f"{worksheet}: expected a maximum grade of {points}; set it in the assignment"
-            )
-        row = next(
-            (known[fold(line[name])] for name in WHO if fold(line.get(name, "")) in known), None
-        )
+    feedback_files: dict[str, bytes] = {}
+    notes = []
+    for line in csv_tables.read_csv(worksheet, max_bytes=MAX_GRADEBOOK_BYTES):
+        _check_line(worksheet, line, homework)
+        found_row = _find_row(line, rows_by_name)
+        full_name = line.get("full name", "")
         grade: csv_tables.Cell = line["grade"]
-        if row is None:
-            lost.append(
-                f"{worksheet.name}: the roster knows nobody of {line.get('full name', '')!r}"
-            )
-        elif row.received and not row.note.startswith(NOT_GRADED):
-            grade, page = row.score, out / "feedback" / row.team / "feedback.html"
-            (number,) = re.findall(r"\d+$", line["identifier"]) or [""]
+        if found_row is None:
+            notes.append(f"{worksheet.name}: {full_name!r} is not in the roster")
+        elif found_row.received and not found_row.note.startswith(NOT_GRADED):
+            grade = found_row.score
+            page = out / "feedback" / found_row.team / "feedback.html"
+            number = re.search(r"\d+$", line["identifier"])
             if number and page.is_file():
-                files[FEEDBACK.format(number)] = page.read_bytes()
-        lines.append(
-            [line["identifier"], line.get("full name", ""), grade, line["last modified (grade)"]]
+                feedback_files[FEEDBACK_NAME.format(number[0])] = page.read_bytes()
+        lines.append([line["identifier"], full_name, grade, line["last modified (grade)"]])
+    csv_tables.write_csv(out / "moodle_worksheet.csv", WORKSHEET_COLUMNS, lines, private=True)
+    jobs.write_private_file(out / "moodle_feedback.zip", packed(feedback_files))
+    return notes
+
+
+def _check_line(worksheet: Path, line: dict[str, str], homework: Homework) -> None:
+    """Raise InputError for a line that is not of the worksheet of this homework."""
+    for column in REQUIRED_COLUMNS:
+        if column not in line:
+            raise InputError(
+                f"{worksheet}: expected a Moodle grading worksheet in English, "
+                f"but it has no column {column!r}"
+            )
+    max_grade = line["maximum grade"]
+    if max_grade and float(max_grade) != homework.points:
+        raise InputError(
+            f"{worksheet}: expected a maximum grade of {homework.points:g} points, as "
+            f"{homework.name} gives, got {max_grade}; set it in the assignment"
         )
-    csv_tables.write_csv(out / "moodle_worksheet.csv", COLUMNS, lines, private=True)
-    jobs.write_private_file(out / "moodle_feedback.zip", packed(files))
-    return lost
+
+
+def _find_row(line: dict[str, str], rows_by_name: dict[str, GradebookRow]) -> GradebookRow | None:
+    """Return the row of the student in a line of the worksheet, or None for an unknown one."""
+    for column in ID_COLUMNS:
+        row = rows_by_name.get(fold(line.get(column, "")))
+        if row is not None:
+            return row
+    return None

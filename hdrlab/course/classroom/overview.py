@@ -1,16 +1,16 @@
-"""What is written about a whole class, when its submissions are graded.
+"""Write the tables and the page about a whole class.
 
 gradebook.csv   a row for each student: points, days late, penalty, score
 canvas.csv      the scores, as Canvas imports them; moodle.csv, as Moodle's gradebook does
-what_if.csv     what each student's score would be, had the work come so many days late
-class.html      how many hold each promise, which misconceptions were met, and where each student stands
+what_if.csv     what each student's score would be for 0, 1, 2, ... days late
+class.html      how many pass each check, common misconceptions, and the score of each student
 """
 
 import statistics
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from hdrlab.course.classroom import jobs, marks, moodle
 from hdrlab.course.classroom.handins import SubmissionScan
@@ -20,100 +20,108 @@ from hdrlab.course.plan import Homework
 from hdrlab.course.reports import csv_tables, results
 from hdrlab.show.pages.templates import render_page
 
-PAGE = "class_page.html"
-BINS = 10  # of the scores, each a tenth of the points
+PAGE_TEMPLATE = "class_page.html"
+HISTOGRAM_BINS = 10
 
 
-class ClassStatistics(NamedTuple):
-    """What counts of a class's results.
+@dataclass
+class ClassStatistics:
+    """What the results of a class add up to.
 
     Attributes
     ----------
     points : of each team's work
-    outcomes : of each promise, by task and its words: how often it holds, fails, or was not
-        answered
-    met : how often each misconception was met, by task and sentence
-    refused : why nothing of a team's work could be checked, in words
+    outcomes : of each check, by its task and promise: how often it holds, fails, or has no answer
+    misconceptions : how often each misconception was found, by task and sentence
+    refused : by team, why no function of a submission could be checked
     """
 
-    points: dict[str, float]
-    outcomes: dict[tuple[str, str], Counter[results.Outcome]]
-    met: Counter[tuple[str, str]]
-    refused: dict[str, str] = {}
+    points: dict[str, float] = field(default_factory=dict)
+    outcomes: dict[tuple[str, str], Counter[results.Outcome]] = field(default_factory=dict)
+    misconceptions: Counter[tuple[str, str]] = field(default_factory=Counter)
+    refused: dict[str, str] = field(default_factory=dict)
 
 
-def tally(each: Iterable[results.Result]) -> ClassStatistics:
-    """Return what counts of results, each of which is looked at once and let go."""
-    found = ClassStatistics({}, {}, Counter(), {})
-    for result in each:
-        found.points[result.student] = result.score
-        if result.problems and all(one.kind == "missing" for one in result.checks):
-            found.refused[result.student] = result.problems[0]
-        found.met.update(result.misconceptions.items())
-        for one in result.checks:
-            found.outcomes.setdefault((one.task, one.promise), Counter())[one.outcome] += 1
-    return found
+def collect_statistics(class_results: Iterable[results.Result]) -> ClassStatistics:
+    """Return the statistics of a class. Each result is read once and not kept."""
+    collected = ClassStatistics()
+    for result in class_results:
+        collected.points[result.student] = result.score
+        if result.problems and all(check.kind == "missing" for check in result.checks):
+            collected.refused[result.student] = result.problems[0]
+        collected.misconceptions.update(result.misconceptions.items())
+        for check in result.checks:
+            outcomes = collected.outcomes.setdefault((check.task, check.promise), Counter())
+            outcomes[check.outcome] += 1
+    return collected
 
 
-def marks_of(
-    course: GradingContext, found: SubmissionScan, counted: ClassStatistics
+def gradebook_rows(
+    context: GradingContext, scan: SubmissionScan, statistics: ClassStatistics
 ) -> list[GradebookRow]:
-    """Return the gradebook's rows, with why a file was refused."""
-    return marks.marks(
-        course, found.submissions, counted.points, {**counted.refused, **found.refused}
-    )
+    """Return the rows of the gradebook; the notes say why a file was refused."""
+    remarks = {**statistics.refused, **scan.refused}
+    return marks.gradebook_rows(context, scan.submissions, statistics.points, remarks)
 
 
-def write(
+def write_class_files(
     out: Path,
-    course: GradingContext,
-    found: SubmissionScan,
-    counted: ClassStatistics,
-    lost: Sequence[str] = (),
+    context: GradingContext,
+    scan: SubmissionScan,
+    statistics: ClassStatistics,
+    failures: Sequence[str] = (),
 ) -> list[Path]:
-    """Write all that is about the whole class, and return the files; a new one has its line here.
+    """Write all tables and the page about a class, and return the files; the page is the last.
 
     Parameters
     ----------
-    out : the folder of the results
-    course, found, counted : by what, what was handed in, and what came of it
-    lost : what could not be graded
+    out : the folder with the results of the class
+    context : the roster, the homework and the rule for late submissions
+    scan : the submissions
+    statistics : see `collect_statistics`
+    failures : about submissions that could not be graded
     """
-    rows = marks_of(course, found, counted)
-    tables: dict[str, tuple[Sequence[str], Sequence[Sequence[csv_tables.Cell]]]] = {
-        "gradebook.csv": (marks.COLUMNS, rows),
-        "canvas.csv": marks.canvas(rows, course.homework),
-        "moodle.csv": moodle.gradebook(rows, course.roster, course.homework),
-        "what_if.csv": marks.what_if(course, counted.points),
+    rows = gradebook_rows(context, scan, statistics)
+    tables = {
+        "gradebook.csv": (marks.COLUMNS, [row.cells for row in rows]),
+        "canvas.csv": marks.canvas_table(rows, context.homework),
+        "moodle.csv": moodle.gradebook(rows, context.roster, context.homework),
+        "what_if.csv": marks.what_if_table(context, statistics.points),
     }
-    files = [
-        csv_tables.write_csv(out / name, *table, private=True) for name, table in tables.items()
-    ]
-    text = page(course.homework, counted, [*found.notes, *lost], rows)
-    jobs.write_private_file(out / "class.html", text.encode())
-    return [*files, out / "class.html"]
+    paths = []
+    for name, (header, lines) in tables.items():
+        paths.append(csv_tables.write_csv(out / name, header, lines, private=True))
+    page = class_page(context.homework, statistics, [*scan.notes, *failures], rows)
+    page_path = out / "class.html"
+    jobs.write_private_file(page_path, page.encode())
+    return [*paths, page_path]
 
 
-def histogram(scores: Iterable[float], whole: float) -> list[tuple[int, int]]:
-    """Return from which percent of the points on, and how many of the scores, in BINS parts."""
-    bins = Counter(min(BINS - 1, int(BINS * score / max(whole, 1e-9))) for score in scores)
-    return [(100 // BINS * k, bins[k]) for k in range(BINS)]
+def histogram(scores: Iterable[float], max_score: float) -> list[tuple[int, int]]:
+    """Count scores in ten bins of equal width; return (lowest percent, number) of each."""
+    counts: Counter[int] = Counter()
+    for score in scores:
+        index = int(HISTOGRAM_BINS * score / max(max_score, 1e-9))
+        counts[min(index, HISTOGRAM_BINS - 1)] += 1
+    bin_percent = 100 // HISTOGRAM_BINS
+    return [(bin_percent * k, counts[k]) for k in range(HISTOGRAM_BINS)]
 
 
-def page(
+def class_page(
     homework: Homework,
-    counted: ClassStatistics,
+    class_statistics: ClassStatistics,
     notes: Iterable[str] = (),
     rows: Sequence[GradebookRow] = (),
 ) -> str:
-    """Return the class page; each row of the gradebook leads to what its student reads."""
-    scores = counted.points.values()
-    bins, median = histogram(scores, homework.points), statistics.median(scores) if scores else 0
-    words = {
-        "homework": homework,
-        "counted": counted,
-        "bins": bins,
-        "median": median,
-        "notes": list(notes),
-    }
-    return render_page(Path(__file__).parent, PAGE, rows=rows, **words)
+    """Return the page about a class as HTML; each student's row links to their feedback."""
+    scores = class_statistics.points.values()
+    return render_page(
+        Path(__file__).parent,
+        PAGE_TEMPLATE,
+        homework=homework,
+        statistics=class_statistics,
+        bins=histogram(scores, homework.points),
+        median=statistics.median(scores) if scores else 0,
+        notes=list(notes),
+        rows=rows,
+    )
