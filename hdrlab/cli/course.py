@@ -39,7 +39,7 @@ def course() -> None:
     "--variants",
     type=common.EXISTING_FILE,
     metavar="ROSTER",
-    help="Class list; makes a handout of its own for each team.",
+    help="Class list (CSV) with the teams that get handouts of their own.",
 )
 @assignments.secret_option
 @assignments.plan_option

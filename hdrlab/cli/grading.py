@@ -23,6 +23,7 @@ jobs_option = click.option(
 @click.option(
     "--hints",
     type=click.IntRange(0, 3),
+    metavar="N",
     default=0,
     help="Show up to N hints for each failed check.",
 )
@@ -74,6 +75,7 @@ def check(
 @click.option(
     "--student",
     default="",
+    show_default=False,
     help="Name that determines this student's own inputs. Requires --secret-file.",
 )
 @assignments.secret_option
@@ -98,12 +100,12 @@ def check(
     "--before",
     type=common.EXISTING_FILE,
     multiple=True,
-    help="Gradebook of an earlier homework of the class. Repeatable.",
+    help="Gradebook of an earlier homework. Repeatable.",
 )
 @click.option(
     "--moodle",
     type=common.EXISTING_FILE,
-    help="Moodle's grading worksheet of the assignment, to fill in for the class.",
+    help="Moodle's grading worksheet of the assignment, to fill in.",
 )
 @click.option(
     "--only",
@@ -114,9 +116,10 @@ def check(
 @click.option(
     "--since",
     type=click.DateTime(),
-    help="Grade only submissions received after this time (UTC).",
+    metavar="TIME",
+    help="Grade only submissions received after this time (UTC), such as 2026-11-30T12:00:00.",
 )
-@click.option("--regrade", is_flag=True, help="Grade submissions of a class again.")
+@click.option("--regrade", is_flag=True, help="Grade again what was graded before.")
 @jobs_option
 @click.option(
     "--cluster",
@@ -155,7 +158,7 @@ def grade(
 
     If SUBMISSION is a folder, hdrlab grades every submission in it (this requires --roster), several
     at a time, and writes a gradebook and a page about the class. After an interruption, the next
-    run grades the rest.
+    run grades the rest. The options from --roster to --cluster apply only to a folder.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
@@ -163,6 +166,27 @@ def grade(
     if student and secret_file is None:
         raise InputError(
             "expected --secret-file with --student: else anybody could draw the same inputs"
+        )
+    if submission.is_dir() and student:
+        raise InputError(
+            f"--student applies to a single submission; {submission} is a folder, for which the "
+            "roster has the names"
+        )
+    class_options = {
+        "--roster": roster,
+        "--received": received,
+        "--before": before,
+        "--moodle": moodle,
+        "--only": only,
+        "--since": since,
+        "--regrade": regrade,
+        "--jobs": jobs,
+        "--cluster": cluster,
+    }
+    given = [name for name, value in class_options.items() if value]
+    if submission.is_file() and given:
+        raise InputError(
+            f"{', '.join(given)}: for a folder of submissions; {submission} is a single one"
         )
     secret, note = assignments.read_secret(secret_file)
     conditions = plans.GradingOptions(
@@ -203,7 +227,11 @@ def grade(
 
 @click.command(cls=common.Command)
 @click.argument("results", type=common.EXISTING_FOLDER)
-@assignments.homework_option
+@click.option(
+    "--homework",
+    metavar="NAME",
+    help="Assignment, such as hw2.  [default: the one that was graded]",
+)
 @common.choice_option(
     "--policy",
     ["replace", "never-lower", "only-listed"],
@@ -221,7 +249,7 @@ def grade(
     multiple=True,
     help="Regrade requests: a CSV file with the columns student, task and words. Repeatable.",
 )
-@click.option("--why", default="", help="Reason to record in the signed log.")
+@click.option("--why", default="", show_default=False, help="Reason to record in the signed log.")
 @jobs_option
 @click.option(
     "--cluster", metavar="ADDRESS", help="Dask cluster that grades, such as tcp://HOST:8786."

@@ -38,12 +38,12 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
     help="Folder for your copy of the notebooks.",
 )
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks without starting JupyterLab.")
-@click.argument("options", nargs=-1, type=click.UNPROCESSED)
+@click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[-- JUPYTERLAB_OPTIONS]")
 def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
 
     Files that you changed in your copy stay. JupyterLab saves the state of the widgets, unless your
-    own settings disable that. OPTIONS are passed on to JupyterLab.
+    own settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
     """
     from hdrlab.course.material import materials
 
@@ -84,6 +84,7 @@ def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
 @click.option(
     "--address",
     default="",
+    show_default=False,
     help="Address of the published site, https://..., for link previews.",
 )
 def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:

@@ -85,8 +85,8 @@ def tonemap(
     --to png and --to avif encode the radiance of the map itself with PQ (SMPTE ST 2084). White is
     at 203 cd/m2 and as bright as the operator made it. Programs without PQ show the image pale.
 
-    --to jxl archives floating-point values, without loss or headroom. A suffix .avif or .jxl
-    selects its kind by itself.
+    --to jxl archives the same radiance as floating-point values, lossless and without a limit to
+    its range. A suffix .avif or .jxl selects its kind by itself.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
@@ -161,7 +161,9 @@ def check_settings(
 def compare(
     *, source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
 ) -> None:
-    """Make a contact sheet of the radiance map SOURCE under every operator, with time and quality.
+    """Make a contact sheet of the radiance map SOURCE, tone-mapped by every operator.
+
+    The sheet also shows the run time and the quality (TMQI) of each operator.
 
     hdrlab first reduces the map to --size pixels along its longer side. Times and qualities are for
     that size. `hdrlab tonemap --help` explains --way.

@@ -28,6 +28,7 @@ EXAMINER = "hdrlab.course.viva.examining:Examining"
 @click.option(
     "--student",
     default="",
+    show_default=False,
     help="Name that determines this student's own questions, with --secret-file.",
 )
 @click.option(

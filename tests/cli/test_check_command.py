@@ -144,3 +144,13 @@ def test_the_course_is_built_and_exported(typed, tmp_path):
     )
     assert code == 0 and (tmp_path / "nb" / "nbgrader_config.py").exists()
     assert (tmp_path / "gs" / "hw2_autograder.zip").exists()
+
+
+@pytest.mark.quick
+def test_grade_refuses_options_that_it_would_ignore(typed, tmp_path):
+    (tmp_path / "class").mkdir()
+    (tmp_path / "secret").write_text("salt\n")
+    code, _, err = typed("grade", "hw2.py", "--plan", "plan.toml", "--only", "ada", "--jobs", "2")
+    assert code == 2 and "--only, --jobs" in err and "hw2.py" in err
+    code, _, err = typed("grade", "class", "--student", "ada", "--secret-file", "secret")
+    assert code == 2 and "--student" in err and "class" in err
