@@ -35,14 +35,18 @@ SHORTEST_DECIMAL_SECONDS = 0.4
     type=common.INPUT_PATH,
     help="Radiance map in cd/m^2 to take LOW and HIGH from.",
 )
-@click.option("--aperture", default=8.0, help="f-number of all photos.")
-@click.option("--iso", default=100.0, help="ISO speed of all photos.")
+@click.option(
+    "--aperture", type=click.FloatRange(0.1, 1000), default=8.0, help="f-number of all photos."
+)
+@click.option(
+    "--iso", type=click.FloatRange(1, 10_000_000), default=100.0, help="ISO speed of all photos."
+)
 @click.option("--usable", default=7.0, help="Usable range of one photo, in stops.")
 @click.option("--overlap", default=3.0, help="Overlap of two neighboring photos, in stops.")
 @click.option("--thirds", is_flag=True, help="Use shutter times in thirds of a stop.")
 @click.option(
     "--snr",
-    type=click.FloatRange(0, min_open=True),
+    type=click.FloatRange(0, 1e6, min_open=True),
     help="Also plan the fastest bracket with at least this signal-to-noise ratio.",
 )
 @click.option(

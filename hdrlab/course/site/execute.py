@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.course.checks.running import LIBRARY, import_path
+from hdrlab.errors import FileFormatError
 from hdrlab.io.files import replacing
 
 PATIENCE = 600  # seconds for a cell
@@ -100,7 +101,10 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
-    notebook = nbformat.read(source, as_version=4)
+    try:
+        notebook = nbformat.read(source, as_version=4)
+    except (ValueError, nbformat.ValidationError) as error:
+        raise FileFormatError(f"{source}: expected a Jupyter notebook, {error!s:.200}") from None
     where = "its kernel"
     # where a notebook may leave something
     folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
