@@ -21,7 +21,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
-from hdrlab.radiance.merge import TOP, as_tables
+from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
 # of a frame, on an even grid, that stand for the whole
 PIXELS = 180_000
@@ -80,7 +80,7 @@ def measure_motion(
     False
     True
     """
-    stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
+    stack, t, w, curves, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
     mask, every = (
         as_mask(valid, stack),
         max(1, int(np.sqrt(stack[0].size / curves.shape[1] / PIXELS))),

@@ -26,7 +26,7 @@ from scipy.optimize import least_squares
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import CalibrationError, InputError
-from hdrlab.radiance.merge import TOP, as_tables
+from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
 # of a channel, on an even grid, that stand for all
 PIXELS = 400_000
@@ -92,7 +92,7 @@ def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLi
     >>> bool(abs(found.N[0] / 2500 - 1) < 0.1), bool(abs(found.R[0] / 4 - 1) < 0.2)  # half a well is X = 1
     (True, True)
     """
-    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
+    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", CLIPPING_LEVEL)
     light, Z = as_radiance(E).astype(np.float64), stack.reshape(*stack.shape[:3], -1)
     if light.shape != stack.shape[1:]:
         raise InputError(f"expected a map of shape {stack.shape[1:]}, got {light.shape}")

@@ -22,7 +22,14 @@ import numpy as np
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask, as_mask
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.threads import map_in_threads
-from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
+from hdrlab.radiance.merge import (
+    CLIPPING_LEVEL,
+    MIN_RELATIVE_WEIGHT,
+    Merged,
+    Quality,
+    as_tables,
+    bound,
+)
 from hdrlab.radiance.stuck import repair_stuck
 
 # of a block: its planes and sums stay in the processor's cache
@@ -66,7 +73,7 @@ def merge_with_quality(
     w: ArrayLike | None = None,
     *,
     method: str = "log",
-    top: float = TOP,
+    top: float = CLIPPING_LEVEL,
     repair: bool = True,
     valid: ArrayLike | None = None,
 ) -> Merged:
@@ -109,7 +116,7 @@ def _plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:
     """Return the _Plan of frames with these times."""
     n, channels = g.shape
     z = np.arange(n)
-    usable = np.where((z > 0) & (z < top), np.maximum(w, FAINT * w.max()), 0.0)
+    usable = np.where((z > 0) & (z < top), np.maximum(w, MIN_RELATIVE_WEIGHT * w.max()), 0.0)
     tables = np.empty((len(times), channels, n), np.complex64)
     for (j, t), c in product(enumerate(times), range(channels)):
         a, b = TERMS[method](usable, g[:, c], t)

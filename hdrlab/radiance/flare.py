@@ -1,4 +1,4 @@
-"""Lens flare: veiling glare, the light that a lens scattered, found in the map and removed where it matters.
+"""Veiling glare, the light that a lens scatters: estimated from the radiance map, and removed.
 
 F       radiance, as photographed    (H, W[, 3]), (1 - share) E + share (K * E)
 E       radiance without glare       (H, W[, 3])
@@ -6,15 +6,17 @@ K       glare spread function        falls with a power of the distance: see `co
 ratio   F / (K * E)                  (H, W[, 3]): share + (1 - share) E / (K * E), never below the share
 region  (H, W) bool                  where glare is more than a part of what was photographed
 
-A map is needed, not a photograph: the glare in the dark corner comes from a sun that only the
-shortest frame holds. Glare is everywhere, so nothing in the map is darker than it [Reinhard05 on
-lens flare]: the lowest ratios are the share, if there are dark places. Whether it is glare shows in
-how they agree. Under glare many places, far from each other, come down to one ratio; without it the
-lowest are a few odd pixels'. The power is the one under which most can be removed: under another
-the glare meets the floor at one distance from the lights, and lies below it at all others.
+This needs a radiance map, not a photograph: the glare in a dark corner comes from a sun that only
+the shortest frame measures. Glare is everywhere, so nothing in the map is darker than it
+[Reinhard05 on lens flare]: if there are dark places, the lowest ratios equal the share. Their
+agreement shows whether they are glare. With glare, many distant places come down to one ratio;
+without it, the lowest ratios are those of a few odd pixels. The power is the one with which most
+light can be removed. With any other power, the estimated glare reaches the lowest ratios at one
+distance from the lights only, and is too low at all others.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -25,39 +27,41 @@ from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 
 POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5)
-# of the pixels: the lowest ratios, and those that must agree with them
-LOW = 2e-4
-HIGH = 1e-2
-# times the lowest ratio: without glare they differ by more
-AGREE = 1.7
-# share: less is neither visible nor measured by dark places
-LEAST = 0.004
-# pixels: the width at which powers are compared, and noise has averaged out
-WIDTH = 384
-# of a pixel's light: what is darker is not known any better
-MOST = 0.97
-# K * E is needed, and K * F is there: what is off falls by the share each round
-ROUNDS = 4
+# quantile of the ratios that counts as the lowest ratio
+LOW_QUANTILE = 2e-4
+# quantile of the ratios that is compared with the lowest ratio
+HIGH_QUANTILE = 1e-2
+# quotient of the two; without glare it is larger
+MAX_AGREEMENT = 1.7
+# a smaller share is invisible, and dark places do not measure it
+MIN_SHARE = 0.004
+# pixels of the reduced map on which powers are compared; noise is averaged out there
+COMPARISON_WIDTH = 384
+# fraction of a pixel's light that the estimate of the removed light counts at most
+MAX_REMOVED_FRACTION = 0.97
+# K * F stands in for K * E at first; each iteration reduces the error by a factor of the share
+ITERATIONS = 4
 
 
 class State(NamedTuple):
-    """After a round: the share, the veiling glare share (K * E), and E."""
+    """The share, the veiling glare share (K * E), and E after an iteration."""
 
     share: float
     glare: F32
     E: F32
 
 
-class Deglared(NamedTuple):
-    """A map without veiling glare.
+@dataclass(frozen=True)
+class Deglared:
+    """A radiance map without veiling glare.
 
     Attributes
     ----------
-    E : (H, W) or (H, W, 3) float32; outside the region it is the map as it was
-    spread : GlareSpread of the lens; its share is 0 where no glare was found
+    E : (H, W) or (H, W, 3) float32; outside the region it is the original map
+    spread : GlareSpread of the lens; its share is 0 if no glare was found
     region : (H, W) bool, where more than `part` of the light was scattered, in any channel
-    glare : (H, W) or (H, W, 3) float32, the light that was scattered; 0 without glare
-    agreement : the ratio of ratios that decided, near 1 under glare
+    glare : (H, W) or (H, W, 3) float32, the scattered light; 0 without glare
+    agreement : quotient of a high and the lowest ratio, near 1 with glare
     """
 
     E: F32
@@ -68,55 +72,65 @@ class Deglared(NamedTuple):
 
 
 def block_means(E: F32, factor: int) -> F32:
-    """Return means over squares of so many pixels; what is left over at the far edges is cut off."""
-    height, width = (n // factor for n in E.shape[:2])
-    cut = E[: height * factor, : width * factor].reshape(height, factor, width, factor, -1)
-    return cut.mean(axis=(1, 3), dtype=np.float32).reshape(height, width, *E.shape[2:])
+    """Return means over squares of `factor` pixels; incomplete squares at the far edges are cut off."""
+    height = E.shape[0] // factor
+    width = E.shape[1] // factor
+    blocks = E[: height * factor, : width * factor].reshape(height, factor, width, factor, -1)
+    return blocks.mean(axis=(1, 3), dtype=np.float32).reshape(height, width, *E.shape[2:])
 
 
 def lowest_ratio(F: F32, G: F32) -> tuple[float, float]:
-    """Return the lowest ratio F / G, and how far those above it lie: the share, and the agreement.
+    """Return the lowest ratio F / G, which is the share, and the quotient of a higher ratio and it.
 
-    Two low quantiles, ten apart, are continued to none at all, as far again below: so a floor that
-    slopes, as of dark places that are not quite black, does not count as glare.
+    The lowest ratio is extrapolated from two low quantiles. So a gradual increase, as of dark
+    places that are not quite black, does not count as glare.
     """
     positive = G > 0
-    if np.count_nonzero(positive) < 1 / LOW:
+    if np.count_nonzero(positive) < 1 / LOW_QUANTILE:
         return 0.0, np.inf
-    low, next_, high = np.quantile(F[positive] / G[positive], [LOW, 5 * LOW, HIGH])
-    return float(max(2 * low - next_, 0.0)), float(high / low) if low > 0 else np.inf
+    quantiles = [LOW_QUANTILE, 5 * LOW_QUANTILE, HIGH_QUANTILE]
+    low, higher, high = np.quantile(F[positive] / G[positive], quantiles)
+    share = float(max(2 * low - higher, 0.0))
+    agreement = float(high / low) if low > 0 else np.inf
+    return share, agreement
 
 
 def subtract_glare(F: F32, G: F32, share: float) -> F32:
-    """Return E = (F - share G) / (1 - share), not below a thousandth of F: light is not negative."""
+    """Return E = (F - share G) / (1 - share), at least a thousandth of F, as light is not negative."""
     return np.maximum(F - np.float32(share) * G, np.float32(1e-3) * F) / np.float32(1 - share)
 
 
 def glare_steps(
     F: ArrayLike, power: float, *, core: float = 1.0, share: float | None = None
 ) -> Iterator[State]:
-    """Yield the State of each round: the glare of the E before, its share, and E without it.
+    """Yield the State of each iteration: the share, the glare computed from the last E, and the new E.
 
-    The share is measured again in each round, or is the one given.
+    With `share` None, each iteration estimates the share again.
     """
-    F = E = as_radiance(F)
+    F = as_radiance(F)
+    E = F
     transform = spread_transform(F.shape, power, core)
-    factor = max(1, F.shape[1] // WIDTH)
-    for _ in range(ROUNDS):
+    factor = max(1, F.shape[1] // COMPARISON_WIDTH)
+    for _ in range(ITERATIONS):
         G = scatter(E, transform)
-        now = (
-            lowest_ratio(block_means(F, factor), block_means(G, factor))[0]
-            if share is None
-            else share
-        )
-        E = subtract_glare(F, G, now)
-        yield State(now, np.float32(now) * G, E)
+        if share is None:
+            estimate, _ = lowest_ratio(block_means(F, factor), block_means(G, factor))
+        else:
+            estimate = share
+        E = subtract_glare(F, G, estimate)
+        yield State(estimate, np.float32(estimate) * G, E)
 
 
-class Fit(NamedTuple):
-    """A glare spread function of one power: the share, the agreement of the darkest places, the mean removed.
+@dataclass(frozen=True)
+class Fit:
+    """A glare spread function of one power, fitted to a map.
 
-    That is of ln F - ln E, and none counts for more than MOST.
+    Attributes
+    ----------
+    power : of the distance, with which scattered light falls
+    share : of the light that is scattered
+    agreement : quotient of a high and the lowest ratio, near 1 with glare
+    removed : mean of ln F - ln E; a pixel counts as if at most 97 % of its light were removed
     """
 
     power: float
@@ -126,20 +140,23 @@ class Fit(NamedTuple):
 
 
 def fit_power(F: ArrayLike, power: float, *, core: float = 1.0) -> Fit:
-    """Return the Fit of a glare spread function of this power to a map."""
+    """Return the Fit of a glare spread function of this power to the map F."""
     F = as_radiance(F)
     state = last(glare_steps(F, power, core=core))
     if state.share == 0:
         return Fit(power, 0.0, np.inf, 0.0)
     _, agreement = lowest_ratio(F, state.glare / np.float32(state.share))
-    part = np.minimum(state.glare / np.maximum(F, np.finfo(np.float32).tiny), np.float32(MOST))
-    return Fit(power, state.share, agreement, float(-np.log1p(-part).mean()))
+    fraction = state.glare / np.maximum(F, np.finfo(np.float32).tiny)
+    fraction = np.minimum(fraction, np.float32(MAX_REMOVED_FRACTION))
+    return Fit(power, state.share, agreement, float(-np.log1p(-fraction).mean()))
 
 
 def estimate_spread(
     F: ArrayLike, *, powers: tuple[float, ...] = POWERS
 ) -> tuple[GlareSpread, float]:
-    """Return the GlareSpread of the lens that took a map, of share 0 where there is none, and the agreement.
+    """Return the glare spread function of the lens, estimated from a radiance map, and the agreement.
+
+    Its share is 0 if there is no glare.
 
     Parameters
     ----------
@@ -162,13 +179,12 @@ def estimate_spread(
     F = as_radiance(F)
     if not powers:
         raise InputError("expected at least one power")
-    factor = max(1, F.shape[1] // WIDTH)
+    factor = max(1, F.shape[1] // COMPARISON_WIDTH)
     small = block_means(F, factor)
-    best = max(
-        (fit_power(small, power, core=1 / factor) for power in powers), key=lambda one: one.removed
-    )
-    found = best.agreement < AGREE and best.share > LEAST
-    return GlareSpread(best.share if found else 0.0, best.power), best.agreement
+    fits = [fit_power(small, power, core=1 / factor) for power in powers]
+    best = max(fits, key=lambda fit: fit.removed)
+    has_glare = best.agreement < MAX_AGREEMENT and best.share > MIN_SHARE
+    return GlareSpread(best.share if has_glare else 0.0, best.power), best.agreement
 
 
 def remove_glare(
@@ -179,8 +195,9 @@ def remove_glare(
     Parameters
     ----------
     F : (H, W) or (H, W, 3), radiance map of a whole bracket
-    spread : of the lens, where it was measured; by default it is estimated from the map
-    part : of a pixel's light, from which on glare is removed; elsewhere the map stays as it is
+    spread : measured glare spread of the lens; by default it is estimated from the map
+    part : glare is removed where it is more than this part of a pixel's light; elsewhere the map
+        stays as it is
 
     Returns
     -------
@@ -211,25 +228,42 @@ def remove_glare(
     F = as_radiance(F)
     if not 0 < part < 1:
         raise InputError(f"expected a part between 0 and 1, got {part}")
-    found, agreement = estimate_spread(F) if spread is None else (validate_spread(spread), 1.0)
-    if found.share == 0:
-        return Deglared(F.copy(), found, np.zeros(F.shape[:2], bool), np.zeros_like(F), agreement)
-    share = None if spread is None else found.share
-    state = last(glare_steps(F, found.power, core=found.core, share=share))
-    much = state.glare > np.float32(part) * F
-    region = np.asarray(much if F.ndim == 2 else much.any(axis=-1))
+    if spread is None:
+        spread, agreement = estimate_spread(F)
+        given_share = None
+    else:
+        spread = validate_spread(spread)
+        agreement = 1.0
+        given_share = spread.share
+    if spread.share == 0:
+        return Deglared(
+            E=F.copy(),
+            spread=spread,
+            region=np.zeros(F.shape[:2], bool),
+            glare=np.zeros_like(F),
+            agreement=agreement,
+        )
+    state = last(glare_steps(F, spread.power, core=spread.core, share=given_share))
+    exceeds = state.glare > np.float32(part) * F
+    region = np.asarray(exceeds if F.ndim == 2 else exceeds.any(axis=-1))
     E = np.where(region if F.ndim == 2 else region[..., None], state.E, F)
-    return Deglared(E, found._replace(share=state.share), region, state.glare, agreement)
+    return Deglared(
+        E=E,
+        spread=spread._replace(share=state.share),
+        region=region,
+        glare=state.glare,
+        agreement=agreement,
+    )
 
 
-def note(found: Deglared) -> str:
-    """Return the sentence on how much light the lens scattered, and where that was removed."""
-    if found.spread.share == 0:
+def note(result: Deglared) -> str:
+    """Return a sentence that says how much light the lens scattered, and where that was removed."""
+    if result.spread.share == 0:
         return "no veiling glare found: the darkest places have no common share of the light around them"
-    share = 100 * found.spread.share
-    power = found.spread.power
-    region = 100 * found.region.mean()
+    share = 100 * result.spread.share
+    power = result.spread.power
+    percent = 100 * result.region.mean()
     return (
         f"veiling glare: the lens scattered {share:.1f} % of the light, falling with the power {power:g} of "
-        f"the distance; removed in {region:.0f} % of the pixels"
+        f"the distance; removed in {percent:.0f} % of the pixels"
     )

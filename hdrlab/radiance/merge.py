@@ -5,13 +5,13 @@ t, B   exposure times    (P,) seconds, and ln t
 g      ln f^-1           (n,) or (n, C), ln exposure of each level; X = exp(g(Z))
 w      weights           (n,), how far to trust a level
 W      weights in use    (P, H, W, C), w(Z), or 0 where a frame measures nothing
-top    first clipped level; a level from there on means "at least", level 0 "at most"
+top    first clipped level; levels from there on are lower bounds, level 0 is an upper bound
 shown  (P, H, W, C) bool, False where a frame shows nothing of the scene
 E      radiance          (H, W[, C]) float32: 1 brings a pixel to level n / 2 in one second
 
-A frame that does not measure a pixel still bounds it: clipped in frame j, its radiance is at least
-f^-1(top) / t_j; dark in frame j, at most f^-1(1) / t_j. So a clipped sun is never darker than the
-sky that was measured beside it. `fast.merge` makes the same map by look-up tables.
+A frame that does not measure a pixel still bounds it: if frame j is clipped, the radiance is at
+least f^-1(top) / t_j; if frame j is dark, it is at most f^-1(1) / t_j. So a clipped sun is never
+darker than the measured sky next to it. `fast.merge` computes the same map with look-up tables.
 """
 
 from enum import IntFlag
@@ -25,22 +25,24 @@ from hdrlab.core.weights import hat
 from hdrlab.errors import InputError
 from hdrlab.radiance.stuck import repair_stuck
 
-# of the top level: levels above are clipped
-TOP = 0.98
-# of the largest weight: counts for nothing where there is another measurement
-FAINT = 1e-6
+# levels above this fraction of the top level are clipped
+CLIPPING_LEVEL = 0.98
+# relative to the largest weight: negligible where another frame measures the pixel
+MIN_RELATIVE_WEIGHT = 1e-6
 
 
 class Quality(IntFlag):
     """Pixel quality flags: MEASURED, or why not."""
 
     MEASURED = 0
-    CLIPPED = 1  # in every frame that shows it: the shortest frame's lower bound
-    DARK = (
-        2  # in every frame: the longest frame's upper bound; together with CLIPPED: between the two
-    )
-    STUCK = 4  # does not follow the exposure: the median of its neighbours
-    UNSEEN = 8  # no frame shows it: 0
+    # clipped in every frame that shows it: E is the lower bound from the shortest frame
+    CLIPPED = 1
+    # dark in every frame: E is the upper bound from the longest frame; with CLIPPED, between the two
+    DARK = 2
+    # the level does not follow the exposure: E is the median of the neighbours
+    STUCK = 4
+    # no frame shows it: E is 0
+    UNSEEN = 8
 
 
 class Merged(NamedTuple):
@@ -56,7 +58,7 @@ def log_mean(W: F64, X: F64, t: F64) -> F64:
 
 
 def likelihood(W: F64, X: F64, t: F64) -> F64:
-    """Return E = sum W X t / sum W t^2 [Robertson03 eq. 8]: noise of one size in every frame."""
+    """Return E = sum W X t / sum W t^2 [Robertson03 eq. 8]: best for equal noise in every frame."""
     return np.sum(W * X * t, axis=0) / np.sum(W * t**2, axis=0)
 
 
@@ -72,7 +74,7 @@ def frame_mean(W: F64, X: F64, t: F64) -> F64:
 
 
 def shot_noise(W: F64, X: F64, t: F64) -> F64:
-    """Return E = sum W X / sum W t: all light over all time, best where photons are the noise."""
+    """Return E = sum W X / sum W t, all light over all time: best where photon noise dominates."""
     return np.sum(W * X, axis=0) / np.sum(W * t, axis=0)
 
 
@@ -82,27 +84,29 @@ METHODS = {"log": log_mean, "likelihood": likelihood, "mean": frame_mean, "shot"
 def weigh(Z: Array, w: F64, top: int, shown: Mask | bool = True) -> F64:
     """Return W: w(Z) where a frame measures a pixel, 0 elsewhere.
 
-    A frame with a clipped channel is dropped for all channels, lest highlights take a tint, as long
-    as another frame measures the pixel.
+    A frame with a clipped channel is dropped for all channels if another frame measures the pixel:
+    otherwise highlights would have a tint.
     """
     usable = (Z > 0) & (Z < top) & shown
     whole = usable & np.all(Z < top, axis=-1, keepdims=True)
-    return np.where(whole.any(axis=0), whole, usable) * np.maximum(w[Z], FAINT * w.max())
+    in_use = np.where(whole.any(axis=0), whole, usable)
+    return in_use * np.maximum(w[Z], MIN_RELATIVE_WEIGHT * w.max())
 
 
 def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
     """Return E (M,) and flags (M,) of pixels Z (P, M) that no frame measures, from the tightest bounds.
 
-    ln E >= g(top) - B_j where frame j is clipped, ln E <= g(1) - B_j where it is dark. E is the one
-    bound, or the middle of the logarithms of two, or 0. The flags are the sum of 1 where a frame is
-    clipped and 2 where one is dark, or else 8.
+    ln E >= g(top) - B_j where frame j is clipped, ln E <= g(1) - B_j where it is dark. With one of
+    them E is that bound, with both the middle of their logarithms, with none 0. The flags are the
+    sum of 1 if a frame is clipped and 2 if one is dark, or 8 if there is neither.
     """
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
     low = np.isfinite(lower)
     high = np.isfinite(upper)
-    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
+    bound_count = 1.0 * low + high
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(bound_count, 1)
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
 
@@ -110,8 +114,8 @@ def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
     """Return the radiance map, ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
 
-    Where no frame measures a pixel, E is what the tightest bounds allow. Images are (P, H, W[, 3]),
-    in any order; w is the hat by default.
+    Where no frame measures a pixel, E comes from the tightest bounds. Images are (P, H, W[, 3]), in
+    any order; w is the hat by default.
 
     Examples
     --------
@@ -136,7 +140,7 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     Z = images.reshape(*images.shape[:3], -1)
     B = np.log(t)
     c = np.arange(Z.shape[-1])
-    top = int(TOP * (n - 1)) + 1
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     if (
         g.shape not in ((n,), (n, 1), (n, c.size))
         or not np.all(np.abs(g) < 80)
@@ -149,7 +153,8 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
     lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
-    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    bounds, _ = bound(Z, B, g, top, np.ones(Z.shape, bool))
+    E = np.where(total > 0, np.exp(lE), bounds)
     return E.reshape(images.shape[1:]).astype(np.float32)
 
 
@@ -160,11 +165,11 @@ def merge_with_quality(
     w: ArrayLike | None = None,
     *,
     method: str = "log",
-    top: float = TOP,
+    top: float = CLIPPING_LEVEL,
     repair: bool = True,
     valid: ArrayLike | None = None,
 ) -> Merged:
-    """Return the radiance map by any of METHODS, stuck pixels repaired, and the quality flags of its pixels.
+    """Return the radiance map by one of METHODS, with stuck pixels repaired, and its quality flags.
 
     Parameters
     ----------
@@ -173,17 +178,18 @@ def merge_with_quality(
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
-        Response, ln exposure of each level; read between its levels where n is not the images'.
+        Response, ln exposure of each level; interpolated where n is not the images' number of
+        levels.
     w : (n,) float, optional
         Weights, the hat by default.
     method : {"log", "likelihood", "mean", "shot"}
-        Which quotient of sums, a key of `METHODS`.
+        The quotient of sums to use, a key of `METHODS`.
     top : float
         Levels above this fraction of the top level are clipped.
     repair : bool
         Replace single pixels that do not follow the exposure by their neighbours' median.
     valid : (P, H, W) bool, optional
-        False where a photograph holds no picture.
+        False where a photograph shows nothing of the scene.
 
     Returns
     -------
@@ -216,9 +222,8 @@ def merge_with_quality(
     bounds, flags = bound(Z, np.log(t), curves, first, shown)
     measured = W.any(axis=0)
     with np.errstate(invalid="ignore"):
-        E = np.where(measured, METHODS[method](W, X, t[:, None, None, None]), bounds).astype(
-            np.float32
-        )
+        means = METHODS[method](W, X, t[:, None, None, None])
+    E = np.where(measured, means, bounds).astype(np.float32)
     quality = np.bitwise_or.reduce(np.where(measured, np.uint8(0), flags), axis=-1)
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
@@ -228,19 +233,17 @@ def merge_with_quality(
 def as_tables(
     images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None, method: str, top: float
 ) -> tuple[Array, F64, F64, F64, int]:
-    """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
+    """Return the checked stack, its times, w (n,), g (n, C) and the first clipped level."""
     stack = arrays.as_stack(images)
     n = arrays.levels(stack)
     channels = stack[0, 0, 0].size
-    weights = arrays.as_table(hat(n) if w is None else w, n)
+    w = arrays.as_table(hat(n) if w is None else w, n)
     curves = arrays.as_response(g, n, channels)
-    if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
-        raise InputError(
-            f"expected weights (n,), not negative and not all 0, got shape {weights.shape}"
-        )
+    if w.ndim != 1 or not np.all(w >= 0) or not w.any():
+        raise InputError(f"expected weights (n,), not negative and not all 0, got shape {w.shape}")
     if method not in METHODS:
         raise InputError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:
         raise InputError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
     first = min(int(top * (n - 1)) + 1, n - 1)
-    return stack, arrays.as_times(times, len(stack)), weights, curves, first
+    return stack, arrays.as_times(times, len(stack)), w, curves, first

@@ -11,13 +11,14 @@ level of A gives an equation k m = T(m), each level of B gives z = k T^-1(z). Ra
 the frames need not be aligned, and no time need be known. Rounds throw out equations that miss by
 much more than the rest.
 
-Two schemes differ in where they read the ranks. The paper's takes a level's cumulated count for the
-level's own, though it belongs to the level's upper edge; so for a true ratio of 4 its pairs lie on
-T = 4 m + 1.5. The corrected one takes the middle of each step, stays away from the noise of the
-darkest levels, and keeps more equations: a limit of 3 V drops good ones.
+Two schemes differ in how they compute ranks. The paper's scheme assigns a cumulative count to the
+level itself, though it belongs to the level's upper edge, so that for a true ratio of 4 its pairs
+lie on T = 4 m + 1.5. The corrected scheme takes the middle of each step, excludes the noise of the
+darkest levels, and keeps more equations, as a limit of 3 V drops good ones.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -28,24 +29,32 @@ from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
 from hdrlab.errors import InputError
 
-# of the top level: above, noise hides clipped pixels
-SATURATED = 0.98
-# levels of the darker frame that the brighter one must show, too
-FEWEST = 8
+# relative to the top level; above it, noise makes clipped pixels look unclipped
+SATURATION_LEVEL = 0.98
+# of the darker frame, that the brighter frame measures as well
+MIN_COMMON_LEVELS = 8
 
 
-class Scheme(NamedTuple):
-    """How ranks become equations: the transfer, the lowest levels (of 256), and outliers beyond limit V."""
+@dataclass(frozen=True)
+class Scheme:
+    """How ranks become equations.
+
+    Attributes
+    ----------
+    transfer : function that computes T from two histograms
+    min_dark_level, min_bright_level : lowest levels, of 256, of the darker and the brighter frame
+    limit : equations with a square error of more than `limit` V are outliers
+    """
 
     transfer: Callable[[ArrayLike, ArrayLike], F64]
-    dark: float
-    bright: float
+    min_dark_level: float
+    min_bright_level: float
     limit: float
 
 
 SCHEMES = {
-    "paper": Scheme(literal_transfer, 1, 1, 3.0),
-    "mid-step": Scheme(brightness_transfer, 16, 64, 9.0),
+    "paper": Scheme(literal_transfer, min_dark_level=1, min_bright_level=1, limit=3.0),
+    "mid-step": Scheme(brightness_transfer, min_dark_level=16, min_bright_level=64, limit=9.0),
 }
 
 
@@ -68,54 +77,63 @@ class State(NamedTuple):
 def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") -> Equations:
     """Return k m = T(m) and z = k T^-1(z), weighted by the square roots of histograms [Cerman06 eq. 4].
 
-    Levels are those of 256, whatever the depth.
+    Levels are scaled to 0 ... 255 for every bit depth.
     """
     if scheme not in SCHEMES:
         raise InputError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
-    how = SCHEMES[scheme]
+    settings = SCHEMES[scheme]
     h_A = np.asarray(h_A, np.float64)
     h_B = np.asarray(h_B, np.float64)
     n = len(h_A)
     level = np.arange(n) * (255 / (n - 1))
-    top = 255 * SATURATED
-    T = how.transfer(h_A, h_B) * (255 / (n - 1))
-    back = how.transfer(h_B, h_A) * (255 / (n - 1))
-    a = (h_A > 0) & (level >= how.dark) & (T >= how.bright) & (T < top)  # NaN is neither
-    b = (h_B > 0) & (level >= how.bright) & (level < top) & (back >= how.dark)
+    top = 255 * SATURATION_LEVEL
+    T = settings.transfer(h_A, h_B) * (255 / (n - 1))
+    T_inv = settings.transfer(h_B, h_A) * (255 / (n - 1))
+    # comparisons with NaN, where there is no transfer, are false
+    a = (h_A > 0) & (level >= settings.min_dark_level)
+    a &= (T >= settings.min_bright_level) & (T < top)
+    b = (h_B > 0) & (level >= settings.min_bright_level) & (level < top)
+    b &= T_inv >= settings.min_dark_level
+    x = np.concatenate([level[a], T_inv[b]])
+    y = np.concatenate([T[a], level[b]])
     v = np.sqrt(np.concatenate([h_A[a] / h_A.sum(), h_B[b] / h_B.sum()]))
-    return Equations(np.concatenate([level[a], back[b]]), np.concatenate([T[a], level[b]]), v)
+    return Equations(x, y, v)
 
 
-def solve_ratio(found: Equations, used: Mask) -> float:
-    """Return k of least squares, sum v^2 x y / sum v^2 x^2."""
-    x, y, v = (part[used] for part in found)
+def solve_ratio(equations: Equations, used: Mask) -> float:
+    """Return k of least squares, sum v^2 x y / sum v^2 x^2, from the equations in use."""
+    x, y, v = equations
+    x = x[used]
+    y = y[used]
+    v = v[used]
     return float(np.sum(v**2 * x * y) / np.sum(v**2 * x**2))
 
 
-def square_errors(found: Equations, k: float) -> F64:
+def square_errors(equations: Equations, k: float) -> F64:
     """Return (v (y - k x))^2 of all equations."""
-    x, y, v = found
+    x, y, v = equations
     return (v * (y - k * x)) ** 2
 
 
 def ratio_steps(
     found: Equations, *, limit: float = 9.0, tolerance: float = 1e-6, rounds: int = 100
 ) -> Iterator[State]:
-    """Yield the State of the first solution, of all equations, and after each round without outliers."""
+    """Yield the State of the solution of all equations, and after each round without outliers."""
     used = np.ones(len(found[0]), bool)
     k = solve_ratio(found, used)
     yield State(k, used, float(np.mean(square_errors(found, k))))
     for _ in range(rounds):
         errors = square_errors(found, k)
         used = errors <= limit * np.mean(errors[used])
-        k, before = solve_ratio(found, used), k
+        k_before = k
+        k = solve_ratio(found, used)
         yield State(k, used, float(np.mean(square_errors(found, k)[used])))
-        if abs(k - before) < tolerance:
+        if abs(k - k_before) < tolerance:
             return
 
 
 def estimate_ratio(A: ArrayLike, B: ArrayLike, *, scheme: str = "mid-step") -> float:
-    """Return how much longer than A frame B was exposed; the parameters are those of `estimate_ratios`."""
+    """Return the exposure of frame B over that of frame A; the parameters are those of `estimate_ratios`."""
     return float(estimate_ratios(as_stack([A, B]), scheme=scheme)[0])
 
 
@@ -131,12 +149,12 @@ def estimate_ratios(
     scheme : {"mid-step", "paper"}
         The corrected scheme, or Cerman and Hlavac's.
     valid : (P, H, W) bool, optional
-        False where a photograph holds no picture.
+        False where a photograph shows nothing of the scene.
 
     Returns
     -------
     (P - 1,) float64
-        Exposure of each frame over that of the one before: below 1 where it is the darker one.
+        Exposure of each frame over that of the frame before: below 1 if it is darker.
 
     Raises
     ------
@@ -165,17 +183,24 @@ def estimate_ratios(
 
 
 def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
-    """Return k of two frames from their channels' histograms: all channels have the same one."""
-    mean_A, mean_B = (np.sum(h, axis=0) @ np.arange(len(h[0])) for h in (h_A, h_B))
-    if mean_A > mean_B:
+    """Return k of two frames from the histograms (C, n) of their channels, which share one k."""
+    if _sum_levels(h_A) > _sum_levels(h_B):
         return 1 / _estimate_pair(h_B, h_A, scheme)
     parts = [collect_equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
-    found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
-    overlap = len(
-        np.unique(np.round(found.x))
-    )  # levels of the darker frame that the brighter one has, too
-    if overlap < FEWEST:
+    equations = Equations(
+        x=np.concatenate([part.x for part in parts]),
+        y=np.concatenate([part.y for part in parts]),
+        v=np.concatenate([part.v for part in parts]),
+    )
+    common_levels = len(np.unique(np.round(equations.x)))
+    if common_levels < MIN_COMMON_LEVELS:
         raise InputError(
-            f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}"
+            f"expected frames that overlap in brightness by {MIN_COMMON_LEVELS} levels, "
+            f"got {common_levels}"
         )
-    return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
+    return last(ratio_steps(equations, limit=SCHEMES[scheme].limit)).k
+
+
+def _sum_levels(h: Array) -> float:
+    """Return the sum of all pixel levels, from the histograms (C, n) of the channels."""
+    return float(np.sum(h, axis=0) @ np.arange(h.shape[1]))

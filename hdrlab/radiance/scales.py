@@ -1,12 +1,12 @@
-"""What a response leaves open: the unit of light, and of its colours (Mitsunaga and Nayar 1999, sec. 6.4).
+"""Factors that a response does not determine: channel scales and unit (Mitsunaga and Nayar 1999, sec. 6.4).
 
 M   measured brightness   (N, 3), 0 ... 1
 I   radiance              (N, 3), each channel in a unit of its own
 k   channel scales        (3,), k_green = 1
 
-Each channel's response is known up to a factor, and so is the radiance: a picture recovered channel
-by channel has a tint that no photograph had. If the camera, whatever its curve, kept the
-chromaticity of what it saw, then k I must point along M, for all pixels together.
+Each channel's response is known up to a factor, and so is its radiance. So a radiance map that is
+recovered channel by channel may have a tint. If the camera preserves chromaticity, k I must have
+the direction of M for all pixels.
 """
 
 import numpy as np
@@ -24,15 +24,15 @@ def chromaticity(M: ArrayLike) -> F64:
 
 
 def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
-    """Return k that brings k I nearest to the direction of M, by least squares [Mitsunaga99 sec. 6.4].
+    """Return the channel scales k for which k I is nearest to the direction of M [Mitsunaga99 sec. 6.4].
 
     Parameters
     ----------
     I : (..., 3) float
         Radiance as recovered, positive.
     M : (..., 3) float
-        What a photograph shows of it, any unit, positive; leave out pixels that are black or
-        clipped.
+        Brightness of the same pixels in a photograph, any unit, positive; leave out pixels that are
+        black or clipped.
 
     Returns
     -------
@@ -64,26 +64,27 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     target = chromaticity(M.reshape(-1, 3))
     first = np.median(np.log(target / I), axis=0)
 
-    def misses(ln_k: F64) -> F64:
+    def residuals(ln_k: F64) -> F64:
         return (chromaticity(I * np.exp([ln_k[0], 0, ln_k[1]])) - target).ravel()
 
-    ln_k = scipy.optimize.least_squares(misses, (first - first[1])[[0, 2]]).x
+    start = (first - first[1])[[0, 2]]
+    ln_k = scipy.optimize.least_squares(residuals, start).x
     return np.exp([ln_k[0], 0.0, ln_k[1]])
 
 
 def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
-    """Return k that makes k E cd/m^2, from what a meter read at one place.
+    """Return k for which k E is in cd/m^2, from the reading of a light meter at one place.
 
     Parameters
     ----------
-    E : (H, W) or (H, W, 3), radiance in a unit of its own
-    x, y : the place, in pixels from the left and from the top; a hundredth of the width around it
-        counts
-    reading : its luminance, cd/m^2
+    E : (H, W) or (H, W, 3), radiance in any unit
+    x, y : the place, in pixels from the left and from the top; the map is averaged over a square
+        around it, a hundredth of the map's width wide
+    reading : luminance of the place, cd/m^2
 
     Returns
     -------
-    k : the reading over the mean luminance of that place
+    k : the reading over the mean luminance of that square
 
     Raises
     ------
@@ -96,14 +97,14 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     240.0
     """
     L = luminance(as_radiance(E))
-    reach = max(1, L.shape[1] // 200)
-    inside = 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
-    seen = (
-        L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
-    )
-    if not (seen.any() and 0 < reading < np.inf):
-        size = f"{L.shape[1]} x {L.shape[0]}"
+    height, width = L.shape
+    radius = max(1, width // 200)
+    is_inside = 0 <= y < height and 0 <= x < width
+    rows = slice(max(y - radius, 0), y + radius + 1)
+    columns = slice(max(x - radius, 0), x + radius + 1)
+    if not (is_inside and L[rows, columns].any() and 0 < reading < np.inf):
         raise InputError(
-            f"expected cd/m^2 of a lit place in {size} pixels, got {reading:g} at {x},{y}"
+            f"expected cd/m^2 of a lit place in {width} x {height} pixels, "
+            f"got {reading:g} at {x},{y}"
         )
-    return float(reading / seen.mean())
+    return float(reading / L[rows, columns].mean())

@@ -1,7 +1,7 @@
-"""Stuck pixels: light that does not grow with the exposure time is no light.
+"""Stuck pixels: their level does not follow the exposure time.
 
-A single pixel whose level hardly differs between the shortest and the longest frame, and that
-stands out from all its eight neighbours, takes their median.
+A single pixel is stuck if its level hardly differs between the shortest and the longest frame, and
+differs much from all its eight neighbours. It is replaced by their median.
 """
 
 from itertools import product
@@ -11,17 +11,18 @@ import numpy as np
 from hdrlab.core.arrays import F32, F64, Array, Mask
 from hdrlab.core.bracket import short_to_long
 
-# rows of a band, which stays in the processor's cache
-ROWS = 128
+# as many rows as stay in the processor's cache
+BAND_ROWS = 128
+# (dy, dx) of the eight neighbours
 NEIGHBOURS = [(dy, dx) for dy, dx in product((-1, 0, 1), repeat=2) if (dy, dx) != (0, 0)]
 
 
 def find_stuck(shortest: Array, longest: Array) -> Mask:
-    """Return where a single pixel does not follow the exposure: (H, W) bool from two frames (H, W, C).
+    """Return the single pixels that do not follow the exposure, (H, W) bool, from two frames (H, W, C).
 
-    Its level differs by less than 1/32 of the range, and it stands out from all its eight
-    neighbours by a quarter of the range: above them in the shortest frame (hot), or below them in
-    the longest (dead).
+    The level of such a pixel differs by less than 1/32 of the range between the frames. And it is
+    above all its eight neighbours in the shortest frame by a quarter of the range (hot), or below
+    them in the longest frame (dead).
 
     Examples
     --------
@@ -31,26 +32,34 @@ def find_stuck(shortest: Array, longest: Array) -> Mask:
     1
     """
     quarter = (np.iinfo(shortest.dtype).max + 1) // 4
-    found = np.zeros(shortest.shape[:2], bool)
-    for top in range(0, len(found), ROWS):
-        a = shortest[top : top + ROWS]
-        b = longest[top : top + ROWS]
+    stuck = np.zeros(shortest.shape[:2], bool)
+    for top in range(0, len(stuck), BAND_ROWS):
+        a = shortest[top : top + BAND_ROWS]
+        b = longest[top : top + BAND_ROWS]
         still = np.maximum(a, b) - np.minimum(a, b) < quarter // 8
         y, x, c = np.unravel_index(np.flatnonzero(still), still.shape)
-        for frame, sign in (
-            (shortest, 1),
-            (longest, -1),
-        ):  # dead pixels are hot ones of the negative
-            found[_exceeding(frame, (y + top, x, c), sign, quarter)] = True
-    return found
+        hot = _exceeding(shortest, (y + top, x, c), sign=1, threshold=quarter)
+        dead = _exceeding(longest, (y + top, x, c), sign=-1, threshold=quarter)
+        stuck[hot] = True
+        stuck[dead] = True
+    return stuck
 
 
-def _exceeding(frame: Array, at: tuple[Array, ...], sign: int, by: int) -> tuple[Array, ...]:
-    """Return where (y, x) those of the places (y, x, c) are that exceed all eight neighbours by `by`."""
-    y, x, c = at
+def _exceeding(
+    frame: Array, places: tuple[Array, ...], *, sign: int, threshold: int
+) -> tuple[Array, Array]:
+    """Return those of the places (y, x, c), as (y, x), that differ from all eight neighbours.
+
+    They are above them by the threshold if the sign is 1, and below them if it is -1.
+    """
+    y, x, c = places
     for step in NEIGHBOURS:
-        difference = frame[y, x, c].astype(int) - frame[(*_neighbour(y, x, step, frame.shape), c)]
-        y, x, c = (axis[sign * difference >= by] for axis in (y, x, c))
+        ny, nx = _neighbour(y, x, step, frame.shape)
+        difference = frame[y, x, c].astype(int) - frame[ny, nx, c]
+        kept = sign * difference >= threshold
+        y = y[kept]
+        x = x[kept]
+        c = c[kept]
     return y, x
 
 
@@ -58,7 +67,8 @@ def _neighbour(
     y: Array, x: Array, step: tuple[int, int], shape: tuple[int, ...]
 ) -> tuple[Array, Array]:
     """Return the neighbours' coordinates in one direction, reflected at the border."""
-    bottom, right = (shape[0] - 1, shape[1] - 1)
+    bottom = shape[0] - 1
+    right = shape[1] - 1
     dy, dx = step
     return bottom - abs(bottom - abs(y + dy)), right - abs(right - abs(x + dx))
 
@@ -70,11 +80,13 @@ def neighbours_median(E: Array, mask: Mask) -> Array:
 
 
 def repair_stuck(E: F32, frames: Array, times: F64, valid: Mask | None) -> Mask:
-    """Replace the stuck pixels of a map E (H, W, C) in place by their neighbours' median; return where.
+    """Replace stuck pixels of a map E (H, W, C) in place by their neighbours' median; return their mask.
 
-    Within a stop of exposure a pixel may seem stuck, so then none is.
+    If the exposures span less than a stop, stuck pixels cannot be told from others, and none is
+    replaced.
     """
-    shortest, longest = ends = short_to_long(frames, times)[[0, -1]]
+    ends = short_to_long(frames, times)[[0, -1]]
+    shortest, longest = ends
     if times[longest] < 2 * times[shortest]:
         return np.zeros(E.shape[:2], bool)
     planes = frames.reshape(*frames.shape[:3], -1)

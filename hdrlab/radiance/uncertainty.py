@@ -1,20 +1,20 @@
-"""How sure is each pixel: the mean by inverse variance, and what chance leaves of doubt in it.
+"""Uncertainty of each pixel: the inverse-variance weighted mean, and its standard deviation.
 
 Z      pixel levels       (P, H, W, C)
 X      exposure           exp(g(Z)): 1 is that of level n / 2
 D      step               dX / dZ, the exposures that are rounded to one level
 N, R   electrons at X = 1, and read noise in electrons: `capture.photon_transfer` finds both
-rho    what errs with the light itself, as a share of it: pixels that are unlike, a response that is not right
+rho    relative error that is proportional to the light: unequal pixels, a wrong response
 t      exposure times     (P,) seconds
 E, s   radiance, and its standard deviation, (H, W[, C]) float32
 
-Photons come by chance: of X N electrons the variance is X N. The amplifier adds R^2, and rounding
-spreads evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean
-in which each counts by the inverse of its variance has the least variance of all (Granados et al.,
-CVPR 2010). The variance is that of the light which is there and not of the light which was counted:
-a frame with too few photons, by chance, would count too much. So it begins with X, and then is
-taken from E itself, in two rounds. What errs with the light does so in all frames alike, and no
-mean takes it away: it is added in the end.
+Photons arrive at random: X N electrons have the variance X N. The amplifier adds R^2, and rounding
+errors are uniform over a step. The mean of the frames' X / t, weighted by the inverse of their
+variances, has the smallest variance of all means (Granados et al., CVPR 2010). The variance must be
+that of the true light, not that of the counted photons: otherwise a frame that happened to count
+too few would weigh too much. So it is first computed from X, and then from E, in two iterations. An
+error that is proportional to the light is the same in all frames, and no mean removes it: it is
+added at the end.
 """
 
 from typing import NamedTuple
@@ -23,22 +23,23 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, Mask
 from hdrlab.errors import InputError
-from hdrlab.radiance.merge import TOP, as_tables, bound
+from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables, bound
 
-ROUNDS = 2
-# a full well with this many deviations of read noise too few still measures nothing
-FULL = 5
+# after the first mean, in which the variances come from X
+REWEIGHTING_ROUNDS = 2
+# standard deviations of read noise below a full well from which a pixel may have been full
+FULL_WELL_MARGIN = 5
 
 
 class Sure(NamedTuple):
-    """The radiance map (H, W[, 3]) float32, and its standard deviation; infinite where no frame measures."""
+    """The radiance map (H, W[, 3]) float32, and its standard deviation, infinite where no frame measures."""
 
     E: F32
     s: F32
 
 
 def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike) -> F64:
-    """Return V = X / N + (R / N)^2 + D^2 / 12: of photons, of the amplifier, of rounding.
+    """Return the variance V = X / N + (R / N)^2 + D^2 / 12 from photons, the amplifier and rounding.
 
     Examples
     --------
@@ -93,7 +94,7 @@ def inverse_variance_merge(
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
@@ -107,7 +108,7 @@ def merge_with_deviation(
     R: ArrayLike = 0.0,
     rho: ArrayLike = 0.0,
 ) -> Sure:
-    """Return the radiance map by inverse variance, and its standard deviation.
+    """Return the radiance map by inverse-variance weighting, and its standard deviation.
 
     Parameters
     ----------
@@ -123,13 +124,13 @@ def merge_with_deviation(
     R : float or (3,)
         Read noise in electrons, standard deviation.
     rho : float or (3,)
-        Of what errs with the light, the standard deviation as a share of it.
+        Relative standard deviation of errors that are proportional to the light.
 
     Returns
     -------
     Sure
-        E and s (H, W) or (H, W, 3) float32. Where no frame measures, E is what the bounds allow and
-        s is infinite.
+        E and s (H, W) or (H, W, 3) float32. Where no frame measures, E comes from the bounds and s
+        is infinite.
 
     Raises
     ------
@@ -148,26 +149,37 @@ def merge_with_deviation(
     >>> found.E[0].round(2), found.s[0].round(4)
     (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
     """
-    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
+    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", CLIPPING_LEVEL)
     Z = stack.reshape(*stack.shape[:3], -1)
     c = np.arange(stack[0, 0, 0].size)
-    for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
-        one = np.asarray(value, np.float64)
-        if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
-            raise InputError(
-                f"expected {name} of at least {floor:g}, one or one a channel, got {value}"
-            )
+    _check_noise("N", N, c.size, minimum=1e-12)
+    _check_noise("R", R, c.size, minimum=0)
+    _check_noise("rho", rho, c.size, minimum=0)
     table = np.exp(curves)
     steps = np.gradient(np.exp(curves), axis=0)
     R = np.asarray(R, np.float64)
-    E, s = np.empty((2, *Z.shape[1:]))
-    for y, row in enumerate(Z.swapaxes(0, 1)):  # the processor's cache holds one
+    full = np.minimum(table[top], table[-1] - FULL_WELL_MARGIN * R / N)
+    E = np.empty(Z.shape[1:])
+    s = np.empty(Z.shape[1:])
+    # one row at a time, which stays in the processor's cache
+    for y, row in enumerate(Z.swapaxes(0, 1)):
         X = table[row, c]
         D = steps[row, c]
-        measured = (X < np.minimum(table[top], table[-1] - FULL * R / N)) & (
-            (row > 0) | (D < R / N)
-        )
-        E[y], s[y] = inverse_variance_merge(X, D, measured, t, N, R)
-        E[y] = np.where(measured.any(axis=0), E[y], bound(row, np.log(t), curves, top, row >= 0)[0])
+        measured = (X < full) & ((row > 0) | (D < R / N))
+        mean, s[y] = inverse_variance_merge(X, D, measured, t, N, R)
+        bounds, _ = bound(row, np.log(t), curves, top, row >= 0)
+        E[y] = np.where(measured.any(axis=0), mean, bounds)
     s = np.hypot(s, np.asarray(rho) * E)
-    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, s)))
+    shape = stack.shape[1:]
+    return Sure(E.reshape(shape).astype(np.float32), s.reshape(shape).astype(np.float32))
+
+
+def _check_noise(name: str, value: ArrayLike, channels: int, *, minimum: float) -> None:
+    """Raise a ValueError unless a parameter of the noise is finite and at least `minimum`."""
+    numbers = np.asarray(value, np.float64)
+    if numbers.shape not in ((), (channels,)) or not np.all(
+        (numbers >= minimum) & (numbers < np.inf)
+    ):
+        raise InputError(
+            f"expected {name} of at least {minimum:g}, one number or one a channel, got {value}"
+        )

@@ -20,7 +20,7 @@ from scipy.ndimage import maximum_filter
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, as_table
 from hdrlab.errors import InputError
 from hdrlab.radiance.deghosting.frames import Calibrated
-from hdrlab.radiance.stuck import ROWS
+from hdrlab.radiance.stuck import BAND_ROWS
 
 # ln E that a measurement may lie below the bound of a clipped frame
 FAR = 0.7
@@ -76,8 +76,8 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
     tables = moment_tables(taken, w)
     x = taken.x.astype(np.float32)
     out = np.empty((3, *pixels.shape[1:3]), np.float32)
-    for start in range(0, out.shape[1], ROWS):
-        rows = slice(start, start + ROWS)
+    for start in range(0, out.shape[1], BAND_ROWS):
+        rows = slice(start, start + BAND_ROWS)
         sums = np.zeros((2, *pixels[0, rows].shape), np.complex64)
         spans = np.zeros(sums.shape[1:], np.float32)
         for j, frame in enumerate(pixels[:, rows]):

@@ -20,7 +20,7 @@ from scipy import ndimage
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Labels, Mask, as_mask, as_radiance
 from hdrlab.errors import InputError
-from hdrlab.radiance.merge import TOP, as_tables
+from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
 # of the levels; each has a bias and a spread
 BINS = 32
@@ -86,7 +86,9 @@ def calibrate_frames(
     >>> float((128 * np.exp(found.x[1, 0, 40])).round(6))  # as the pixels say, and not 40 / 2.2
     20.0
     """
-    stack, seconds, _, curves, first_clipped = as_tables(images, times, g, None, "log", TOP)
+    stack, seconds, _, curves, first_clipped = as_tables(
+        images, times, g, None, "log", CLIPPING_LEVEL
+    )
     mask = as_mask(valid, stack)
     Z = stack.reshape(*stack.shape[:3], -1)
     E = as_radiance(E)

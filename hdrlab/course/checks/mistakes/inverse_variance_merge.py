@@ -3,7 +3,7 @@
 import numpy as np
 
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.radiance.uncertainty import ROUNDS, variance
+from hdrlab.radiance.uncertainty import REWEIGHTING_ROUNDS, variance
 
 
 @mistake(
@@ -30,7 +30,7 @@ def times_forgotten(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R), np.inf)
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
@@ -44,7 +44,7 @@ def time_once(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t, np.inf)
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
@@ -59,7 +59,7 @@ def inverse_deviation(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
             E = np.sum(X / t / np.sqrt(V), axis=0) / np.sum(1 / np.sqrt(V), axis=0)
         return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
@@ -73,7 +73,7 @@ def root_forgotten(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, 1 / np.sum(1 / V, axis=0)
@@ -88,7 +88,7 @@ def clipped_count(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = variance(E * t, D, N, R) / t**2
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
@@ -103,7 +103,7 @@ def best_alone(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
             E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
         return E, np.sqrt(np.min(V, axis=0))
@@ -119,7 +119,7 @@ def plain_mean(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
     E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
+        for _ in range(1 + REWEIGHTING_ROUNDS):
             V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
             E = np.sum(np.where(measured, X / t, 0), axis=0) / measured.sum(axis=0)
         return E, np.sqrt(np.sum(np.where(measured, V, 0), axis=0)) / measured.sum(axis=0)

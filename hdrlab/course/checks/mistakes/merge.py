@@ -4,7 +4,7 @@ import numpy as np
 
 from hdrlab.core.weights import hat
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.radiance.merge import TOP, bound, weigh
+from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
 
 
 @mistake(
@@ -16,7 +16,7 @@ from hdrlab.radiance.merge import TOP, bound, weigh
 def mean_of_radiance(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -35,7 +35,7 @@ def mean_of_radiance(images, times, g, w=None):
 def by_the_number_of_frames(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -52,7 +52,7 @@ def by_the_number_of_frames(images, times, g, w=None):
 def always_the_hat(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n), top)
     total = W.sum(axis=0)
@@ -68,7 +68,7 @@ def always_the_hat(images, times, g, w=None):
 def green_curve_for_all(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1))[:, g.ndim - 1, None], (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -85,7 +85,7 @@ def green_curve_for_all(images, times, g, w=None):
 def log2_of_the_times(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log2(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -101,7 +101,7 @@ def log2_of_the_times(images, times, g, w=None):
 def power_of_two(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -118,7 +118,7 @@ def power_of_two(images, times, g, w=None):
 def times_forgotten(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), 0 * t
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -136,7 +136,7 @@ def times_forgotten(images, times, g, w=None):
 def not_weighted(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, np.ones(n), top)
     total = W.sum(axis=0)
