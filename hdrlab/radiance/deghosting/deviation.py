@@ -1,4 +1,4 @@
-"""How far the frames contradict each other at a pixel, and how much of that a still scene explains.
+"""Contradiction between the frames at each pixel, and the part that noise and edges explain.
 
 Z   pixel levels         (P, H, W, C)
 x   ln E                 (P, H, W, C), of each frame alone: see `frames`
@@ -7,9 +7,9 @@ v   weighted variance    (H, W), sum w (x - mean x)^2 / sum w; of logarithms, so
 s2  noise                (H, W), sum w s2(Z) / sum w
 r   range                (H, W), of x over 3 x 3 pixels of a frame, sum w r / sum w
 
-Where an edge lies a little elsewhere in each frame, v is large too: under a shift of up to a pixel
-a frame's ln E changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left:
-sqrt(v) over what is tolerated, tau + 2 s + edge r.
+At an edge that is displaced a little in each frame, v is large too. But a shift of up to a pixel
+changes ln E of a frame by at most r, so that sqrt(v) is less than r / 2. The score is sqrt(v) over
+the tolerance tau + 2 s + edge r.
 """
 
 from typing import NamedTuple
@@ -22,8 +22,8 @@ from hdrlab.errors import InputError
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import BAND_ROWS
 
-# ln E that a measurement may lie below the bound of a clipped frame
-FAR = 0.7
+# in ln E; a measurement may be this far below the lower bound of a clipped frame
+BOUND_TOLERANCE = 0.7
 
 
 class Deviation(NamedTuple):
@@ -48,20 +48,20 @@ def weighted_variance(x: Array, w: Array) -> F64:
 
 
 def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
-    """Return the weighted variance, and what noise and edges have to do with it.
+    """Return the weighted variance of each pixel, and the noise and the range that explain a part of it.
 
-    A frame that clips one channel of a pixel is left out, as in the merge; where one frame alone
+    A frame that clips one channel of a pixel is left out, as in the merge. Where a single frame
     measures a pixel, v is 0.
 
     Parameters
     ----------
-    taken : Calibrated, of `frames.calibrate_frames`
+    taken : Calibrated, from `frames.calibrate_frames`
     w : (n,), weights of the levels
 
     Raises
     ------
     ValueError
-        For weights that mean nothing.
+        For weights that are not (n,), negative, or all 0.
 
     Examples
     --------
@@ -81,45 +81,48 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
         sums = np.zeros((2, *pixels[0, rows].shape), np.complex64)
         spans = np.zeros(sums.shape[1:], np.float32)
         for j, frame in enumerate(pixels[:, rows]):
-            counts = np.all([Z < taken.top for Z in np.moveaxis(frame, -1, 0)], axis=0)
+            channels = np.moveaxis(frame, -1, 0)
+            in_use = np.all([Z < taken.top for Z in channels], axis=0)
             if taken.valid is not None:
-                counts &= taken.valid[j, rows]
+                in_use &= taken.valid[j, rows]
             low, high = local_extremes(pixels[j], rows)
-            for c, Z in enumerate(np.moveaxis(frame, -1, 0)):
-                first = tables[0, j, c].take(Z) * counts
+            for c, Z in enumerate(channels):
+                first = tables[0, j, c].take(Z) * in_use
                 sums[0, ..., c] += first
-                sums[1, ..., c] += tables[1, j, c].take(Z) * counts
-                spans[..., c] += first.real * (
-                    x[j, c].take(high[..., c]) - x[j, c].take(low[..., c])
-                )
+                sums[1, ..., c] += tables[1, j, c].take(Z) * in_use
+                span = x[j, c].take(high[..., c]) - x[j, c].take(low[..., c])
+                spans[..., c] += first.real * span
         total = np.maximum(sums[0].real, 1e-9)
         mean = sums[0].imag / total
         square = sums[1].real / total
         s2 = sums[1].imag / total
-        out[:, rows] = [
-            one.mean(axis=-1) for one in (np.maximum(square - mean**2, 0), s2, spans / total)
-        ]
-    return Deviation(*out)
+        v = np.maximum(square - mean**2, 0)
+        out[0, rows] = v.mean(axis=-1)
+        out[1, rows] = s2.mean(axis=-1)
+        out[2, rows] = (spans / total).mean(axis=-1)
+    return Deviation(v=out[0], s2=out[1], r=out[2])
 
 
 def find_clipped_elsewhere(taken: Calibrated, E: F32) -> Mask:
-    """Return where the plain map E (H, W, C) is far darker than a frame that clips shows it to be, (H, W).
+    """Return where the plain map E (H, W, C) is far below the lower bound of a clipped frame, (H, W).
 
-    So it is where somebody dark stood before a bright place in the only frame that measures it, and
-    v is 0. An edge that is off by a pixel does not count, and neither does the light around a lamp:
-    see FAR.
+    This happens where something dark stood in front of a bright place in the only frame that
+    measures it; v is 0 there. The tolerance excludes edges that are displaced by a pixel, and the
+    light around a lamp.
     """
     brightest = maximum_filter(E, (3, 3, 1))
-    out = np.zeros(E.shape[:2], bool)
+    is_darker = np.zeros(E.shape[:2], bool)
     for j, Z in enumerate(taken.images):
-        bound = np.exp(taken.x[j, :, taken.top] - FAR).astype(np.float32)
-        darker = ((Z >= taken.top) & (brightest < bound)).all(axis=-1)
-        out |= darker if taken.valid is None else darker & taken.valid[j]
-    return out
+        bound = np.exp(taken.x[j, :, taken.top] - BOUND_TOLERANCE).astype(np.float32)
+        below_bound = ((Z >= taken.top) & (brightest < bound)).all(axis=-1)
+        if taken.valid is not None:
+            below_bound &= taken.valid[j]
+        is_darker |= below_bound
+    return is_darker
 
 
 def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:
-    """Return the tables of w + i w x and of w x^2 + i w s2, (2, P, C, n): each costs a look-up a pixel."""
+    """Return the tables of w + i w x and of w x^2 + i w s2, (2, P, C, n), to look up by level."""
     n = taken.x.shape[-1]
     trust = as_table(w, n)
     if trust.ndim != 1 or not np.all(trust >= 0) or not trust.any():
@@ -143,20 +146,19 @@ def local_extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
     low = slab
     high = slab
     for axis in (0, 1):
-        low, high = (
-            _three(one, axis, best) for one, best in ((low, np.minimum), (high, np.maximum))
-        )
+        low = _reduce_triples(np.minimum, low, axis)
+        high = _reduce_triples(np.maximum, high, axis)
     return low, high
 
 
-def _three(values: Array, axis: int, best: np.ufunc) -> Array:
-    """Return the best of each three neighbours along an axis."""
+def _reduce_triples(ufunc: np.ufunc, values: Array, axis: int) -> Array:
+    """Return the minimum or maximum of each three neighbours along an axis."""
     v = np.moveaxis(values, axis, 0)
-    return np.moveaxis(best(best(v[:-2], v[1:-1]), v[2:]), 0, axis)
+    return np.moveaxis(ufunc(ufunc(v[:-2], v[1:-1]), v[2:]), 0, axis)
 
 
 def score_contradiction(found: Deviation, *, tau: float, edge: float) -> F32:
-    """Return sqrt(v) / (tau + 2 s + edge r): above 1, neither noise nor an edge explains it all."""
+    """Return sqrt(v) / (tau + 2 s + edge r): above 1, noise and edges do not explain the contradiction."""
     v, s2, r = found
     tolerated = np.float32(tau) + 2 * np.sqrt(s2) + np.float32(edge) * r
     return (np.sqrt(v) / tolerated).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Bias and noise of each frame of a bracket, level by level, from the pixels that stand still.
+"""Bias and noise of each frame of a bracket at every level, estimated from static pixels.
 
 Z      pixel levels      (P, H, W, C), frames from short to long, n = 256 or 65536 levels
 g      response          (C, n), ln exposure of each level
@@ -7,13 +7,13 @@ delta  bias              (P, C, n), median of rho over pixels of like levels: a 
 kappa  spread            (P, C, n), 1.48 times the median deviation of rho, in units of s
 s      noise             (C, n), what an error of one level of 256 makes of ln E
 
-Real brackets contradict themselves everywhere: times are rounded, phones tone-map, glare grows with
-light. The bias of most pixels of a level is no motion, so it is taken off before motion is looked
-for, as far as LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to stand
-still.
+The frames of real brackets contradict each other everywhere: times are rounded, phones tone-map,
+and glare grows with the light. A bias that most pixels of a level share is not motion. So it is
+subtracted before motion is detected, up to a limit, and the spread of the residuals says how far a
+frame can be trusted. Most pixels of the scene must be static.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
@@ -22,23 +22,30 @@ from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Labels, Mask, as_
 from hdrlab.errors import InputError
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
-# of the levels; each has a bias and a spread
-BINS = 32
-# pixels that make the median of a bin
-FEWEST = 100
-# an even choice of about so many represents a frame
-PIXELS = 300_000
-# ln E: a larger bias is that of a figure that fills its bin, and stays
-LARGEST = 0.25
-# of kappa: no level is surer than its rounding, and none is worth nothing
-LEAST = 1.0
-MOST = 8.0
+# bins of the levels; each has a bias and a spread
+BIN_COUNT = 32
+MIN_PIXELS_PER_BIN = 100
+# a regular grid of about this many pixels represents a frame
+SAMPLED_PIXELS = 300_000
+# in ln E; a larger bias comes from something that moved and fills its bin, and is not subtracted
+MAX_BIAS = 0.25
+# no level is more certain than its rounding
+MIN_KAPPA = 1.0
+MAX_KAPPA = 8.0
 
 
-class Calibrated(NamedTuple):
-    """A checked bracket: images (P, H, W, C), times (P,), top, valid (P, H, W) or None, and its tables.
+@dataclass(frozen=True)
+class Calibrated:
+    """A checked bracket with its calibration tables.
 
-    x (P, C, n) is ln E of each level in each frame, s2 (P, C, n) the variance of that.
+    Attributes
+    ----------
+    images : (P, H, W, C)
+    times : (P,), seconds
+    top : first clipped level
+    valid : (P, H, W) bool, or None
+    x : (P, C, n), ln E of each level in each frame
+    s2 : (P, C, n), variance of x
     """
 
     images: Array
@@ -50,7 +57,7 @@ class Calibrated(NamedTuple):
 
 
 def level_noise(curve: F64) -> F64:
-    """Return s (C, n) = g'(z) n / 256, how much ln E changes where Z has an error of one level of 256."""
+    """Return s (C, n) = g'(z) n / 256, the change of ln E for an error of one level of 256."""
     n = curve.shape[1]
     return np.maximum(n // 256 * np.gradient(curve, axis=1), 1e-4)
 
@@ -63,7 +70,7 @@ def calibrate_frames(
     *,
     valid: ArrayLike | None = None,
 ) -> Calibrated:
-    """Return the bracket with each frame's bias and noise, from its still pixels.
+    """Return the bracket with bias and noise of each frame, estimated from static pixels.
 
     Parameters
     ----------
@@ -71,7 +78,7 @@ def calibrate_frames(
     times : (P,) seconds
     g : (n,) or (n, 3), ln exposure of each level
     E : (H, W) or (H, W, 3), the plain map of them
-    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+    valid : (P, H, W) bool, optional, False where a photograph shows nothing of the scene
 
     Raises
     ------
@@ -96,62 +103,69 @@ def calibrate_frames(
         raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     s = level_noise(curves.T)
     x = curves.T - np.log(seconds)[:, None, None]
-    step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
+    step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / SAMPLED_PIXELS)))
     with np.errstate(divide="ignore"):
         lE = np.log(E[::step, ::step]).reshape(-1, Z.shape[-1])
     s2 = np.empty_like(x)
     for j, frame in enumerate(Z):
-        levels_of = frame[::step, ::step].reshape(-1, Z.shape[-1])
-        counts = np.all(levels_of < first_clipped, axis=1) & np.isfinite(lE).all(axis=1)
+        sampled = frame[::step, ::step].reshape(-1, Z.shape[-1])
+        in_use = np.all(sampled < first_clipped, axis=1) & np.isfinite(lE).all(axis=1)
         if mask is not None:
-            counts &= mask[j, ::step, ::step].ravel()
-        for c, z in enumerate(levels_of[counts].T):
-            delta, kappa = fit_bias(z, x[j, c, z] - lE[counts, c], s[c])
+            in_use &= mask[j, ::step, ::step].ravel()
+        for c, z in enumerate(sampled[in_use].T):
+            rho = x[j, c, z] - lE[in_use, c]
+            delta, kappa = fit_bias(z, rho, s[c])
             x[j, c] -= delta
             s2[j, c] = (kappa * s[c]) ** 2
-    return Calibrated(Z, seconds, first_clipped, mask, x, s2)
+    return Calibrated(images=Z, times=seconds, top=first_clipped, valid=mask, x=x, s2=s2)
 
 
 def fit_bias(Z: Array, rho: F64, s: F64) -> tuple[F64, F64]:
-    """Return delta (n,) and kappa (n,) of a frame's channel from the residuals (N,) of levels Z (N,)."""
+    """Return delta (n,) and kappa (n,) of a frame's channel from the residuals rho (N,) of levels Z (N,)."""
     n = len(s)
-    at = (np.arange(BINS) + 0.5) * n / BINS
-    inside = Z > 0  # level 0 is a bound, and no measurement
-    Z = Z[inside]
-    rho = rho[inside]
-    order = np.argsort(Z.astype(np.intp) * BINS // n, kind="stable")
-    counts = np.bincount(Z.astype(np.intp) * BINS // n, minlength=BINS)
+    bin_centres = (np.arange(BIN_COUNT) + 0.5) * n / BIN_COUNT
+    measured = Z > 0  # level 0 is only an upper bound
+    Z = Z[measured]
+    rho = rho[measured]
+    bins = Z.astype(np.intp) * BIN_COUNT // n
+    order = np.argsort(bins, kind="stable")
+    counts = np.bincount(bins, minlength=BIN_COUNT)
     groups = np.split(order, np.cumsum(counts)[:-1])
-    deltas, kappas = np.full((2, BINS), np.nan)
+    deltas = np.full(BIN_COUNT, np.nan)
+    kappas = np.full(BIN_COUNT, np.nan)
     for k, group in enumerate(groups):
-        if len(group) >= FEWEST:
+        if len(group) >= MIN_PIXELS_PER_BIN:
             deltas[k] = np.median(rho[group])
             kappas[k] = 1.48 * np.median(np.abs(rho[group] - deltas[k]) / s[Z[group]])
-    known = np.abs(deltas) < LARGEST
+    known = np.abs(deltas) < MAX_BIAS
     if not known.any():
         return np.zeros(n), np.ones(n)
-    delta, kappa = (np.interp(np.arange(n), at[known], one[known]) for one in (deltas, kappas))
-    return delta, np.clip(kappa, LEAST, MOST)
+    levels = np.arange(n)
+    delta = np.interp(levels, bin_centres[known], deltas[known])
+    kappa = np.interp(levels, bin_centres[known], kappas[known])
+    return delta, np.clip(kappa, MIN_KAPPA, MAX_KAPPA)
 
 
 def mean_losses(taken: Calibrated, labels: Labels) -> F64:
     """Return the mean loss of each frame in each region, (P, R).
 
-    A level costs the variance of its ln E, and 1, the most, where it measures nothing.
+    The loss of a level is the variance of its ln E, at most 1, and 1 where it measures nothing.
     """
     cost = np.minimum(taken.s2, 1.0).astype(np.float32)
+    cost[..., 0] = 1
+    cost[..., taken.top :] = 1
     boxes = ndimage.find_objects(labels)
-    cost[..., 0] = cost[..., taken.top :] = 1
-    out = np.ones((len(taken.images), len(boxes)))
-    for j, r in np.ndindex(*out.shape):
-        inside = labels[boxes[r]] == r + 1
-        Z = taken.images[j][boxes[r]][inside]
+    losses = np.ones((len(taken.images), len(boxes)))
+    for j, r in np.ndindex(*losses.shape):
+        box = boxes[r]
+        inside = labels[box] == r + 1
+        Z = taken.images[j][box][inside]
         loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
-        shown = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
-        out[j, r] = np.where(shown, loss, 1).mean()
-    return out
+        shown = True if taken.valid is None else taken.valid[j][box][inside]
+        losses[j, r] = np.where(shown, loss, 1).mean()
+    return losses
 
 
 def best_exposures(taken: Calibrated, labels: Labels) -> Indices:
-    """Return the best exposure of each region (R,): the frame of least loss."""
+    """Return the best exposure of each region (R,): the frame with the smallest loss."""
     return mean_losses(taken, labels).argmin(axis=0)

@@ -1,4 +1,4 @@
-"""Ghosts: what moved between the photographs stands in the map several times, half transparent.
+"""Ghosts: something that moved between the photographs appears several times, half transparent.
 
 Z           pixel levels      (P, H, W[, 3])
 score       contradiction     (H, W), 1 is what noise and edges explain: see `deviation`
@@ -6,17 +6,18 @@ labels      regions           (H, W) int32, 1 ... R, 0 elsewhere
 references  best exposures    (R,), the reference frame of each region
 used        (P, H, W) bool    which frames make a pixel's radiance
 
-The plain way: weighted variance, threshold, dilation, regions, and in each region the best
-exposure. Two things are added. Edges of high contrast have variance as well; what they explain does
-not count. And in a region the best exposure is the reference, but other frames join it where they
-are consistent with it: see `reference`. So its clipped and its dark pixels are not lost, nor is its
-noise all there is.
+The plain method is weighted variance, threshold, dilation, regions, and the best exposure in each
+region. This one differs in two points. Edges of high contrast have a variance as well, and the part
+that they explain is subtracted. And in a region, the best exposure is the reference, but other
+frames join it where they are consistent with it (see `reference`). They fill its clipped and its
+dark pixels, and reduce its noise.
 
-One frame per region means one moment per region: who walks through the picture in great steps may
-appear twice, or never. With one reference for all regions, the map shows its moment.
+One frame per region means one moment per region: a person who walks through the picture may appear
+twice, or not at all. With one reference for all regions, the map shows one moment.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -39,16 +40,16 @@ from hdrlab.radiance.deghosting import deviation, reference, regions
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
 
-# margins that a region grows at once
-REACH = 4
-# per cent of the pixels: where more than these contradict each other, it is hardly motion
+# a region grows by up to this many margins at once
+GROWTH_MARGINS = 4
+# per cent of the pixels; if more of them contradict each other, motion is hardly the reason
 WIDESPREAD = 50
-# of growing: the figure in a reference frame is found in one or two
-ROUNDS = 4
-# contradiction, in ln E, that is tolerated everywhere, noise and edges aside
+# growing finds the whole figure of a reference frame after one or two iterations
+MAX_GROWTH_ITERATIONS = 4
+# in ln E: contradiction that is tolerated everywhere, in addition to noise and edges
 TAU = 0.1
-# share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides: at 0.5 no edge
-# counts that is shifted by up to a pixel
+# fraction of a frame's range of ln E over 3 x 3 pixels that is tolerated in addition; with 0.5, no
+# edge counts that is displaced by up to a pixel
 EDGE = 0.35
 
 
@@ -59,17 +60,18 @@ class Regions(NamedTuple):
     references: Indices
 
 
-class Ghosts(NamedTuple):
-    """A map without ghosts, and how it was made.
+@dataclass(frozen=True)
+class Ghosts:
+    """A radiance map without ghosts, the regions that moved, and the frames that were used.
 
     Attributes
     ----------
-    E : (H, W) or (H, W, 3) float32, the map; outside the regions it is the plain one
+    E : (H, W) or (H, W, 3) float32, the map; outside the regions it is the plain map
     quality : (H, W) uint8, pixel quality flags of `merge.Quality`
     labels : (H, W) int32, the regions 1 ... R; 0 where nothing moved
     references : (R,) int, the reference frame of each region
-    used : (P, H, W) bool, the frames that make each pixel, in the order of the images given
-    score : (H, W) float32, contradiction over what noise and edges explain
+    used : (P, H, W) bool, the frames that contribute to each pixel, in the order of the images
+    score : (H, W) float32, contradiction over the part that noise and edges explain
     """
 
     E: F32
@@ -83,53 +85,59 @@ class Ghosts(NamedTuple):
 def detect_motion(
     found: deviation.Deviation, *, tau: float, edge: float, margin: int
 ) -> tuple[F32, Mask]:
-    """Return the score (H, W) and the mask (H, W) of what moved: see TAU and EDGE.
+    """Return the score (H, W) and the mask (H, W) of moving pixels: see TAU and EDGE.
 
-    Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges
-    counted for little, and then by the margin.
+    Seeds have a score above 1. The mask grows from them over weaker contradictions, with half of
+    tau and a fifth of `edge`, and then by the margin.
     """
     score = deviation.score_contradiction(found, tau=tau, edge=edge)
     seed = regions.find_seeds(score)
     if not seed.any():
         return score, seed
     weak = deviation.score_contradiction(found, tau=tau / 2, edge=edge / 5) > 1
-    return score, regions.dilate(regions.grow(seed, weak, REACH * margin), margin)
+    grown = regions.grow(seed, weak, GROWTH_MARGINS * margin)
+    return score, regions.dilate(grown, margin)
 
 
 def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> Mask:
-    """Return where a photograph is not consistent with the map E (h, w, C) of a box."""
-    nothing = np.zeros_like(E)
-    plain = reference.Estimate(E, nothing, np.ones(E.shape, bool), nothing, np.full_like(E, np.inf))
-    return ~reference.find_consistent(
-        reference.read_frame(taken, j, box), plain, tau=2 * reference.TAU
+    """Return where photograph j is not consistent with the map E (h, w, C) of a box."""
+    plain = reference.Estimate(
+        E=E,
+        V=np.zeros_like(E),
+        measured=np.ones(E.shape, bool),
+        low=np.zeros_like(E),
+        high=np.full_like(E, np.inf),
     )
+    frame = reference.read_frame(taken, j, box)
+    return ~reference.find_consistent(frame, plain, tau=2 * reference.TAU)
 
 
 def region_steps(
     taken: Calibrated, E: F32, moved: Mask, margin: int, *, choose: Callable[[Labels], Indices]
 ) -> Iterator[Regions]:
-    """Yield the regions and their reference frames, until no region cuts off a figure of its reference.
+    """Yield the regions and their reference frames, until no region cuts through a figure.
 
-    A region must hold the whole figure as it stands in its reference frame, which `choose` gives.
-    Where that photograph contradicts the plain map E (H, W, C) beside the region, that grows, and
-    may meet another.
+    A region must contain the whole figure as it appears in its reference frame, which `choose`
+    returns. So a region grows where that photograph contradicts the plain map E (H, W, C) next to
+    it, and may merge with another region.
     """
-    for _ in range(ROUNDS):
+    reach = GROWTH_MARGINS * margin
+    for _ in range(MAX_GROWTH_ITERATIONS):
         labels = regions.label(moved)
-        chosen = choose(labels)
-        yield Regions(labels, chosen)
+        references = choose(labels)
+        yield Regions(labels, references)
         wider = moved.copy()
         for r, box in enumerate(ndimage.find_objects(labels)):
-            wide = regions.pad_box(box, REACH * margin, labels.shape)
-            beside = find_contradictions(taken, wide, int(chosen[r]), E[wide])
-            wider[wide] |= regions.grow(labels[wide] == r + 1, beside, REACH * margin)
+            wide = regions.pad_box(box, reach, labels.shape)
+            contradictions = find_contradictions(taken, wide, int(references[r]), E[wide])
+            wider[wide] |= regions.grow(labels[wide] == r + 1, contradictions, reach)
         if np.array_equal(wider, moved):
             return
         moved = regions.dilate(wider, margin // 2)
 
 
 def select_frames(taken: Calibrated, box: regions.Box, j: int, *, alone: bool) -> Mask:
-    """Return which frames make a box, (P, h, w): those consistent with the reference, or it alone."""
+    """Return the frames to use in a box, (P, h, w): those consistent with reference j, or only j."""
     if not alone:
         return reference.find_consistent_frames(taken, j, box)
     used = np.zeros((len(taken.images), *taken.images[0][box].shape[:2]), bool)
@@ -159,21 +167,21 @@ def remove_ghosts(
     g : (n,) or (n, 3), response, ln exposure of each level
     w : (n,), weights; the hat by default
     fixed : number of the reference frame of every region; by default each has its own best exposure
-    alone : nothing but the reference frame counts in a region, the plain way
-    most : per cent of the pixels; where regions hold so many, the map stays the plain one
-    merged : the plain map of `merge`, where it is known; else it is made here
-    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+    alone : use only the reference frame in a region, as in the plain method
+    most : per cent of the pixels; if the regions contain this many, the plain map is returned
+    merged : the plain map of `merge`, if it is known; by default it is computed
+    valid : (P, H, W) bool, optional, False where a photograph shows nothing of the scene
     merge : `merge_with_quality`, of `radiance.merge` or of `fast.merge`
 
     Returns
     -------
     Ghosts
-        Where nothing moved there is no region, and E is the plain map, bit for bit.
+        If nothing moved, there is no region, and E is the plain map, bit for bit.
 
     Raises
     ------
     ValueError
-        For arrays that do not fit together, and a reference that is no frame.
+        For arrays that do not fit together, and a number `fixed` that is not that of a frame.
 
     References
     ----------
@@ -203,45 +211,44 @@ def remove_ghosts(
     quality = merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
     plain = merged.E.reshape(taken.images.shape[1:])
-    found = deviation.measure_deviation(taken, w)
-    found.v[deviation.find_clipped_elsewhere(taken, plain)] = (
-        np.inf
-    )  # no edge and no noise explains that
-    score, moved = detect_motion(found, tau=TAU, edge=EDGE, margin=margin)
+    contradiction = deviation.measure_deviation(taken, w)
+    # neither noise nor edges explain these
+    contradiction.v[deviation.find_clipped_elsewhere(taken, plain)] = np.inf
+    score, moved = detect_motion(contradiction, tau=TAU, edge=EDGE, margin=margin)
 
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
 
     used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
-    for labels, chosen in region_steps(taken, plain, moved, margin, choose=choose):
-        if 100 * np.mean(labels > 0) >= most:  # and it would grow
-            return Ghosts(E, quality, labels, chosen, used, score)
+    for labels, references in region_steps(taken, plain, moved, margin, choose=choose):
+        # growing would only make the regions larger
+        if 100 * np.mean(labels > 0) >= most:
+            return Ghosts(E, quality, labels, references, used, score)
     alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
-        y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
-        here = labels[wide] == r + 1
-        frames = select_frames(taken, wide, int(chosen[r]), alone=alone)
+        wide = regions.pad_box(box, 2 * reference.BOX_SIDE, labels.shape)
+        y, x = wide
+        inside = labels[wide] == r + 1
+        frames = select_frames(taken, wide, int(references[r]), alone=alone)
         still = merge(stack[:, y, x], times, g, w, valid=frames)
-        E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
-        quality[wide][here] = still.quality[here]
-        used[:, y, x][:, here] = frames[:, here]
-    return Ghosts(E, quality, labels, chosen, used, score)
+        E[wide][inside] = regions.blend(E[wide], still.E, alpha[wide])[inside]
+        quality[wide][inside] = still.quality[inside]
+        used[:, y, x][:, inside] = frames[:, inside]
+    return Ghosts(E, quality, labels, references, used, score)
 
 
-def note(found: Ghosts, names: Sequence[str]) -> str:
-    """Return the sentence on what moved, and which photographs are the references there."""
-    if not len(found.references):
+def note(result: Ghosts, names: Sequence[str]) -> str:
+    """Return a sentence that says how much moved, and which photographs are the references there."""
+    if not len(result.references):
         return "nothing moved: no region contradicts itself by more than noise and edges explain"
-    numbers, counts = np.unique(found.references, return_counts=True)
+    numbers, counts = np.unique(result.references, return_counts=True)
     per_frame = ", ".join(
         f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True)
     )
-    count = len(found.references)
-    share = 100 * np.mean(found.labels > 0)
+    count = len(result.references)
+    percent = 100 * np.mean(result.labels > 0)
     number = "one region" if count == 1 else f"{count} regions"
-    text = f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
-    return (
-        text
-        if share < WIDESPREAD
-        else f"{text}; so much is rather a matter of times or of alignment"
-    )
+    text = f"something moved in {number}, {percent:.1f} % of the pixels; reference photographs: {per_frame}"
+    if percent < WIDESPREAD:
+        return text
+    return f"{text}; with so many pixels, wrong times or a wrong alignment are more likely"

@@ -1,4 +1,4 @@
-"""Regions of a map: threshold, dilation, connected parts; and seams between two maps.
+"""Regions of a map: threshold, dilation, connected components; and seams between two maps.
 
 mask    (H, W) bool; labels  (H, W) int32, 1 ... R, 0 elsewhere
 alpha   (H, W) float32, 0 outside the regions, 1 inside, a ramp of a few pixels between them
@@ -10,30 +10,30 @@ from scipy import ndimage
 from hdrlab.core.arrays import F32, Labels, Mask
 
 Box = tuple[slice, slice]
-# pixels: a contradiction that is thinner is an edge's, or noise
-SEED = 3
+# pixels; a thinner contradiction is an edge or noise
+SEED_SIDE = 3
 CONNECTED = np.ones((3, 3), bool)
 
 
 def find_seeds(score: F32) -> Mask:
     """Return where the score exceeds 1 over at least 3 x 3 pixels."""
-    return ndimage.binary_opening(score > 1, np.ones((SEED, SEED), bool))
+    return ndimage.binary_opening(score > 1, np.ones((SEED_SIDE, SEED_SIDE), bool))
 
 
 def grow(seed: Mask, weak: Mask, reach: int) -> Mask:
-    """Return the seeds and what weaker contradictions connect with them, at most `reach` pixels far."""
+    """Return the seeds and the weak pixels that connect with them, at most `reach` pixels away."""
     return ndimage.binary_dilation(seed, CONNECTED, iterations=max(reach, 1), mask=weak | seed)
 
 
 def dilate(mask: Mask, margin: int) -> Mask:
-    """Return the mask, all within `margin` pixels of it, and what it encloses: a figure's inside."""
+    """Return the mask, all pixels within `margin` of it, and the holes that these enclose."""
     if not mask.any():
         return mask
     return ndimage.binary_fill_holes(ndimage.distance_transform_edt(~mask) <= margin)
 
 
 def label(mask: Mask) -> Labels:
-    """Return the connected parts of a mask, labelled 1 ... R; corners connect."""
+    """Return the connected components of a mask, labelled 1 ... R; corners connect."""
     return ndimage.label(mask, CONNECTED)[0].astype(np.int32)
 
 
@@ -51,7 +51,7 @@ def feather(labels: Labels, width: int) -> F32:
 
 
 def blend(E: F32, other: F32, alpha: F32) -> F32:
-    """Return E^(1 - alpha) other^alpha: the seam is even in stops, as the eye sees it."""
+    """Return E^(1 - alpha) other^alpha: the seam is uniform in stops, as the eye perceives it."""
     a = alpha if E.ndim == 2 else alpha[..., None]
     both = (E > 0) & (other > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -60,7 +60,9 @@ def blend(E: F32, other: F32, alpha: F32) -> F32:
 
 
 def pad_box(box: Box, by: int, shape: tuple[int, ...]) -> Box:
-    """Return a box with so many pixels more all round, as far as the picture reaches."""
-    ends = zip(box, shape, strict=False)
-    y, x = (slice(max(side.start - by, 0), min(side.stop + by, n)) for side, n in ends)
+    """Return a box enlarged by some pixels on each side, within the picture."""
+    rows, columns = box
+    height, width = shape[:2]
+    y = slice(max(rows.start - by, 0), min(rows.stop + by, height))
+    x = slice(max(columns.start - by, 0), min(columns.stop + by, width))
     return y, x

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import ndimage
 
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.radiance.deghosting.regions import SEED
+from hdrlab.radiance.deghosting.regions import SEED_SIDE
 
 
 @mistake(
@@ -23,7 +23,7 @@ def threshold_alone(score):
     "pixels of it.",
 )
 def middles_alone(score):
-    return ndimage.binary_erosion(score > 1, np.ones((SEED, SEED), bool))
+    return ndimage.binary_erosion(score > 1, np.ones((SEED_SIDE, SEED_SIDE), bool))
 
 
 @mistake(
