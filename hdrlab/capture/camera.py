@@ -132,29 +132,28 @@ class Camera:
     white: ArrayLike = (1.0, 1.0, 1.0)
 
     def __post_init__(self) -> None:
-        electrons = self.read_noise
-        levels = self.gray_noise
-        for valid, expected in (
-            (self.bits in (8, 16), "8 or 16 bits"),
-            (0 < self.sensitivity < np.inf, "a positive sensitivity"),
-            (self.full_well > 0, "a positive full well"),
-            (
-                0 <= electrons < np.inf and 0 <= levels < np.inf,
-                "read_noise and gray_noise of at least 0",
-            ),
-            (0 <= self.hot <= 1 and 0 <= self.vignetting <= 1, "hot and vignetting from 0 to 1"),
-            (
-                not electrons or self.full_well < np.inf,
-                "a finite full_well for read_noise, in electrons",
-            ),
-            (
-                self.sensor is not None or not self.coloured,
-                "a sensor for a mosaic and white balance",
-            ),
-            (self.sensor is None or self.full_well == np.inf, "one full well, not both"),
-        ):
-            if not valid:
-                raise InputError(f"expected {expected}, got {self}")
+        self._require(self.bits in (8, 16), "8 or 16 bits")
+        self._require(0 < self.sensitivity < np.inf, "a positive sensitivity")
+        self._require(self.full_well > 0, "a positive full well")
+        self._require(
+            0 <= self.read_noise < np.inf and 0 <= self.gray_noise < np.inf,
+            "read_noise and gray_noise of at least 0",
+        )
+        self._require(
+            0 <= self.hot <= 1 and 0 <= self.vignetting <= 1, "hot and vignetting from 0 to 1"
+        )
+        self._require(
+            not self.read_noise or self.full_well < np.inf,
+            "a finite full_well for read_noise, in electrons",
+        )
+        self._require(
+            self.sensor is not None or not self.coloured, "a sensor for a mosaic and white balance"
+        )
+        self._require(self.sensor is None or self.full_well == np.inf, "one full well, not both")
+
+    def _require(self, is_valid: bool, expected: str) -> None:
+        if not is_valid:
+            raise InputError(f"expected {expected}, got {self}")
 
     @property
     def coloured(self) -> bool:
@@ -216,8 +215,9 @@ def shoot(
     order = np.argsort(times, kind="stable")
     light = views(E, moves[order])
     stuck = rng.random(light[0].shape) < camera.hot
-    pairs = zip(light, times[order], strict=True)
-    images = [photograph(view, time, camera, stuck, rng) for view, time in pairs]
+    images = []
+    for view, time in zip(light, times[order], strict=True):
+        images.append(photograph(view, time, camera, stuck, rng))
     linear = responses.as_response(camera.response) is responses.as_response("linear")
     return bracket(np.stack(images), times[order], linear=linear)
 
@@ -234,8 +234,8 @@ def photograph(E: F32, time: float, camera: Camera, stuck: Mask, rng: np.random.
         N = stages.photons(X, full_well=camera.full_well, rng=rng)
         X = stages.readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
     X = np.clip(X, 0, 1)
-    M = responses.as_response(camera.response).f(
-        X if camera.sensor is not None else np.where(stuck, 1, X)
-    )
+    if camera.sensor is None:
+        X = np.where(stuck, 1, X)
+    M = responses.as_response(camera.response).f(X)
     M = stages.grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng)
     return stages.quantise(M, bits=camera.bits)

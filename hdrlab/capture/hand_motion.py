@@ -29,22 +29,22 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     largest rectangle within which every one finds content. `frame_homographies` gives these in
     pixels of the frames.
     """
-    given = np.asarray(offsets)
-    pairs = given.ndim == 2 and given.shape[1] == 2 and len(given) > 0
-    if given.ndim == 3 or (pairs and given.dtype.kind == "f"):
-        rows, columns = _shown(given, E.shape)
+    moves = np.asarray(offsets)
+    is_pairs = moves.ndim == 2 and moves.shape[1] == 2 and len(moves) > 0
+    if moves.ndim == 3 or (is_pairs and moves.dtype.kind == "f"):
+        rows, columns = _shown(moves, E.shape)
         size = (rows.stop - rows.start, columns.stop - columns.start)
         first = _from((rows, columns))
-        return [warp.sample(E, H @ first, size) for H in warp.as_homographies(given)]
-    if not pairs or given.dtype.kind not in "iu":
+        return [warp.sample(E, H @ first, size) for H in warp.as_homographies(moves)]
+    if not is_pairs or moves.dtype.kind not in "iu":
         raise InputError(
-            f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(given)}"
+            f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(moves)}"
         )
-    corners = given - given.min(axis=0)
+    corners = moves - moves.min(axis=0)
     h, w = E.shape[:2] - corners.max(axis=0)
     if h < 1 or w < 1:
         raise InputError(
-            f"expected offsets that span less than {E.shape[:2]}, got {given.tolist()}"
+            f"expected offsets that span less than {E.shape[:2]}, got {moves.tolist()}"
         )
     return [E[y : y + h, x : x + w] for y, x in corners]
 

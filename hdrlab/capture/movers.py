@@ -120,9 +120,9 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
 
 
 def shift_layer(layer: Array, at: ArrayLike) -> Array:
-    """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
-    (h, w) = layer.shape[:2]
-    (dy, dx) = np.asarray(at).tolist()
+    """Return a layer moved by (dy, dx) whole pixels: cut off at the frame, and 0 where it left."""
+    h, w = layer.shape[:2]
+    dy, dx = np.asarray(at).tolist()
     out = np.zeros_like(layer)
     there = layer[max(-dy, 0) : max(h - dy, 0), max(-dx, 0) : max(w - dx, 0)]
     out[max(dy, 0) : max(h + dy, 0), max(dx, 0) : max(w + dx, 0)] = there
@@ -180,14 +180,13 @@ def shoot(
     >>> taken.bracket.images.shape, int(taken.hidden.any(axis=(1, 2)).sum())
     ((3, 40, 60), 3)
     """
-    E, places, figure = as_radiance(E), np.asarray(at), as_figure(figure, E)
+    E = as_radiance(E)
+    figure = as_figure(figure, E)
+    places = np.asarray(at)
     seconds = as_times(np.atleast_1d(times), max(np.size(times), 1))
     moves = np.zeros((len(seconds), 2), int) if offsets is None else np.asarray(offsets)
-    for what, one in (("places", places), ("offsets", moves)):
-        if one.shape != (len(seconds), 2) or one.dtype.kind not in "iu":
-            raise InputError(
-                f"expected {what} ({len(seconds)}, 2) of whole pixels, got {describe(one)}"
-            )
+    _require_whole_pixels("places", places, len(seconds))
+    _require_whole_pixels("offsets", moves, len(seconds))
     if not np.any(np.all(moves == 0, axis=1)):
         raise InputError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
     if model.hot:
@@ -198,21 +197,32 @@ def shoot(
     masks = []
     shots = []
     for j in np.argsort(seconds, kind="stable"):
-        E_j, mask = (views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
+        E_all, mask_all = compose_moment(E, figure, places[j])
+        E_j = views(E_all, moves)[j]
+        mask = views(mask_all, moves)[j]
         shots.append(camera.shoot(E_j, seconds[j], model, rng=rng))
         moments.append(E_j)
         masks.append(mask)
-    images, taken = (
-        np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times")
+    images = np.concatenate([shot.images for shot in shots])
+    shot_times = np.concatenate([shot.times for shot in shots])
+    order = short_to_long(images, shot_times)
+    return Moving(
+        bracket=bracket(images, shot_times, linear=shots[0].linear),
+        still=still,
+        moments=np.stack(moments)[order],
+        hidden=np.stack(masks)[order] > 0,
     )
-    order = short_to_long(images, taken)
-    taken_in_order = bracket(images, taken, linear=shots[0].linear)
-    return Moving(taken_in_order, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
+
+
+def _require_whole_pixels(name: str, pairs: Array, count: int) -> None:
+    if pairs.shape != (count, 2) or pairs.dtype.kind not in "iu":
+        raise InputError(f"expected {name} ({count}, 2) of whole pixels, got {describe(pairs)}")
 
 
 def as_figure(figure: Figure, E: F32) -> Figure:
     """Return the layers of a figure as float32, or raise a ValueError where they do not fit the scene."""
-    light, mask = (np.asarray(layer) for layer in figure)
+    light = np.asarray(figure.light)
+    mask = np.asarray(figure.mask)
     if light.shape != E.shape or mask.shape != E.shape[:2]:
         raise InputError(
             f"expected light {E.shape} and a mask of it, got {light.shape} and {mask.shape}"

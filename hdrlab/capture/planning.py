@@ -9,15 +9,14 @@ The first photograph clips above L_high, each next one lies R - O stops below, t
 
     n = 1 + ceil((log2(L_high / L_low) - R) / (R - O)),  at least 1
 
-Which photographs take the least time, if all of the scene shall come out at some signal over noise?
-In the mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j
-solve an integer
-program (Hasinoff, Durand and Freeman, CVPR 2010):
+Which photographs take the least time, if all of the scene must reach some signal-to-noise ratio? In
+the mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j solve an
+integer program (Hasinoff, Durand and Freeman, CVPR 2010):
 
     least sum_j n_j (t_j + pause)   with   sum_j n_j SNR_j(L)^2 >= SNR^2   for all L from L_low to L_high
 
-Each SNR_j rises with L until its photograph is full. So it is enough to ask at L_low and just above
-each luminance where one is.
+Each SNR_j rises with L until its photograph is full. So it is enough to check at L_low, and just above
+each luminance that fills a photograph.
 """
 
 import math
@@ -31,10 +30,14 @@ from hdrlab.core.arrays import F64, ArrayLike, NDArray
 from hdrlab.core.silence import silence
 from hdrlab.errors import InputError
 
-# photographs of one setting
-MOST = 1000
-# of the time, by which a plan may be longer than the shortest, and how far that is looked for
-SEARCH = {"mip_rel_gap": 0.01, "node_limit": 1000}
+# A plan has at most this many photographs of one setting.
+MAX_PHOTOGRAPHS_PER_SETTING = 1000
+# A plan may take this fraction longer than the shortest one, which saves much of the search.
+_MAX_EXCESS_TIME_FRACTION = 0.01
+# The search gives up after this many nodes, and returns the best plan so far.
+_MAX_SEARCH_NODES = 1000
+# Two times are one setting of the dial if they differ by less than this.
+_SAME_TIME_STOPS = 0.01
 
 
 class Plan(NamedTuple):
@@ -164,7 +167,8 @@ def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:
     share = np.asarray(L)[:, None] / exposure.saturating_luminance(
         times, F=camera.aperture, S=speeds
     )
-    N, K = (one * min(camera.speeds) / speeds for one in (share * camera.full_well, camera.gain))
+    N = share * camera.full_well * min(camera.speeds) / speeds
+    K = camera.gain * min(camera.speeds) / speeds
     noise = N + camera.read_noise**2 + K**2 * (camera.converter_noise**2 + 1 / 12)
     return np.where(share <= 1, N**2 / noise, 0.0)
 
@@ -172,7 +176,7 @@ def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:
 def settings(L_low: float, L_high: float, snr: float, camera: Model) -> tuple[F64, F64]:
     """Return times and speeds (n,) to choose from: no shorter than photons allow, none full everywhere."""
     fills = np.array(
-        [exposure.saturating_luminance(1, F=camera.aperture, S=one) for one in camera.speeds]
+        [exposure.saturating_luminance(1, F=camera.aperture, S=speed) for speed in camera.speeds]
     )
     first = fills.min() / L_high * min(snr**2 / camera.full_well, 1)
     last = fills.max() / L_low
@@ -194,14 +198,14 @@ def worst_snr(L_low: float, L_high: float, times: F64, speeds: F64, camera: Mode
 
 
 def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model()) -> Shots:  # noqa: B008
-    """Plan the photographs that take the least time and show all of a scene at some signal over noise.
+    """Plan the photographs that show all of a scene at some signal-to-noise ratio in the least time.
 
     Parameters
     ----------
     L_low, L_high : cd/m^2, the darkest and brightest luminance
-    snr : signal over noise that each luminance between shall have at least, in the mean by inverse
+    snr : signal-to-noise ratio that each luminance between them must reach in the mean by inverse
         variance
-    camera : Model, its noise; of its speeds each photograph has the best one
+    camera : Model of the camera's noise; each photograph takes the best of its speeds
 
     Returns
     -------
@@ -212,8 +216,8 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     Raises
     ------
     ValueError
-        For luminances, a ratio or a camera that mean nothing, or where MOST photographs are not
-        enough.
+        For luminances, a ratio or a camera that mean nothing, and for a ratio that
+        `MAX_PHOTOGRAPHS_PER_SETTING` photographs of each setting do not reach.
 
     References
     ----------
@@ -233,26 +237,31 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
             f"expected 0 < low <= high, a ratio, a camera, got {L_low, L_high, snr, camera}"
         )
     t, S = settings(L_low, L_high, snr, camera)
-    A = np.minimum(squared_snr(hardest(L_low, L_high, t, S, camera), t, S, camera) / snr**2, 1)
-    enough = LinearConstraint(A, 1)
-    whole = np.ones(t.size)
-    some = Bounds(0, MOST)
-    with silence(1):  # HiGHS speaks of its own rounding
-        found = milp(
-            t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH}
+    L = hardest(L_low, L_high, t, S, camera)
+    A = np.minimum(squared_snr(L, t, S, camera) / snr**2, 1)
+    with silence(1):  # the solver HiGHS prints notes on its rounding
+        result = milp(
+            t + camera.pause,
+            constraints=LinearConstraint(A, 1),
+            integrality=np.ones(t.size),
+            bounds=Bounds(0, MAX_PHOTOGRAPHS_PER_SETTING),
+            options={"mip_rel_gap": _MAX_EXCESS_TIME_FRACTION, "node_limit": _MAX_SEARCH_NODES},
         )
-    if found.x is None:
+    if result.x is None:
+        most = MAX_PHOTOGRAPHS_PER_SETTING
         raise InputError(
-            f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}"
+            f"expected a ratio that {most} photographs of each setting reach, got {snr:g}"
         )
-    t, S, dial = (
-        *(one.repeat(np.rint(found.x).astype(int)) for one in (t, S)),
-        exposure.shutter_series(),
-    )
-    return Shots(tuple(_name(one, dial) for one in t), t, S)
+    counts = np.rint(result.x).astype(int)
+    times = t.repeat(counts)
+    speeds = S.repeat(counts)
+    dial = exposure.shutter_series()
+    return Shots(tuple(_name(time, dial) for time in times), times, speeds)
 
 
 def _name(time: float, dial: exposure.Dial) -> str:
-    """Return what the dial says for a true time, or the seconds themselves beyond its ends."""
-    found = np.flatnonzero(np.abs(np.log2(dial.values / time)) < 0.01)
-    return dial.names[found[0]] if len(found) else f"{time:g}" if time >= 1 else f"1/{1 / time:g}"
+    """Return the dial's name of a true time, or the seconds themselves beyond its ends."""
+    same = np.abs(np.log2(dial.values / time)) < _SAME_TIME_STOPS
+    if same.any():
+        return dial.names[int(np.argmax(same))]
+    return f"{time:g}" if time >= 1 else f"1/{1 / time:g}"

@@ -25,6 +25,8 @@ from hdrlab.core.filters import mosaic
 from hdrlab.errors import InputError
 
 Seed = int | np.random.Generator
+# An exposure of four full wells fills the well whatever the photons' chance.
+_CERTAINLY_FULL = 4.0
 
 
 class Sensor(NamedTuple):
@@ -39,7 +41,7 @@ class Sensor(NamedTuple):
 
 def falloff(shape: tuple[int, ...], loss: float) -> F32:
     """Return 1 - loss r^2 (H, W), r the distance from the middle, 1 in the corners: vignetting."""
-    y, x = (np.linspace(-1, 1, n) if n > 1 else np.zeros(1) for n in shape[:2])
+    y, x = [np.linspace(-1, 1, n) if n > 1 else np.zeros(1) for n in shape[:2]]
     return (1 - loss * (y[:, None] ** 2 + x**2) / 2).astype(np.float32)
 
 
@@ -56,15 +58,13 @@ def filter_bayer(X: F32) -> F32:
 
 def exposure(E: F32, time: float, *, sensitivity: float = 1.0) -> F32:
     """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
-    with np.errstate(
-        over="ignore"
-    ):  # an infinite exposure fills the well like any other too long one
+    with np.errstate(over="ignore"):  # an infinite exposure fills the well as any long one does
         return np.float32(sensitivity) * (E * np.float32(time))
 
 
 def photons(X: F32, *, full_well: float, rng: np.random.Generator) -> F32:
     """Return N ~ Poisson(full_well X), at most full_well: light comes in photons, and a full well spills."""
-    arriving = full_well * np.minimum(X, 4.0)  # what would fill it four times over fills it surely
+    arriving = full_well * np.minimum(X, _CERTAINLY_FULL)
     return np.minimum(rng.poisson(arriving), full_well).astype(np.float32)
 
 

@@ -4,19 +4,23 @@ L    luminance            (H, W) float32, >= 0
 cut  fraction left out    of the positive pixels, and at least one pixel
 """
 
+import math
+
 import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike
 from hdrlab.core.colour import luminance
 from hdrlab.errors import InputError
 
-# pixels: a larger picture is ranked by every second, third, ... of its pixels
-ENOUGH = 1 << 18
+# A picture with more pixels is ranked by every second, third, ... of them.
+_MAX_RANKED_PIXELS = 1 << 18
 
 
 def positive(L: F32) -> F32:
     """Return the luminances above 0, as a list: log L exists there."""
-    return L.ravel() if L.min() > 0 else L[L > 0]
+    if L.min() > 0:
+        return L.ravel()
+    return L[L > 0]
 
 
 def robust_minimum(L: F32, *, cut: float = 1e-4) -> float:
@@ -44,10 +48,9 @@ def positive_median(L: F32) -> float:
 def _ranked(values: F32, cut: float, *, from_top: bool) -> float:
     if not values.size:
         return 0.0
-    values = values[:: -(-values.size // ENOUGH)]
-    left_out = min(
-        max(1, int(cut * values.size)), (values.size - 1) // 2
-    )  # of a tiny picture, some stay
+    values = values[:: math.ceil(values.size / _MAX_RANKED_PIXELS)]
+    most = (values.size - 1) // 2  # even of a tiny picture, a pixel must be left
+    left_out = min(max(1, int(cut * values.size)), most)
     rank = values.size - 1 - left_out if from_top else left_out
     return float(np.partition(values, rank)[rank])
 

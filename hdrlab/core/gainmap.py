@@ -21,7 +21,10 @@ from hdrlab.core.arrays import F32, Array, ArrayLike
 from hdrlab.core.colour import luminance
 
 OFFSETS = (1 / 1024, 1 / 1024)
-SPARE = 0.001  # share of the pixels, at either end, whose gain may lie outside low to high
+# At either end this fraction of the pixels may have a gain outside low to high.
+_CLIPPED_FRACTION = 0.001
+# high exceeds low by at least this many stops
+_MIN_GAIN_RANGE_STOPS = 1 / 256
 
 
 def log_gain(sdr: Array, hdr: Array, *, k: ArrayLike = OFFSETS) -> Array:
@@ -37,9 +40,9 @@ def log_gain(sdr: Array, hdr: Array, *, k: ArrayLike = OFFSETS) -> Array:
 
 
 def find_range(G: Array) -> tuple[Array, Array]:
-    """Return low and high, of each channel: all gains but a thousandth at either end lie between them."""
-    low, high = np.quantile(G, [SPARE, 1 - SPARE], axis=(0, 1))
-    return low, np.maximum(high, low + 1 / 256)
+    """Return low and high of each channel; a thousandth of the gains lies below and above them."""
+    low, high = np.quantile(G, [_CLIPPED_FRACTION, 1 - _CLIPPED_FRACTION], axis=(0, 1))
+    return low, np.maximum(high, low + _MIN_GAIN_RANGE_STOPS)
 
 
 def gain_map(

@@ -100,8 +100,13 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
     below = planes.min(axis=-1) < 0
     dark = below & (planes.max(axis=-1) <= 0)
     E = desaturate(values, power=2, weights=weights) if below.any() else values
-    counts = (int(np.count_nonzero(one)) for one in (~known, infinite, below & ~dark, dark))
-    return Sanitized(E, *counts)
+    return Sanitized(
+        E=E,
+        unknown=int(np.count_nonzero(~known)),
+        infinite=int(np.count_nonzero(infinite)),
+        negative=int(np.count_nonzero(below & ~dark)),
+        black=int(np.count_nonzero(dark)),
+    )
 
 
 def mean_known(planes: F32, known: Mask) -> F32:

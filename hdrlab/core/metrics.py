@@ -67,9 +67,10 @@ def response_rmse(g: ArrayLike, truth: ArrayLike) -> F64:
     >>> response_rmse(g + 3, g).round(6) + 0.0  # another unit of exposure is no error
     array([0.])
     """
-    found = arrays.as_table(g, 256).reshape(256, -1)
-    true = arrays.as_response(truth, 256, found.shape[1])
-    X, X_true = (np.exp(one - one[HIGH_LEVEL])[RELIABLE_LEVELS] for one in (found, true))
+    g = arrays.as_table(g, 256).reshape(256, -1)
+    g_true = arrays.as_response(truth, 256, g.shape[1])
+    X = np.exp(g - g[HIGH_LEVEL])[RELIABLE_LEVELS]
+    X_true = np.exp(g_true - g_true[HIGH_LEVEL])[RELIABLE_LEVELS]
     s = (X * X_true).sum(axis=0) / (X * X).sum(axis=0)
     return 100 * np.sqrt(((s * X - X_true) ** 2).mean(axis=0))
 
@@ -106,9 +107,9 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
             f"expected maps of one shape, got {E.shape}, {truth.shape}, {arrays.describe(well)}"
         )
     ratio = E / np.where(truth > 0, truth, np.nan)
-    median = (
-        np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
-    )
+    compared = ratio[well]
+    compared = compared[np.isfinite(compared)]
+    median = np.median(compared) if compared.size else 0.0
     if not median > 0:
         raise InputError("expected a well exposed pixel with light, got none")
     return ratio / median - 1

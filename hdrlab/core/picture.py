@@ -53,4 +53,10 @@ def statistics(picture: ArrayLike) -> Statistics:
     bits = -np.sum(p[p > 0] * np.log2(p[p > 0])) + 0.0  # of a constant 0, and not -0
     black = np.all(channels == 0, axis=-1)
     white = np.any(channels == 255, axis=-1)
-    return Statistics(*map(float, (black.mean(), white.mean(), y.mean(), y.std(), bits)))
+    return Statistics(
+        black=float(black.mean()),
+        white=float(white.mean()),
+        mean=float(y.mean()),
+        contrast=float(y.std()),
+        entropy=float(bits),
+    )

@@ -44,8 +44,9 @@ def cumulate(h: ArrayLike, n: int) -> F64:
 def brightness_transfer(h_A: ArrayLike, h_B: ArrayLike) -> F64:
     """Return T = H_B^-1(H_A) (n,), where the middle of A's step m lies between the edges of B's steps.
 
-    NaN on B's lowest and highest level, which have no outer edge, as they hold all that is darker
-    or brighter. NaN, too, for levels below or above all of A's pixels, which have no rank.
+    T is NaN where it would be B's lowest or highest level: these have no outer edge, because they
+    hold everything darker or brighter. It is NaN, too, for levels below or above all pixels of A,
+    which have no rank.
 
     Examples
     --------

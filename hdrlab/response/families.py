@@ -22,6 +22,9 @@ import numpy as np
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.errors import InputError
 
+# Exposures of measured curves are at least this, because ln 0 is infinite.
+_MIN_EXPOSURE = 1e-6
+
 
 def power(M: F64, gamma: float) -> F64:
     """Return X = M^gamma.
@@ -85,9 +88,10 @@ def level_brightness(n: int) -> F64:
 def tabulate(n: int = 256) -> F64:
     """Return X (C, n) of all curves."""
     M = level_brightness(n)
-    return np.stack(
-        [X for strength in (-0.4, 0.0, 0.4) for X in generate_curves(shoulder(M, strength))]
-    )
+    curves: list[F64] = []
+    for strength in (-0.4, 0.0, 0.4):
+        curves += generate_curves(shoulder(M, strength))
+    return np.stack(curves)
 
 
 def to_log(X: ArrayLike) -> F64:
@@ -115,7 +119,8 @@ def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -
     if np.any(np.diff([X, M]) < 0) or not np.all(M[:, 0] < M[:, -1]):
         raise InputError("expected curves that rise, got one that falls or is flat")
     levels = level_brightness(n)
-    return to_log(np.maximum([_invert(levels, x, m) for x, m in zip(X, M, strict=True)], 1e-6))
+    inverse = [_invert(levels, x, m) for x, m in zip(X, M, strict=True)]
+    return to_log(np.maximum(inverse, _MIN_EXPOSURE))
 
 
 def _invert(levels: F64, X: F64, M: F64) -> F64:

@@ -27,8 +27,8 @@ from hdrlab.response import mitsunaga, polynomial
 EDGES = np.concatenate(
     [[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]]
 )  # of the levels' cells, in M
-# probability of a level that the noise does not explain: a pixel that moved pulls at nothing
-STRAY = 1e-12
+# probability of a level that the noise does not explain, so that a pixel that moved has no influence
+OUTLIER_PROBABILITY = 1e-12
 
 
 class Nodes(NamedTuple):
@@ -39,10 +39,10 @@ class Nodes(NamedTuple):
 
 
 class Support(NamedTuple):
-    """The nodes worth a thought. Pixel i has k[start[i] : start[i + 1]].
+    """The nodes that matter for each pixel: those of pixel i are k[start[i] : start[i + 1]].
 
-    What has to be known of them is P(z | m_qk) at `cells`, each (q, k, z) once; pair j of a pixel
-    and a node has at[q, j] of these in frame q.
+    P(z | m_qk) is needed at `cells`, each (q, k, z) once. Pair j of a pixel and a node uses cell
+    at[q, j] in frame q.
     """
 
     start: Indices
@@ -61,8 +61,9 @@ def nodes(c: F64, tau: F64, count: int) -> Nodes:
     clipped_next = np.append(
         np.exp(tau[:-1] - tau[1:]), 0
     )  # exposure from which only this frame is left
-    own = [x[mitsunaga.value(x, c) > least] for least in clipped_next]
-    return Nodes(np.concatenate(own), np.repeat(np.arange(len(own)), [len(one) for one in own]))
+    frames = [x[mitsunaga.value(x, c) > exposure] for exposure in clipped_next]
+    counts = [len(frame) for frame in frames]
+    return Nodes(np.concatenate(frames), np.repeat(np.arange(len(frames)), counts))
 
 
 def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
@@ -90,8 +91,9 @@ def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[F64, F64, F64]:
     m = np.asarray(m)
     low = (EDGES[z] - m) / sigma
     high = (EDGES[z + 1] - m) / sigma
-    bell_low, bell_high = (np.exp(-(u**2) / 2) / np.sqrt(2 * np.pi) for u in (low, high))
-    P = ndtr(high) - ndtr(low) + STRAY
+    bell_low = np.exp(-(low**2) / 2) / np.sqrt(2 * np.pi)
+    bell_high = np.exp(-(high**2) / 2) / np.sqrt(2 * np.pi)
+    P = ndtr(high) - ndtr(low) + OUTLIER_PROBABILITY
     tilt = bell_high * np.where(high < np.inf, high, 0) - bell_low * np.where(low > -np.inf, low, 0)
     return P, (bell_low - bell_high) / (sigma * P), -tilt / P
 
@@ -104,7 +106,7 @@ def table(m: F64, sigma: float) -> F64:
     >>> int(table(np.array([[100 / 255]]), 0.01).argmax())
     100
     """
-    return np.diff(ndtr((EDGES - m[..., None]) / sigma)) + STRAY
+    return np.diff(ndtr((EDGES - m[..., None]) / sigma)) + OUTLIER_PROBABILITY
 
 
 def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Support:
@@ -118,17 +120,17 @@ def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Su
             [table[levels] for table, levels in zip(tables, z.T, strict=True)], axis=0
         )
         kept.append(likelihood > least * likelihood.max(axis=1, keepdims=True))
-    counts = np.concatenate([one.sum(axis=1) for one in kept])
-    k = np.concatenate([one.nonzero()[1] for one in kept])
+    counts = np.concatenate([mask.sum(axis=1) for mask in kept])
+    k = np.concatenate([mask.nonzero()[1] for mask in kept])
     cell = np.ravel_multi_index(
         (np.arange(len(P))[:, None], k, np.repeat(Z, counts, axis=0).T), P.shape
     )
-    asked = np.zeros(P.size, bool)
-    asked[cell] = True
-    at = (np.cumsum(asked) - 1)[cell]
-    return Support(
-        np.append(0, np.cumsum(counts)), k, np.unravel_index(np.flatnonzero(asked), P.shape), at
-    )
+    is_used = np.zeros(P.size, bool)
+    is_used[cell] = True
+    at = (np.cumsum(is_used) - 1)[cell]
+    start = np.append(0, np.cumsum(counts))
+    cells = np.unravel_index(np.flatnonzero(is_used), P.shape)
+    return Support(start, k, cells, at)
 
 
 def posterior(P: F64, p: F64, near: Support) -> tuple[F64, F64]:

@@ -25,15 +25,22 @@ from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 from hdrlab.response import likelihood, polynomial
 from hdrlab.response.mitsunaga import curve
-from hdrlab.response.self_calibration import HIGHEST, calibrate as self_calibrate, levels_by_time
+from hdrlab.response.self_calibration import MAX_ORDER, calibrate as self_calibrate, levels_by_time
 
-# slope of f^-1
-LEAST = 2e-3
-# sigma, half a level: below it the nodes stand too far apart
-FINEST = 2e-3
-# sigma to begin with, and how many nodes
-NOISE = 0.005
-NODES = 400
+# the smallest slope of f^-1
+MIN_SLOPE = 2e-3
+# the smallest sigma, half a level: with less noise the nodes are too far apart
+MIN_NOISE = 2e-3
+# the initial guess of sigma
+INITIAL_NOISE = 0.005
+# number of nodes
+_NODES = 400
+# A step is halved at most this often until it raises the likelihood.
+_MAX_HALVINGS = 12
+# EM steps for the density before theta changes
+_INITIAL_EM_STEPS = 5
+# The fit runs twice, with a support for this many times the noise: wide at first, as theta is far off.
+_SUPPORT_WIDTHS = (3.0, 2.0)
 
 
 class State(NamedTuple):
@@ -62,6 +69,12 @@ class Point(NamedTuple):
     likelihood: float
     weights: F64
     scores: F64
+
+
+def _pack(c: F64, R: F64) -> F64:
+    """Return theta of c, limited to rising curves, ratios R and the initial noise."""
+    tau = np.cumsum(np.log(R)[::-1])[::-1]
+    return np.concatenate([polynomial.limit_slope(c), tau, [np.log(INITIAL_NOISE)]])
 
 
 def unpack(theta: F64, frames: int) -> tuple[F64, F64, float]:
@@ -94,10 +107,11 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
     F = here.scores.T @ here.scores + task.stiffness
     step = np.linalg.solve(F + 1e-9 * np.diag(np.diag(F)) + 1e-12 * np.eye(len(F)), s)
     p = likelihood.density(here.weights, task.near, len(task.at.x))
-    for half in range(12):
+    for half in range(_MAX_HALVINGS):
         theta = here.theta + step / 2**half
-        theta[-1] = max(theta[-1], np.log(FINEST))
-        if polynomial.slope(polynomial.GRID, unpack(theta, len(task.near.at))[0]).min() >= LEAST:
+        theta[-1] = max(theta[-1], np.log(MIN_NOISE))
+        c, _, _ = unpack(theta, len(task.near.at))
+        if polynomial.slope(polynomial.GRID, c).min() >= MIN_SLOPE:
             there = evaluate(theta, p, task)
             if there.likelihood >= here.likelihood:
                 return there, float(s @ step)
@@ -107,13 +121,13 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
 def begin(Z: Indices, theta: F64, blur: float) -> tuple[likelihood.Nodes, likelihood.Support, F64]:
     """Return nodes, their support under `blur` times the noise, and p after five steps of EM."""
     c, tau, sigma = unpack(theta, Z.shape[1])
-    at = likelihood.nodes(c, tau, NODES)
+    at = likelihood.nodes(c, tau, _NODES)
     m = likelihood.predict(c, tau, at)[0]
     near = likelihood.support(Z, likelihood.table(m, blur * sigma))
     q, k, z = near.cells
     P = likelihood.masses(m[q, k], sigma, z)[0]
     p = np.full(len(at.x), 1 / len(at.x))
-    for _ in range(5):
+    for _ in range(_INITIAL_EM_STEPS):
         p = likelihood.density(likelihood.posterior(P, p, near)[1], near, len(p))
     return at, near, p
 
@@ -142,20 +156,18 @@ def fit_steps(
         raise InputError(
             f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}"
         )
-    theta, prior = (
-        np.r_[polynomial.limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)]
-        for r in (R, stated)
-    )
+    theta = _pack(c, R)
+    prior = _pack(c, stated)
     stiff = likelihood.stiffness(len(theta), Z.shape[1], trust)
-    for blur in (3.0, 2.0):
+    for blur in _SUPPORT_WIDTHS:
         at, near, p = begin(Z, theta, blur)
         task = Task(at, near, prior, stiff)
         here = evaluate(theta, p, task)
         for _ in range(max_iterations):
             here, promise = ascend(here, task)
             theta = here.theta
-            own, tau, noise = unpack(theta, Z.shape[1])
-            yield State(own, np.exp(tau[:-1] - tau[1:]), noise, here.likelihood, promise)
+            c, tau, noise = unpack(theta, Z.shape[1])
+            yield State(c, np.exp(tau[:-1] - tau[1:]), noise, here.likelihood, promise)
             if promise < tolerance:
                 break
 
@@ -169,7 +181,7 @@ def calibrate(
     images: ArrayLike,
     times: ArrayLike,
     *,
-    order: int | None = HIGHEST,
+    order: int | None = MAX_ORDER,
     trust: float = 0.005,
     pixels: int = 10_000,
     valid: ArrayLike | None = None,
@@ -189,8 +201,10 @@ def calibrate(
     """
     start = self_calibrate(images, times, order=order, valid=valid)
     Z, stated = levels_by_time(images, times, pixels, valid=valid)
-    channels = zip(Z, start.c, strict=True)
-    return [fit(own, c, start.R, stated=stated, trust=trust, **knobs) for own, c in channels]
+    return [
+        fit(Z_channel, c, start.R, stated=stated, trust=trust, **knobs)
+        for Z_channel, c in zip(Z, start.c, strict=True)
+    ]
 
 
 def recover(

@@ -24,7 +24,8 @@ def slope(M: ArrayLike, c: ArrayLike) -> F64:
     """
     M = np.asarray(M, np.float64)
     c = np.append(c, 0)
-    T, dT = (chebval(2 * M - 1, one) for one in (c, 2 * chebder(c)))
+    T = chebval(2 * M - 1, c)
+    dT = chebval(2 * M - 1, 2 * chebder(c))
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
 
 

@@ -59,9 +59,9 @@ def threshold(s: int = 25, *, psi: float = 0.05, estimated: float = np.inf) -> f
     """
     if s < 2 or not 0 < psi < 1 or estimated <= 0:
         raise InputError(f"expected s of at least 2 and psi in (0, 1), got {s} and {psi}")
-    return float(
-        chi2.isf(psi, s - 1) if np.isinf(estimated) else (s - 1) * f.isf(psi, s - 1, estimated)
-    )
+    if np.isinf(estimated):
+        return float(chi2.isf(psi, s - 1))
+    return float((s - 1) * f.isf(psi, s - 1, estimated))
 
 
 def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01) -> Mask:
@@ -112,7 +112,7 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
 
 def radius(shape: tuple[int, int]) -> F64:
     """Return each pixel's distance from the middle of the picture, (H, W) pixels."""
-    y, x = (np.arange(extent) - (extent - 1) / 2 for extent in shape)
+    y, x = [np.arange(extent) - (extent - 1) / 2 for extent in shape]
     return np.hypot(y[:, None], x)
 
 

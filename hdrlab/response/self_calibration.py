@@ -8,6 +8,7 @@ Z    pixel levels   (N, P) integers, 0 ... 255
 M    brightness     (C, N, P), and R, c, H as in `mitsunaga`
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -27,67 +28,73 @@ from hdrlab.response.mitsunaga import (
 )
 from hdrlab.response.polynomial import misfit
 
-# order that is tried
-HIGHEST = 10
-# share of a group; fewer clipped members hardly move its mean, and near the top there are always a
-# few
-CLIPPED = 0.1
-# of the picture, for the choice of the order: a part is every fifth stripe
-PARTS = 5
-STRIPES = 20
-# in brightness, a hundredth of a level: what is less is no difference
-FINEST = 0.01 / 255
+# the highest order that is tried
+MAX_ORDER = 10
+# A group with more clipped pixels than this fraction is left out. Fewer of them hardly change its
+# mean, and near the top level there are always some.
+MAX_CLIPPED_FRACTION = 0.1
+# The order is chosen by cross-validation over this many parts of the picture. Each part is made of
+# stripes: it takes every _PARTS-th of them.
+_PARTS = 5
+_STRIPES = 20
+# Errors in brightness that differ by less than a hundredth of a level count as equal.
+_MIN_ERROR_DIFFERENCE = 0.01 / 255
 
 
 def average(Z: ArrayLike, count: int = 80) -> F64:
-    """Return M (count, P), means of groups of pixels Z (N, P) that are alike; NaN where some are clipped.
+    """Return M (count, P), the means of groups of similar pixels of Z (N, P); NaN where clipped.
 
-    Alike: near in the mean over the frames. Sorted by one frame's values, they would be sorted by
-    its noise.
+    Pixels are similar if their means over the frames are. Sorted by the values of one frame, they
+    would be sorted by its noise.
     """
     Z = np.asarray(Z)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not Z.size or Z.min() < 0 or Z.max() > 255:
         raise InputError(f"expected levels 0 to 255, Z (N, P), got {describe(Z)}")
     frames = np.ascontiguousarray(Z.T, dtype=np.uint8)
     key = 256 * frames.sum(axis=0, dtype=np.uint32) // len(frames)
-    frames = frames[
-        :, np.argsort(key.astype(np.uint16), kind="stable")
-    ]  # 16 bits are sorted by counting
+    order = np.argsort(key.astype(np.uint16), kind="stable")  # 16 bits are sorted by counting
+    frames = frames[:, order]
     starts = np.linspace(0, len(Z), min(count, len(Z)), endpoint=False).astype(int)
     members = np.diff(np.append(starts, len(Z)))
     clipped = np.add.reduceat((frames == 0) | (frames == 255), starts, axis=1, dtype=int)
     M = np.add.reduceat(frames, starts, axis=1, dtype=float) / (255 * members)
-    return np.where(clipped > CLIPPED * members, np.nan, M).T
+    return np.where(clipped > MAX_CLIPPED_FRACTION * members, np.nan, M).T
 
 
 def held_out(parts: Sequence[F64], R: F64) -> F64:
-    """Return the error (HIGHEST, K) of each order in each part of the picture, under the c of all others.
+    """Return the error (MAX_ORDER, K) of each order in each of K parts, with c from all other parts.
 
-    Rms in brightness, not that of eq. 7, which is small wherever f^-1 is flat, and high orders make
-    it so. And R stays as stated: a straight line explains a power law as well as the power does,
-    with ratios of its own.
+    It is the RMS error in brightness. The error of eq. 7 would be small wherever f^-1 is flat, and
+    high orders make it flat. And R stays as stated: with other ratios a straight line explains a
+    power law as well as the power law does.
     """
-    H = np.array([[gram(*neighbours(own, HIGHEST), R) for own in M] for M in parts])
-    errors = np.zeros((HIGHEST, len(parts)))
+    H = np.array([[_gram_of_channel(M_channel, R) for M_channel in M] for M in parts])
+    errors = np.zeros((MAX_ORDER, len(parts)))
     for k, M in enumerate(parts):
-        others = np.delete(H, k, axis=0).sum(axis=0)
-        for n in range(1, HIGHEST + 1):
-            left = [
-                misfit(own, R, coefficients(h[:n, :n]))[in_range(own)]
-                for own, h in zip(M, others, strict=True)
-            ]
-            errors[n - 1, k] = (
-                np.sqrt(np.mean(np.concatenate(left) ** 2)) if in_range(M).any() else 0
-            )
+        if not in_range(M).any():
+            continue
+        H_others = np.delete(H, k, axis=0).sum(axis=0)
+        for order in range(1, MAX_ORDER + 1):
+            residuals = []
+            for M_channel, H_channel in zip(M, H_others, strict=True):
+                c = coefficients(H_channel[:order, :order])
+                residuals.append(misfit(M_channel, R, c)[in_range(M_channel)])
+            errors[order - 1, k] = np.sqrt(np.mean(np.concatenate(residuals) ** 2))
     return errors
 
 
-def choose_order(parts: Sequence[F64], R: ArrayLike) -> int:
-    """Return the least order whose held-out error is within a standard error of the best [Breiman84 3.4.3].
+def _gram_of_channel(M: F64, R: F64) -> F64:
+    """Return H of eq. 7 for samples M (N, P) of one channel; its leading blocks are of lower orders."""
+    a, b, q = neighbours(M, MAX_ORDER)
+    return gram(a, b, q, R)
 
-    One for all channels, from samples M (C, N, P) of each part of a picture. Halves of samples that
-    each hold pixels from all over it would not do: what motion and flare add stands in both, and
-    they confirm it.
+
+def choose_order(parts: Sequence[F64], R: ArrayLike) -> int:
+    """Return the lowest order whose held-out error is within a standard error of the best [Breiman84 3.4.3].
+
+    It is one order for all channels, from samples M (C, N, P) of each part of a picture. The parts
+    must be separate regions. If each held pixels from all over the picture, then motion and flare
+    would be in all of them, and one part would confirm another's error.
     """
     if len(parts) < 2:
         return 1
@@ -95,7 +102,7 @@ def choose_order(parts: Sequence[F64], R: ArrayLike) -> int:
     mean = errors.mean(axis=1)
     best = int(np.argmin(mean))
     doubt = np.std(errors[best], ddof=1) / np.sqrt(len(parts))
-    return 1 + int(np.argmax(mean <= mean[best] + max(doubt, FINEST)))
+    return 1 + int(np.argmax(mean <= mean[best] + max(doubt, _MIN_ERROR_DIFFERENCE)))
 
 
 def levels_by_time(
@@ -106,7 +113,8 @@ def levels_by_time(
     times = as_times(times, len(stack), distinct=2)
     by_time = bracket.short_to_long(stack, times)
     Z = sampling.by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
-    return np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), times[by_time][:-1] / times[by_time][1:]
+    times = times[by_time]
+    return sampling.split_channels(Z), times[:-1] / times[1:]
 
 
 def samples(
@@ -119,13 +127,16 @@ def samples(
 ) -> tuple[list[F64], F64]:
     """Return samples of a bracket, from short to long, and the ratios R (P - 1,) of its times.
 
-    The samples come in PARTS of the picture, M (C, N, P) each: every PARTS-th of its STRIPES.
+    The samples are grouped by parts of the picture, M (C, N, P) each.
     """
     Z, R = levels_by_time(images, times, pixels, valid=valid)
-    stripes = np.array_split(np.arange(Z.shape[1]), STRIPES)  # the grid's pixels come row by row
-    parts = [Z[:, np.concatenate(stripes[k::PARTS])] for k in range(min(PARTS, Z.shape[1]))]
-    M = [np.stack([average(one, -(-count // PARTS)) for one in part]) for part in parts]
-    return M, R
+    stripes = np.array_split(np.arange(Z.shape[1]), _STRIPES)  # the grid's pixels come row by row
+    count_per_part = math.ceil(count / _PARTS)
+    parts = []
+    for k in range(min(_PARTS, Z.shape[1])):
+        Z_part = Z[:, np.concatenate(stripes[k::_PARTS])]
+        parts.append(np.stack([average(Z_channel, count_per_part) for Z_channel in Z_part]))
+    return parts, R
 
 
 def calibrate(
@@ -143,14 +154,13 @@ def calibrate(
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Photographs, aligned; 16 bits are read at 256 levels.
     times : (P,) float
-        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in
-        part.
+        Exposure times in seconds, at least two different ones. Errors of 10 % are partly corrected.
     order : int, optional
-        Of the polynomial; by default the least of 1 to 10 whose held-out error is within a standard
-        error of the best.
+        Order of the polynomial; by default the lowest of 1 to 10 whose held-out error is within a
+        standard error of the best.
     eps : float
-        Stop when f^-1, 0 to 1, changes by less. A smaller one lets the ratios drift further from
-        the times.
+        Stop when f^-1, 0 to 1, changes by less than this. With a smaller eps the ratios drift
+        further from the times.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
 
@@ -178,7 +188,9 @@ def calibrate(
         raise InputError(
             "expected pixels from 0.05 to 0.98 of the top level in two neighbours; got none"
         )
-    return steps.last(fit_steps(M, R, choose_order(parts, R) if order is None else order, eps=eps))
+    if order is None:
+        order = choose_order(parts, R)
+    return steps.last(fit_steps(M, R, order, eps=eps))
 
 
 def find_response(

@@ -140,20 +140,24 @@ def default_space(count: int = 12, n: int = 256) -> Space:
 def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]:
     """Return A and b of sum_ij w^2 (g(Z_ij) - lE_i - B_j)^2 = |A c - b|^2, g = mean + c H [Debevec97 eq. 3].
 
-    The best lE_i of each sample is a weighted mean; what its rows miss of that has the K unknowns
-    alone.
+    The best lE_i of each sample is a weighted mean over its frames. With the mean subtracted, the
+    equations contain the K unknowns c alone.
     """
     W = w[Z] ** 2
     W = W / np.maximum(W.sum(axis=1, keepdims=True), 1e-300)
-    columns = [
-        x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])
-    ]
-    if not np.any(W * columns[0] ** 2 > 1e-12):
+
+    def without_mean(x: F64) -> F64:
+        return x - np.sum(W * x, axis=1, keepdims=True)
+
+    B_differences = without_mean(B + 0 * Z)
+    if not np.any(W * B_differences**2 > 1e-12):
         raise InputError(
             "expected samples seen well in two exposures, which connect the levels; got none"
         )
-    B, mean, *H = (w[Z] * column for column in columns)
-    return np.stack(H, axis=-1).reshape(-1, len(H)), (B - mean).ravel()
+    H = [w[Z] * without_mean(row[Z]) for row in space.H]
+    A = np.stack(H, axis=-1).reshape(-1, len(H))
+    b = w[Z] * B_differences - w[Z] * without_mean(space.mean[Z])
+    return A, b.ravel()
 
 
 def recover(
@@ -225,8 +229,9 @@ def recover(
         )
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
-    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
-    systems = [build_equations(own, np.log(times), w / w.max(), space) for own in channels]
-    c = np.stack([solve_map(A / noise, b / noise, space.sd) for A, b in systems])
-    g = reconstruct(c, space).T
+    coefficients = []
+    for Z_channel in sampling.split_channels(Z):
+        A, b = build_equations(Z_channel, np.log(times), w / w.max(), space)
+        coefficients.append(solve_map(A / noise, b / noise, space.sd))
+    g = reconstruct(np.stack(coefficients), space).T
     return weights.make_monotone(g - g[128]).reshape(256, *stack.shape[3:])

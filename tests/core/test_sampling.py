@@ -86,7 +86,7 @@ def test_pixels_that_one_frame_does_not_show_enter_no_sample(way):
 def test_a_mask_that_leaves_nothing_is_refused(way):
     valid = np.ones((3, 30, 40), bool)
     valid[0, :15], valid[2, 15:] = False, False
-    with pytest.raises(ValueError, match="the mask leaves none"):
+    with pytest.raises(ValueError, match="masks leave none"):
         way(frames(), 10, valid=valid)
 
 

@@ -14,7 +14,7 @@ from hdrlab.pipeline import recovery
 from hdrlab.response import mitsunaga, polynomial, self_calibration
 from hdrlab.response.families import invert_curves
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms
-from hdrlab.response.self_calibration import HIGHEST, average, calibrate, choose_order
+from hdrlab.response.self_calibration import MAX_ORDER, average, calibrate, choose_order
 from hdrlab.show.plots.lectures import ambiguity
 
 STATED = np.full(3, 0.5)
@@ -58,8 +58,8 @@ def test_the_basis_spans_every_polynomial_through_both_ends(order):
 
 def test_the_basis_keeps_the_digits_that_powers_lose():
     M = np.linspace(0.05, 0.98, 400)
-    powers = M[:, None] ** np.arange(1, HIGHEST + 1)
-    B = terms(M, HIGHEST)
+    powers = M[:, None] ** np.arange(1, MAX_ORDER + 1)
+    B = terms(M, MAX_ORDER)
     assert np.linalg.cond(B.T @ B) < 1e-4 * np.linalg.cond(powers.T @ powers)
 
 
@@ -100,7 +100,7 @@ def test_the_coefficients_are_the_least_squares_solution_of_equation_7():
 
 def test_the_matrices_of_halves_add_up_and_orders_are_nested():
     M = average(ambiguity.draw_trial(np.random.default_rng(2)).Z)
-    whole, *halves = (gram(*neighbours(part, HIGHEST), STATED) for part in (M, M[::2], M[1::2]))
+    whole, *halves = (gram(*neighbours(part, MAX_ORDER), STATED) for part in (M, M[::2], M[1::2]))
     assert np.allclose(whole, sum(halves))
     assert np.allclose(gram(*neighbours(M, 4), STATED), whole[:4, :4])
 

@@ -38,7 +38,7 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     """
     v = np.asarray(v, np.float32)
     require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
-    (H, W) = v.shape
+    H, W = v.shape
     r = min(int(np.ceil(3 * sigma_s)), max(v.shape))
     padded = np.pad(v, r, constant_values=BORDER_VALUE)
     total = np.zeros_like(v)

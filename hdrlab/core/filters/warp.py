@@ -1,4 +1,4 @@
-"""Pictures moved by homographies: resampled in linear light, and cut to what all of them show.
+"""Homographies: moving pictures, resampling them in linear light, and the part that all of them show.
 
 H        homography (3, 3): H (x, y, 1) is where pixel (x, y) of one picture lies in another, up to a factor;
          (P, 3, 3), one for each photograph: where its pixels lie in the picture that they share
@@ -18,9 +18,8 @@ from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.optional import scipy_optimize as optimize, skimage_transform as transform
 from hdrlab.errors import InputError
 
-# pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has
-# sides, too
-SLACK = 1e-3
+# A picture extends this far beyond its outer pixels, so that one of a single pixel has sides, too.
+_BORDER_PIXELS = 1e-3
 
 
 def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
@@ -31,30 +30,28 @@ def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
     >>> as_homographies([[3, -1]])[0].tolist()
     [[1.0, 0.0, -1.0], [0.0, 1.0, 3.0], [0.0, 0.0, 1.0]]
     """
-    given = np.asarray(homographies)
-    numbers = given.dtype.kind in "iuf" and given.size > 0 and bool(np.isfinite(given).all())
-    if not numbers or given.shape[1:] not in ((2,), (3, 3)):
+    H = np.asarray(homographies)
+    is_finite = H.dtype.kind in "iuf" and H.size > 0 and bool(np.isfinite(H).all())
+    if not is_finite or H.shape[1:] not in ((2,), (3, 3)):
         raise InputError(
-            f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(given)}"
+            f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(H)}"
         )
-    if count is not None and len(given) != count:
-        raise InputError(f"expected {count} homographies, one per image, got {len(given)}")
-    if given.ndim == 2:
-        shifts = np.tile(np.eye(3), (len(given), 1, 1))
-        shifts[:, :2, 2] = given[:, ::-1]
+    if count is not None and len(H) != count:
+        raise InputError(f"expected {count} homographies, one per image, got {len(H)}")
+    if H.ndim == 2:
+        shifts = np.tile(np.eye(3), (len(H), 1, 1))
+        shifts[:, :2, 2] = H[:, ::-1]
         return shifts
-    if np.any(np.abs(np.linalg.det(given)) < 1e-12) or np.any(np.abs(given[:, 2, 2]) < 1e-12):
-        raise InputError(
-            "expected homographies that can be undone, got a matrix without an inverse"
-        )
-    return given / given[:, 2:, 2:].astype(np.float64)
+    if np.any(np.abs(np.linalg.det(H)) < 1e-12) or np.any(np.abs(H[:, 2, 2]) < 1e-12):
+        raise InputError("expected invertible homographies, got a matrix without an inverse")
+    return H / H[:, 2:, 2:].astype(np.float64)
 
 
 def turn(
     shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0
 ) -> F64:
     """Return H of a picture (H, W) turned about its middle, clockwise as seen, enlarged, then shifted."""
-    (dy, dx) = np.asarray(offset, float)
+    dy, dx = np.asarray(offset, float)
     phi = np.deg2rad(degrees)
     cos = scale * np.cos(phi)
     sin = scale * np.sin(phi)
@@ -77,7 +74,7 @@ def apply(H: ArrayLike, points: ArrayLike) -> F64:
     points = np.asarray(points, float)
     x = points[..., 0]
     y = points[..., 1]
-    u, v, w = (H[..., row, :1] * x + H[..., row, 1:2] * y + H[..., row, 2:] for row in range(3))
+    u, v, w = [H[..., row, :1] * x + H[..., row, 1:2] * y + H[..., row, 2:] for row in range(3)]
     return np.stack([u / w, v / w], axis=-1)
 
 
@@ -87,13 +84,14 @@ def through(source: F64, target: F64) -> F64:
     x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear
     in H.
     """
-    (u, v) = source.T
-    (x, y) = target.T
-    zero = np.zeros(4)
-    one = np.ones(4)
-    rows_x = np.column_stack([u, v, one, zero, zero, zero, -x * u, -x * v])
-    rows_y = np.column_stack([zero, zero, zero, u, v, one, -y * u, -y * v])
-    return np.append(np.linalg.solve(np.vstack([rows_x, rows_y]), np.r_[x, y]), 1.0).reshape(3, 3)
+    u, v = source.T
+    x, y = target.T
+    zeros = np.zeros(4)
+    ones = np.ones(4)
+    rows_x = np.column_stack([u, v, ones, zeros, zeros, zeros, -x * u, -x * v])
+    rows_y = np.column_stack([zeros, zeros, zeros, u, v, ones, -y * u, -y * v])
+    h = np.linalg.solve(np.vstack([rows_x, rows_y]), np.concatenate([x, y]))
+    return np.append(h, 1.0).reshape(3, 3)
 
 
 def corner_distance(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> F64:
@@ -109,9 +107,9 @@ def corner_distance(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) 
 
 
 def chain_homographies(order: ArrayLike, steps: Sequence[F64]) -> F64:
-    """Return the H (P, 3, 3) that lay every image on the middle one of `order`: products of the P - 1 steps.
+    """Return the H (P, 3, 3) that align every image with the middle one of `order`.
 
-    Step k lays image order[k] on order[k + 1].
+    They are products of the P - 1 steps; step k aligns image order[k] with image order[k + 1].
     """
     H = np.tile(np.eye(3), (len(steps) + 1, 1, 1))
     order = np.asarray(order)
@@ -134,21 +132,19 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
         Where no pixel is covered by all of them.
     """
     H = as_homographies(homographies)
-    wide = corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
+    wide = corners(shape) + _BORDER_PIXELS * np.sign(corners((3, 3)) - 1)
     if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
         raise InputError(
             "expected homographies that keep a picture in front of the camera, got another"
         )
     quads = apply(H, wide)
     edges = np.roll(quads, -1, axis=1) - quads
-    a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)  # outwards, unless a picture is mirrored
-    a *= (
-        np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None]
-        / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
-    )
-    left, top, right, bottom = _largest(
-        a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape
-    )
+    a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
+    orientation = np.sign(np.linalg.det(H[:, :2, :2]))  # -1 where H mirrors the picture
+    length = np.hypot(a[..., 0], a[..., 1])
+    a *= orientation[:, None, None] / length[..., None]
+    b = np.einsum("pij,pij->pi", a, quads)
+    left, top, right, bottom = _largest_rectangle(a.reshape(-1, 2), b.ravel(), shape)
     if left > right or top > bottom:
         raise InputError(
             "expected images that overlap, got homographies that leave them no pixel in common"
@@ -156,25 +152,27 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     return slice(top, bottom + 1), slice(left, right + 1)
 
 
-def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
-    """Return the first and last pixel, x, y, x, y, of the rectangle within half-planes: a linear program.
+def _largest_rectangle(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
+    """Return left, top, right and bottom of the largest rectangle of pixels within half-planes.
 
-    Of all points of a rectangle a p is largest at a corner: at the high x where a_x > 0, and so on.
-    So each half-plane is a single inequality in the four sides.
+    It is found by a linear program. Over a rectangle a p is largest at a corner: at its right where
+    a_x > 0, and so on. So each half-plane is one inequality in the four sides.
     """
     A = np.hstack([np.minimum(a, 0), np.maximum(a, 0)])
     alike = np.array([[-1, 0, 1, 0, -shape[1]], [0, -1, 0, 1, -shape[0]]])  # high - low = s (W, H)
     limits = [(None, None)] * 4 + [(0, None)]
-    found = optimize.linprog(
+    result = optimize.linprog(
         [0, 0, 0, 0, -1], np.pad(A, ((0, 0), (0, 1))), b, alike, np.zeros(2), limits
     )
-    if found.x is None:
-        return [0, 0, -1, -1]  # nothing
-    box = np.concatenate([np.ceil(found.x[:2] - 2 * SLACK), np.floor(found.x[2:4] + 2 * SLACK)])
+    if result.x is None:
+        return [0, 0, -1, -1]  # an empty rectangle
+    first = np.ceil(result.x[:2] - 2 * _BORDER_PIXELS)
+    last = np.floor(result.x[2:4] + 2 * _BORDER_PIXELS)
+    box = np.concatenate([first, last])
     for side, outwards in enumerate((-1, -1, 1, 1)):
         meets = np.abs(A[:, side]) > 1e-9
         room = np.min((b - A @ box)[meets] / np.abs(A[meets, side]))
-        box[side] += outwards * max(np.floor(room + SLACK), 0)
+        box[side] += outwards * max(np.floor(room + _BORDER_PIXELS), 0)
     return [int(side) for side in box]
 
 
@@ -185,13 +183,20 @@ def sample(image: ArrayLike, H: F64, shape: tuple[int, ...]) -> Array:
     light must be linear; beyond the border the last pixels go on.
     """
     image = np.asarray(image, np.float32)
-    knobs = {"order": 3, "mode": "edge", "clip": False, "preserve_range": True}
-    found = transform.warp(image, H, output_shape=shape[:2], **knobs)
+    cubic = transform.warp(
+        image,
+        H,
+        output_shape=shape[:2],
+        order=3,
+        mode="edge",
+        clip=False,
+        preserve_range=True,
+    )
     more = np.pad(image, [(0, 1), (0, 1), (0, 0)][: image.ndim], mode="edge")
     four = more[:-1, :-1], more[:-1, 1:], more[1:, :-1], more[1:, 1:]
-    return np.clip(
-        found, *(before(reduce(end, four), H, shape) for end in (np.minimum, np.maximum))
-    )
+    low = before(reduce(np.minimum, four), H, shape)
+    high = before(reduce(np.maximum, four), H, shape)
+    return np.clip(cubic, low, high)
 
 
 def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
@@ -201,11 +206,11 @@ def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
 
 def before(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w[, C]) whose pixel p is the pixel of `image` just above and left of H p."""
-    found = np.empty((*shape[:2], *image.shape[2:]), image.dtype)
+    moved = np.empty((*shape[:2], *image.shape[2:]), image.dtype)
     across = H[:, :1] * np.arange(shape[1])
     last = np.array(image.shape[1::-1])[:, None] - 1
-    for y, row in enumerate(found):  # a row at a time stays in the processor's cache
+    for y, row in enumerate(moved):  # a row at a time stays in the processor's cache
         u, v, w = across + H[:, 1:2] * y + H[:, 2:]
         column, line = np.floor([u / w, v / w]).clip(0, last).astype(np.intp)
         row[:] = image[line, column]
-    return found
+    return moved
