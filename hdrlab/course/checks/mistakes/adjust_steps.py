@@ -8,8 +8,8 @@ from hdrlab.tonemap.ward import Trim, ceiling, trim
 
 @mistake(
     "adjust_steps_trimmings_redistributed",
-    says="You put the trimmings back into other bins: that raises their slopes above 1. What "
-    "is cut off is gone.",
+    says="You put the trimmings back into other bins. That raises their slopes above 1. Do not "
+    "redistribute what is cut off.",
 )
 def trimmings_redistributed(h, db, D, *, tolerance=0.025):
     def trim(h, db, D):
@@ -29,8 +29,8 @@ def trimmings_redistributed(h, db, D, *, tolerance=0.025):
 
 @mistake(
     "adjust_steps_decades",
-    says="The display's range is a natural logarithm, like db; you took it for decades, and "
-    "the ceiling is 2.3 times too high or too low.",
+    says="The display's range D is a natural logarithm, like db. You took it as decades, so "
+    "the ceiling is wrong by a factor of 2.3.",
 )
 def decades(h, db, D, *, tolerance=0.025):
     def ceiling(T, db, D):
@@ -50,8 +50,8 @@ def decades(h, db, D, *, tolerance=0.025):
 
 @mistake(
     "adjust_steps_once",
-    says="You applied the ceiling once. The trim made T less, and the ceiling with it: trim "
-    "again until hardly anything is cut.",
+    says="You applied the ceiling once. Trimming makes T smaller, and the ceiling with it. "
+    "Trim again until hardly anything is cut.",
     misses_method=True,
 )
 def once(h, db, D, *, tolerance=0.025):

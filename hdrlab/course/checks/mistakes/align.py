@@ -21,8 +21,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "align_not_doubled",
-    says="A pixel of a level is two of the next finer one: double the offset before you look "
-    "around it.",
+    says="A pixel of one level is two pixels of the next finer level. Double the offset before "
+    "you search around it.",
 )
 def not_doubled(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
@@ -51,8 +51,8 @@ def not_doubled(images, *, bits=6, luma=False):
 
 @mistake(
     "align_ties_from_the_corner",
-    says="Where all nine candidates are equally good you take the first, in the corner, and "
-    "walk off a pixel a level: begin with the centre.",
+    says="When all nine candidates are equally good, you take the first one, in the corner, "
+    "and drift by a pixel per level. Prefer the centre.",
 )
 def ties_from_the_corner(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
@@ -81,8 +81,8 @@ def ties_from_the_corner(images, *, bits=6, luma=False):
 
 @mistake(
     "align_bitmap_made_small",
-    says="You make the bitmap of the whole picture small, instead of the picture: at the "
-    "coarse levels fine texture is noise then.",
+    says="You compute the bitmap of the full image and shrink the bitmap. Shrink the image "
+    "first; otherwise fine texture becomes noise at the coarse levels.",
 )
 def bitmap_made_small(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):
@@ -111,7 +111,7 @@ def bitmap_made_small(images, *, bits=6, luma=False):
 
 @mistake(
     "align_coarsest_level_forgotten",
-    says="Your pyramid has a level too few: with `bits` levels an offset reaches 2^bits - 1 "
+    says="Your pyramid has one level too few. With `bits` levels, an offset reaches 2^bits - 1 "
     "pixels.",
 )
 def coarsest_level_forgotten(images, *, bits=6, luma=False):
@@ -141,7 +141,7 @@ def coarsest_level_forgotten(images, *, bits=6, luma=False):
 
 @mistake(
     "align_nothing_excluded",
-    says="You count pixels near the median, too, whose bits are noise: AND the differences "
+    says="You also count pixels near the median, whose bits are noise. AND the differences "
     "with both exclusion bitmaps.",
 )
 def nothing_excluded(images, *, bits=6, luma=False):
@@ -181,8 +181,7 @@ def nothing_excluded(images, *, bits=6, luma=False):
 
 @mistake(
     "align_to_the_first",
-    says="Your offsets lay the images on the first one; the one in the middle of their "
-    "brightness is to stay.",
+    says="You align the images to the first one. Align them to the image of middle brightness.",
 )
 def to_the_first(images, *, bits=6, luma=False):
     def chain_offsets(order, steps):
@@ -199,8 +198,8 @@ def to_the_first(images, *, bits=6, luma=False):
 
 @mistake(
     "align_wrong_way",
-    says="Your offsets say where the images have moved to; asked is where they must move to "
-    "lie on the one in the middle: change the sign.",
+    says="Your offsets say how far each image has moved. Return how far it must move to match "
+    "the middle one: change the sign.",
 )
 def wrong_way(images, *, bits=6, luma=False):
     found = [

@@ -19,8 +19,8 @@ def powers_of_e(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_part_of_the_light",
-    says="You mix picture and scene, W parts of the light between them. W is a part of the "
-    "stops: 2^(W G).",
+    says="You mix the light of picture and scene in the ratio W. W is a fraction of the stops "
+    "instead: 2^(W G).",
 )
 def part_of_the_light(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)
@@ -30,8 +30,8 @@ def part_of_the_light(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_low_in_full",
-    says="You take the part W of what is above low alone. It is a part of the whole gain G, "
-    "low as well: W = 0 shows the picture.",
+    says="You take the fraction W only of the gain above low. It applies to the whole gain G, "
+    "including low: W = 0 gives the picture.",
 )
 def low_in_full(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)
@@ -41,7 +41,8 @@ def low_in_full(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_offset_left",
-    says="The scene's offset is still in your light, so black is gray. Take k[1] off at the end.",
+    says="Your light still includes the scene's offset, so black is gray. Subtract k[1] at the "
+    "end.",
 )
 def offset_left(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)
@@ -51,8 +52,8 @@ def offset_left(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_gamma_twice",
-    says="You raise the map to gamma once more. It was raised when it was made: undo that by "
-    "the power 1 / gamma.",
+    says="You raise the map to the power gamma a second time. The encoder did that already; "
+    "undo it with the power 1 / gamma.",
 )
 def gamma_twice(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)

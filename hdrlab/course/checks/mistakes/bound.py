@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "bound_loosest",
-    says="Several frames bound the pixel, and you take the loosest bound: the shortest clipped "
-    "frame says most, and the longest dark one.",
+    says="If several frames bound the pixel, you take the loosest bound. Take the tightest: "
+    "from the shortest clipped frame, or the longest dark one.",
 )
 def loosest(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
@@ -22,8 +22,8 @@ def loosest(Z, B, g, top, shown):
 
 @mistake(
     "bound_middle_of_radiance",
-    says="Between two bounds you take the mean of the radiances, which is nearly the upper "
-    "one: take the middle of their logarithms.",
+    says="Between two bounds you average the radiances, which is close to the upper bound. "
+    "Average their logarithms.",
 )
 def middle_of_radiance(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
@@ -40,8 +40,8 @@ def middle_of_radiance(Z, B, g, top, shown):
 
 @mistake(
     "bound_clipped_alone",
-    says="You think of clipped pixels alone: one that is dark in all frames is bounded from "
-    "above, by the longest of them.",
+    says="You handle only clipped pixels. A pixel that is dark in all frames has an upper "
+    "bound, from the longest of them.",
 )
 def clipped_alone(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
@@ -69,7 +69,7 @@ def flags_swapped(Z, B, g, top, shown):
 
 @mistake(
     "bound_hidden_frames_count",
-    says="You ask frames that do not show the pixel: `shown` says which do.",
+    says="You use frames that do not show the pixel. `shown` says which frames do.",
 )
 def hidden_frames_count(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))

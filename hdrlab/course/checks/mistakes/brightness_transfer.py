@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "brightness_transfer_upper_edge",
-    says="You take a cumulated count for that of its level, though it belongs to the level's "
-    "upper edge: T is too high by up to one.",
+    says="You assign a cumulative count to the middle of its level, but it belongs to the "
+    "upper edge of the level. T is too high by up to one level.",
 )
 def upper_edge(h_A, h_B):
     n = len(np.asarray(h_A))
@@ -21,8 +21,8 @@ def upper_edge(h_A, h_B):
 
 @mistake(
     "brightness_transfer_half_a_level",
-    says="You put the share of the pixels below a level at that level, but a level's step "
-    "reaches from half below it to half above: T is too high by a half.",
+    says="You treat the edges of a level as the level itself. A level reaches from half below "
+    "it to half above it, so your T is too high by a half.",
 )
 def half_a_level(h_A, h_B):
     n = len(np.asarray(h_A))
@@ -34,7 +34,7 @@ def half_a_level(h_A, h_B):
 
 @mistake(
     "brightness_transfer_other_way",
-    says="Your T leads from B to A: look the ranks of A up in the cumulative histogram of B.",
+    says="Your T maps from B to A. Look up the ranks of A in the cumulative histogram of B.",
 )
 def other_way(h_A, h_B):
     n = len(np.asarray(h_A))
@@ -46,8 +46,8 @@ def other_way(h_A, h_B):
 
 @mistake(
     "brightness_transfer_outer_levels_taken",
-    says="B's highest level holds all that is brighter, and its lowest all that is darker: T "
-    "is NaN there, not a number.",
+    says="The highest level of B holds everything brighter, and the lowest everything darker. "
+    "T must be NaN there, not a number.",
 )
 def outer_levels_taken(h_A, h_B):
     n = len(np.asarray(h_A))

@@ -18,8 +18,8 @@ def _normal(w):
 
 @mistake(
     "centre_distance_in_pixels",
-    says="You measure the distance in pixels: measure it in heights down and in widths to the "
-    "right, so that it fits the picture.",
+    says="You measure the distance in pixels. Measure it in image heights down and image "
+    "widths to the right, so that it fits the image.",
 )
 def distance_in_pixels(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
@@ -35,8 +35,8 @@ def distance_in_pixels(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
 
 @mistake(
     "centre_disc_is_an_ellipse",
-    says="You take the spot's pixels by their distance in parts of the picture, and get an "
-    "ellipse: a spot measures in pixels.",
+    says="You select the pixels of the spot by relative distance, which gives an ellipse. A "
+    "spot is measured in pixels.",
 )
 def disc_is_an_ellipse(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
@@ -52,8 +52,8 @@ def disc_is_an_ellipse(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
 
 @mistake(
     "centre_not_normalised",
-    says="Your weights do not add up to 1: divide them by their sum, or the reading depends on "
-    "how many pixels there are.",
+    says="Your weights do not sum to 1. Divide them by their sum; otherwise the reading "
+    "depends on the number of pixels.",
 )
 def not_normalised(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
@@ -69,8 +69,8 @@ def not_normalised(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
 
 @mistake(
     "centre_exponential",
-    says="Yours has a peak in the middle, exp(-d / sigma): a Gaussian falls as exp(-d^2 / (2 "
-    "sigma^2)).",
+    says="Your weight has a peak in the middle, exp(-d / sigma). A Gaussian falls as exp(-d^2 "
+    "/ (2 sigma^2)).",
 )
 def exponential(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)

@@ -7,7 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "decode_half_bias_of_16",
-    says="Your values are half of what they should be: the exponent 15, not 16, stands for 2^0.",
+    says="Your values are half as large as they should be. The exponent 15, not 16, means 2^0.",
 )
 def bias_of_16(bits):
     bits = np.asarray(bits, np.int64)
@@ -19,8 +19,8 @@ def bias_of_16(bits):
 
 @mistake(
     "decode_half_hidden_one_forgotten",
-    says="The first 1 of a mantissa is not among the bits: a normal number is 1 + m / 1024 "
-    "times its power.",
+    says="The leading 1 of a mantissa is not stored. A normal number is 1 + m / 1024 times its "
+    "power of two.",
 )
 def hidden_one_forgotten(bits):
     bits = np.asarray(bits, np.int64)
@@ -32,8 +32,8 @@ def hidden_one_forgotten(bits):
 
 @mistake(
     "decode_half_smallest_have_the_one",
-    says="Where e = 0 there is no hidden 1, and the power is 2^-14: the value is 2^-14 m / "
-    "1024, or there would be no 0.",
+    says="Where e = 0 there is no hidden 1, and the power is 2^-14. The value is 2^-14 m / "
+    "1024; otherwise 0 could not be stored.",
 )
 def smallest_have_the_one(bits):
     bits = np.asarray(bits, np.int64)
@@ -45,7 +45,7 @@ def smallest_have_the_one(bits):
 
 @mistake(
     "decode_half_sign_lost",
-    says="All your values are positive: the first of the 16 bits is the sign.",
+    says="All your values are positive. The first of the 16 bits is the sign.",
 )
 def sign_lost(bits):
     bits = np.asarray(bits, np.int64)

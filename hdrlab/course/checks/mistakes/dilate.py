@@ -7,8 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "dilate_holes_left",
-    says="The inside of the figure is missing in your mask: fill the holes that the outline "
-    "encloses.",
+    says="Your mask has holes inside the figure. Fill the holes that the outline encloses.",
 )
 def holes_left(mask, margin):
     if not mask.any():
@@ -18,8 +17,8 @@ def holes_left(mask, margin):
 
 @mistake(
     "dilate_filled_first",
-    says="You fill the holes before the mask is widened: the margin closes gaps of an outline, "
-    "so its inside is filled at last.",
+    says="You fill the holes before you widen the mask. Widening closes gaps in an outline, so "
+    "fill the holes last.",
 )
 def filled_first(mask, margin):
     if not mask.any():
@@ -29,8 +28,8 @@ def filled_first(mask, margin):
 
 @mistake(
     "dilate_square",
-    says="Your margin is a square: its corners lie further than `margin` from the mask. "
-    "Measure by the straight line.",
+    says="Your margin is a square, whose corners are farther than `margin` from the mask. Use "
+    "the Euclidean distance.",
 )
 def square(mask, margin):
     if not mask.any():
@@ -40,7 +39,7 @@ def square(mask, margin):
 
 @mistake(
     "dilate_one_too_few",
-    says="A pixel that is just `margin` away belongs to the mask: compare with <=, not <.",
+    says="A pixel at a distance of exactly `margin` belongs to the mask: compare with <=, not <.",
 )
 def one_too_few(mask, margin):
     if not mask.any():

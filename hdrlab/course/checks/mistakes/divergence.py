@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "divergence_forward",
-    says="Your differences look forward, like those of the gradient: the divergence looks "
-    "back, or the picture drifts by a pixel.",
+    says="You use forward differences, like those of the gradient. The divergence needs "
+    "backward differences; otherwise the picture drifts by a pixel.",
     misses_method=True,
 )
 def forward(G):
@@ -19,8 +19,8 @@ def forward(G):
 
 @mistake(
     "divergence_rolls_around",
-    says="np.roll lets light flow from one edge of the picture into the other: before the "
-    "first row and column there is nothing.",
+    says="np.roll wraps from one edge of the picture to the other. Before the first row and "
+    "column the gradient is 0.",
 )
 def rolls_around(G):
     Gy = np.vstack([G[0, -2:-1], G[0, :-1], G[0, -2:-1]])
@@ -30,7 +30,7 @@ def rolls_around(G):
 
 @mistake(
     "divergence_wrong_sign",
-    says="Your divergence has the opposite sign: it is what flows out of a pixel, G(x) - G(x - 1).",
+    says="Your divergence has the opposite sign. It is what flows out of a pixel, G(x) - G(x - 1).",
 )
 def wrong_sign(G):
     Gy = np.pad(G[0, :-1], ((1, 1), (0, 0)))

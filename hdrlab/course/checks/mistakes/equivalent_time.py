@@ -5,8 +5,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "equivalent_time_aperture_once",
-    says="Twice the f-number is a quarter of the light, not a half: the ratio of the f-numbers "
-    "is squared.",
+    says="Twice the f-number lets in a quarter of the light, not a half: square the ratio of "
+    "the f-numbers.",
 )
 def aperture_once(T, F, F_new, *, S=100, S_new=100):
     return T * F_new / F * S / S_new
@@ -14,8 +14,8 @@ def aperture_once(T, F, F_new, *, S=100, S_new=100):
 
 @mistake(
     "equivalent_time_inverted",
-    says="A larger f-number lets less light through, so the time must become longer: your "
-    "ratio is upside down.",
+    says="A larger f-number lets in less light, so the time must be longer. Your ratio is "
+    "inverted.",
 )
 def inverted(T, F, F_new, *, S=100, S_new=100):
     return T * (F / F_new) ** 2 * S / S_new
@@ -23,7 +23,8 @@ def inverted(T, F, F_new, *, S=100, S_new=100):
 
 @mistake(
     "equivalent_time_speed_inverted",
-    says="A higher speed needs a shorter time: multiply by the old speed over the new one.",
+    says="A higher ISO speed needs a shorter time: multiply by the old speed divided by the "
+    "new one.",
 )
 def speed_inverted(T, F, F_new, *, S=100, S_new=100):
     return T * (F_new / F) ** 2 * S_new / S

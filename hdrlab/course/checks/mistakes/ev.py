@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "ev_aperture_once",
-    says="The light goes with the area of the aperture, which is 1 / F squared: each f-number "
-    "counts twice, 2 log2 F.",
+    says="The light is proportional to the area of the aperture, 1 / F squared, so the "
+    "f-number counts twice: 2 log2 F.",
 )
 def aperture_once(F, T, *, S=100.0):
     return np.log2(F) - np.log2(T) - np.log2(S / 100)
@@ -16,8 +16,7 @@ def aperture_once(F, T, *, S=100.0):
 
 @mistake(
     "ev_natural_logarithm",
-    says="Stops are powers of two: take the logarithm to the base 2, where you took the "
-    "natural one.",
+    says="Stops are powers of two. You took the natural logarithm; take the logarithm to base 2.",
 )
 def natural_logarithm(F, T, *, S=100.0):
     return 2 * np.log(F) - np.log(T) - np.log(S / 100)

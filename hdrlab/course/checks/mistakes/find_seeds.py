@@ -9,8 +9,8 @@ from hdrlab.radiance.deghosting.regions import SEED_SIDE
 
 @mistake(
     "find_seeds_threshold_alone",
-    says="You mark all that is above 1, specks and lines too: mark only what lies in a square "
-    "of 3 x 3 that is above 1 throughout.",
+    says="You mark everything above 1, including specks and lines. Mark only pixels in a 3 x 3 "
+    "square that is above 1 everywhere.",
     misses_method=True,
 )
 def threshold_alone(score):
@@ -19,8 +19,8 @@ def threshold_alone(score):
 
 @mistake(
     "find_seeds_middles_alone",
-    says="You mark the middle of each square alone, so a figure loses its rim: mark all nine "
-    "pixels of it.",
+    says="You mark only the middle of each square, so a figure loses its rim. Mark all nine "
+    "pixels of the square.",
 )
 def middles_alone(score):
     return ndimage.binary_erosion(score > 1, np.ones((SEED_SIDE, SEED_SIDE), bool))
@@ -28,8 +28,8 @@ def middles_alone(score):
 
 @mistake(
     "find_seeds_cross",
-    says="You ask for a cross of five pixels, which a corner of 3 x 3 need not fill: ask for "
-    "all nine of the square.",
+    says="You look for a cross of five pixels, without the corners of the 3 x 3 square. All "
+    "nine pixels must be above 1.",
 )
 def cross(score):
     return ndimage.binary_opening(score > 1)

@@ -11,8 +11,8 @@ from hdrlab.tonemap.durand import NEAR
 
 @mistake(
     "fix_uncertain_certainty_linear",
-    says="Your certainty rises with k itself: it rises with its logarithm, ln k / ln of the "
-    "root of 2 pi sigma_s^2.",
+    says="Your certainty is proportional to k. It must grow with the logarithm of k: ln k / ln "
+    "sqrt(2 pi sigma_s^2).",
 )
 def certainty_linear(mean, k, *, sigma_s):
     enough = (2 * math.pi * sigma_s**2) ** 0.5
@@ -24,8 +24,8 @@ def certainty_linear(mean, k, *, sigma_s):
 
 @mistake(
     "fix_uncertain_root_forgotten",
-    says="You ask for all 2 pi sigma_s^2 pixels before a base is certain: the root of that is "
-    "enough.",
+    says="You require all 2 pi sigma_s^2 pixels for a certain base. The square root of that "
+    "number is enough.",
 )
 def root_forgotten(mean, k, *, sigma_s):
     enough = 2 * math.pi * sigma_s**2
@@ -37,8 +37,8 @@ def root_forgotten(mean, k, *, sigma_s):
 
 @mistake(
     "fix_uncertain_not_clipped",
-    says="Your certainty is above 1 where k is large, and below 0 where it is small: keep it "
-    "between 0 and 1.",
+    says="Your certainty is above 1 for large k and below 0 for small k. Clip it to the range "
+    "from 0 to 1.",
 )
 def not_clipped(mean, k, *, sigma_s):
     enough = (2 * math.pi * sigma_s**2) ** 0.5

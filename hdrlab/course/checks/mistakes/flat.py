@@ -10,7 +10,7 @@ from hdrlab.response.selection import Average, spatial_average, temporal_average
 
 @mistake(
     "flat_noise_of_one_frame",
-    says="You compare the average of t frames with the noise of one: the variance of the "
+    says="You compare the average of t frames with the noise of one frame. The variance of the "
     "average is t times smaller.",
 )
 def noise_of_one_frame(A, *, size=5, psi=0.05, sigma=0.01):
@@ -26,8 +26,8 @@ def noise_of_one_frame(A, *, size=5, psi=0.05, sigma=0.01):
 
 @mistake(
     "flat_divided_by_t",
-    says="A pixel's variance over t frames is divided by t in yours: their mean was taken off, "
-    "so t - 1 are free.",
+    says="You divide a pixel's variance over t frames by t. One degree of freedom went into "
+    "their mean, so divide by t - 1.",
 )
 def divided_by_t(A, *, size=5, psi=0.05, sigma=0.01):
     def temporal_average(A, *, sigma=0.01):
@@ -47,8 +47,8 @@ def divided_by_t(A, *, size=5, psi=0.05, sigma=0.01):
 
 @mistake(
     "flat_edge_counts",
-    says="At the edge of the picture a patch is not whole, and nobody can say whether it is "
-    "flat: False there.",
+    says="At the edge of the image a patch is incomplete, so it cannot be tested. Return False "
+    "there.",
 )
 def edge_counts(A, *, size=5, psi=0.05, sigma=0.01):
     mean, variance, t = temporal_average(A, sigma=sigma)
@@ -63,8 +63,8 @@ def edge_counts(A, *, size=5, psi=0.05, sigma=0.01):
 
 @mistake(
     "flat_other_tail",
-    says="Your limit is what noise stays below in the part psi: take what it exceeds in psi, "
-    "isf, or ppf of 1 - psi.",
+    says="Your limit is the lower quantile psi of the noise. Use the upper one: isf(psi), "
+    "which is ppf(1 - psi).",
 )
 def other_tail(A, *, size=5, psi=0.05, sigma=0.01):
     def threshold(s=25, *, psi=0.05, estimated=np.inf):

@@ -10,8 +10,8 @@ from hdrlab.io.maps.pfm import HEADER
 
 @mistake(
     "from_bytes_always_little_endian",
-    says="You read every file as little endian; the sign of the scale says which it is, and "
-    "positive is big endian.",
+    says="You read every file as little endian. The sign of the scale gives the byte order; "
+    "positive means big endian.",
 )
 def always_little_endian(data):
     match = HEADER.match(data)
@@ -24,7 +24,7 @@ def always_little_endian(data):
 
 @mistake(
     "from_bytes_strips_the_values",
-    says="You strip white space before the values; a value's own bytes may look like white space.",
+    says="You strip white space before the values. The bytes of a value may look like white space.",
 )
 def strips_the_values(data):
     match = HEADER.match(data)
@@ -37,7 +37,7 @@ def strips_the_values(data):
 
 @mistake(
     "from_bytes_upside_down",
-    says="Your picture is upside down: the first row in the file is the lowest one.",
+    says="Your picture is upside down: the first row in the file is the bottom row.",
 )
 def upside_down(data):
     match = HEADER.match(data)

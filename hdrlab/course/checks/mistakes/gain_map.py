@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "gain_map_natural_logarithm",
-    says="Your gain is a natural logarithm. low and high are stops, and a stop is twice the "
-    "light: take log2.",
+    says="Your gain is a natural logarithm. low and high are stops, and one stop is twice the "
+    "light: use log2.",
     misses_method=True,
 )
 def natural_logarithm(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
@@ -22,8 +22,8 @@ def natural_logarithm(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_without_offsets",
-    says="You leave out the offsets, so black has no gain that is finite. Add k[0] to the "
-    "picture and k[1] to the scene.",
+    says="You left out the offsets, so black has no finite gain. Add k[0] to the picture and "
+    "k[1] to the scene.",
 )
 def without_offsets(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     def log_gain(sdr, hdr, *, k=OFFSETS):
@@ -35,8 +35,7 @@ def without_offsets(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_offsets_swapped",
-    says="You add the scene's offset to the picture, and the picture's to the scene: k is "
-    "(k_sdr, k_hdr).",
+    says="You swapped the offsets of scene and picture: k is (k_sdr, k_hdr).",
 )
 def offsets_swapped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     def log_gain(sdr, hdr, *, k=OFFSETS):
@@ -48,8 +47,7 @@ def offsets_swapped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_not_clipped",
-    says="Gains beyond low and high leave the map below 0 or above 1. Clip their share of the "
-    "range to 0 ... 1.",
+    says="Gains below low or above high give map values outside 0 ... 1. Clip the map to 0 ... 1.",
 )
 def not_clipped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     return ((log_gain(sdr, hdr, k=k) - low) / np.subtract(high, low)) ** gamma
@@ -57,8 +55,8 @@ def not_clipped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_gamma_inverted",
-    says="You raise the share to 1 / gamma, as whoever reads the map does. The map is the "
-    "share to the power of gamma.",
+    says="You raise the fraction to 1 / gamma, as a reader of the map does. The map is the "
+    "fraction to the power of gamma.",
 )
 def gamma_inverted(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     return np.clip((log_gain(sdr, hdr, k=k) - low) / np.subtract(high, low), 0, 1) ** (1 / gamma)

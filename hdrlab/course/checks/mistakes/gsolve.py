@@ -8,7 +8,7 @@ from hdrlab.response.debevec import Solution
 
 @mistake(
     "gsolve_weight_of_the_neighbour",
-    says="The smoothness row of level z is weighted by w(z), the level in its middle; you took "
+    says="The smoothness row of level z is weighted by w(z), the level in its middle. You used "
     "the weight of a neighbour.",
 )
 def weight_of_the_neighbour(Z, B, smoothness, w):
@@ -33,7 +33,7 @@ def weight_of_the_neighbour(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_smoothness_not_weighted",
-    says="The smoothness rows have a weight too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). "
+    says="The smoothness rows need a weight, too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). "
     "Without w(z) the ends are as stiff as the middle.",
 )
 def smoothness_not_weighted(Z, B, smoothness, w):
@@ -83,8 +83,8 @@ def right_side_not_weighted(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_not_weighted",
-    says="The data rows have no weight: clipped pixels, which say only at least or at most, "
-    "bend your curve.",
+    says="Your data rows have no weight, so clipped pixels, which only give a bound, bend your "
+    "curve.",
 )
 def not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -108,8 +108,8 @@ def not_weighted(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_lambda_inverted",
-    says="Your curve becomes rougher where lambda grows: the smoothness rows are multiplied by "
-    "lambda, and you divide.",
+    says="Your curve becomes rougher when lambda grows. Multiply the smoothness rows by "
+    "lambda; do not divide.",
 )
 def lambda_inverted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -133,8 +133,8 @@ def lambda_inverted(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_lambda_read_as_1",
-    says="The listing's digit 1 is a letter: lambda. Your smoothness rows do not hold it, so "
-    "the knob does nothing.",
+    says="What looks like the digit 1 in the printed listing is the letter l, for lambda. Your "
+    "smoothness rows ignore lambda.",
 )
 def lambda_read_as_1(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -158,8 +158,8 @@ def lambda_read_as_1(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_log2_of_the_times",
-    says="B is the natural logarithm of the times; you took the one to the base 2, and every "
-    "stop is 1.44 times too long.",
+    says="B is the natural logarithm of the times. You used base 2, so every stop is 1.44 "
+    "times too long.",
 )
 def log2_of_the_times(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -183,8 +183,8 @@ def log2_of_the_times(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_root_of_lambda",
-    says="Your smoothness rows hold the square root of lambda: in the sum lambda stands within "
-    "the square, so the row holds lambda itself.",
+    says="Your smoothness rows contain the square root of lambda. In the sum, lambda is inside "
+    "the square, so the row contains lambda itself.",
 )
 def root_of_lambda(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):

@@ -9,8 +9,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "guided_lines_not_averaged",
-    says="You take the line of the window around each pixel alone. It lies in many windows: "
-    "take the mean of all a and of all b.",
+    says="You use only the line of the window around each pixel. Each pixel is in many "
+    "windows: average their a and b.",
 )
 def lines_not_averaged(I, p=None, *, radius, epsilon):
     I = np.asarray(I, np.float64)
@@ -21,7 +21,7 @@ def lines_not_averaged(I, p=None, *, radius, epsilon):
 
 @mistake(
     "guided_variance_for_covariance",
-    says="Your slope is var(I) over var(I) + eps whatever p is: in its numerator stands the "
+    says="Your slope is var(I) / (var(I) + eps), whatever p is. The numerator is the "
     "covariance of I and p.",
 )
 def variance_for_covariance(I, p=None, *, radius, epsilon):
@@ -40,7 +40,7 @@ def variance_for_covariance(I, p=None, *, radius, epsilon):
 
 @mistake(
     "guided_epsilon_squared",
-    says="epsilon is a variance already, in squares of the unit of I: do not square it.",
+    says="epsilon is a variance already, in squared units of I: do not square it.",
 )
 def epsilon_squared(I, p=None, *, radius, epsilon):
     def lines(I, p, *, radius, epsilon):
@@ -80,8 +80,8 @@ def window_of_radius(I, p=None, *, radius, epsilon):
 
 @mistake(
     "guided_line_of_the_picture",
-    says="You put p into the line. q is a line of the guide I, whose edges it has: mean(a) I + "
-    "mean(b).",
+    says="You apply the line to p. q is a linear function of the guide I, whose edges it gets: "
+    "mean(a) I + mean(b).",
 )
 def line_of_the_picture(I, p=None, *, radius, epsilon):
     I = np.asarray(I, np.float64)

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "hat_ends_count",
-    says="You added 1, so that clipped levels still count: a pixel of level 255 says only that "
-    "there was at least so much light.",
+    says="You added 1, so clipped levels still have a weight. A pixel at level 255 only says "
+    "that there was at least that much light.",
 )
 def ends_count(n=256):
     z = np.arange(n)
@@ -17,8 +17,8 @@ def ends_count(n=256):
 
 @mistake(
     "hat_half_at_the_ends",
-    says="You take the distance from the middle off 1 in shares of the whole range, so that "
-    "the ends keep half the weight. They keep none: divide by half the range.",
+    says="You divide the distance from the middle by the whole range, so the ends keep half "
+    "the weight. Divide by half the range: the ends have weight 0.",
 )
 def half_at_the_ends(n=256):
     z = np.arange(n)
@@ -27,7 +27,7 @@ def half_at_the_ends(n=256):
 
 @mistake(
     "hat_of_256_levels",
-    says="Your table has 256 levels whatever n says; photographs of 16 bits have 65536.",
+    says="Your table has 256 levels whatever n is. Photographs of 16 bits have 65536.",
 )
 def of_256_levels(n=256):
     z = np.arange(n)
@@ -36,8 +36,8 @@ def of_256_levels(n=256):
 
 @mistake(
     "hat_ramp",
-    says="Your weight is a ramp up to the top, so levels that are nearly clipped are trusted "
-    "most. A hat falls to both sides.",
+    says="Your weight rises to the top, so nearly clipped levels are trusted most. A hat falls "
+    "to both sides.",
     misses_method=True,
 )
 def ramp(n=256):
@@ -47,8 +47,8 @@ def ramp(n=256):
 
 @mistake(
     "hat_zero_in_the_middle",
-    says="Your hat stands on its head: it is 0 in the middle, where a photograph tells most, "
-    "and largest where it is clipped.",
+    says="Your hat is upside down: it is 0 in the middle, where a pixel measures best, and "
+    "largest where it is clipped.",
     misses_method=True,
 )
 def zero_in_the_middle(n=256):

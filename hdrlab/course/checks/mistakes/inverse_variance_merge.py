@@ -8,8 +8,8 @@ from hdrlab.radiance.uncertainty import REWEIGHTING_ROUNDS, variance
 
 @mistake(
     "inverse_variance_merge_by_what_was_counted",
-    says="You take V from what each photograph counted: one with too few photons, by chance, "
-    "counts too much. Take it from E t, once E is known.",
+    says="You compute V from each photograph's own count, so one that counted too few photons "
+    "by chance gets too much weight. Compute it from E t.",
 )
 def by_what_was_counted(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -23,8 +23,7 @@ def by_what_was_counted(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_times_forgotten",
-    says="You weigh by the variance of X. What is averaged is X / t, and the variance of that "
-    "is V / t^2.",
+    says="You weight by the variance of X. You average X / t, whose variance is V / t^2.",
 )
 def times_forgotten(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -38,7 +37,7 @@ def times_forgotten(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_time_once",
-    says="The variance of X / t is that of X over t squared; you divide by t once.",
+    says="The variance of X / t is the variance of X divided by t squared. You divide by t once.",
 )
 def time_once(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -52,8 +51,8 @@ def time_once(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_inverse_deviation",
-    says="You weigh by the inverse of the standard deviation. Of all weights the inverse of "
-    "the variance leaves the least doubt.",
+    says="You weight by the inverse standard deviation. The inverse variance gives the "
+    "smallest error of all weights.",
 )
 def inverse_deviation(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -67,7 +66,8 @@ def inverse_deviation(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_root_forgotten",
-    says="You return the variance. s is a standard deviation, its root: 1 / sqrt(sum 1 / V).",
+    says="You return the variance. s is a standard deviation, its square root: 1 / sqrt(sum 1 "
+    "/ V).",
 )
 def root_forgotten(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -81,8 +81,8 @@ def root_forgotten(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_clipped_count",
-    says="You count photographs that do not measure the pixel: where `measured` is False, 1 / "
-    "V is 0.",
+    says="You use photographs that do not measure the pixel. Where `measured` is False, 1 / V "
+    "is 0.",
 )
 def clipped_count(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -96,8 +96,8 @@ def clipped_count(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_best_alone",
-    says="Your s is that of the surest photograph alone. All of them together know more: s^2 = "
-    "1 / sum (1 / V).",
+    says="Your s is that of the best photograph alone. Together they measure more precisely: "
+    "s^2 = 1 / sum (1 / V).",
 )
 def best_alone(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -111,8 +111,8 @@ def best_alone(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_plain_mean",
-    says="You take the plain mean: each answer counts the same. Count each by the inverse of "
-    "its variance, 1 / V.",
+    says="You take the plain mean, so each photograph counts the same. Weight each by its "
+    "inverse variance, 1 / V.",
     misses_method=True,
 )
 def plain_mean(X, D, measured, t, N, R):

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "irradiance_black_where_clipped",
-    says="Where no frame saw the sample well nothing is known of it. You answer 0, which is "
-    "the darkest there is: a dark sun.",
+    says="If no frame measures the sample, its irradiance is unknown. You return 0, which "
+    "turns the sun black.",
 )
 def black_where_clipped(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):
@@ -17,7 +17,8 @@ def black_where_clipped(Z, t, f_inv, w):
 
 @mistake(
     "irradiance_not_weighted",
-    says="Without weights clipped pixels count like all others, and pull bright irradiances down.",
+    says="Without weights, clipped pixels count like all others and make bright irradiances "
+    "too low.",
 )
 def not_weighted(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):
@@ -26,7 +27,7 @@ def not_weighted(Z, t, f_inv, w):
 
 @mistake(
     "irradiance_time_below_alone",
-    says="The time belongs above the fraction as well: sum w f t over sum w t^2.",
+    says="The time belongs in the numerator, too: sum w f t / sum w t^2.",
 )
 def time_below_alone(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):
@@ -35,8 +36,8 @@ def time_below_alone(Z, t, f_inv, w):
 
 @mistake(
     "irradiance_time_once",
-    says="Below the fraction the time is squared: sum w t^2. Yours weights frames as if all "
-    "light were counted in one bin.",
+    says="The time is squared in the denominator: sum w t^2. Your fraction is the sum of the "
+    "exposures over the sum of the times.",
 )
 def time_once(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):

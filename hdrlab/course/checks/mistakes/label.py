@@ -9,7 +9,7 @@ from hdrlab.radiance.deghosting.regions import CONNECTED
 
 @mistake(
     "label_corners_apart",
-    says="Pixels that touch in a corner are two parts in your labels: a pixel has eight "
+    says="You give different labels to pixels that touch at a corner. A pixel has eight "
     "neighbours, not four.",
 )
 def corners_apart(mask):
@@ -18,7 +18,7 @@ def corners_apart(mask):
 
 @mistake(
     "label_from_0_on",
-    says="Your outside has a label like a part: it is 0, and the parts are numbered from 1 on.",
+    says="You label the outside like a part. The outside is 0, and the parts are numbered from 1.",
 )
 def from_0_on(mask):
     return ndimage.label(mask, CONNECTED)[0].astype(np.int32) + 1

@@ -10,8 +10,8 @@ from hdrlab.tonemap.durand import Layers, fix_uncertain
 
 @mistake(
     "layers_plain_blur",
-    says="Your base is a plain blur: it crosses the edges, and leaves halos. Weight each "
-    "neighbour by its difference in lL too.",
+    says="Your base is a plain blur. It crosses edges and causes halos. Weight each neighbour "
+    "by its difference in lL, too.",
     misses_method=True,
 )
 def plain_blur(lL, *, sigma_s, sigma_r=0.4):
@@ -21,8 +21,8 @@ def plain_blur(lL, *, sigma_s, sigma_r=0.4):
 
 @mistake(
     "layers_sigma_not_squared",
-    says="The exponent of a Gaussian is -d^2 / (2 sigma^2); yours has sigma where its square "
-    "belongs, so the widths are not those asked for.",
+    says="The exponent of a Gaussian is -d^2 / (2 sigma^2). You did not square sigma, so the "
+    "widths are wrong.",
 )
 def sigma_not_squared(lL, *, sigma_s, sigma_r=0.4):
     base = bilateral(lL, sigma_s=sigma_s**0.5, sigma_r=sigma_r**0.5).mean
@@ -31,8 +31,8 @@ def sigma_not_squared(lL, *, sigma_s, sigma_r=0.4):
 
 @mistake(
     "layers_weights_not_divided",
-    says="You did not divide by the sum of the weights: where few neighbours are alike the "
-    "base is too small.",
+    says="You did not divide by the sum of the weights, so the base is too small where few "
+    "neighbours are similar.",
 )
 def weights_not_divided(lL, *, sigma_s, sigma_r=0.4):
     base = np.prod(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), axis=0) / (
@@ -43,8 +43,8 @@ def weights_not_divided(lL, *, sigma_s, sigma_r=0.4):
 
 @mistake(
     "layers_detail_sign",
-    says="Your detail has the sign reversed, as one lecture prints it: detail = lL - base, so "
-    "that both add up to the picture.",
+    says="Your detail has the wrong sign, which one lecture also prints. detail = lL - base, "
+    "so that the two add up to lL.",
 )
 def detail_sign(lL, *, sigma_s, sigma_r=0.4):
     base = fix_uncertain(*bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)

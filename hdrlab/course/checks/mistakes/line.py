@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "line_not_weighted",
-    says="All pairs count alike in your line: the variance of a bright pair errs by most, so "
-    "it counts least, by 1 / V^2.",
+    says="You give all pairs the same weight. The variance of a bright pair has the largest "
+    "error, so it needs the smallest weight, 1 / V^2.",
     misses_method=True,
 )
 def not_weighted(S, V):
@@ -19,8 +19,8 @@ def not_weighted(S, V):
 
 @mistake(
     "line_dark_pair_left_in",
-    says="The read noise is still in your V: take the variance of the dark pair, V[0], off all "
-    "of them.",
+    says="Your V still contains the read noise. Subtract the variance of the dark pair, V[0], "
+    "from all of them.",
 )
 def dark_pair_left_in(S, V):
     w = 1 / np.maximum(V, ROUNDING_VARIANCE) ** 2
@@ -29,7 +29,8 @@ def dark_pair_left_in(S, V):
 
 @mistake(
     "line_weighted_by_the_deviation",
-    says="A variance errs in proportion to itself, so its weight is 1 / V^2; you took 1 / V.",
+    says="The error of a variance is proportional to the variance, so its weight is 1 / V^2. "
+    "You used 1 / V.",
 )
 def weighted_by_the_deviation(S, V):
     w = 1 / np.maximum(V, ROUNDING_VARIANCE)
@@ -38,7 +39,7 @@ def weighted_by_the_deviation(S, V):
 
 @mistake(
     "line_turned_over",
-    says="You answer K, electrons a level; asked is the slope of the line, which is 1 / K.",
+    says="You return K, electrons per level. The slope of the line is 1 / K.",
 )
 def turned_over(S, V):
     w = 1 / np.maximum(V, ROUNDING_VARIANCE) ** 2

@@ -17,8 +17,8 @@ def base_2(L, *, delta=1e-06):
 
 @mistake(
     "log_average_black_left_out",
-    says="You take the mean of log L where L is above 0 alone: black pixels are part of the "
-    "scene, and the delta is there for them.",
+    says="You average log L only where L is above 0. Black pixels are part of the scene; delta "
+    "keeps their logarithm finite.",
 )
 def black_left_out(L, *, delta=1e-06):
     return float(np.exp(np.log(L[L > 0]).mean(dtype=np.float64)))
@@ -26,8 +26,7 @@ def black_left_out(L, *, delta=1e-06):
 
 @mistake(
     "log_average_stays_a_logarithm",
-    says="You stopped at the mean of the logarithms: take exp of it, so that Lav has the unit "
-    "of L.",
+    says="You return the mean of the logarithms. Take exp of it, so that Lav has the unit of L.",
 )
 def stays_a_logarithm(L, *, delta=1e-06):
     median = np.median(L[L > 0]) if np.any(L) else 1.0
@@ -36,8 +35,8 @@ def stays_a_logarithm(L, *, delta=1e-06):
 
 @mistake(
     "log_average_linear",
-    says="This is the mean of L itself: one lamp decides how bright the whole scene counts. "
-    "Take the mean of the logarithms.",
+    says="This is the mean of L itself, so one lamp decides how bright the scene is. Take the "
+    "mean of the logarithms.",
     misses_method=True,
 )
 def linear(L, *, delta=1e-06):

@@ -9,8 +9,8 @@ from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
 
 @mistake(
     "merge_mean_of_radiance",
-    says="You average the radiances; asked is the mean of their logarithms, which one bright "
-    "outlier moves less.",
+    says="You average the radiances. Average their logarithms: a bright outlier changes that "
+    "mean less.",
     misses_method=True,
 )
 def mean_of_radiance(images, times, g, w=None):
@@ -29,8 +29,8 @@ def mean_of_radiance(images, times, g, w=None):
 
 @mistake(
     "merge_by_the_number_of_frames",
-    says="You divide by the number of frames. Divide by the sum of the weights: a pixel that "
-    "is trusted in one frame alone has its value from that one.",
+    says="You divide by the number of frames. Divide by the sum of the weights, so that a "
+    "pixel with a weight in one frame only keeps that frame's value.",
 )
 def by_the_number_of_frames(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -46,8 +46,7 @@ def by_the_number_of_frames(images, times, g, w=None):
 
 @mistake(
     "merge_always_the_hat",
-    says="You use the hat whatever w is given; look the weights up in w, and take the hat "
-    "where it is None.",
+    says="You always use the hat. Look up the weights in w, and use the hat only if w is None.",
 )
 def always_the_hat(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -63,7 +62,7 @@ def always_the_hat(images, times, g, w=None):
 
 @mistake(
     "merge_green_curve_for_all",
-    says="You read every channel by the curve of green; g[:, c] belongs to channel c.",
+    says="You use the green curve for every channel. g[:, c] belongs to channel c.",
 )
 def green_curve_for_all(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -79,8 +78,8 @@ def green_curve_for_all(images, times, g, w=None):
 
 @mistake(
     "merge_log2_of_the_times",
-    says="g holds natural logarithms, and you subtract the logarithm to the base 2 of the "
-    "times: take ln of both.",
+    says="g holds natural logarithms, but you subtract the base-2 logarithm of the times. Take "
+    "ln of both.",
 )
 def log2_of_the_times(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -96,7 +95,7 @@ def log2_of_the_times(images, times, g, w=None):
 
 @mistake(
     "merge_power_of_two",
-    says="g holds natural logarithms, so the way back from ln E is exp; you took the power of 2.",
+    says="g holds natural logarithms, so the inverse of ln E is exp. You used a power of 2.",
 )
 def power_of_two(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -112,8 +111,8 @@ def power_of_two(images, times, g, w=None):
 
 @mistake(
     "merge_times_forgotten",
-    says="exp(g) is the exposure, light times time: you forgot to divide by each frame's time, "
-    "so frames of one scene disagree.",
+    says="exp(g) is the exposure, irradiance times time. Divide by each frame's time; "
+    "otherwise frames of one scene disagree.",
 )
 def times_forgotten(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -129,8 +128,8 @@ def times_forgotten(images, times, g, w=None):
 
 @mistake(
     "merge_not_weighted",
-    says="All frames count the same in your mean: noise of dark levels, and levels that are "
-    "nearly clipped, enter in full.",
+    says="All frames count the same in your mean, so noisy dark levels and nearly clipped "
+    "levels have full weight.",
     misses_method=True,
 )
 def not_weighted(images, times, g, w=None):

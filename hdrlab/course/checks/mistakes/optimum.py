@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "optimum_wrong_way",
-    says="A picture that is too bright needs a higher exposure value, which lets less light "
-    "in: yours goes down.",
+    says="A picture that is too bright needs a higher exposure value, which lets in less "
+    "light. Yours goes down.",
 )
 def wrong_way(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
     return EV_pre - np.log2(B_pre) + np.log2(B_opt)
@@ -17,8 +17,8 @@ def wrong_way(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
 
 @mistake(
     "optimum_natural_logarithm",
-    says="Stops are powers of two: take the logarithm to the base 2, where you took the "
-    "natural one for B.",
+    says="Stops are powers of two. You took the natural logarithm of B; take the logarithm to "
+    "base 2.",
 )
 def natural_logarithm(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
     return EV_pre + np.log(B_pre) - np.log(B_opt)
@@ -26,8 +26,7 @@ def natural_logarithm(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
 
 @mistake(
     "optimum_always_middle_gray",
-    says="You bring every reading to 0.18, whatever B_opt says: it is 0.18 only where nothing "
-    "else is asked.",
+    says="You always aim at 0.18, whatever B_opt is. 0.18 is only its default.",
 )
 def always_middle_gray(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
     return EV_pre + np.log2(B_pre) - np.log2(0.18)

@@ -8,7 +8,7 @@ from hdrlab.tonemap.transfer import BRIGHTEST, C1, C2, C3, M1, M2, within
 
 @mistake(
     "pq_inverted_first_power",
-    says="Your Y is raised to 1 / m1, as in the inverse. From luminance to signal it is Y^m1.",
+    says="You raise Y to 1 / m1, as in the inverse function. From luminance to signal, use Y^m1.",
 )
 def inverted_first_power(FD):
     Ym = (within(FD, BRIGHTEST) / BRIGHTEST) ** (1 / M1)
@@ -17,8 +17,8 @@ def inverted_first_power(FD):
 
 @mistake(
     "pq_over_the_brightest_of_the_picture",
-    says="You divide by the largest luminance that came. PQ is absolute: Y is FD over 10,000 "
-    "cd/m2, whatever else there is.",
+    says="You divide by the largest luminance in the picture. PQ is absolute: Y is FD / 10,000 "
+    "cd/m2.",
 )
 def over_the_brightest_of_the_picture(FD):
     Ym = (within(FD, BRIGHTEST) / np.max(FD)) ** M1

@@ -8,7 +8,7 @@ from hdrlab.radiance.ratios import State, solve_ratio, square_errors
 
 @mistake(
     "ratio_steps_weights_once",
-    says="Your sums have the weight v once: in a sum of (v (y - k x))^2 it is squared, so k = "
+    says="Your sums contain the weight v once. The sum of (v (y - k x))^2 squares it, so k = "
     "sum v^2 x y / sum v^2 x^2.",
 )
 def weights_once(found, *, limit=9.0, tolerance=1e-06, rounds=100):
@@ -30,8 +30,8 @@ def weights_once(found, *, limit=9.0, tolerance=1e-06, rounds=100):
 
 @mistake(
     "ratio_steps_never_back",
-    says="A pair that is out once stays out in your rounds: ask all of them in each, for the "
-    "first k may have been drawn aside.",
+    says="A pair that you rejected once stays out. Test all pairs in each round, because "
+    "outliers may have distorted the first k.",
 )
 def never_back(found, *, limit=9.0, tolerance=1e-06, rounds=100):
     used = np.ones(len(found[0]), bool)
@@ -48,8 +48,8 @@ def never_back(found, *, limit=9.0, tolerance=1e-06, rounds=100):
 
 @mistake(
     "ratio_steps_mean_of_all",
-    says="Your V is the mean over all pairs, outliers too, and leaves out too few: take it "
-    "over those in use.",
+    says="Your V is the mean over all pairs, including outliers, so you reject too few. Take "
+    "the mean over the pairs in use.",
 )
 def mean_of_all(found, *, limit=9.0, tolerance=1e-06, rounds=100):
     used = np.ones(len(found[0]), bool)

@@ -17,8 +17,8 @@ from hdrlab.response.mitsunaga import (
 
 @mistake(
     "recover_one_curve_for_all",
-    says="Each channel has a curve of its own: g of colour photographs is (256, 3), and yours "
-    "is that of green alone.",
+    says="Each channel has its own curve: for colour photographs, g is (256, 3). Yours is the "
+    "curve of green alone.",
 )
 def one_curve_for_all(images, times, *, order=5, eps=0.001):
     images, t = (
@@ -39,8 +39,8 @@ def one_curve_for_all(images, times, *, order=5, eps=0.001):
 
 @mistake(
     "recover_times_believed",
-    says="You believe the times that were given: after each fit the ratios are to be taken "
-    "anew from the curve, R = sum f^-1(M_q) / sum f^-1(M_q+1).",
+    says="You trust the given times. After each fit, compute the ratios from the new curve: R "
+    "= sum f^-1(M_q) / sum f^-1(M_q+1).",
 )
 def times_believed(images, times, *, order=5, eps=0.001):
     def fit_steps(M, R, order, *, eps=0.001, max_iterations=30):
@@ -73,7 +73,7 @@ def times_believed(images, times, *, order=5, eps=0.001):
 
 @mistake(
     "recover_response_not_inverse",
-    says="You answer f^-1, the exposure of each level; asked is its logarithm, g = ln f^-1.",
+    says="You return f^-1, the exposure of each level. Return its logarithm, g = ln f^-1.",
 )
 def response_not_inverse(images, times, *, order=5, eps=0.001):
     def curve(c, n=256, *, least=0.0001):

@@ -9,7 +9,7 @@ from hdrlab.response.robertson import State, alternate, fill, irradiance, linear
 @mistake(
     "recover_steps_weighted_update",
     says="You weight the update of f^-1. It is a plain mean over the pixels of a level; "
-    "weights of time and level bias it.",
+    "weights by time and level bias it.",
 )
 def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     def alternate(Z, t, w):
@@ -36,8 +36,8 @@ def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_exponential_start",
-    says="The iterations begin with a linear camera. You begin with an exponential, and what "
-    "the photographs leave open stays bent like it.",
+    says="Start the iterations with a linear response. You start with an exponential, whose "
+    "shape remains where the photographs do not constrain the curve.",
 )
 def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     def linear(n=256):
@@ -57,8 +57,8 @@ def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_empty_left_at_0",
-    says="Levels without pixels stay 0 in your response. They lie between their neighbours: "
-    "fill them, or later iterations read 0 there.",
+    says="Levels without pixels stay 0 in your response. Fill them from their neighbours; "
+    "otherwise later iterations use 0 there.",
 )
 def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     t = np.asarray(times, np.float64) / np.max(times)
@@ -75,8 +75,8 @@ def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_one_turn",
-    says="One iteration is not the end: the new f^-1 gives a better E, and that a better one. "
-    "Go on until it hardly changes.",
+    says="You stop after one iteration. A new f^-1 gives a better E, and that a better f^-1: "
+    "iterate until it hardly changes.",
     misses_method=True,
 )
 def one_turn(Z, times, w, *, tolerance=0.0001, max_iterations=200):

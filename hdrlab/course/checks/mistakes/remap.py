@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "remap_not_in_sigmas",
-    says="Your power is of d itself. Divide by sigma before you raise it to alpha, so that "
-    "sigma stays sigma.",
+    says="You take the power of d itself. Divide d by sigma before you raise it to alpha, so "
+    "that sigma stays sigma.",
 )
 def not_in_sigmas(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
@@ -18,8 +18,8 @@ def not_in_sigmas(lL, g, *, sigma, alpha, beta):
 
 @mistake(
     "remap_edges_jump",
-    says="Beyond sigma you leave out the first sigma of the edge: r jumps back to g there. Add "
-    "it to beta (d - sigma).",
+    says="Beyond sigma you leave out the first sigma of the edge, so r jumps back to g there. "
+    "Add sigma to beta (d - sigma).",
 )
 def edges_jump(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
@@ -32,8 +32,8 @@ def edges_jump(lL, g, *, sigma, alpha, beta):
 
 @mistake(
     "remap_beta_of_the_whole",
-    says="You take beta of the whole difference. Only what is beyond sigma shrinks: beta (d - "
-    "sigma).",
+    says="You multiply the whole difference by beta. Only the part beyond sigma shrinks: beta "
+    "(d - sigma).",
 )
 def beta_of_the_whole(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)

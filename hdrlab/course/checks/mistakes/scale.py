@@ -9,7 +9,8 @@ from hdrlab.tonemap.chiu import SMALLEST_DIVISOR, choose_sigma
 
 @mistake(
     "scale_blur_of_the_inverse",
-    says="You blurred 1 / L: dark pixels count most in that mean. Blur L, and divide then.",
+    says="You blurred 1 / L, a mean in which dark pixels count most. Blur L first, and then "
+    "divide.",
 )
 def blur_of_the_inverse(L, *, headroom=8.0, sigma=None):
     return gaussian_filter(1 / L, choose_sigma(L, sigma)) / headroom
@@ -17,8 +18,8 @@ def blur_of_the_inverse(L, *, headroom=8.0, sigma=None):
 
 @mistake(
     "scale_headroom_above",
-    says="k belongs below the fraction: with more headroom the picture becomes darker, so that "
-    "bright pixels find room.",
+    says="k belongs in the denominator. More headroom makes the picture darker, so that bright "
+    "pixels are not clipped.",
 )
 def headroom_above(L, *, headroom=8.0, sigma=None):
     return headroom / np.maximum(gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)
@@ -26,8 +27,8 @@ def headroom_above(L, *, headroom=8.0, sigma=None):
 
 @mistake(
     "scale_times_luminance",
-    says="You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. A further "
-    "factor L, where it is printed, is a misprint, and makes L^2 of the picture.",
+    says="You multiplied by L already. s = 1 / (k blur(L)) is only the scale; a printed "
+    "further factor L is a misprint, which would give L^2.",
 )
 def times_luminance(L, *, headroom=8.0, sigma=None):
     return L / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)
@@ -35,8 +36,8 @@ def times_luminance(L, *, headroom=8.0, sigma=None):
 
 @mistake(
     "scale_not_blurred",
-    says="You divided by L itself: every pixel of the picture becomes 1 / k. The scale follows "
-    "the neighbourhood, not the pixel.",
+    says="You divided by L itself, so every pixel becomes 1 / k. The scale depends on the "
+    "blurred luminance around the pixel.",
     misses_method=True,
 )
 def not_blurred(L, *, headroom=8.0, sigma=None):

@@ -10,8 +10,8 @@ from hdrlab.tonemap.reinhard import WIDTHS, Scale, response
 
 @mistake(
     "scale_steps_surround_kept",
-    says="You never update the surround: at each width the centre is compared with the next "
-    "larger blur, not with the same one.",
+    says="You never update the surround. At each width, compare the centre with the next "
+    "larger blur, not always with the same one.",
 )
 def surround_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     even, adaptation = np.array(True), np.zeros(1, np.float32)
@@ -24,7 +24,7 @@ def surround_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
 
 @mistake(
     "scale_steps_index_as_width",
-    says="s is the width in pixels, 1, 1.6, 2.56 ... 26.8. You used the number of the step.",
+    says="s is the width in pixels: 1, 1.6, 2.56 ... 26.8. You used the index of the step.",
 )
 def index_as_width(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     def response(V1, V2, *, width, key=0.18, phi=8.0):
@@ -40,8 +40,8 @@ def index_as_width(blurred, *, key=0.18, phi=8.0, threshold=0.05):
 
 @mistake(
     "scale_steps_does_not_stop",
-    says="A pixel stops at the first width that is not even. Yours goes on, and takes a larger "
-    "one that happens to be even again, across the edge.",
+    says="A pixel stops at the first width that is not even. You continue and take a larger "
+    "width that happens to be even again, across the edge.",
 )
 def does_not_stop(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     even, adaptation = np.array(True), np.zeros(1, np.float32)
@@ -54,8 +54,8 @@ def does_not_stop(blurred, *, key=0.18, phi=8.0, threshold=0.05):
 
 @mistake(
     "scale_steps_sign_kept",
-    says="You compare V itself with the threshold: a dark pixel beside a lamp has a negative "
-    "V, which is always below. Take |V|.",
+    says="You compare V itself with the threshold. Next to a lamp, V of a dark pixel is "
+    "negative and always below it. Use |V|.",
 )
 def sign_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     even, adaptation = np.array(True), np.zeros(1, np.float32)

@@ -7,8 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "shrink_cuts_fractions",
-    says="Cutting off the fraction makes every level three eighths of a code darker on the "
-    "average: round instead.",
+    says="Truncating makes every pixel three eighths of a code darker on average: round instead.",
 )
 def cuts_fractions(Y):
     Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)
@@ -17,8 +16,8 @@ def cuts_fractions(Y):
 
 @mistake(
     "shrink_cuts_fractions_twice",
-    says="You average pairs, then pairs of pairs, and cut the fraction off each time: every "
-    "level is darker than the last. Add all four, and round once.",
+    says="You average pairs and then pairs of pairs, and truncate each time, so every level is "
+    "darker. Add all four pixels and round once.",
 )
 def cuts_fractions_twice(Y):
     Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)
@@ -29,8 +28,8 @@ def cuts_fractions_twice(Y):
 
 @mistake(
     "shrink_overflows",
-    says="The sum of four bytes does not fit into a byte, and wraps around: bright places turn "
-    "dark. Use a wider type.",
+    says="The sum of four bytes does not fit into a byte and wraps around, so bright regions "
+    "turn dark. Use a wider type.",
 )
 def overflows(Y):
     Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2]
@@ -39,8 +38,8 @@ def overflows(Y):
 
 @mistake(
     "shrink_skips_pixels",
-    says="You take every second pixel and drop the others: noise stays, and fine texture turns "
-    "into patterns. Average four.",
+    says="You take every second pixel and drop the others, so noise stays and fine texture "
+    "causes aliasing. Average four pixels.",
     misses_method=True,
 )
 def skips_pixels(Y):

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "snr_upside_down",
-    says="Your weight is upside down: the signal f stands above the fraction, and the slope "
-    "f', which makes noise of it, below.",
+    says="Your weight is inverted: the signal f belongs in the numerator, and the slope f', "
+    "which turns noise into error, in the denominator.",
 )
 def upside_down(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -23,8 +23,8 @@ def upside_down(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_signal_alone",
-    says="You weight by the signal alone: divide by the slope f', by which the noise of the "
-    "levels enters the exposure.",
+    says="You weight by the signal only. Divide by the slope f', which turns the noise of the "
+    "levels into noise of the exposure.",
 )
 def signal_alone(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -36,7 +36,7 @@ def signal_alone(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_ends_count",
-    says="The lowest and the highest level are bounds, and measure nothing: their weight is 0.",
+    says="The lowest and the highest level are only bounds, not measurements: their weight is 0.",
 )
 def ends_count(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -50,8 +50,8 @@ def ends_count(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_span_ignored",
-    says="You take the slope between neighbours, where ripples of a recovered curve are as "
-    "steep as it: take it over `span` levels on either side.",
+    says="You compute the slope between neighbours, where ripples of a recovered curve are as "
+    "steep as the curve. Use `span` levels on either side.",
 )
 def span_ignored(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -66,8 +66,8 @@ def span_ignored(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_slope_not_bounded",
-    says="Where the curve is level your weight has no bound: a slope below `least` of the mean "
-    "slope counts as `least`.",
+    says="Your weight is unbounded where the curve is flat. Replace a slope below `least` "
+    "times the mean slope by that limit.",
 )
 def slope_not_bounded(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "solve_by_svd_nothing_left_out",
-    says="You divide by singular values that are rounding alone, and x is beyond all measure: "
-    "leave out what is at most rtol times the largest.",
+    says="You divide by singular values that are only rounding errors, so x is huge. Leave out "
+    "those of at most rtol times the largest.",
 )
 def nothing_left_out(A, b, *, rtol=1e-10):
     U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
@@ -18,8 +18,7 @@ def nothing_left_out(A, b, *, rtol=1e-10):
 
 @mistake(
     "solve_by_svd_v_not_transposed",
-    says="You take the columns of what numpy calls Vh: it is V transposed, so the v_i are its "
-    "rows.",
+    says="You use the columns of numpy's Vh. It is V transposed, so the vectors v_i are its rows.",
 )
 def v_not_transposed(A, b, *, rtol=1e-10):
     U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
@@ -29,8 +28,8 @@ def v_not_transposed(A, b, *, rtol=1e-10):
 
 @mistake(
     "solve_by_svd_limit_absolute",
-    says="You compare the singular values with rtol itself: compare them with rtol times the "
-    "largest, so that no unit matters.",
+    says="You compare the singular values with rtol itself. Compare them with rtol times the "
+    "largest, so that the unit does not matter.",
 )
 def limit_absolute(A, b, *, rtol=1e-10):
     U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)

@@ -17,8 +17,8 @@ def _normal(w):
 
 @mistake(
     "spot_not_normalised",
-    says="Your weights do not add up to 1: divide them by their sum, or the reading depends on "
-    "how many pixels count.",
+    says="Your weights do not sum to 1. Divide them by their sum; otherwise the reading "
+    "depends on the number of pixels in the spot.",
 )
 def not_normalised(shape, *, at=(0.5, 0.5), share=0.03):
     def _normal(w):
@@ -32,8 +32,8 @@ def not_normalised(shape, *, at=(0.5, 0.5), share=0.03):
 
 @mistake(
     "spot_ellipse",
-    says="You measure the distance in parts of the picture, so your disc is an ellipse: "
-    "measure it in pixels.",
+    says="You measure the distance relative to the image size, so your disc is an ellipse. "
+    "Measure it in pixels.",
 )
 def ellipse(shape, *, at=(0.5, 0.5), share=0.03):
     down, right = _places(shape, at)
@@ -44,7 +44,7 @@ def ellipse(shape, *, at=(0.5, 0.5), share=0.03):
 
 @mistake(
     "spot_axes_swapped",
-    says="You took at for (across, down): it is (down, across), like the axes of the array.",
+    says="You took `at` as (across, down). It is (down, across), like the axes of the array.",
 )
 def axes_swapped(shape, *, at=(0.5, 0.5), share=0.03):
     def _places(shape, at):

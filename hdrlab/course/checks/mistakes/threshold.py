@@ -7,7 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "threshold_always_half",
-    says="You always take the median; q says which percentile is asked for.",
+    says="You always take the median. Take the quantile q.",
 )
 def always_half(h, q):
     below = np.cumsum(h)
@@ -16,8 +16,8 @@ def always_half(h, q):
 
 @mistake(
     "threshold_mean",
-    says="This is the mean, not the median: a few bright pixels pull it up, and no longer are "
-    "half of the pixels above it.",
+    says="This is the mean, not the median. A few bright pixels raise it, so fewer than half "
+    "of the pixels are above it.",
     misses_method=True,
 )
 def mean(h, q):

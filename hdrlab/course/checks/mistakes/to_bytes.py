@@ -8,7 +8,7 @@ from hdrlab.io.maps.pfm import header_of
 
 @mistake(
     "to_bytes_float64",
-    says="The values of a PFM file are float32, of 4 bytes; you wrote float64, of 8.",
+    says="The values of a PFM file are float32, 4 bytes each. You wrote float64, 8 bytes.",
 )
 def float64(E):
     E = np.asarray(E)
@@ -17,7 +17,8 @@ def float64(E):
 
 @mistake(
     "to_bytes_height_first",
-    says="The second line is the width and then the height; arrays have it the other way round.",
+    says="The second line is the width and then the height. The shape of an array has the "
+    "opposite order.",
 )
 def height_first(E):
     def header_of(E):
@@ -29,7 +30,7 @@ def height_first(E):
 
 @mistake(
     "to_bytes_upside_down",
-    says="Your picture is upside down: the rows of a PFM file run from the bottom to the top.",
+    says="Your picture is upside down: the rows of a PFM file run from bottom to top.",
 )
 def upside_down(E):
     E = np.asarray(E)
@@ -38,8 +39,8 @@ def upside_down(E):
 
 @mistake(
     "to_bytes_wrong_order_of_bytes",
-    says="Your header says little endian (-1.0), and your values are big endian: all of them "
-    "will be read as nonsense.",
+    says="Your header says little endian (-1.0), but your values are big endian, so a reader "
+    "gets wrong values.",
 )
 def wrong_order_of_bytes(E):
     E = np.asarray(E)

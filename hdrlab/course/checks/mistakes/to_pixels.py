@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "to_pixels_exponent_of_red",
-    says="You take the exponent of the red channel; it must be that of the brightest one, or "
-    "the others overflow.",
+    says="You use the exponent of the red channel. Use that of the brightest channel; "
+    "otherwise the others overflow.",
 )
 def exponent_of_red(E):
     brightest = E.max(axis=-1, keepdims=True)
@@ -20,8 +20,8 @@ def exponent_of_red(E):
 
 @mistake(
     "to_pixels_exponent_too_large",
-    says="Your exponent is one too large, as from ceil(log2 E) + 1: the largest mantissa is "
-    "below 128, and half of the precision is gone.",
+    says="Your exponent is one too large, as from ceil(log2 E) + 1. All mantissas are below "
+    "128, and you lose one bit of precision.",
 )
 def exponent_too_large(E):
     brightest = E.max(axis=-1, keepdims=True)
@@ -33,8 +33,8 @@ def exponent_too_large(E):
 
 @mistake(
     "to_pixels_mantissa_rounds_to_256",
-    says="You round a mantissa of 255.6 to 256, which no byte holds: it becomes 0. Cut the "
-    "fraction off, or clip at 255.",
+    says="You round a mantissa of 255.6 to 256, which does not fit into a byte and becomes 0. "
+    "Truncate, or clip at 255.",
 )
 def mantissa_rounds_to_256(E):
     brightest = E.max(axis=-1, keepdims=True)
@@ -48,8 +48,8 @@ def mantissa_rounds_to_256(E):
 
 @mistake(
     "to_pixels_not_times_256",
-    says="Your mantissas are fractions cut to 0: multiply them by 256 before you make bytes of "
-    "them.",
+    says="Your mantissas are fractions, truncated to 0. Multiply them by 256 before you "
+    "convert them to bytes.",
 )
 def not_times_256(E):
     brightest = E.max(axis=-1, keepdims=True)

@@ -8,7 +8,7 @@ from hdrlab.io.maps.rgbe import SCALE
 
 @mistake(
     "to_radiance_exponent_wraps",
-    says="The exponent is a byte: below 128, e - 128 wraps around. Turn it into int first.",
+    says="The exponent is a byte: below 128, e - 128 wraps around. Convert it to int first.",
 )
 def exponent_wraps(pixels):
     return np.where(
@@ -20,8 +20,8 @@ def exponent_wraps(pixels):
 
 @mistake(
     "to_radiance_not_over_256",
-    says="A mantissa is a fraction of 256, and you did not divide: your radiance is 256 times "
-    "too large, like a triple that one lecture prints.",
+    says="The mantissa must be divided by 256. Your radiance is 256 times too large, like an "
+    "example in one lecture.",
 )
 def not_over_256(pixels):
     return 256.0 * pixels[..., :3] * SCALE[pixels[..., 3:]]
@@ -29,7 +29,7 @@ def not_over_256(pixels):
 
 @mistake(
     "to_radiance_mantissa_from_1",
-    says="You read the mantissa like that of a float, 1 + m / 256; here it is m / 256 itself.",
+    says="You decode the mantissa as in a float, 1 + m / 256. In RGBE it is m / 256.",
 )
 def mantissa_from_1(pixels):
     return np.where(pixels[..., 3:] > 0, (256.0 + pixels[..., :3]) * SCALE[pixels[..., 3:]], 0)

@@ -15,8 +15,8 @@ from hdrlab.tonemap.reinhard import (
 
 @mistake(
     "tonemap_absolute_unit",
-    says="Your curve takes L for a number without a unit: the same scene in other units gives "
-    "another picture. Scale it by its log average first.",
+    says="Your curve uses absolute L, so the same scene in other units gives another picture. "
+    "Scale L by its log average first.",
     misses_method=True,
 )
 def absolute_unit(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
@@ -26,8 +26,8 @@ def absolute_unit(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.
 
 @mistake(
     "tonemap_divided_by_the_maximum",
-    says="You divide by the brightest pixel: one hot pixel darkens the whole picture. Take a "
-    "percentile, or a curve.",
+    says="You divide by the brightest pixel, so one hot pixel darkens the whole picture. Use a "
+    "percentile or a curve.",
     misses_method=True,
 )
 def divided_by_the_maximum(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
@@ -37,7 +37,7 @@ def divided_by_the_maximum(L, *, key=0.18, white=None, local=False, phi=8.0, thr
 
 @mistake(
     "tonemap_negative",
-    says="Bright places come out dark: somewhere a sign or a quotient is upside down.",
+    says="Bright regions come out dark: a sign or a quotient is inverted.",
     misses_method=True,
 )
 def negative(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
@@ -51,7 +51,8 @@ def negative(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
 
 @mistake(
     "tonemap_not_clipped",
-    says="Your picture leaves 0 ... 1: a display cannot show that, and files wrap around. Clip it.",
+    says="Your picture has values outside 0 ... 1. A display cannot show them, and 8-bit files "
+    "wrap around. Clip it.",
 )
 def not_clipped(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
     L = as_light(L)

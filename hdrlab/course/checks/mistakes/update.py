@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "update_weighted",
-    says="The update of f^-1 is a plain mean over the pixels of a level; with the times as "
-    "weights it rests on another curve.",
+    says="The update of f^-1 is a plain mean over the pixels of a level. Weights by time give "
+    "another curve.",
 )
 def weighted(Z, t, E, n=256):
     known = ~np.isnan(E)
@@ -21,8 +21,8 @@ def weighted(Z, t, E, n=256):
 
 @mistake(
     "update_by_all_samples",
-    says="Divide each level's sum by how many pixels have that level, not by the number of all "
-    "samples.",
+    says="Divide each level's sum by the number of pixels at that level, not by the number of "
+    "all samples.",
 )
 def by_all_samples(Z, t, E, n=256):
     known = ~np.isnan(E)
@@ -35,8 +35,7 @@ def by_all_samples(Z, t, E, n=256):
 
 @mistake(
     "update_nan_taken_for_0",
-    says="A sample whose irradiance is not known is left out; you count it as 0, and draw its "
-    "levels down.",
+    says="Leave out samples of unknown irradiance. You count them as 0, which lowers their levels.",
 )
 def nan_taken_for_0(Z, t, E, n=256):
     known, E = np.ones(len(E), bool), np.nan_to_num(E)
@@ -49,7 +48,8 @@ def nan_taken_for_0(Z, t, E, n=256):
 
 @mistake(
     "update_time_forgotten",
-    says="What a pixel of level m received is E t: the exposure time is missing from your mean.",
+    says="A pixel at level m received the exposure E t. The exposure time is missing from your "
+    "mean.",
 )
 def time_forgotten(Z, t, E, n=256):
     known = ~np.isnan(E)

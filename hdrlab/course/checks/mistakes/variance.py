@@ -7,7 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "variance_read_noise_in_electrons",
-    says="R is in electrons, and V is that of the exposure: divide R by N before you square it.",
+    says="R is in electrons, and V is the variance of the exposure. Divide R by N before you "
+    "square it.",
 )
 def read_noise_in_electrons(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
@@ -16,7 +17,7 @@ def read_noise_in_electrons(X, D, N, R):
 
 @mistake(
     "variance_read_noise_not_squared",
-    says="R is a standard deviation. What adds up are variances: square R / N.",
+    says="R is a standard deviation. Only variances add up: square R / N.",
 )
 def read_noise_not_squared(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
@@ -25,8 +26,8 @@ def read_noise_not_squared(X, D, N, R):
 
 @mistake(
     "variance_photons_not_divided_twice",
-    says="X N is the variance of the count. That of the exposure, the count over N, is X N / "
-    "N^2: divide by N twice.",
+    says="X N is the variance of the count. The exposure is the count over N, so its variance "
+    "is X N / N^2: divide by N twice.",
 )
 def photons_not_divided_twice(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
@@ -35,8 +36,8 @@ def photons_not_divided_twice(X, D, N, R):
 
 @mistake(
     "variance_rounding_of_a_whole_step",
-    says="Rounding errs by half a step at most. The variance of what is spread evenly over a "
-    "step is D^2 / 12.",
+    says="You add D^2. Rounding errors are spread evenly over one step D, and their variance "
+    "is D^2 / 12.",
 )
 def rounding_of_a_whole_step(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
@@ -45,7 +46,7 @@ def rounding_of_a_whole_step(X, D, N, R):
 
 @mistake(
     "variance_rounding_once",
-    says="The step is not squared in your variance: rounding adds D^2 / 12.",
+    says="You did not square the step. Rounding adds D^2 / 12.",
 )
 def rounding_once(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)

@@ -8,8 +8,8 @@ from hdrlab.enhance.mertens import LUMA, SIGMA, SMALLEST_WEIGHT, contrast, expos
 
 @mistake(
     "weight_sign_kept",
-    says="A Laplacian is negative on bright spots, and a weight cannot be: take its absolute "
-    "value.",
+    says="A Laplacian is negative at bright spots, but a weight must not be negative: take its "
+    "absolute value.",
 )
 def sign_kept(F, powers=(1, 1, 1)):
     def contrast(F):
@@ -28,8 +28,8 @@ def sign_kept(F, powers=(1, 1, 1)):
 
 @mistake(
     "weight_measures_added",
-    says="You add the three measures: a clipped pixel of fine contrast counts then. A product "
-    "is small where one factor is.",
+    says="You add the three measures, so a clipped pixel with fine texture has a weight. "
+    "Multiply them: a product is small where one factor is.",
 )
 def measures_added(F, powers=(1, 1, 1)):
     W = np.zeros(F.shape[1:], np.float32)
@@ -41,8 +41,8 @@ def measures_added(F, powers=(1, 1, 1)):
 
 @mistake(
     "weight_exposedness_of_the_mean",
-    says="You ask how well the mean of the channels is exposed; asked is a product over the "
-    "channels, so that each can spoil it.",
+    says="You measure how well the mean of the channels is exposed. Multiply over the "
+    "channels, so that one badly exposed channel lowers the weight.",
 )
 def exposedness_of_the_mean(F, powers=(1, 1, 1)):
     def exposedness(F):

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "weighted_variance_plain_mean",
-    says="You take the differences from the plain mean of x: take the weighted one, sum w x / "
-    "sum w, lest a clipped frame shift it.",
+    says="You subtract the plain mean of x. Subtract the weighted mean, sum w x / sum w, so "
+    "that a clipped frame does not shift it.",
 )
 def plain_mean(x, w):
     total = np.maximum(w.sum(axis=0), 1e-30)
@@ -18,8 +18,8 @@ def plain_mean(x, w):
 
 @mistake(
     "weighted_variance_mean_left_in",
-    says="Yours is the mean of the squares of x itself, which depends on the unit of light: "
-    "take the mean off x first.",
+    says="You average the squares of x itself, which depends on the unit of light. Subtract "
+    "the mean from x first.",
 )
 def mean_left_in(x, w):
     total = np.maximum(w.sum(axis=0), 1e-30)
@@ -28,7 +28,7 @@ def mean_left_in(x, w):
 
 @mistake(
     "weighted_variance_root",
-    says="You answer the standard deviation: asked is the variance, without the root.",
+    says="You return the standard deviation. Return the variance, without the square root.",
 )
 def root(x, w):
     total = np.maximum(w.sum(axis=0), 1e-30)
