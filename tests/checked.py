@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
-from hdrlab.course.checks.plugin import Checking
+from hdrlab.course.checks.plugin import GradingPlugin
 from hdrlab.course.checks.subject import Call, Subject
 
 PLACE = Path("/checks")
@@ -48,7 +48,7 @@ def checking(folder):
         "out": str(folder / "lines"),
         "grader": 1,
     }
-    made = Checking(job)
+    made = GradingPlugin(job)
     (folder / "lines").touch()
     made.lines = lambda: [
         json.loads(one) for one in (folder / "lines").read_text("utf8").splitlines()

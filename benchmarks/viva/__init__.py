@@ -42,7 +42,7 @@ TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = GradingOptions(TIER, draw=False)
 # questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a
 # submission
-FIVE, USUAL, MOST, LONGEST = examining.QUESTIONS, 8, 16, 36_000.0
+FIVE, USUAL, MOST, LONGEST = examining.MAX_QUESTIONS, 8, 16, 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"

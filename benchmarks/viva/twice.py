@@ -27,7 +27,7 @@ PATIENCE, MEMORY = 1, 1 << 32
 # seconds of a call in the sandbox, times a check's, and of the sandbox for a question: no clock
 # decides
 PATIENT, ENOUGH = 3.0, 60
-FIVE = examining.QUESTIONS
+FIVE = examining.MAX_QUESTIONS
 
 Question = dict[str, Any]
 
@@ -86,51 +86,51 @@ def in_time() -> Iterator[None]:
         signal.alarm(0)
 
 
-class Twice(examining.Asked):
+class Twice(examining.QuestionGenerator):
     """A task that is asked about, all of whose four answers are computed once more, in the sandbox.
 
     What a version does is found once in either place, and remembered for the other sittings.
     """
 
-    def question(self, kind: str) -> Question | None:
+    def question(self, kind: str, max_versions: int) -> Question | None:
         """Return the question; what is wrong with this very code is written down."""
         run: Any = self.run
-        if self.most > examining.VERSIONS[0] and run.made >= FIVE:
+        if max_versions > examining.VERSIONS_PER_SEARCH[0] and run.made >= FIVE:
             return None  # the second search is made where there are fewer
         self.kind, found = kind, None
         try:
-            found = super().question(kind)
+            found = super().question(kind, max_versions)
         except Exception as error:
             run._write(question={"fault": f"{kind} of {self.task}: {error!r}"})
         run.made += found is not None
         return found
 
-    def holds(self, found: examining.Found) -> bool:
+    def is_reproducible(self, draft: examining.QuestionDraft) -> bool:
         """Return what this process says of a question, and write down what the sandbox says."""
-        if not super().holds(found):
+        if not super().is_reproducible(draft):
             return False
         run: Any = self.run
         run.submission, run.other = run.other, run.submission
         if run.submission.left < ENOUGH:
-            examining.Examining._begin(run)
-        found.shown["again"] = super().holds(found)
+            examining.Examining._replace_sandbox(run)
+        draft.shown["again"] = super().is_reproducible(draft)
         run.submission, run.other = run.other, run.submission
         return True
 
-    def _four(self, view: Any, differ: Any) -> examining.Found | None:
-        given = hashlib.sha256(pickle.dumps(view.__defaults__)).digest()
+    def _find_four(self, view: Any, differ: Any) -> examining.QuestionDraft | None:
+        given = hashlib.sha256(pickle.dumps(view.args)).digest()
 
         def seen(version: changed.Version) -> Any:
             return self._known((self.kind, given, version.source), lambda: view(version))
 
-        return super()._four(seen, differ)
+        return super()._find_four(seen, differ)
 
     def _is_same(self, source: str) -> bool:
         return bool(self._known(("same", source), lambda: super(Twice, self)._is_same(source)))
 
-    def _broken(self, version: changed.Version) -> set[str] | None:
+    def _broken_promises(self, version: changed.Version) -> set[str] | None:
         found: set[str] | None = self._known(
-            ("broken", version.source), lambda: super(Twice, self)._broken(version)
+            ("broken", version.source), lambda: super(Twice, self)._broken_promises(version)
         )
         return found
 
@@ -148,15 +148,16 @@ class Examining(examining.Examining):
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down questions, and what became of them when they were run again."""
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        examining.Asked = Twice  # type: ignore[misc]
-        examining.SHARE, examining.QUESTIONS = PATIENT, int(self.job["most"])
+        examining.QuestionGenerator = Twice  # type: ignore[misc]
+        examining.CALL_TIME_FRACTION = PATIENT
+        examining.MAX_QUESTIONS = int(self.job["most"])
         self.known = dict[Any, Any]()
         for seed in self.job["sittings"]:
             self.job["seed"], self.made = seed, 0
             super().pytest_sessionfinish(session)
 
-    def _begin(self) -> None:
+    def _replace_sandbox(self) -> None:
         if isinstance(self.submission, InProcess):  # from the sitting before
             return
-        super()._begin()
+        super()._replace_sandbox()
         self.other, self.submission = self.submission, InProcess(self.job["sources"])  # type: ignore[assignment]

@@ -143,7 +143,7 @@ def _job(
         "tasks": homework.tasks,
         "out": str(folder / "lines"),
         "grader": os.getpid(),
-        "by": "hdrlab.course.checks.plugin:Checking",
+        "by": "hdrlab.course.checks.plugin:GradingPlugin",
     }
     (folder / "lines").touch()
     file = folder / "job.json"

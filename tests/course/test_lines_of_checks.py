@@ -95,7 +95,7 @@ def test_the_job_holds_all_that_the_checks_are_to_know(heard):
         "draw": False,
         "hidden": "",
         "out": str(folder / "lines"),
-        "by": "hdrlab.course.checks.plugin:Checking",
+        "by": "hdrlab.course.checks.plugin:GradingPlugin",
     }
     assert not folder.exists()
 

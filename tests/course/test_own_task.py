@@ -11,7 +11,7 @@ import pytest
 
 from hdrlab.course import grading, notebook, plan
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.checks.plugin import Checking
+from hdrlab.course.checks.plugin import GradingPlugin
 from hdrlab.course.code import inline
 from hdrlab.course.export import gradescope
 from hdrlab.course.material import handouts, own_task, stubs
@@ -106,7 +106,7 @@ def test_a_check_is_worth_what_its_marker_says_and_without_one_a_point(marks, po
         name="test_a", path=Path("test_hat.py"), get_closest_marker=lambda name: mark
     )
     out = tmp_path / "lines"
-    Checking({"out": str(out), "hidden": ""}).pytest_collection_finish(
+    GradingPlugin({"out": str(out), "hidden": ""}).pytest_collection_finish(
         SimpleNamespace(items=[check])
     )
     assert json.loads(out.read_text())["points"] == points

@@ -2,7 +2,6 @@
 
 import base64
 import difflib
-import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -141,7 +140,10 @@ def test_words_comments_and_names_of_ones_own_stay():
 
 def test_nothing_is_asked_of_a_function_too_long_to_be_shown():
     assert changed.versions("def f(x):\n" + "    x = x + 1\n" * 100 + "    return x\n") == []
-    assert changed.versions("def f(x):\n    return 1 + x\n" + "# \n" * changed.LONGEST) == []
+    assert (
+        changed.versions("def f(x):\n    return 1 + x\n" + "# \n" * changed.MAX_SOURCE_CHARACTERS)
+        == []
+    )
 
 
 def test_a_line_whose_value_is_written_out_where_it_was_used_can_be_taken_out():
@@ -162,7 +164,7 @@ def test_a_line_whose_value_is_written_out_where_it_was_used_can_be_taken_out():
 def test_an_image_shows_the_photograph_in_the_levels_that_it_had():
     rng = np.random.default_rng(1)
     image, photo = rng.random((3, 20, 30)).astype(np.float32), rng.integers(0, 256, (40, 50))
-    (shown, curve), named = inputs.photographed(((image, np.arange(5.0)), {"k": 2}), photo)
+    (shown, curve), named = inputs.put_photograph(((image, np.arange(5.0)), {"k": 2}), photo)
     assert (
         shown.shape == (3, 60, 90)
         and shown.dtype == np.float32
@@ -179,12 +181,14 @@ def test_an_argument_by_hand_is_small_and_written_as_python():
     given = inputs.small(([np.arange(40, dtype=np.uint8).reshape(5, 8)], 0.123456))
     assert inputs.count(given) == 5
     assert np.array_equal(eval(repr(given[0]), vars(np))[0], [[11, 12], [19, 20]])
-    assert inputs.told(given[1]) == "0.12"
+    assert inputs.format_answer(given[1]) == "0.12"
 
 
 def test_an_answer_without_a_form_that_can_be_drawn_is_not_drawn():
     shapes = [np.zeros((9, 0)), np.zeros((0, 9)), np.float64(3), "text", None, [], [[], []], {}, ()]
-    assert [inputs.shown(one) for one in [*shapes, *((one,) for one in shapes)]] == [None] * 18
+    assert [inputs.drawable_part(one) for one in [*shapes, *((one,) for one in shapes)]] == [
+        None
+    ] * 18
 
 
 # Pages
@@ -245,9 +249,8 @@ def test_the_notebook_checks_itself_and_then_says_what_each_option_comes_from(ca
 
 def test_fewer_than_five_are_said_in_words():
     for name, text in written(EVERY[:2]).items():
-        assert "2 of five questions." in (
-            json.loads(text)["cells"][0]["source"] if "ipynb" in name else text
-        )
+        shown = nbformat.reads(text, 4).cells[0].source if "ipynb" in name else text
+        assert "2 of five questions." in shown
         assert "twice" in text
 
 
@@ -257,15 +260,19 @@ def test_fewer_than_five_are_said_in_words():
 def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_version_and_one_is_drawn(
     monkeypatch,
 ):
-    monkeypatch.setattr(examining.Asked, "holds", lambda *_: True)
+    monkeypatch.setattr(examining.QuestionGenerator, "is_reproducible", lambda *_: True)
     versions = [changed.Version(HOSTILE, HOSTILE, 3, f"{k}") for k in range(4)]
-    found = examining.Found(
-        versions, [*range(4)], int, np.not_equal, {"texts": ["1.5", "1.4", "1.6", "-900"]}
+    found = examining.QuestionDraft(
+        versions=versions,
+        values=[*range(4)],
+        view=int,
+        differ=np.not_equal,
+        shown={"texts": ["1.5", "1.4", "1.6", "-900"]},
     )
-    monkeypatch.setattr(examining.Asked, "value", lambda self: found)
+    monkeypatch.setattr(examining.QuestionGenerator, "draft_value", lambda self: found)
     run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
-    asked = examining.Asked(run, "twice", [], np.random.default_rng(3))
-    drawn = [asked.question("value") for _ in range(4000)]
+    asked = examining.QuestionGenerator(run, "twice", [], np.random.default_rng(3))
+    drawn = [asked.question("value", 20) for _ in range(4000)]
     share = np.bincount([one["right"] for one in drawn], minlength=4) / len(drawn)
     assert np.all(np.abs(share - 0.25) < 0.03)
     for most in (True, False):
@@ -279,7 +286,7 @@ def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
     )  # which the run of a version changes, in a process of its own
     monkeypatch.setattr(np, "empty_like", np.empty_like)
     run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
-    asked = examining.Asked(run, "twice", [], np.random.default_rng(3))
+    asked = examining.QuestionGenerator(run, "twice", [], np.random.default_rng(3))
     texts = [
         f"import numpy as np\n\n\ndef twice():\n    return np.{memory}(1)[0] + {k}\n"
         for k in range(4)
@@ -291,14 +298,17 @@ def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
         return scope["twice"]()
 
     versions = [changed.Version(text, text) for text in texts]
-    assert asked.holds(examining.Found(versions, [*range(4)], view, np.not_equal, {})) == right
+    draft = examining.QuestionDraft(
+        versions=versions, values=[*range(4)], view=view, differ=np.not_equal, shown={}
+    )
+    assert asked.is_reproducible(draft) == right
 
 
 def test_a_call_is_told_by_its_parameters_and_of_large_arrays_the_size_and_range():
     source = "def scale(x, by=2, *, offset=0):\n    return by * x + offset\n"
     run = SimpleNamespace(job={"sources": {"scale": source}}, calls={"scale": []})
-    asked = examining.Asked(run, "scale", [], np.random.default_rng(3))
-    said = asked._told(
+    asked = examining.QuestionGenerator(run, "scale", [], np.random.default_rng(3))
+    said = asked._format_call(
         ((np.linspace(0, 1, 100).reshape(10, 10), 3), {"offset": np.array([0.5, 1])})
     )
     assert said == "scale(x=‹10 × 10 numbers from 0 to 1›, by=3, offset=[0.5, 1.0])"
@@ -335,30 +345,33 @@ def test_of_one_function_questions_of_different_kinds_are_asked():
 
 @pytest.mark.parametrize(("tasks", "more"), [("abcd", 0), ("abcde", 3)])
 def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more, monkeypatch):
-    tried, written, few, known = [], [], examining.VERSIONS[0], {("value", "a"), ("part", "b")}
+    tried, written, few, known = (
+        [],
+        [],
+        examining.VERSIONS_PER_SEARCH[0],
+        {("value", "a"), ("part", "b")},
+    )
 
     class Asked:
         def __init__(self, run, task, items, rng):
             self.task = task
 
-        def question(self, kind):
-            tried.append((self.most, kind, self.task))
-            return (
-                {"kind": kind, "task": self.task}
-                if (kind, self.task) in known or self.most > few
-                else None
-            )
+        def question(self, kind, max_versions):
+            tried.append((max_versions, kind, self.task))
+            if (kind, self.task) in known or max_versions > few:
+                return {"kind": kind, "task": self.task}
+            return None
 
-    monkeypatch.setattr(examining, "Asked", Asked)
+    monkeypatch.setattr(examining, "QuestionGenerator", Asked)
     run = examining.Examining.__new__(examining.Examining)
     run.job, run.failed = {"seed": "1", "sources": dict.fromkeys(tasks, ""), "timeout": 1}, set()
     run.calls, run.submission = {task: [None] for task in tasks}, SimpleNamespace(left=1)
-    run._begin, run._write = lambda: None, lambda **one: written.append(one)
+    run._replace_sandbox, run._write = lambda: None, lambda **one: written.append(one)
     run.pytest_sessionfinish(SimpleNamespace(items=[]))
     asked = [one["question"] for one in written if "question" in one]
     assert len({(one["kind"], one["task"]) for one in asked}) == len(asked) == 2 + more
     pairs = len(tasks) * len(examining.KINDS)
-    assert [most for most, *_ in tried] == [few] * pairs + [examining.VERSIONS[1]] * more
+    assert [most for most, *_ in tried] == [few] * pairs + [examining.VERSIONS_PER_SEARCH[1]] * more
 
 
 def test_a_function_that_breaks_a_promise_is_not_asked_about():

@@ -58,7 +58,7 @@ class Missing:
         raise NoAnswer("", self._kind)
 
 
-class Checking:
+class GradingPlugin:
     """One run of the checks: the job, the subject, and what is written down."""
 
     def __init__(self, job: dict[str, Any]) -> None:
