@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import inspect
+import sys
 from collections.abc import Sequence
 
 # of each question: the SHA-256 of its number and the right letter, and the explanation in base 64
@@ -13,9 +14,10 @@ WHY: list[str] = []
 def check(number, letter):  # type: ignore[no-untyped-def]  # its text stands in the notebook
     """Say whether a letter is right, and then what each option comes from."""
     if hashlib.sha256(f"{number}{letter}".encode()).hexdigest() == KEY[number - 1]:
-        print("right", base64.b64decode(WHY[number - 1]).decode(), sep="\n")  # noqa: T201
+        text = "right\n" + base64.b64decode(WHY[number - 1]).decode()
     else:
-        print("not this one: read the code again, and change one thing at a time")  # noqa: T201
+        text = "not this one: read the code again, and change one thing at a time"
+    sys.stdout.write(text + "\n")
 
 
 def cell_text(letters: Sequence[str], explanations: Sequence[str]) -> str:
@@ -27,4 +29,4 @@ def cell_text(letters: Sequence[str], explanations: Sequence[str]) -> str:
     why = [base64.b64encode(text.encode()).decode() for text in explanations]
     lines = [line.partition("  # ")[0] for line in inspect.getsource(check).rstrip().splitlines()]
     definition = "\n".join(lines)
-    return f"import base64\nimport hashlib\n\nKEY = {key!r}\nWHY = {why!r}\n\n\n{definition}"
+    return f"import base64\nimport hashlib\nimport sys\n\nKEY = {key!r}\nWHY = {why!r}\n\n\n{definition}"
