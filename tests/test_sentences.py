@@ -69,7 +69,7 @@ SENTENCES = {
         "the face is four to five stops too dark": lambda n: all(
             -5 < n.place(mode).off < -4 for mode in ("centre", "average", "matrix")
         ),
-        "With up to 6 pixels of shake alignment mends all of it": lambda n: (
+        "With up to 6 pixels of shake alignment fixes all of it": lambda n: (
             worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
         ),
         "From the dark two shots do": lambda n: (
