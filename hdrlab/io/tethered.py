@@ -1,43 +1,67 @@
-"""A camera on a cable, through libgphoto2: its settings, and photographs that arrive as they are taken.
+"""Control a camera on a USB cable through libgphoto2: its settings, and its photos.
 
     with tethered.connected() as camera:
         camera.fix("light")
-        name, names = camera.shutter()
+        time, times = camera.shutter()
         camera.fix("mode")
-        camera.photograph(names[3], Path("room/1"))
+        camera.photograph(times[3], Path("room/1"))
 
-What is automatic differs between the photographs of a bracket, so it is fixed first; when the block
-ends, whatever was changed is put back. Makers name and spell settings differently: what a camera
-has is taken.
+Automatic settings would differ between the photos of a bracket, so they are fixed first. When the
+block ends, every changed setting is restored. Makers name and spell settings differently; hdrlab
+uses those that the camera has.
 """
 
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from hdrlab.core.optional import gphoto2
 from hdrlab.errors import InputError
 from hdrlab.io.files import replacing
 
-SPELLINGS = tomllib.loads(Path(__file__).with_name("tethered.toml").read_text("utf8"))
-SHUTTER, CHOSEN, ERRORS = SPELLINGS["shutter"], SPELLINGS["chosen"], SPELLINGS["errors"]
-# milliseconds in which a second file of a photograph, such as RAW beside JPEG, begins to arrive
-LATER = 300
+SHUTTER_SETTINGS = ("shutterspeed", "shutterspeed2")
+# Settings by name, and the values at which nothing is automatic, the best first.
+LIGHT_SETTINGS = {
+    "autofocus": ["Off"],
+    "focusmode": ["Manual", "MF"],
+    "isoauto": ["Off"],
+    "autoiso": ["Off"],
+    "iso": ["100", "200", "125", "160"],
+    "whitebalance": ["Daylight", "Sunny", "Direct sunlight"],
+}
+MODE_SETTINGS = {
+    "expprogram": ["M", "Manual"],
+    "autoexposuremode": ["Manual"],
+}
+# The user's own value of these settings is kept, unless it is an automatic one.
+SETTINGS_WITH_USER_VALUES = ("iso", "whitebalance")
+# What the errors of libgphoto2 mean for the user.
+ERROR_ADVICE = {
+    -105: "connect one by USB, and switch it on",
+    -115: "its card is full",
+    -110: "it is busy; wait until its lamp is off",
+    -53: "another program holds it; close that, or eject the camera in the file manager",
+    -52: "see whether the cable is in, and the camera on",
+}
+OTHER_ERROR_ADVICE = "it may be asleep, its card full, or the cable out"
+# A second file of a photo, such as RAW beside JPEG, begins to arrive within this time.
+SECOND_FILE_TIMEOUT_MS = 300
+# Some cameras send events without end.
+MAX_EVENTS = 100
 
 
 @contextmanager
 def connected() -> Iterator["Camera"]:
-    """Yield the Camera that is connected, and put its settings back when the block ends.
+    """Yield the connected camera, and restore its settings when the block ends.
 
     Raises
     ------
-    ValueError
-        Where there is none, or where it stops answering: what to look at, in one line.
+    InputError
+        If there is no camera, or if it stops answering; the message says what to check.
     """
     device = gphoto2.Camera()
-    with _told():
+    with _explain_errors():
         device.init()
     camera = Camera(device)
     try:
@@ -49,102 +73,136 @@ def connected() -> Iterator["Camera"]:
 
 
 class Camera:
-    """A camera that is connected."""
+    """A connected camera."""
 
     def __init__(self, device: Any) -> None:
-        self._device, self._before = device, dict[str, str]()
+        self._device = device
+        self._original_values: dict[str, str] = {}
 
     def shutter(self) -> tuple[str, list[str]]:
-        """Return the shutter time that is set, and all that can be, as the camera spells them.
+        """Return the shutter time that is set, and all times that can be set.
 
-        In a mode in which the camera chooses the time, the first is what its meter says.
+        Times are spelled as the camera spells them. In a mode in which the camera chooses the time,
+        the first is what its meter measures.
         """
-        setting = self._setting(*SHUTTER)
-        if setting is None:
-            raise InputError("the camera does not tell its shutter times: set it to M or A (Av)")
-        return setting.get_value(), _choices(setting)
+        setting = self._shutter_setting()
+        return setting.get_value(), _list_choices(setting)
 
-    def fix(self, part: str) -> list[str]:
-        """Fix what is automatic, and return in words what was changed, or has to be by hand.
+    def fix(self, part: Literal["light", "mode"]) -> list[str]:
+        """Fix automatic settings, and return a note on each that hdrlab or the user has to change.
 
-        First "light", which is ISO, focus and white balance: the meter's time depends on ISO. Then,
-        when the shutter has been read, the "mode".
+        Call it with "light" first, for ISO, focus and white balance, because the metered time
+        depends on ISO; with "mode" when the shutter time has been read.
         """
+        settings = LIGHT_SETTINGS if part == "light" else MODE_SETTINGS
         notes = []
-        for name, fixed in SPELLINGS[part].items():
-            if (setting := self._setting(name)) is None:
+        for name, fixed_values in settings.items():
+            setting = self._find_setting(name)
+            if setting is None:
                 continue
             value = setting.get_value()
-            if value in fixed or (name in CHOSEN and "auto" not in value.lower()):
+            is_users_choice = name in SETTINGS_WITH_USER_VALUES and "auto" not in value.lower()
+            if value in fixed_values or is_users_choice:
                 continue
-            wanted = next((one for one in fixed if one in _choices(setting)), "")
-            note = f"{name} is {value}: fix it on the camera, or the photographs will differ"
-            with suppress(ValueError):  # some only take it from their own dials
-                if wanted and self._set(name, wanted) == wanted:
-                    note = f"{name} is {wanted} until the end, it was {value}"
-            notes.append(note)
+            choices = _list_choices(setting)
+            available = [choice for choice in fixed_values if choice in choices]
+            if available and self._try_set_value(name, available[0]):
+                notes.append(f"{name} is {available[0]} until the end, it was {value}")
+            else:
+                notes.append(
+                    f"{name} is {value}: fix it on the camera, or the photographs will differ"
+                )
         return notes
 
     def photograph(self, time: str, path: Path) -> list[Path]:
-        """Take a photograph, and return its files: `path` with the suffixes that the camera gives.
+        """Take a photo and save its files: `path` with the suffixes that the camera gives.
+
+        Parameters
+        ----------
+        time
+            The shutter time, as the camera spells it.
+        path
+            Where to save the photo, without a suffix.
+
+        Returns
+        -------
+        list of Path
+            The files of the photo, such as a JPEG and a RAW file.
 
         Raises
         ------
-        ValueError
-            Where the time cannot be set, or the camera stops answering; no file is left half.
+        InputError
+            If the time cannot be set, or the camera stops answering; no incomplete file is left.
         """
-        if self._set(self._setting(*SHUTTER).get_name(), time) != time:
+        if self._set_value(self._shutter_setting().get_name(), time) != time:
             raise InputError(
-                f"the camera does not take the shutter time {time}: turn its dial to M"
+                f"the camera does not accept the shutter time {time}: turn its dial to M"
             )
-        with _told():
-            places = [self._device.capture(gphoto2.GP_CAPTURE_IMAGE)]
-            for _ in range(100):  # some cameras never fall silent
-                kind, what = self._device.wait_for_event(LATER)
-                if kind == gphoto2.GP_EVENT_TIMEOUT:
+        with _explain_errors():
+            camera_paths = [self._device.capture(gphoto2.GP_CAPTURE_IMAGE)]
+            for _ in range(MAX_EVENTS):
+                event, data = self._device.wait_for_event(SECOND_FILE_TIMEOUT_MS)
+                if event == gphoto2.GP_EVENT_TIMEOUT:
                     break
-                places += [what] * (kind == gphoto2.GP_EVENT_FILE_ADDED)
-            return [self._download(place, path) for place in places]
+                if event == gphoto2.GP_EVENT_FILE_ADDED:
+                    camera_paths.append(data)
+            return [self._download(camera_path, path) for camera_path in camera_paths]
 
     def restore(self) -> None:
-        """Set everything as it was before, as far as the camera still answers."""
-        for name, value in reversed(self._before.items()):
-            with suppress(ValueError):
-                self._set(name, value)
+        """Restore every changed setting, as far as the camera still answers."""
+        for name, value in reversed(self._original_values.items()):
+            self._try_set_value(name, value)
 
-    def _download(self, place: Any, path: Path) -> Path:
-        file = self._device.file_get(place.folder, place.name, gphoto2.GP_FILE_TYPE_NORMAL)
-        target = path.with_suffix(Path(place.name).suffix.lower())
+    def _download(self, camera_path: Any, path: Path) -> Path:
+        """Copy a file from the camera, and return where it is."""
+        file = self._device.file_get(
+            camera_path.folder, camera_path.name, gphoto2.GP_FILE_TYPE_NORMAL
+        )
+        target = path.with_suffix(Path(camera_path.name).suffix.lower())
         with replacing(target) as temporary:
             file.save(str(temporary))
         return target
 
-    def _setting(self, *names: str) -> Any:
-        """Return the first setting of these names that the camera has, or None."""
-        for name in names:
-            with suppress(gphoto2.GPhoto2Error):
-                return self._device.get_single_config(name)
-        return None
+    def _shutter_setting(self) -> Any:
+        for name in SHUTTER_SETTINGS:
+            setting = self._find_setting(name)
+            if setting is not None:
+                return setting
+        raise InputError("the camera does not report its shutter times: set it to M or A (Av)")
 
-    def _set(self, name: str, value: str) -> str:
-        """Set a value, and return what the camera says it is."""
-        with _told():
+    def _find_setting(self, name: str) -> Any:
+        """Return a setting, or None if the camera does not have it."""
+        try:
+            return self._device.get_single_config(name)
+        except gphoto2.GPhoto2Error:
+            return None
+
+    def _try_set_value(self, name: str, value: str) -> bool:
+        """Set a value, and return whether the camera accepts it; some accept only their own dials."""
+        try:
+            return self._set_value(name, value) == value
+        except InputError:
+            return False
+
+    def _set_value(self, name: str, value: str) -> str:
+        """Set a value, and return the value that the camera then reports."""
+        with _explain_errors():
             setting = self._device.get_single_config(name)
-            self._before.setdefault(name, setting.get_value())
+            self._original_values.setdefault(name, setting.get_value())
             setting.set_value(value)
             self._device.set_single_config(name, setting)
             return self._device.get_single_config(name).get_value()
 
 
-def _choices(setting: Any) -> list[str]:
-    return [setting.get_choice(j) for j in range(setting.count_choices())]
+def _list_choices(setting: Any) -> list[str]:
+    return [setting.get_choice(index) for index in range(setting.count_choices())]
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """Say in plain words what an error of libgphoto2 means."""
+def _explain_errors() -> Iterator[None]:
+    """Turn an error of libgphoto2 into an InputError that says what to check."""
     try:
         yield
     except gphoto2.GPhoto2Error as error:
-        meaning = ERRORS.get(str(error.code), ERRORS["other"])
-        raise InputError(f"no camera answers: {meaning} ({error})") from None
+        advice = ERROR_ADVICE.get(error.code, OTHER_ERROR_ADVICE)
+        raise InputError(f"no camera answers: {advice} ({error})") from None

@@ -123,7 +123,8 @@ def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
 def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
     def settings(camera):
         return [
-            camera._setting(one).get_value() for one in ("autofocus", "shutterspeed", "f-number")
+            camera._find_setting(one).get_value()
+            for one in ("autofocus", "shutterspeed", "f-number")
         ]
 
     restore, found = tethered.Camera.restore, []
