@@ -1,21 +1,23 @@
-"""How much of the picture stands elsewhere in each photograph?
+"""How much of the image moved between the photos?
 
-x    ln E           (P, H, W, C), of each frame alone: g(Z) - ln t
-w    weights        (P, H, W, C), of levels that are neither clipped nor black
+x    ln E           (P, H, W, C), of each photo alone: g(Z) - ln t
+w    weights        (P, H, W, C), of pixel values that are neither clipped nor black
 r    residuals      x - (sum_j w x) / (sum_j w)
 R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so that noise averages out, less
-                    the frame's median: where a frame is off as a whole, its time or the response is
+                    the photo's median: where a photo is off as a whole, its time or the response is wrong
 d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
-b    of a row       (P, h), sum w r / sum w over a row of blocks, less the frame's best cubic in y
+b    of a row       (P, h), sum w r / sum w over a row of blocks, less the photo's best cubic in y
 
-Leaves, water and people make d large where they are, though most pixels of each level agree, so
-that a median over levels, as in `consistency`, does not see them. An edge that is off by a pixel
-does so along a line; what counts is at least two blocks wide and high.
+Leaves, water and people make d large where they are. Most pixels of each value agree all the same, so
+a median over pixel values, as in `consistency`, does not notice them. An edge that is off by a pixel
+makes d large along a line; what counts is at least two blocks wide and high.
 
-Lamps flicker, and most cameras read row after row: then b has bands, and the same of columns has
-none. A sky above the ground, where a response is a little wrong, makes no bands, for a cubic
+Lamps flicker, and most cameras read out row after row: then b has bands, and the same of columns has
+none. A sky above the ground, where the response is a little wrong, makes no bands, because a cubic
 explains it.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -23,21 +25,30 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
-# of a frame, on an even grid, that stand for the whole
-PIXELS = 180_000
-# side, in pixels of the grid
+# pixels of a photo, on an even grid, that are compared
+MAX_PIXELS = 180_000
+# side of a block, in pixels of that grid
 BLOCK = 4
-# mean weight, of the highest, of a frame that measures a block
-FAINT = 0.2
-# ln E by which the frames of a still scene may differ in a block: 0.2 stops
-STILL = 0.2 * np.log(2)
-# of the blocks: where fewer are measured by two frames, nothing is known
-FEWEST = 0.1
-# of the blocks measured: of a still scene up to 0.012 deviate; of film scanned frame by frame 0.09,
-# for its response does, and then `radiance.deghosting.ghosts` finds nothing to remove
+# mean weight, relative to the highest, with which a photo measures a block
+MIN_BLOCK_WEIGHT = 0.2
+# ln E by which the photos of a still scene may differ in a block: 0.2 stops
+MAX_STILL_DEVIATION = 0.2 * np.log(2)
+# If two photos measure a smaller fraction of the blocks, nothing is known.
+MIN_MEASURED_FRACTION = 0.1
+# Fraction of the measured blocks. In a still scene up to 0.012 deviate; in film that is scanned photo by
+# photo 0.09, because its response changes, and then `radiance.deghosting.ghosts` finds nothing to remove.
 MOVED = 0.015
-# stops of b, and times what columns show: still scenes under steady light stay below 0.04, and 1.8
-BANDED, ACROSS = 0.055, 2.5
+# stops of b; still scenes under steady light stay below 0.04
+BANDED = 0.055
+# Bands count if b is that many times what columns show; still scenes stay below 1.8.
+MIN_ROWS_OVER_COLUMNS = 2.5
+
+
+class Motion(NamedTuple):
+    """The fraction of the image that moved, and the stops by which its light changes in bands."""
+
+    fraction: float
+    band_stops: float
 
 
 def measure_motion(
@@ -47,28 +58,33 @@ def measure_motion(
     w: ArrayLike,
     *,
     valid: ArrayLike | None = None,
-) -> tuple[float, float]:
-    """Return the share of the picture in which the photographs contradict each other, and by bands of light.
+) -> Motion:
+    """Measure in what fraction of the image the photos contradict each other, and by bands of light.
 
     Parameters
     ----------
-    images : (P, H, W) or (P, H, W, 3) uint8 or uint16, aligned
-    times : (P,) seconds
-    g : (n,) or (n, 3), ln exposure of each level
-    w : (n,), weights of the levels
-    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Aligned photos.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each pixel value.
+    w : (n,) float
+        Weights of the pixel values.
+    valid : (P, H, W) bool, optional
+        False where a photo has no image.
 
     Returns
     -------
-    share, bands : float
-        The share is one of the blocks that two photographs measure; 0 where these are few. Above
-        MOVED, it is motion. Bands are the RMS of b in stops, 0 unless it is ACROSS times that of
-        columns. Above BANDED, lamps flicker.
+    fraction, band_stops : float
+        The fraction is one of the blocks that two photos measure; 0 where these are few. Above MOVED,
+        it is motion. The bands are the RMS of b in stops, 0 unless it is MIN_ROWS_OVER_COLUMNS times
+        that of columns. Above BANDED, lamps flicker.
 
     Raises
     ------
-    ValueError
-        For arrays that do not fit together.
+    InputError
+        If the arrays do not fit together.
 
     Examples
     --------
@@ -80,45 +96,72 @@ def measure_motion(
     False
     True
     """
-    stack, t, w, curves, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
-    mask, every = (
-        as_mask(valid, stack),
-        max(1, int(np.sqrt(stack[0].size / curves.shape[1] / PIXELS))),
-    )
-    few = np.s_[:, ::every, ::every]
-    Z = np.moveaxis(stack[few].reshape(*stack[few].shape[:3], -1), -1, 0).copy()
-    seen = (Z < top).all(axis=0) if mask is None else (Z < top).all(axis=0) & mask[few]
-    weight = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
-    R, W = np.zeros(
-        (2, len(t), *(n // BLOCK for n in Z.shape[2:])), np.float32
-    )  # sums of w r, and of w
-    for levels, x in zip(Z, curves.T.astype(np.float32), strict=True):
-        trust = weight.take(levels) * seen
-        r = x.take(levels) - np.log(t).astype(np.float32)[:, None, None]
-        r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
-        R += sum_blocks(trust * r)
-        W += sum_blocks(trust)
-    rows, columns = (
-        measure_bands(R.sum(axis=k), W.sum(axis=k), len(Z) * R.shape[k]) for k in (2, 1)
-    )
-    W[W < FAINT * BLOCK**2 * len(Z)] = 0
+    stack, times_s, w, curves, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
+    mask = as_mask(valid, stack)
+    channel_count = curves.shape[1]
+    step = max(1, int(np.sqrt(stack[0].size / channel_count / MAX_PIXELS)))
+    grid = np.s_[:, ::step, ::step]
+    sample = stack[grid]
+    Z = np.moveaxis(sample.reshape(*sample.shape[:3], -1), -1, 0).copy()
+    is_seen = (Z < top).all(axis=0)
+    if mask is not None:
+        is_seen = is_seen & mask[grid]
+    relative_weights = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
+    R, W = _sum_residuals(Z, curves, times_s, relative_weights, is_seen)
+    rows = measure_bands(R.sum(axis=2), W.sum(axis=2), channel_count * R.shape[2])
+    columns = measure_bands(R.sum(axis=1), W.sum(axis=1), channel_count * R.shape[1])
+    fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK**2 * channel_count)
+    band_stops = rows if rows > MIN_ROWS_OVER_COLUMNS * columns else 0.0
+    return Motion(fraction, band_stops)
+
+
+def _sum_residuals(
+    Z: Array, curves: Array, times: Array, relative_weights: F32, is_seen: Array
+) -> tuple[F32, F32]:
+    """Return the sums of w r and of w over the pixels and channels of each block, (P, h, w) each."""
+    shape = (len(times), *(n // BLOCK for n in Z.shape[2:]))
+    R = np.zeros(shape, np.float32)
+    W = np.zeros(shape, np.float32)
+    log_times = np.log(times).astype(np.float32)[:, None, None]
+    for values, curve in zip(Z, curves.T.astype(np.float32), strict=True):
+        weights = relative_weights.take(values) * is_seen
+        r = curve.take(values) - log_times
+        r -= (weights * r).sum(axis=0) / np.maximum(weights.sum(axis=0), 1e-9)
+        R += sum_blocks(weights * r)
+        W += sum_blocks(weights)
+    return R, W
+
+
+def _measure_moving_fraction(R: F32, W: F32, min_weight: float) -> float:
+    """Return the fraction of the blocks that moved; R and W are overwritten."""
+    W[W < min_weight] = 0
     R /= np.maximum(W, 1e-9)
-    for one, own in zip(R, W, strict=True):
-        one -= np.median(one[own > 0]) if own.any() else 0
-    d = np.sqrt((W * R**2).sum(axis=0) / np.maximum(W.sum(axis=0), 1e-9))
-    measured = (W > 0).sum(axis=0) > 1
-    whole = sliding_window_view(np.pad(measured & (d > STILL), 1), (2, 2)).all(axis=(2, 3))
-    moved = sliding_window_view(whole, (2, 2)).any(axis=(2, 3))
-    share = float(moved.sum() / measured.sum()) if np.mean(measured) > FEWEST else 0.0
-    return share, rows * (rows > ACROSS * columns)
+    for block_residuals, block_weights in zip(R, W, strict=True):
+        if block_weights.any():
+            block_residuals -= np.median(block_residuals[block_weights > 0])
+    deviation = np.sqrt((W * R**2).sum(axis=0) / np.maximum(W.sum(axis=0), 1e-9))
+    is_measured = (W > 0).sum(axis=0) > 1
+    if not np.mean(is_measured) > MIN_MEASURED_FRACTION:
+        return 0.0
+    # Of the blocks that deviate, those in a square of 2 x 2 count.
+    deviates = np.pad(is_measured & (deviation > MAX_STILL_DEVIATION), 1)
+    is_square = sliding_window_view(deviates, (2, 2)).all(axis=(2, 3))
+    has_moved = sliding_window_view(is_square, (2, 2)).any(axis=(2, 3))
+    return float(has_moved.sum() / is_measured.sum())
 
 
 def measure_bands(R: F32, W: F32, count: int) -> float:
-    """Return the RMS of b in stops, from sums of w r and of w (P, n) over so many blocks and channels."""
-    W = np.where(W > FAINT / 2 * BLOCK**2 * count, W, 0)
-    b, A = R / np.maximum(W, 1e-9), np.vander(np.linspace(-1, 1, R.shape[1]), 4)
-    for one, own in zip(b, np.sqrt(W), strict=True):
-        one -= A @ np.linalg.lstsq(own[:, None] * A, own * one, rcond=None)[0]
+    """Return the RMS of b in stops.
+
+    R and W are the sums of w r and of w (P, n), each over `count` blocks and channels.
+    """
+    W = np.where(W > MIN_BLOCK_WEIGHT / 2 * BLOCK**2 * count, W, 0)
+    b = R / np.maximum(W, 1e-9)
+    powers = np.vander(np.linspace(-1, 1, R.shape[1]), 4)
+    for row_means, root_weights in zip(b, np.sqrt(W), strict=True):
+        weighted = root_weights[:, None] * powers
+        cubic = np.linalg.lstsq(weighted, root_weights * row_means, rcond=None)[0]
+        row_means -= powers @ cubic
     W[:, (W > 0).sum(axis=0) < 2] = 0
     return float(np.sqrt((W * b**2).sum() / max(W.sum(), 1e-9)) / np.log(2))
 

@@ -1,23 +1,22 @@
-"""May I trust an alignment? A search always answers, so its answer is compared once more.
+"""Can an alignment be trusted? A search always gives an answer, so the answer is checked.
 
-H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
-p        pixels              (n, 2): those at which light is compared, spread evenly over an overview, half a
-                             megapixel at most; bitmaps are compared with no offset at full
-                             resolution, too
-d        differences         of light (n,): relative to it, NaN where one measures none; of bitmaps (4, 2):
-                             in each quarter of the picture the bits that differ, and those compared
+H        homography          (3, 3): where pixel (x, y, 1) of the moving photo lies on the fixed one
+p        pixels              (n, 2) at which light is compared, on an even grid over an overview of at most
+                             half a megapixel; bitmaps with offset 0 are also compared at full resolution
+d        differences         of light (n,), relative to it, NaN where one photo measures none; of bitmaps
+                             (4, 2): in each quarter of the image the bits that differ, and those compared
 e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
 
-Of Ward's brackets 84 % came out well; the others had turned, moved too far, or were all fine
-texture. So: is H better than the identity, better than what lies around it, do the four quarters of
-the picture agree (in a rotation each of them moves another way), and does a texture that repeats
-fit elsewhere as well?
+84 % of Ward's brackets came out well; in the others the camera was rotated or moved too far, or the scene
+was all fine texture. So the questions are: Is H better than the identity? Is it better than what lies
+around it? Do the four quarters of the image agree? (In a rotation each of them moves in another
+direction.) Does a repeating texture fit elsewhere as well?
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,43 +24,57 @@ from hdrlab.align import homography, light, mtb
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import blur, warp
 
-# pixels of the overview: the distances at which other answers are compared
-NEAR, FAR = 2, 8
+# pixels of the overview; distances at which other offsets are compared
+NEAR = 2
+FAR = 8
 # standard errors by which an error is clearly lower
-SURE = 3
-# confidence below which an answer is lost; wrong ones stay below 0.1, and right ones come to 0.6
-# and more
+MIN_GAIN_SIGMAS = 3
+# relative gain by which an error is clearly lower
+MIN_RELATIVE_GAIN = 1 / 20
+# pixels of a quarter that must be compared
+MIN_COMPARED_PIXELS = 20
+# confidence below which an alignment is not known; wrong ones stay below 0.1, right ones reach 0.6 and more
 LOST = 0.3
 # shifts at which a texture resembles itself most
-RIVALS = 4
-# of the way up to the error elsewhere: a rival this low fits as well
-ALIKE = 0.1
-# pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are
-# looked for
-BITS_TILE, LIGHT_TILE = 64, 512
-# error of photographs that clearly lie apart: of bits an eighth as fine, where noise is none, and
-# of light
-BITS_APART, LIGHT_APART = 0.1, 0.1
-# quarters of a picture: so many fit better elsewhere where the camera rotated; fewer, where
-# something moved
-ROTATED = 3
-EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
+RIVAL_COUNT = 4
+# A rival fits as well if its error is that close to the best one, relative to the error elsewhere.
+MAX_RIVAL_LOSS = 0.1
+# pixels; side of the part of a bitmap, or of light, in which rivals are searched
+BITS_TILE = 64
+LIGHT_TILE = 512
+# error of photos that are clearly not aligned, of bits and of light; it is taken at an eighth of the
+# resolution, where there is no noise
+MAX_ALIGNED_BITS_ERROR = 0.1
+MAX_ALIGNED_LIGHT_ERROR = 0.1
+# If that many quarters of an image fit better elsewhere, the camera was rotated; if fewer, something moved.
+MIN_ROTATED_QUARTERS = 3
+DIRECTIONS = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
 
-class Validation(NamedTuple):
-    """What the comparison of two photographs found.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Validation:
+    """The result of comparing two photos after an alignment.
 
     Attributes
     ----------
-    moving, fixed : which two images; they are neighbours in brightness, and the darker one moves
-    H : (3, 3), where pixel (x, y, 1) of `moving` comes to lie on `fixed`
-    offset : (dy, dx), pixels, by which the middle of `moving` is moved
-    degrees : by how much it is rotated, clockwise as seen
-    before, after : error without the move and with it
-    confidence : 1 is a perfect match, 0 is no better than 8 pixels away
-    informative : False where the two photographs cannot be compared
-    failure : the reason not to trust H; empty where there is none
-    apart : whether the photographs clearly do not lie on each other, wherever H puts them
+    moving, fixed : int
+        Indices of the photos; they are neighbors in brightness, and the darker one moves.
+    H : (3, 3)
+        Where pixel (x, y, 1) of `moving` lies on `fixed`.
+    offset : (float, float)
+        (dy, dx) in pixels, by which the center of `moving` is shifted.
+    degrees : float
+        Rotation, clockwise as seen.
+    before, after : float
+        Error without the alignment and with it.
+    confidence : float
+        1 is a perfect match, 0 is no better than 8 pixels away.
+    informative : bool
+        False if the photos cannot be compared.
+    failure : str
+        The reason not to trust H; "" if there is none.
+    apart : bool
+        Whether the photos are clearly not aligned, wherever H puts them.
     """
 
     moving: int
@@ -88,24 +101,32 @@ class Validation(NamedTuple):
 
     @property
     def step(self) -> F64:
-        """H where it is known; else the identity, with which a photograph stays beside its neighbour."""
+        """H where it is known; else the identity, so that a photo stays with its neighbor."""
         return self.H if self.known else np.eye(3)
 
 
-class Comparison(NamedTuple):
-    """Two photographs, ready to be compared after any H.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Comparison:
+    """Two photos that can be compared after any H.
 
     Attributes
     ----------
-    moving, fixed, shape : which two images, and the size of the fixed one
-    scale : pixels that are one of the overview
-    differences : function of H that returns d of the overview, or of the size whose pixel is so
-        many wide
-    error : function of d that returns e, and `light.ERROR_WITHOUT_OVERLAP` where the two share too little
-    lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in
-        the whole
-    middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
-    apart : e above which photographs clearly do not lie on each other
+    moving, fixed : int
+        Indices of the photos.
+    shape : tuple of int
+        Size of the fixed photo.
+    scale : int
+        Pixels of the photo in one pixel of the overview.
+    differences : function of H, or of H and the pixels of the photo in one pixel
+        It returns d, of the overview or of that size.
+    error : function of d
+        It returns e, and `light.ERROR_WITHOUT_OVERLAP` if the photos have too little in common.
+    lower : function of two d
+        It returns (5,) bool: whether the first is clearly lower in each quarter, and in the whole image.
+    middle : (h, w)
+        The middle of the fixed photo, NaN where it measures nothing.
+    max_aligned_error : float
+        Photos with a larger error are clearly not aligned.
     """
 
     moving: int
@@ -116,34 +137,44 @@ class Comparison(NamedTuple):
     error: Callable[[F64], float]
     lower: Callable[[F64, F64], Mask]
     middle: F32
-    apart: float
+    max_aligned_error: float
 
 
 def compare_light(moving: int, fixed: int, X: F32, scale: int = 1) -> Comparison:
-    """Return the Comparison of light X (2, h, w): the gain of one H over another is taken pixel by pixel.
+    """Return the Comparison of light X (2, h, w), in which the gain of an H is measured pixel by pixel.
 
-    A pixel of X is `scale` pixels of the photographs wide.
+    `scale` is the number of pixels of the photo in one pixel of X.
     """
-    p = light.lattice(X.shape[1:])
-    right, low = (p > p.max(axis=0) / 2).T
-    quarters = np.eye(4, dtype=np.float32)[right + 2 * low]
+    points = light.lattice(X.shape[1:])
+    is_right, is_low = (points > points.max(axis=0) / 2).T
+    quarters = np.eye(4, dtype=np.float32)[is_right + 2 * is_low]
 
     def differences(H: F64, pixel: int = scale) -> F64:
-        return light.differences(X, homography.enlarge(H, 1 / scale), p)
+        return light.differences(X, homography.enlarge(H, 1 / scale), points)
 
     def lower(d: F64, other: F64) -> Mask:
         gain = other**2 - d**2
-        kept = np.isfinite(gain)
-        gain = np.where(kept, gain, 0)
-        sums = np.stack([kept, np.where(kept, other**2, 0), gain, gain**2]) @ quarters
-        n, rate, gained, square = np.column_stack([sums, sums.sum(axis=1)])
-        rate, gained, square = np.array([rate, gained, square]) / np.maximum(n, 1)
-        error = np.sqrt(np.maximum(square - gained**2, 0) / np.maximum(n, 1))
-        return np.asarray((n >= 20) & (gained > rate / 20 + SURE * error))
+        is_known = np.isfinite(gain)
+        gain = np.where(is_known, gain, 0)
+        other_squared = np.where(is_known, other**2, 0)
+        sums = np.stack([is_known, other_squared, gain, gain**2]) @ quarters
+        count, *totals = np.column_stack([sums, sums.sum(axis=1)])
+        other_mean, gain_mean, gain_square_mean = np.array(totals) / np.maximum(count, 1)
+        variance = np.maximum(gain_square_mean - gain_mean**2, 0)
+        standard_error = np.sqrt(variance / np.maximum(count, 1))
+        needed = other_mean * MIN_RELATIVE_GAIN + MIN_GAIN_SIGMAS * standard_error
+        return np.asarray((count >= MIN_COMPARED_PIXELS) & (gain_mean > needed))
 
-    shape, middle = tuple(scale * n for n in X.shape[1:]), _middle(X[0], LIGHT_TILE)
     return Comparison(
-        moving, fixed, shape, scale, differences, light.error, lower, middle, LIGHT_APART
+        moving=moving,
+        fixed=fixed,
+        shape=tuple(scale * n for n in X.shape[1:]),
+        scale=scale,
+        differences=differences,
+        error=light.error,
+        lower=lower,
+        middle=_middle(X[0], LIGHT_TILE),
+        max_aligned_error=MAX_ALIGNED_LIGHT_ERROR,
     )
 
 
@@ -155,94 +186,153 @@ def compare_bits(
     t: int,
     count: Callable[[Array, int], Array],
 ) -> Comparison:
-    """Return the Comparison of the bitmaps of two gray photographs; its H shift by whole pixels.
+    """Return the Comparison of the bitmaps of two gray photos, whose H shift by whole pixels.
 
-    Y are the fixed one's levels, t the threshold of the overview; count(offset, level) returns d of
-    a level.
+    Y is the pyramid of the fixed photo, t the threshold of the overview; count(offset, level) returns d
+    of a level of the pyramid.
     """
-    tile, scale = _middle(Y[overview], BITS_TILE), 2**overview
-    signs = np.where(mtb.exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
+    tile = _middle(Y[overview], BITS_TILE)
+    scale = 2**overview
+    signs = np.where(mtb.exclusion(tile, t), np.where(tile > t, 1, -1), np.nan)
 
     def differences(H: F64, pixel: int = scale) -> F64:
         level = min(pixel.bit_length(), len(Y)) - 1
-        return np.asarray(count(np.rint(H[1::-1, 2] / 2**level).astype(int), level), np.float64)
+        offset = np.rint(H[1::-1, 2] / 2**level).astype(int)
+        return np.asarray(count(offset, level), np.float64)
 
     def error(d: F64) -> float:
-        differ, compared = d.sum(axis=0)
-        return float(differ / compared) if compared else light.ERROR_WITHOUT_OVERLAP
+        differing, compared = d.sum(axis=0)
+        return float(differing / compared) if compared else light.ERROR_WITHOUT_OVERLAP
 
     def lower(d: F64, other: F64) -> Mask:
-        d, other = (np.vstack([one, one.sum(axis=0)]) for one in (d, other))
-        own, rate = (one[:, 0] / np.maximum(one[:, 1], 1) for one in (d, other))
-        return np.asarray(
-            rate - own > rate / 20 + SURE * np.sqrt(rate / np.maximum(other[:, 1], 1))
-        )
+        d = np.vstack([d, d.sum(axis=0)])
+        other = np.vstack([other, other.sum(axis=0)])
+        d_rate = d[:, 0] / np.maximum(d[:, 1], 1)
+        other_rate = other[:, 0] / np.maximum(other[:, 1], 1)
+        standard_error = np.sqrt(other_rate / np.maximum(other[:, 1], 1))
+        needed = other_rate * MIN_RELATIVE_GAIN + MIN_GAIN_SIGMAS * standard_error
+        return np.asarray(other_rate - d_rate > needed)
 
     return Comparison(
-        moving, fixed, Y[0].shape, scale, differences, error, lower, signs, BITS_APART
+        moving=moving,
+        fixed=fixed,
+        shape=Y[0].shape,
+        scale=scale,
+        differences=differences,
+        error=error,
+        lower=lower,
+        middle=signs.astype(np.float32),
+        max_aligned_error=MAX_ALIGNED_BITS_ERROR,
     )
 
 
 def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
-    """Return the Validation of a pair whose search, of up to `limit` pixels, found H.
+    """Return the Validation of a pair for which a search, of up to `limit` pixels, found H.
 
-    The identity takes the place of an H that is not clearly better.
+    The identity replaces an H that is not clearly better.
     """
-    still, fine, coarse = np.eye(3), max(pair.scale // 2, 1), pair.scale
-    before = pair.differences(still, 1)
-    after = before if np.array_equal(H, still) else pair.differences(H, 1)
+    identity = np.eye(3)
+    fine = max(pair.scale // 2, 1)
+    coarse = pair.scale
+    before = pair.differences(identity, 1)
+    after = before if np.array_equal(H, identity) else pair.differences(H, 1)
     if pair.error(before) < light.ERROR_WITHOUT_OVERLAP and not pair.lower(after, before)[-1]:
-        H, after = still, before
+        H = identity
+        after = before
     d = pair.differences(H, fine)
-    near = [pair.differences(shift(H, NEAR * fine * to), fine) for to in EIGHT]
-    elsewhere = [pair.error(pair.differences(shift(H, FAR * coarse * to))) for to in EIGHT]
-    if (e := pair.error(after)) == light.ERROR_WITHOUT_OVERLAP or not any(
-        elsewhere + [pair.error(one) for one in near]
-    ):
+    near = [pair.differences(shift(H, NEAR * fine * direction), fine) for direction in DIRECTIONS]
+    elsewhere = [
+        pair.error(pair.differences(shift(H, FAR * coarse * direction))) for direction in DIRECTIONS
+    ]
+    error = pair.error(after)
+    all_fit = not any(elsewhere + [pair.error(other) for other in near])
+    if error == light.ERROR_WITHOUT_OVERLAP or all_fit:
         return uninformative(pair.moving, pair.fixed)
-    middle = (np.array(pair.shape[::-1]) - 1) / 2
-    dx, dy = (float(by) for by in warp.apply(H, [middle])[0] - middle)
-    degrees = float(np.rad2deg(np.arctan2(H[1, 0], H[0, 0])))
     sure = confidence(pair.error(pair.differences(H)), elsewhere)
-    away = int(np.any([pair.lower(one, d)[:-1] for one in near], axis=0).sum())
-    reason = failure_reason(pair, H, elsewhere, all(pair.lower(d, one)[-1] for one in near), away)
+    better_quarters = np.any([pair.lower(other, d)[:-1] for other in near], axis=0)
+    better_count = int(better_quarters.sum())
+    is_best_nearby = all(pair.lower(d, other)[-1] for other in near)
+    center = (np.array(pair.shape[::-1]) - 1) / 2
+    dx, dy = warp.apply(H, [center])[0] - center
+    reason = failure_reason(pair, H, elsewhere, is_best_nearby, better_count)
     if max(abs(dx), abs(dy)) >= limit:
-        reason = f"the offset lies at the end of the range, {limit} pixels"
-    apart = (
-        away >= ROTATED
-        if sure >= LOST
-        else pair.error(pair.differences(still, 8 * coarse)) > pair.apart
+        reason = f"the offset is at the end of the search range, {limit} pixels"
+    if sure >= LOST:
+        apart = better_count >= MIN_ROTATED_QUARTERS
+    else:
+        error_in_place = pair.error(pair.differences(identity, 8 * coarse))
+        apart = error_in_place > pair.max_aligned_error
+    return Validation(
+        moving=pair.moving,
+        fixed=pair.fixed,
+        H=H,
+        offset=(float(dy), float(dx)),
+        degrees=float(np.rad2deg(np.arctan2(H[1, 0], H[0, 0]))),
+        before=pair.error(before),
+        after=error,
+        confidence=sure,
+        informative=True,
+        failure=reason,
+        apart=apart,
     )
-    numbers = (dy, dx), degrees, pair.error(before), e, sure
-    return Validation(pair.moving, pair.fixed, H, *numbers, True, reason, apart)
 
 
 def uninformative(moving: int, fixed: int) -> Validation:
     """Return the Validation of a pair that cannot be compared."""
-    reason = (
-        "uninformative: both measure too little of the scene, or no threshold divides both pictures"
+    return Validation(
+        moving=moving,
+        fixed=fixed,
+        H=np.eye(3),
+        offset=(0.0, 0.0),
+        degrees=0.0,
+        before=0.0,
+        after=0.0,
+        confidence=0.0,
+        informative=False,
+        failure="uninformative: the two photos show too little of the scene in common, or no "
+        "threshold divides both",
     )
-    return Validation(moving, fixed, np.eye(3), (0.0, 0.0), 0.0, 0.0, 0.0, 0.0, False, reason)
 
 
-def failure_reason(pair: Comparison, H: F64, elsewhere: list[float], clear: bool, away: int) -> str:
-    """Return why not to trust H, or "", by errors `elsewhere`, worse ones near it, quarters better `away`."""
-    e, n = pair.error(pair.differences(H)), pair.scale
+def failure_reason(
+    pair: Comparison, H: F64, elsewhere: list[float], is_best_nearby: bool, better_count: int
+) -> str:
+    """Return why not to trust H, or "".
+
+    Parameters
+    ----------
+    pair : Comparison
+    H : (3, 3)
+    elsewhere : list of float
+        Errors at FAR pixels of the overview from H.
+    is_best_nearby : bool
+        Whether H is clearly better than all offsets NEAR it.
+    better_count : int
+        How many quarters of the image are clearly better elsewhere.
+    """
+    error = pair.error(pair.differences(H))
+    far = FAR * pair.scale
     if not any(elsewhere):
-        return f"the picture repeats itself: {FAR * n} pixels away the photographs fit as well"
-    if (sure := confidence(e, elsewhere)) < LOST:
-        return f"{FAR * n} pixels away the photographs fit nearly as well (confidence {sure:.2f})"
-    if away:
+        return f"the image repeats itself: {far} pixels away the photos fit as well"
+    sure = confidence(error, elsewhere)
+    if sure < LOST:
+        return f"{far} pixels away the photos fit nearly as well (confidence {sure:.2f})"
+    if better_count:
         return (
-            f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
+            f"{better_count} of 4 quarters of the image fit better elsewhere (rotation, depth or "
+            "motion)"
         )
-    if not clear:
-        return f"{NEAR * max(n // 2, 1)} pixels away the photographs fit as well"
+    if not is_best_nearby:
+        near = NEAR * max(pair.scale // 2, 1)
+        return f"{near} pixels away the photos fit as well"
+    mean_elsewhere = np.mean(elsewhere)
     for rival in rivals(pair.middle):
-        also = pair.error(pair.differences(shift(H, rival * n)))
-        if confidence(e, [also]) < LOST or also - e < ALIKE * (np.mean(elsewhere) - e):
-            on = tuple((rival * n).tolist())
-            return f"the picture repeats itself: moved on by {on} it fits nearly as well"
+        offset = rival * pair.scale
+        rival_error = pair.error(pair.differences(shift(H, offset)))
+        is_alike = rival_error - error < MAX_RIVAL_LOSS * (mean_elsewhere - error)
+        if confidence(error, [rival_error]) < LOST or is_alike:
+            shifted = tuple(offset.tolist())
+            return f"the image repeats itself: shifted by {shifted} it fits nearly as well"
     return ""
 
 
@@ -259,33 +349,45 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
 
 
 def rivals(middle: F32) -> list[Array]:
-    """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation, by half."""
-    (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.LOCAL_MEAN_SIGMA)
-    k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.LOCAL_MEAN_SIGMA) ** 2)
-    down, across = (blur.blur_matrix(n, k / k.sum()) for n in (h, w))
-    total, share = (
-        down @ one @ across for one in (np.where(kept, middle, 0), kept)
-    )  # `light.local_mean`
-    x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
-    c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)
-    near = np.max(
-        [np.pad(c, 2, "edge")[j : j + 2 * h] for j in range(5)], axis=0
-    )  # of 5 x 5: of rows, then
-    near = np.max([near[:, j : j + w] for j in range(5)], axis=0)
-    y, x = np.nonzero((c == near) & (c > 0))
-    found = np.stack([y - h, x], axis=-1)[np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]]
-    return [shift for shift in found if np.abs(shift).max() > NEAR]
+    """Return the shifts at which an image resembles itself most: peaks of its autocorrelation.
+
+    Of each two opposite shifts there is one.
+    """
+    height, width = middle.shape
+    is_known = np.isfinite(middle)
+    detail = _subtract_local_mean(middle, is_known)
+    spectrum = np.abs(np.fft.rfft2(detail, (2 * height, 2 * width))) ** 2
+    correlation = np.fft.fftshift(np.fft.irfft2(spectrum)[:, :width], axes=0)
+    # The maximum of 5 x 5 values around each one: of rows first, then of columns.
+    padded = np.pad(correlation, 2, "edge")
+    row_maximum = np.max([padded[j : j + 2 * height] for j in range(5)], axis=0)
+    maximum = np.max([row_maximum[:, j : j + width] for j in range(5)], axis=0)
+    y, x = np.nonzero((correlation == maximum) & (correlation > 0))
+    strongest = np.argsort(-correlation[y, x], kind="stable")[: RIVAL_COUNT + 1]
+    shifts = np.stack([y - height, x], axis=-1)[strongest]
+    return [shift for shift in shifts if np.abs(shift).max() > NEAR]
+
+
+def _subtract_local_mean(image: F32, is_known: Mask) -> F64:
+    """Return an image less the mean around each pixel, as in `light.local_mean`; 0 where unknown."""
+    radius = round(4 * light.LOCAL_MEAN_SIGMA)
+    kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / light.LOCAL_MEAN_SIGMA) ** 2)
+    kernel /= kernel.sum()
+    blur_rows = blur.blur_matrix(image.shape[0], kernel)
+    blur_columns = blur.blur_matrix(image.shape[1], kernel)
+    total = blur_rows @ np.where(is_known, image, 0) @ blur_columns
+    weight = blur_rows @ is_known @ blur_columns
+    return np.where(is_known, image - total / np.maximum(weight, 1e-6), 0)
 
 
 def shift(H: F64, offset: ArrayLike) -> F64:
-    """Return H, and then an offset (dy, dx) further."""
+    """Return H followed by a shift by an offset (dy, dx)."""
     dy, dx = np.asarray(offset, float)
     return np.asarray(np.array([[1, 0, dx], [0, 1, dy], [0, 0, 1]]) @ H)
 
 
 def _middle(image: Array, side: int) -> Array:
-    """Return the middle of a picture (H, W), of this side at most."""
-    rows, columns = (
-        slice(max(n - side, 0) // 2, max(n - side, 0) // 2 + side) for n in image.shape
-    )
-    return image[rows, columns]
+    """Return the middle of an image (H, W), at most `side` pixels wide and high."""
+    top = max(image.shape[0] - side, 0) // 2
+    left = max(image.shape[1] - side, 0) // 2
+    return image[top : top + side, left : left + side]

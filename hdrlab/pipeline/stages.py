@@ -228,7 +228,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         partial(consistency.measure_level_exposures, sample, times, sample_map, valid=sample_valid),
         pixels=images[0].size,
     )
-    moving_fraction, band_stops = motion_task.result()
+    motion_found = motion_task.result()
+    moving_fraction = motion_found.fraction
+    band_stops = motion_found.band_stops
     medians = medians_task.result()
     contradictions = contradictions_task.result()
 

@@ -23,7 +23,7 @@ def share(step, **change):
     ball = movers.ball((60, 90), (30, 45), 12, 2.0)
     taken = movers.shoot(WALL, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
     given = {"images": taken.images, "times": taken.times, "g": G, "w": W} | change
-    return motion.measure_motion(**given)[0]
+    return motion.measure_motion(**given).fraction
 
 
 def bands(axis, cycles=3, size=0.2):
@@ -36,7 +36,7 @@ def bands(axis, cycles=3, size=0.2):
         WALL * (one[:, None] if axis == 0 else one) * t for one, t in zip(lamps, times, strict=True)
     ]
     Z = np.interp(np.log(light), G, np.arange(256)).round().astype(np.uint8)
-    return motion.measure_motion(Z, times, G, W)[1]
+    return motion.measure_motion(Z, times, G, W).band_stops
 
 
 def test_the_share_of_the_picture_that_moved_is_measured():
@@ -49,7 +49,7 @@ def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
     ball = movers.ball((60, 90), (30, 45), 12, 2.0)
     gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
     wide = gray.repeat(2, axis=1).repeat(2, axis=2)
-    monkeypatch.setattr(motion, "PIXELS", WALL.size)
+    monkeypatch.setattr(motion, "MAX_PIXELS", WALL.size)
     assert (
         share(30, images=wide) == share(30, images=np.stack([wide] * 3, axis=-1)) == share(30) > 0
     )

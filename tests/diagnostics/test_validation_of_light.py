@@ -140,6 +140,6 @@ def test_a_rival_is_a_peak_of_the_autocorrelation_of_light_less_its_local_mean(s
     c = scipy.fft.fftshift(
         scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (128, 160))) ** 2, (128, 160))
     )
-    found = cerman.peaks(c[:, 80:], registration.RIVALS + 1) + [0, 40]  # c is symmetric
+    found = cerman.peaks(c[:, 80:], registration.RIVAL_COUNT + 1) + [0, 40]  # c is symmetric
     expected = [one for one in found.tolist() if max(np.abs(one)) > registration.NEAR]
     assert np.array_equal(registration.rivals(texture), expected)

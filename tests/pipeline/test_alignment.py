@@ -1,5 +1,6 @@
 """What `assemble` says of alignment: a doubt where photographs do not lie on each other, and nowhere else."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -114,7 +115,8 @@ def test_photographs_that_turned_are_not_said_to_show_leaves_and_water_besides()
 def by_percentile(monkeypatch, **validations):
     """Return which of the answers at the median and at the other two percentiles is taken."""
     answers = {
-        q: alignment.validation.uninformative(0, 1)._replace(
+        q: replace(
+            alignment.validation.uninformative(0, 1),
             moving=q,
             **({"failure": "", "confidence": 0.95, "offset": (4, 0)} | validations.get(name, {})),
         )
@@ -158,7 +160,7 @@ def improved(monkeypatch, side, **searches):
     photograph = SimpleNamespace(
         overview=3, Y=[np.zeros((side, 400)), np.zeros((side // 2, 200)), 0, 0]
     )
-    best = alignment.validation.uninformative(0, 1)._replace(apart=True)
+    best = replace(alignment.validation.uninformative(0, 1), apart=True)
     return alignment.improve(best, "mtb", photograph, photograph, lambda *_: [X])
 
 

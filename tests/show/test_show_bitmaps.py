@@ -1,5 +1,7 @@
 """lectures.bitmaps: what differs is orange, what is not compared blue, and the best of nine is framed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -90,10 +92,11 @@ def test_in_a_tie_the_centre_is_framed():
 
 
 def test_a_validation_stands_above_its_picture_and_all_are_of_one_height():
-    state, found = STATES[-1], register(PAIR, "mtb").pairs[0]._replace(failure="")
+    state = STATES[-1]
+    found = replace(register(PAIR, "mtb").pairs[0], failure="")
     good, bad = (
         drawn.validated(state, found),
-        drawn.validated(state, found._replace(failure="it " * 30)),
+        drawn.validated(state, replace(found, failure="it " * 30)),
     )
     assert "no reason not to trust it" in titles(good)[0] and titles(bad)[0].count("it it") > 1
     assert pictures.render(good).shape == pictures.render(bad).shape
