@@ -1,5 +1,6 @@
 """What a file is, as its header says: for `hdrlab info`."""
 
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -80,12 +81,13 @@ def _exr(path: str | Path) -> dict[str, Any]:
     return {
         "format": "OpenEXR",
         **_size(
-            *header.display[2:],
+            header.display.height,
+            header.display.width,
             ", ".join(header.channels),
             ", ".join(sorted({*exr.read_dtypes(path)})),
         ),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
-        **({"data window": tuple(header.data)} if header.data != header.display else {}),
+        **({"data window": astuple(header.data)} if header.data != header.display else {}),
         **({"layers": ", ".join(names)} if names else {}),
         **({"certainty": wording.certainty(*found.values())} if found else {}),
         **({"comments": header.attributes["comments"]} if "comments" in header.attributes else {}),

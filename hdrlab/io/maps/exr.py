@@ -1,39 +1,46 @@
 """OpenEXR files, .exr, through the official OpenEXR module.
 
-Half, float and unsigned channels become float32; R, G and B make a colour, Y or a channel alone a
-luminance. An alpha channel is left out: it says how much a pixel covers, and its radiance stands in
-R, G and B. The picture is the display window: where the data window is smaller, the rest is 0;
-where larger, it is cut.
+Half, float and unsigned channels become float32. R, G and B are a color, Y or a single channel is a
+luminance. Alpha is dropped: it is the coverage of a pixel, whose radiance is in R, G and B. The
+image is the display window. Where the data window is smaller, the rest is 0; where it is larger,
+it is cut.
 """
 
 import errno
 import io
 from collections.abc import Sequence
 from contextlib import redirect_stdout
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Labels, as_radiance
 from hdrlab.core.optional import OpenEXR
 from hdrlab.core.silence import silence
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.files import check_size, replacing
 
+MAGIC = b"v/1\x01"
 LARGEST_HALF = 65504.0
-# bytes of a picture in one of the file: more than any of the methods reaches
-BEST_COMPRESSION_RATIO = 1 << 16
-# pixels of a window that holds more than so many times the data's: more is no frame around a
-# picture
-LARGEST_FRAME, FRAME_RATIO = 1 << 22, 64
-PRINTING = Lock()  # OpenEXR prints what is wrong, and the stream that catches it is everybody's
+# Bytes of pixels for one byte of the file: no compression method reaches more.
+BEST_COMPRESSION_RATIO = 2**16
+# A display window may be far larger than the data window only if it is small itself.
+MAX_LARGE_FRAME_PIXELS = 2**22
+MAX_FRAME_TO_DATA_RATIO = 64
+# The channels of a color image. OpenEXR gives them in one array, under one name.
+COLOR_CHANNELS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
+# OpenEXR prints its errors, and all threads share the stream that hdrlab redirects to read them.
+STDOUT_LOCK = Lock()
+
+# The header of a part, and its pixels by channel.
 Part = tuple[dict[str, Any], dict[str, Array]]
-COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
 
 
-class Window(NamedTuple):
+@dataclass(frozen=True)
+class Window:
     """A rectangle of pixels: its first row and column, and its size."""
 
     top: int
@@ -41,9 +48,16 @@ class Window(NamedTuple):
     height: int
     width: int
 
+    def __str__(self) -> str:
+        return f"{self.width} x {self.height} at ({self.left}, {self.top})"
 
-class Header(NamedTuple):
-    """What an OpenEXR file says before its pixels: its channels, the two windows, and all its attributes."""
+
+@dataclass(frozen=True)
+class Header:
+    """What an OpenEXR file states before its pixels.
+
+    `data` and `display` are the data window and the display window.
+    """
 
     channels: tuple[str, ...]
     data: Window
@@ -52,27 +66,35 @@ class Header(NamedTuple):
 
 
 def read_header(path: str | Path) -> Header:
-    """Return the Header of the first part of the OpenEXR file at `path`, or raise a ValueError."""
+    """Return the header of the first part of an OpenEXR file, or raise a FileFormatError."""
     return read_headers(path, 1)[0]
 
 
 def read_headers(path: str | Path, count: int | None = None) -> list[Header]:
-    """Return the Header of each of the first `count` parts of the OpenEXR file, or raise a ValueError."""
-    return [_header(path, attributes) for attributes, _ in parts(path, count, header_only=True)]
+    """Return the headers of the first `count` parts of an OpenEXR file, by default of all.
+
+    Raises
+    ------
+    FileFormatError
+        For a file that is not one, is damaged, or has pixels that hdrlab does not read.
+    """
+    parts = read_parts(path, count, header_only=True)
+    return [_make_header(path, attributes) for attributes, _ in parts]
 
 
-def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
-    """Return the Header that the attributes of a part make, after a look at what they claim."""
+def _make_header(path: str | Path, attributes: dict[str, Any]) -> Header:
+    """Return the header that the attributes of a part make, after a check of what they claim."""
     if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
         raise FileFormatError(f"{path}: expected a flat image, got {attributes['type'].name}")
-    channels, across, down = zip(*attributes["channels"], strict=True)
-    if {*across, *down} != {1}:
+    channels, horizontal_steps, vertical_steps = zip(*attributes["channels"], strict=True)
+    if {*horizontal_steps, *vertical_steps} != {1}:
         raise FileFormatError(
             f"{path}: expected channels of full size, got subsampled {', '.join(channels)}"
         )
-    windows = (attributes["dataWindow"], attributes["displayWindow"])
-    data, display = (_window(path, window, len(channels)) for window in windows)
-    if display.height * display.width > max(LARGEST_FRAME, FRAME_RATIO * data.height * data.width):
+    data = _make_window(path, attributes["dataWindow"], len(channels))
+    display = _make_window(path, attributes["displayWindow"], len(channels))
+    frame_limit = MAX_FRAME_TO_DATA_RATIO * data.height * data.width
+    if display.height * display.width > max(MAX_LARGE_FRAME_PIXELS, frame_limit):
         raise FileFormatError(
             f"{path}: expected a display window not far beyond {data}, got {display}"
         )
@@ -105,16 +127,18 @@ def read(path: str | Path) -> F32:
     """
     header = read_header(path)
     names = set(header.channels)
-    if names not in COLOURS and names - {"A"} != {"Y"} and len(names) != 1:
+    is_color = names in COLOR_CHANNELS
+    is_luminance = names - {"A"} == {"Y"} or len(names) == 1
+    if not is_color and not is_luminance:
         raise FileFormatError(
             f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
         )
-    ((_, planes),) = parts(path, 1, separate_channels=names not in COLOURS)
-    if names in COLOURS:
+    ((_, planes),) = read_parts(path, 1, separate_channels=not is_color)
+    if is_color:
         E = next(iter(planes.values()))[..., :3]
     else:
         E = planes["Y" if "Y" in names else header.channels[0]]
-    return _place(path, E.astype(np.float32, copy=False), header)
+    return _place_on_display(path, E.astype(np.float32, copy=False), header)
 
 
 def decode_half(bits: Array) -> F32:
@@ -138,7 +162,7 @@ def decode_half(bits: Array) -> F32:
 def read_dtypes(path: str | Path) -> tuple[str, ...]:
     """Return the name of each channel's dtype: float16, float32 or uint32."""
     header = read_header(path)
-    ((_, planes),) = parts(path, 1, separate_channels=True)
+    ((_, planes),) = read_parts(path, 1, separate_channels=True)
     return tuple(planes[name].dtype.name for name in header.channels)
 
 
@@ -169,17 +193,17 @@ def write(
     """
     E = as_radiance(E)
     if half and E.max() > LARGEST_HALF:
-        raise FileFormatError(
+        raise InputError(
             f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}"
         )
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     if comments:
         header["comments"] = "\n".join(comments)
-    save(path, header, {"RGB" if E.ndim == 3 else "Y": pixels})
+    save_parts(path, header, {"RGB" if E.ndim == 3 else "Y": pixels})
 
 
-def save(path: str | Path, *content: Any) -> None:
+def save_parts(path: str | Path, *content: Any) -> None:
     """Write a header and its channels, or a list of OpenEXR's parts, whole or not at all."""
     with replacing(path) as name, OpenEXR.File(*content) as file:
         try:
@@ -188,67 +212,87 @@ def save(path: str | Path, *content: Any) -> None:
             raise OSError(errno.EIO, f"{error}: is the disk full?", str(path)) from None
 
 
-def parts(
+def read_parts(
     path: str | Path,
     count: int | None = None,
     *,
     header_only: bool = False,
     separate_channels: bool = False,
 ) -> list[Part]:
-    """Return the header, and the pixels by channel, of the first `count` parts of the file at `path`."""
-    with open(path, "rb") as start:  # the module takes a missing file for one that is not OpenEXR
-        magic = start.read(4)
-    if magic != b"v/1\x01":
+    """Return the header and the pixels by channel of the first `count` parts of a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    count
+        The number of parts to read, by default all of them.
+    header_only
+        Whether to leave the pixels out.
+    separate_channels
+        Whether R, G and B are arrays of their own, instead of one.
+
+    Raises
+    ------
+    FileFormatError
+        For a file that is not OpenEXR, or is damaged.
+    """
+    with open(path, "rb") as file:  # OpenEXR would call a missing file damaged
+        magic = file.read(len(MAGIC))
+    if magic != MAGIC:
         raise FileFormatError(f"{path}: expected an OpenEXR file, got {magic!r}")
-    # the module prints what is wrong with a part, and leaves the part out
-    opened, which = (
-        OpenEXR.File,
-        (str(path), separate_channels, header_only),
-    )  # that it lacks is no damage
+    open_exr = OpenEXR.File  # outside `try`: it may say what to install
+    printed = io.StringIO()
     try:
         with (
-            PRINTING,
+            STDOUT_LOCK,
             silence(2),
-            redirect_stdout(printed := io.StringIO()),
-            opened(*which) as file,
+            redirect_stdout(printed),
+            open_exr(str(path), separate_channels, header_only) as exr_file,
         ):
-            found = []
-            for part in file.parts[:count]:
-                channels = [
-                    (one.name, one.xSampling, one.ySampling) for one in part.header["channels"]
-                ]
-                planes = {name: channel.pixels for name, channel in part.channels.items()}
-                found.append(({**part.header, "channels": channels}, planes))
-            if printed.getvalue() or not found:  # it tells of parts that it leaves out
+            parts = [_copy_part(part) for part in exr_file.parts[:count]]
+            # OpenEXR leaves out a part that it cannot read, and prints why.
+            if printed.getvalue() or not parts:
                 raise FileFormatError("a part cannot be read")
-            return found
-    except (
-        Exception
-    ) as error:  # damaged files make it raise what they like, UnicodeDecodeError included
+            return parts
+    except Exception as error:  # on damaged files OpenEXR raises exceptions of any type
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
         raise FileFormatError(
             f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})"
         ) from None
 
 
-def _window(path: str | Path, window: tuple[Labels, Labels], channels: int) -> Window:
-    """Return the Window of an attribute (left, top), (right, bottom), after a look at its size."""
-    (left, top), (right, bottom) = (corner.tolist() for corner in window)
-    height, width = bottom - top + 1, right - left + 1
+def _copy_part(part: Any) -> Part:
+    """Return the header and the pixels of one of OpenEXR's parts."""
+    channels = [
+        (channel.name, channel.xSampling, channel.ySampling) for channel in part.header["channels"]
+    ]
+    planes = {name: channel.pixels for name, channel in part.channels.items()}
+    return {**part.header, "channels": channels}, planes
+
+
+def _make_window(path: str | Path, corners: tuple[Labels, Labels], channels: int) -> Window:
+    """Return the window between two corners, (left, top) and (right, bottom), and check its size."""
+    left, top = corners[0].tolist()
+    right, bottom = corners[1].tolist()
+    height = bottom - top + 1
+    width = right - left + 1
     check_size(path, height, width, height * width * channels // BEST_COMPRESSION_RATIO)
     return Window(top, left, height, width)
 
 
-def _place(path: str | Path, E: F32, header: Header) -> F32:
+def _place_on_display(path: str | Path, E: F32, header: Header) -> F32:
     """Return E, which fills the data window, on the display window."""
-    data, display = header.data, header.display
+    data = header.data
+    display = header.display
     if E.shape[:2] != (data.height, data.width):
         raise FileFormatError(
             f"{path}: expected {data.height} x {data.width} pixels of data, got {E.shape[:2]}"
         )
     if data == display:
         return np.ascontiguousarray(E)
-    top, left = data.top - display.top, data.left - display.left
+    top = data.top - display.top
+    left = data.left - display.left
     rows = slice(max(top, 0), min(top + data.height, display.height))
     columns = slice(max(left, 0), min(left + data.width, display.width))
     if rows.start >= rows.stop or columns.start >= columns.stop:

@@ -1,6 +1,6 @@
-"""OpenEXR files of several parts: pictures of one size that belong together, each with its name.
+"""OpenEXR files of several parts: images of one size that belong together, each with a name.
 
-A program that knows nothing of parts sees the first: `hdrlab.io.maps.exr` and most viewers do.
+Programs that do not know about parts read the first, as `hdrlab.io.maps.exr` and most viewers do.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,11 +11,13 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, describe
 from hdrlab.core.optional import OpenEXR
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.maps import exr
 
-CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
-CERTAIN = ("radiance", "standard deviation")  # the layers that `assemble --uncertainty` writes
+# OpenEXR's name for images with so many channels; a single channel is a depth.
+CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}
+# The layers that `assemble --uncertainty` writes.
+CERTAIN = ("radiance", "standard deviation")
 
 
 def read_layers(path: str | Path) -> dict[str, F32]:
@@ -40,10 +42,11 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     >>> {name: layer.shape for name, layer in read_layers(FOLDER / "street.exr").items()}
     {'radiance': (512, 768, 3), 'depth': (512, 768), 'mover': (512, 768, 4)}
     """
-    exr.read_headers(path)  # which looks at the sizes that are claimed, before pixels are read
+    exr.read_headers(path)  # refuses absurd sizes before pixels are read
     layers: dict[str, F32] = {}
-    for number, (header, planes) in enumerate(exr.parts(path)):
-        name, channels = header.get("name", f"part {number}"), next(iter(planes))
+    for number, (header, planes) in enumerate(exr.read_parts(path)):
+        name = header.get("name", f"part {number}")
+        channels = next(iter(planes))
         if len(planes) != 1 or channels not in CHANNELS.values():
             raise FileFormatError(
                 f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}"
@@ -81,19 +84,19 @@ def write_layers(
     [[inf, inf, inf], [inf, inf, inf]]
     """
     parts: list[Any] = []
-    said = {"comments": "\n".join(comments)} if comments else {}
     for name, layer in layers.items():
         pixels = np.ascontiguousarray(layer, np.float32)
         channels = CHANNELS.get(1 if pixels.ndim == 2 else pixels.shape[-1])
         if pixels.ndim not in (2, 3) or not pixels.size or channels is None:
-            raise FileFormatError(
+            raise InputError(
                 f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}"
             )
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-        parts.append(
-            OpenEXR.Part({**header, **(said if not parts else {})}, {channels: pixels}, name)
-        )
+        is_first = not parts
+        if comments and is_first:
+            header["comments"] = "\n".join(comments)
+        parts.append(OpenEXR.Part(header, {channels: pixels}, name))
     sizes = {np.shape(layer)[:2] for layer in layers.values()}
     if len(sizes) != 1:
-        raise FileFormatError(f"{path}: expected layers of one size, got {sorted(sizes)}")
-    exr.save(path, parts)
+        raise InputError(f"{path}: expected layers of one size, got {sorted(sizes)}")
+    exr.save_parts(path, parts)
