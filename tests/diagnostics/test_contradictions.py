@@ -1,0 +1,97 @@
+"""Contradictions between photos and their times: invariances and closed forms."""
+
+import numpy as np
+import pytest
+
+from hdrlab import scenes
+from hdrlab.capture import camera
+from hdrlab.diagnostics import contradictions, exposure_times, flat_patches, plausibility
+from hdrlab.errors import CalibrationError
+
+WRONG = np.array([1, 1, 2, 1, 1])
+
+
+@pytest.fixture(scope="module")
+def taken():
+    room = scenes.room((140, 210))
+    return camera.shoot(room, camera.times_around(room, 5, stops=1.5), rng=1)
+
+
+@pytest.fixture(scope="module")
+def found(taken):
+    return contradictions.find_contradictions(taken.images, taken.times * WRONG)
+
+
+def test_the_photo_with_a_wrong_time_is_named_and_its_error_measured(found):
+    assert found.wrong == (2,)
+    assert found.stops[2] == pytest.approx(-1, abs=0.05)
+
+
+def test_the_unit_of_the_times_does_not_matter(taken, found):
+    scaled = contradictions.find_contradictions(taken.images, 1000 * taken.times * WRONG)
+    assert np.allclose(scaled.stops, found.stops, atol=1e-6)
+    assert scaled.cost == pytest.approx(found.cost, abs=1e-6)
+
+
+def test_16_bits_of_the_same_photos_give_the_same_result(taken, found):
+    images = taken.images.astype(np.uint16) * 257
+    wide = contradictions.find_contradictions(images, taken.times * WRONG)
+    assert np.allclose(wide.stops, found.stops, atol=1e-6)
+    assert np.allclose(wide.regions, found.regions, atol=1e-6)
+
+
+def test_memory_layout_does_not_matter(taken, found):
+    images = np.asfortranarray(taken.images)
+    other = contradictions.find_contradictions(images, taken.times * WRONG)
+    assert np.array_equal(other.stops, found.stops)
+
+
+def test_masked_pixels_do_not_count(taken):
+    images = taken.images.copy()
+    valid = np.ones(images.shape[:3], bool)
+    images[:, :30] = np.arange(40, 215, 35)[:, None, None, None]
+    valid[:, :30] = False
+    masked = contradictions.find_contradictions(images, taken.times, valid=valid)
+    assert masked.wrong == ()
+    assert not masked.local
+
+
+def test_an_error_that_all_photos_share_costs_nothing(taken):
+    assert contradictions.measure_cost(taken.images, np.ones(5)) == pytest.approx(0, abs=1e-6)
+    assert contradictions.measure_cost(taken.images, np.array([0, 0, 1, 0, 0])) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("informative", "run"),
+    [
+        ([True, True, False, True], (0, 2)),
+        ([False, True, False, True, True, True], (3, 6)),
+        ([True, False, True], (0, 1)),
+        ([False, False], (0, 0)),
+    ],
+)
+def test_the_longest_run_is_found_and_the_first_of_equal_ones(informative, run):
+    assert contradictions.find_longest_run(np.array(informative)) == run
+
+
+def test_estimated_times_scale_with_the_stated_ones(taken):
+    rough = taken.times * [1, 1, 1.1, 1, 1]
+    first = exposure_times.estimate_times(taken.images, rough)
+    second = exposure_times.estimate_times(taken.images, 1000 * rough)
+    assert first.accepted
+    assert second.accepted
+    assert np.allclose(second.times, 1000 * first.times, rtol=1e-6)
+
+
+def test_an_even_wall_is_flat_and_a_clipped_one_has_no_patches():
+    images = np.stack([np.full((60, 90), value, np.uint8) for value in (80, 255)])
+    found = flat_patches.find_flat_patches(images)
+    assert found.flat.all()
+    assert np.all(found.Z[0] == 80)
+    assert np.all(found.Z[1] == 0)
+
+
+def test_a_response_that_the_photos_contradict_is_a_calibration_error(taken):
+    g = np.log(np.maximum(np.arange(256), 0.25) / 128)
+    with pytest.raises(CalibrationError, match="between"):
+        plausibility.validate_response(g, taken.images, taken.times**8)
