@@ -1,4 +1,4 @@
-"""ARCHITECTURE.md names files that there are, and its journeys call one another."""
+"""ARCHITECTURE.md names only files that exist."""
 
 import re
 from pathlib import Path
@@ -23,9 +23,9 @@ def test_a_file_that_the_page_names_is_there(name):
     assert (ROOT / name).exists()
 
 
-def test_both_journeys_name_more_than_a_dozen_files():
-    journeys = re.findall(r"journey.*?\n```\n(.*?)```", PAGE.read_text(encoding="utf8"), re.DOTALL)
-    assert [len(set(re.findall(r"[\w/]+\.py", one))) > 12 for one in journeys] == [True, True]
+def test_both_walks_through_the_code_name_more_than_a_dozen_files():
+    walks = re.findall(r"## Follow.*?\n```\n(.*?)```", PAGE.read_text(encoding="utf8"), re.DOTALL)
+    assert [len(set(re.findall(r"[\w/]+\.py", one))) > 12 for one in walks] == [True, True]
 
 
 def test_every_room_of_the_package_stands_on_the_page():
