@@ -134,7 +134,7 @@ def hostile(folder: Path) -> dict[str, Any]:
 
 def _read(changes: int) -> None:
     cell = closure.Cell("a = []\n" + "a.append(a)\n" * changes + "def gsolve(): return a\n")
-    closure.closed([cell], ["gsolve"])
+    closure.extract_sources([cell], ["gsolve"])
 
 
 ROWS = (

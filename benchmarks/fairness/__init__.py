@@ -33,7 +33,7 @@ from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.subject import TIMEOUT, NoAnswer, Subject
-from hdrlab.course.code.names import imported
+from hdrlab.course.code.names import imported_numpy_modules
 from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import scoring
@@ -95,7 +95,7 @@ def graded(item: tuple[Homework, dict[str, tuple[str, str]], int]) -> list[Score
     """Return what each answer of a submission gets on so many students' inputs."""
     homework, chosen, seeds = item
     sources = {task: source for task, (_, source) in chosen.items()}
-    modules = tuple(imported(sources.values()))
+    modules = tuple(imported_numpy_modules(sources.values()))
     with Subject(sources, tiers.choose("practice"), TIMEOUT * seeds, modules) as subject:
         return [
             score(subject, task, chosen[task.id][0], f"student {k}")

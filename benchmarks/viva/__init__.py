@@ -30,8 +30,8 @@ from benchmarks.fairness import submissions, texts
 from benchmarks.measure import ROOT
 from hdrlab.course import grading, plan
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.code.closure import Cell, closed
-from hdrlab.course.code.names import imported
+from hdrlab.course.code.closure import Cell, extract_sources
+from hdrlab.course.code.names import imported_numpy_modules
 from hdrlab.course.plan import GradingOptions, Homework
 from hdrlab.course.submission import SubmittedCode
 from hdrlab.course.viva import examining, pages
@@ -69,12 +69,12 @@ def works() -> Iterator[tuple[str, Homework, SubmittedCode]]:
 def solutions(homework: Homework) -> dict[str, str]:
     """Return the library's functions, each with all that it needs."""
     cells = [Cell(text, task) for task, text in misconceptions.solutions(homework.tasks).items()]
-    return closed(cells, [task.id for task in homework.tasks])[0]
+    return extract_sources(cells, [task.id for task in homework.tasks])[0]
 
 
 def as_submission(sources: dict[str, str] | Any) -> SubmittedCode:
     """Return sources as they are read from a file."""
-    return SubmittedCode(dict(sources), (), "", tuple(imported(sources.values())))
+    return SubmittedCode(dict(sources), (), "", tuple(imported_numpy_modules(sources.values())))
 
 
 def examined(

@@ -62,10 +62,12 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     from IPython.display import HTML, DisplayHandle
 
     homework, tasks = find_tasks(name)
-    sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
+    sources, _ = closure.extract_sources(_history(), tasks, handouts.given_cells(homework.name))
     absent = [task for task in tasks if task not in sources]
     missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
-    read = submission.SubmittedCode(sources, missing, "", tuple(names.imported(sources.values())))
+    read = submission.SubmittedCode(
+        sources, missing, "", tuple(names.imported_numpy_modules(sources.values()))
+    )
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)

@@ -89,7 +89,7 @@ def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) 
     opened_path, refused = opened(path, scratch, homework)
     found = SubmittedCode({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
     return json.dumps(
-        found._replace(modules=tuple(names.imported(found.sources.values())))
+        found._replace(modules=tuple(names.imported_numpy_modules(found.sources.values())))
     ).encode()
 
 
@@ -126,7 +126,9 @@ def tasks_of(
     data, problems = _bytes_of(Path(path))
     cells, told = cells_of(data, Path(path).name) if data else ([], [])
     sources, said = (
-        closure.closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
+        closure.extract_sources(cells, tasks, given)
+        if cells or not (problems or told)
+        else ({}, [])
     )
     for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
         del sources[task]

@@ -3,7 +3,7 @@
 import pytest
 
 from hdrlab.course.code import closure
-from hdrlab.course.code.closure import Cell, closed
+from hdrlab.course.code.closure import Cell, extract_sources
 
 F = "def f():\n    return x"
 
@@ -11,7 +11,7 @@ F = "def f():\n    return x"
 def source(*cells, task="f"):
     """Return the statements of a task's text; the last cell is the task's own."""
     made = [Cell(text) for text in cells[:-1]] + [Cell(cells[-1], task)]
-    texts, problems = closed(made, [task])
+    texts, problems = extract_sources(made, [task])
     assert not problems
     assert texts[task].endswith("\n") and not texts[task].endswith("\n\n")
     return texts[task].removesuffix("\n").split("\n\n")
@@ -91,7 +91,7 @@ def test_a_helper_in_the_tasks_own_cell_comes_before_one_of_another_cell():
     own = f"def x():\n    return 'own'\n\n{F}"
     for cells in ((own, "def x():\n    return 'other'"), ("def x():\n    return 'other'", own)):
         made = [Cell(text, "f" if text is own else "") for text in cells]
-        assert closed(made, ["f"])[0]["f"] == f"def x():\n    return 'own'\n\n{F}\n"
+        assert extract_sources(made, ["f"])[0]["f"] == f"def x():\n    return 'own'\n\n{F}\n"
     assert source("def x():\n    return 1", "def x():\n    return 2", F)[0].endswith("2")
 
 
@@ -152,9 +152,9 @@ def test_of_a_cell_what_only_a_notebook_understands_is_passed_over(text, expecte
 def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer():
     given = [Cell("x = 'ours'", given=True), Cell("def f():\n    return 'ours'", "f", True)]
     cells = [Cell("x = 'theirs'", given=True), Cell(F, "f")]
-    assert closed(cells, ["f"], given)[0]["f"] == f"x = 'ours'\n\n{F}\n"
-    assert closed(cells, ["f"])[0]["f"] == f"x = 'theirs'\n\n{F}\n"
-    assert closed(cells[:1], ["f"], given) == (
+    assert extract_sources(cells, ["f"], given)[0]["f"] == f"x = 'ours'\n\n{F}\n"
+    assert extract_sources(cells, ["f"])[0]["f"] == f"x = 'theirs'\n\n{F}\n"
+    assert extract_sources(cells[:1], ["f"], given) == (
         {},
         ["f was not found: no cell defines a function of this name"],
     )
@@ -173,5 +173,5 @@ def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer
     ],
 )
 def test_a_cell_that_is_no_python_is_told_with_its_line(cell, said):
-    texts, problems = closed([cell, Cell("def f(): 1")], ["f"])
+    texts, problems = extract_sources([cell, Cell("def f(): 1")], ["f"])
     assert texts == {"f": "def f(): 1\n"} and len(problems) == 1 and problems[0].startswith(said)

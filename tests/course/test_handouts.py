@@ -239,8 +239,8 @@ def test_a_sheet_of_one_task_has_no_cell_that_needs_another(task):
     for cell in made.solution["cells"]:
         if cell["cell_type"] == "code":
             for node in ast.parse(cell["source"]).body:
-                known |= set(names.bound(node))
-                assert {use.node.id for use in names.free(node)} <= known, cell["source"]
+                known |= set(names.bound_names(node))
+                assert {use.node.id for use in names.free_names(node)} <= known, cell["source"]
 
 
 @pytest.mark.notebooks

@@ -263,7 +263,7 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
     ],
 )
 def test_on_the_board_stand_neither_types_nor_guards(text, board):
-    found = source.on_the_board(text)
+    found = source.strip_annotations(text)
     if text.startswith(f"def f({LONG}"):
         lines = found.splitlines()
         assert lines[0] == "def f(" and lines[-2:] == ["):", "    return 1"]
@@ -275,4 +275,6 @@ def test_on_the_board_stand_neither_types_nor_guards(text, board):
 def test_a_signature_of_a_hundred_and_ten_letters_stays_on_one_line():
     for letters, lines in ((110, 1), (111, 3)):
         name = "n" * (letters - len("def f():"))
-        assert len(source.on_the_board(f"def f({name}):\n    return 1").splitlines()) == lines + 1
+        assert (
+            len(source.strip_annotations(f"def f({name}):\n    return 1").splitlines()) == lines + 1
+        )

@@ -5,7 +5,7 @@ import ast
 import pytest
 
 from hdrlab.course.code import names, source
-from hdrlab.course.code.source import Key
+from hdrlab.course.code.source import SymbolRef
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,9 @@ from hdrlab.course.code.source import Key
 )
 def test_names_that_a_statement_binds_and_takes_from_outside(text, bound, free):
     (node,) = ast.parse(text).body
-    assert names.bound(node) == bound and [use.node.id for use in names.free(node)] == free
+    assert (
+        names.bound_names(node) == bound and [use.node.id for use in names.free_names(node)] == free
+    )
 
 
 def test_imported_parts_of_numpy_and_scipy_are_named_once():
@@ -40,14 +42,13 @@ def test_imported_parts_of_numpy_and_scipy_are_named_once():
         "from . import a\nfrom scipy import ndimage",
         "x =",
     ]
-    assert names.imported(texts) == ["numpy.fft", "scipy", "scipy.ndimage"]
+    assert names.imported_numpy_modules(texts) == ["numpy.fft", "scipy", "scipy.ndimage"]
     assert names.modules("from .numpy import a\nimport a.b") == {"a.b"}
 
 
 def test_places_are_written_as_they_are_read():
     for text, key in (
-        ("response.debevec.gsolve", Key("hdrlab.response.debevec", "gsolve")),
-        ("/a/v.py:vignette", Key("/a/v.py", "vignette")),
+        ("response.debevec.gsolve", SymbolRef("hdrlab.response.debevec", "gsolve")),
+        ("/a/v.py:vignette", SymbolRef("/a/v.py", "vignette")),
     ):
-        assert source.key_of(text) == key and source.written(key) == text
-    assert source.WIDTH == 110
+        assert source.parse_reference(text) == key and source.format_reference(key) == text

@@ -24,7 +24,7 @@ if sys.platform != "linux":  # test_windows goes the way of other systems
     pytest.skip("the walls of the sandboxes are those of Linux", allow_module_level=True)
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.code.names import imported
+from hdrlab.course.code.names import imported_numpy_modules
 from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
 from hdrlab.course.sandbox.inside import channel, system
 
@@ -657,7 +657,9 @@ def test_a_source_that_is_no_python_or_lacks_its_function_is_told():
 
 
 def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks():
-    assert imported(["def f():\n    from scipy.sparse import linalg", "import hdrlab, os"]) == [
+    assert imported_numpy_modules(
+        ["def f():\n    from scipy.sparse import linalg", "import hdrlab, os"]
+    ) == [
         "scipy.sparse",
         "scipy.sparse.linalg",
     ]

@@ -254,7 +254,9 @@ def calls_of(act):
 def test_a_file_that_changes_a_thing_twice_as_often_costs_not_much_more_than_twice():
     def read(changes):
         cell = closure.Cell("a = []\n" + "a.append(a)\n" * changes + "def gsolve(): return a\n")
-        return calls_of(lambda: closure.closed([cell], ["gsolve"])[0]["gsolve"].count("append"))
+        return calls_of(
+            lambda: closure.extract_sources([cell], ["gsolve"])[0]["gsolve"].count("append")
+        )
 
     (some, cost), (more, larger) = read(400), read(800)
     assert (some, more) == (400, 800) and larger < 2.5 * cost
@@ -262,7 +264,7 @@ def test_a_file_that_changes_a_thing_twice_as_often_costs_not_much_more_than_twi
 
 def test_statements_are_cut_where_the_parser_sees_them():
     text = "µ = 'µ'; b = µ\r\nc = '\x0c' + b  # a form feed ends no line\rdef gsolve(): return c\n"
-    sources, said = closure.closed([closure.Cell(text)], ["gsolve"])
+    sources, said = closure.extract_sources([closure.Cell(text)], ["gsolve"])
     assert (
         sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n"
         and not said

@@ -9,7 +9,7 @@ import pytest
 
 from hdrlab.course import submission
 from hdrlab.course.code import names
-from hdrlab.course.code.closure import Cell, closed
+from hdrlab.course.code.closure import Cell, extract_sources
 
 TASKS = ["gsolve", "merge"]
 
@@ -245,7 +245,7 @@ def test_the_same_file_has_the_same_hash_and_another_another(read):
     ],
 )
 def test_the_names_that_a_piece_takes_from_outside_are_found(code, free):
-    assert [use.node.id for use in names.free(ast.parse(code).body[0])] == free
+    assert [use.node.id for use in names.free_names(ast.parse(code).body[0])] == free
 
 
 @pytest.mark.parametrize(
@@ -294,7 +294,7 @@ def test_a_function_that_reads_what_is_made_by_calling_it_stands_before_the_call
         Cell("ready = False\ndef g():\n    return y if ready else 5"),
         Cell("def f():\n    return x", task="f"),
     ]
-    texts, problems = closed(cells, ["f"])
+    texts, problems = extract_sources(cells, ["f"])
     own = {}
     exec(texts["f"], own)
     assert own["f"]() == 5 and problems == []

@@ -1,7 +1,7 @@
-"""Python read as text, and never run.
+"""Python that is read as text and never run.
 
-names     which names a piece of code binds, and which it uses
-source    the module of a function of the library, statement by statement
-inline    a function with all it needs from the library, in one piece
+names     the names that a piece of code binds, and those that it uses
+source    find the definition of a name in the library's source
+inline    a function of the library with everything that it needs, as one text
 closure   the same for a function in a student's cells
 """

@@ -1,8 +1,8 @@
-"""A task's function with all that it needs of a notebook's other cells, as text that runs by itself.
+"""Extract a task's function with everything that it needs from a notebook's other cells.
 
-Names are followed through the statements at the top of the cells: imports, helpers, classes and
-constants. So cells may be renamed, split or moved. Of what the handout gives, our own copy is
-taken.
+Names are followed through the statements at the top level of the cells: imports, helpers, classes
+and constants. So a student may rename, split or move cells. For the cells that the handout gives,
+hdrlab uses its own copy.
 """
 
 import ast
@@ -10,18 +10,40 @@ import re
 import textwrap
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import accumulate
 from typing import NamedTuple
 
 from hdrlab.course.code import names
 
-# modules of which all names may be imported, and magics over plain Python
-STARRED = ("numpy", "scipy", "math", "cmath", "random", "itertools", "functools", "typing")
-TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")
+# packages from which every name may be imported by `*`
+STAR_IMPORT_PACKAGES = (
+    "numpy",
+    "scipy",
+    "math",
+    "cmath",
+    "random",
+    "itertools",
+    "functools",
+    "typing",
+)
+# cell magics above plain Python
+PYTHON_CELL_MAGICS = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")
+FUNCTION_STARTS = ("def ", "async def ")
+# the start of a statement that binds its name completely
+WHOLE_STARTS = ("def ", "class ", "@", "async def ")
 
 
 class Cell(NamedTuple):
-    """A code cell: its text, the task that it was handed out for, and whether the handout gives it."""
+    """A code cell.
+
+    Attributes
+    ----------
+    text : the code
+    task : the task that the cell was handed out for, "" if for none
+    given : whether the handout gives the code
+    where : the cell's place, for messages
+    """
 
     text: str
     task: str = ""
@@ -29,11 +51,18 @@ class Cell(NamedTuple):
     where: str = ""
 
 
-class Statement(NamedTuple):
-    """A statement at the top of a cell: its place, its text, the names it binds, and those it needs.
+@dataclass(frozen=True, eq=False)
+class Statement:
+    """A statement at the top level of a cell.
 
-    Of a function, `head` are those needed when it is defined: in its decorators, defaults and
-    annotations.
+    Attributes
+    ----------
+    place : its index among the statements of all cells
+    text : the code
+    binds : the names that it binds or changes
+    needs : the names that it needs
+    head : of a function, the names needed when it is defined: in decorators, defaults, annotations
+    cell : the cell that it is in
     """
 
     place: int
@@ -43,193 +72,238 @@ class Statement(NamedTuple):
     head: frozenset[str]
     cell: Cell
 
+    @property
+    def is_import(self) -> bool:
+        """Whether the statement is an import."""
+        return self.text.startswith(("import ", "from "))
 
-def closed(
+    @property
+    def is_whole(self) -> bool:
+        """Whether the statement binds its name completely: an import, a function or a class."""
+        return self.is_import or self.text.startswith(WHOLE_STARTS)
+
+
+def extract_sources(
     cells: Sequence[Cell], tasks: Sequence[str], given: Sequence[Cell] = ()
 ) -> tuple[dict[str, str], list[str]]:
-    """Return the text of each task's function with what it needs, and what is wrong, in words."""
+    """Return the source text of each task's function with what it needs, and a list of problems.
+
+    Parameters
+    ----------
+    cells : the cells of the submission
+    tasks : ids of the tasks, which are the names of their functions
+    given : hdrlab's copy of the cells that the handout gives; they replace the submission's
+    """
     problems: list[str] = []
     statements: list[Statement] = []
-    for cell in [*given, *(one for one in cells if not (one.given and given))]:
+    own = [cell for cell in cells if not (cell.given and given)]
+    for cell in [*given, *own]:
         try:
             statements += _statements(cell, len(statements))
         except names.BROKEN as error:
-            line = (
-                f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
-            )
-            said = error.msg if isinstance(error, SyntaxError) else str(error)
-            mine = f", which holds {cell.task}," if cell.task in tasks else ""
-            problems.append(f"{cell.where}{mine} is no Python{line}: {said}")
-    sources, binding = {}, _binding(statements)
+            problems.append(_describe_broken(cell, tasks, error))
+    binding = _statements_by_name(statements)
+    sources = {}
     for task in tasks:
-        found = [one for one in binding.get(task, ()) if not one.cell.given]
-        marked = [one for one in found if one.cell.task == task]
-        if not found:
+        definitions = [statement for statement in binding.get(task, ()) if not statement.cell.given]
+        if not definitions:
             problems.append(f"{task} was not found: no cell defines a function of this name")
             continue
-        if len({one.cell for one in found}) > 1:
-            which = (
-                "that of its own cell" if len({one.cell for one in marked}) == 1 else "the last one"
-            )
+        marked = [statement for statement in definitions if statement.cell.task == task]
+        if len({statement.cell for statement in definitions}) > 1:
+            has_one_marked_cell = len({statement.cell for statement in marked}) == 1
+            which = "that of its own cell" if has_one_marked_cell else "the last one"
             problems.append(f"{task} is defined in several cells; {which} counts")
-        last = (marked or found)[-1]
-        sources[task] = "\n\n".join(one.text for one in _needed(last, task, binding)) + "\n"
+        last = (marked or definitions)[-1]
+        needed = _needed(last, task, binding)
+        sources[task] = "\n\n".join(statement.text for statement in needed) + "\n"
     return sources, problems
 
 
-def _binding(statements: Sequence[Statement]) -> dict[str, list[Statement]]:
-    """Return the statements that bind each name, in order; those that import every name bind "*"."""
+def _describe_broken(cell: Cell, tasks: Sequence[str], error: BaseException) -> str:
+    """Return the message for a cell that cannot be parsed."""
+    mine = f", which holds {cell.task}," if cell.task in tasks else ""
+    line = ""
+    reason = str(error)
+    if isinstance(error, SyntaxError):
+        line = f", line {error.lineno}" if error.lineno else ""
+        reason = error.msg
+    return f"{cell.where}{mine} is no Python{line}: {reason}"
+
+
+def _statements_by_name(statements: Sequence[Statement]) -> dict[str, list[Statement]]:
+    """Return the statements that bind each name, in order; star imports bind "*"."""
     binding: dict[str, list[Statement]] = {}
-    for one in statements:
-        for name in one.binds:
-            binding.setdefault(name, []).append(one)
+    for statement in statements:
+        for name in statement.binds:
+            binding.setdefault(name, []).append(statement)
     return binding
 
 
 def _needed(
     task: Statement, name: str, binding: Mapping[str, Sequence[Statement]]
 ) -> list[Statement]:
-    """Return a statement and all that it needs, each after what it needs to be run.
+    """Return a statement and everything that it needs, each after what it needs to run.
 
-    A name that is bound several times counts with all of its bindings by plain statements, which
-    build on each other, but of functions, classes and imports the last one alone.
+    If plain statements bind a name several times, all of them are kept, because they build on each
+    other. Of functions, classes and imports only the last one is kept.
     """
-    every = [
-        one
-        for one in binding.get("*", ())
-        if one.text.split(maxsplit=2)[1].split(".")[0] in STARRED
+    star_imports = [
+        statement for statement in binding.get("*", ()) if _is_allowed_star_import(statement)
     ]
-    givers: dict[str, Sequence[Statement]] = {name: [task]}
-    chosen, wanted = {one.place: one for one in [task, *every]}, sorted(task.needs)
+    providers: dict[str, Sequence[Statement]] = {name: [task]}
+    chosen = {statement.place: statement for statement in [task, *star_imports]}
+    wanted = sorted(task.needs)
     while wanted:
-        one = wanted.pop()
-        if one not in givers:
-            givers[one] = _givers(task.cell, binding.get(one, ()))
-            fresh = [giver for giver in givers[one] if giver.place not in chosen]
-            chosen |= {giver.place: giver for giver in fresh}
-            wanted += sorted(
-                {need for giver in fresh for need in giver.needs if need not in givers}
-            )
-    first = sorted(chosen.values(), key=lambda one: (not _is_import(one), one.place))
-    return _ordered(first, givers)
+        needed_name = wanted.pop()
+        if needed_name in providers:
+            continue
+        providers[needed_name] = _providers(task.cell, binding.get(needed_name, ()))
+        new = [statement for statement in providers[needed_name] if statement.place not in chosen]
+        needs = set()
+        for statement in new:
+            chosen[statement.place] = statement
+            needs |= statement.needs
+        wanted += sorted(needs - providers.keys())
+    imports_first = sorted(
+        chosen.values(), key=lambda statement: (not statement.is_import, statement.place)
+    )
+    return _ordered(imports_first, providers)
 
 
-def _givers(cell: Cell, near: Sequence[Statement]) -> Sequence[Statement]:
-    """Return which of a name's bindings make what it stands for; those of the task's own cell come first."""
-    whole = [one for one in near if _is_whole(one)]
-    whole = [one for one in whole if one.cell is cell] or whole
+def _is_allowed_star_import(statement: Statement) -> bool:
+    package = statement.text.split(maxsplit=2)[1].split(".")[0]
+    return package in STAR_IMPORT_PACKAGES
+
+
+def _providers(cell: Cell, bindings: Sequence[Statement]) -> Sequence[Statement]:
+    """Return which bindings of a name make up its value; those in the task's own cell come first."""
+    whole = [statement for statement in bindings if statement.is_whole]
+    whole = [statement for statement in whole if statement.cell is cell] or whole
     if not whole:
-        return near
-    if _is_import(whole[-1]):  # what is done to numpy is not part of a function
-        return [whole[-1]]
+        return bindings
+    last = whole[-1]
+    if last.is_import:  # changes of an imported module are not part of a function
+        return [last]
     return [
-        one
-        for one in near
-        if one is whole[-1] or (one.place > whole[-1].place and not _is_whole(one))
+        statement
+        for statement in bindings
+        if statement is last or (statement.place > last.place and not statement.is_whole)
     ]
 
 
 def _ordered(
-    first: Sequence[Statement], givers: Mapping[str, Sequence[Statement]]
+    first: Sequence[Statement], providers: Mapping[str, Sequence[Statement]]
 ) -> list[Statement]:
-    """Return statements in this order, but each after what it needs to be run: of a function its head alone.
+    """Return statements in this order, but each after what it needs to run.
 
-    What runs at once, and a function that such a statement may call, needs all of its names: deep.
+    A function needs only the names in its head. A statement that runs immediately needs all of its
+    names, and so do the functions that it may call: `deep`.
     """
     order: dict[int, Statement] = {}
     begun: set[tuple[int, bool]] = set()
-    come: dict[tuple[str, bool], int] = {}  # how many of a name's givers are begun, deep and else
+    # how many of a name's providers are begun, by (name, deep)
+    counts: dict[tuple[str, bool], int] = {}
     for start in first:
         waiting = [(start, False)]
         running: list[tuple[Statement, Iterator[tuple[Statement, bool]]]] = []
         while waiting or running:
             if waiting:
-                one, deep = waiting.pop()
-                deep = deep or not one.text.startswith(("def ", "async def "))
-                if (one.place, deep) not in begun:
-                    begun.add((one.place, deep))
-                    running.append((one, _before(one, deep, givers, come)))
+                statement, deep = waiting.pop()
+                deep = deep or not statement.text.startswith(FUNCTION_STARTS)
+                if (statement.place, deep) not in begun:
+                    begun.add((statement.place, deep))
+                    running.append((statement, _before(statement, deep, providers, counts)))
                 continue
-            one, before = running[-1]
-            waiting += [step] if (step := next(before, None)) else []
-            if not waiting:
+            statement, before = running[-1]
+            step = next(before, None)
+            if step is not None:
+                waiting.append(step)
+            else:
                 running.pop()
-                order.setdefault(one.place, one)
+                order.setdefault(statement.place, statement)
     return list(order.values())
 
 
 def _before(
-    one: Statement,
+    statement: Statement,
     deep: bool,
-    givers: Mapping[str, Sequence[Statement]],
-    come: dict[tuple[str, bool], int],
+    providers: Mapping[str, Sequence[Statement]],
+    counts: dict[tuple[str, bool], int],
 ) -> Iterator[tuple[Statement, bool]]:
-    """Yield what is to be run before a statement, and was not begun for the same name."""
-    for name in sorted(one.needs if deep else one.head):
-        each, key = givers.get(name, ()), (name, deep)
-        while (n := come.get(key, 0)) < len(each):
-            if name in one.binds and each[n].place >= one.place:
+    """Yield what must run before a statement, and was not begun for the same name."""
+    for name in sorted(statement.needs if deep else statement.head):
+        sequence = providers.get(name, ())
+        key = (name, deep)
+        while counts.get(key, 0) < len(sequence):
+            n = counts.get(key, 0)
+            if name in statement.binds and sequence[n].place >= statement.place:
                 break
-            come[key] = n + 1
-            yield each[n], deep
-
-
-def _is_whole(one: Statement) -> bool:
-    return _is_import(one) or one.text.startswith(("def ", "class ", "@", "async def "))
-
-
-def _is_import(one: Statement) -> bool:
-    return one.text.startswith(("import ", "from "))
+            counts[key] = n + 1
+            yield sequence[n], deep
 
 
 def _statements(cell: Cell, first: int) -> list[Statement]:
-    """Return the statements of a cell that bind names; calls, pictures and prints are left out."""
+    """Return the statements of a cell that bind names; calls, plots and prints are left out."""
     text = re.sub(r"\r\n?", "\n", plain(cell.text))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of odd escapes, which are the student's own business
+        warnings.simplefilter("ignore")  # invalid escapes are the student's own business
         body = ast.parse(text).body
-    data = text.encode()  # whose bytes and lines the parser counts: a form feed ends no line
-    starts = [0, *accumulate(len(line) + 1 for line in data.split(b"\n"))]
-    found: list[Statement] = []
+    data = text.encode()  # the parser counts bytes, and a form feed ends no line
+    line_starts = [0, *accumulate(len(line) + 1 for line in data.split(b"\n"))]
+    statements: list[Statement] = []
     for node in body:
-        binds = frozenset(names.bound(node))
-        changes = frozenset(name for one in _shallow(node) for name in _changed(one))
-        if not binds | changes:
+        binds = frozenset(names.bound_names(node))
+        changes = frozenset(name for part in _shallow(node) for name in _changed_names(part))
+        if not binds and not changes:
             continue
-        start = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
-        needs = frozenset(use.node.id for use in names.free(node))
-        if hasattr(node, "body"):  # a loop's own variable is nothing from another cell
+        needs = frozenset(use.node.id for use in names.free_names(node))
+        if hasattr(node, "body"):  # a loop's own variable comes from no other cell
             needs -= binds
-        head = frozenset(use.node.id for one in names.head(node) for use in names.free(one))
-        begin = starts[start - 1] + (node.col_offset if start == node.lineno else 0)
-        end = starts[(node.end_lineno or start) - 1] + (node.end_col_offset or 0)
-        text, place = data[begin:end].decode(), first + len(found)
-        found.append(Statement(place, text, binds | changes, needs | changes, head, cell))
-    return found
+        head = frozenset(use.node.id for part in names.head(node) for use in names.free_names(part))
+        decorators = getattr(node, "decorator_list", ())
+        first_line = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+        begin = line_starts[first_line - 1]
+        if first_line == node.lineno:
+            begin += node.col_offset
+        end = line_starts[(node.end_lineno or first_line) - 1] + (node.end_col_offset or 0)
+        statement = Statement(
+            place=first + len(statements),
+            text=data[begin:end].decode(),
+            binds=binds | changes,
+            needs=needs | changes,
+            head=head,
+            cell=cell,
+        )
+        statements.append(statement)
+    return statements
 
 
 def _shallow(node: ast.AST) -> Iterable[ast.AST]:
-    """Yield a node and what is in it, without going into functions and classes."""
+    """Yield a node and what is in it, without the contents of functions and classes."""
     waiting = [node]
     while waiting:
-        one = waiting.pop()
-        yield one
-        if not isinstance(one, (*names.INNER, ast.Lambda)):
-            waiting += ast.iter_child_nodes(one)
+        part = waiting.pop()
+        yield part
+        if not isinstance(part, (*names.INNER, ast.Lambda)):
+            waiting += ast.iter_child_nodes(part)
 
 
-def _changed(node: ast.AST) -> Iterable[str]:
-    """Return the names whose things a statement changes: table[0] = 0 and names.append(1) do."""
+def _changed_names(node: ast.AST) -> Iterable[str]:
+    """Return the names whose objects a statement changes, as table[0] = 0 and names.append(1) do."""
     targets: list[ast.expr] = []
-    if isinstance(node, ast.Assign | ast.AugAssign):
-        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    if isinstance(node, ast.Assign):
+        targets = node.targets
+    elif isinstance(node, ast.AugAssign):
+        targets = [node.target]
     elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
         targets = [node.value.func] if isinstance(node.value.func, ast.Attribute) else []
     roots = []
-    for one in targets:
-        while isinstance(one, ast.Subscript | ast.Attribute):
-            one = one.value
-        roots += [one.id] if isinstance(one, ast.Name) else []
+    for target in targets:
+        while isinstance(target, ast.Subscript | ast.Attribute):
+            target = target.value
+        if isinstance(target, ast.Name):
+            roots.append(target.id)
     return roots
 
 
@@ -244,23 +318,23 @@ def plain(text: str) -> str:
     text = textwrap.dedent(text)
     head = text.lstrip()
     if head.startswith("%%"):
-        if not head.startswith(TIMED):
+        if not head.startswith(PYTHON_CELL_MAGICS):
             return ""
         text = head.partition("\n")[2]
     lines = text.split("\n")
-    if not any(map(_is_notebooks, lines)):
+    if not any(map(_is_notebook_syntax, lines)):
         return text
     try:
         ast.parse(text)
-        return text  # such lines stand in a string
+        return text  # the lines are in a string
     except names.BROKEN:
-        blank = [
-            re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one
-            for one in lines
+        kept = [
+            re.sub(r"[^ \t].*", "pass", line, count=1) if _is_notebook_syntax(line) else line
+            for line in lines
         ]
-        return "\n".join(blank)
+        return "\n".join(kept)
 
 
-def _is_notebooks(line: str) -> bool:
-    """Return whether a line is one that only a notebook understands."""
+def _is_notebook_syntax(line: str) -> bool:
+    """Return whether only a notebook understands a line."""
     return line.lstrip(" \t")[:1] in {"%", "!", "?"} or line.rstrip(" \t\r").endswith("?")

@@ -11,14 +11,14 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from hdrlab.course.code.source import Key, key_of, module, statements, targets
+from hdrlab.course.code.source import SymbolRef, module, parse_reference, statements, targets
 from hdrlab.errors import InputError
 
 
 class Block(NamedTuple):
     """What one function adds to a notebook: its imports, what it needs, and itself; whose it is."""
 
-    key: Key
+    key: SymbolRef
     imports: tuple[str, ...]
     needs: str
     source: str
@@ -55,14 +55,14 @@ def inlined(functions: Mapping[str, str], given: Iterable[str] = ()) -> dict[str
     >>> "hdrlab" in block.text, float(scope["tent"]()[0])
     (False, 0.0)
     """
-    wanted = {key_of(function): name for name, function in functions.items()}
+    wanted = {parse_reference(function): name for name, function in functions.items()}
     orders = [_in_order(key) for key in wanted]
     names = _names(wanted, [key for order in orders for key in order])
-    done = {_text(key, {}) for key in map(key_of, given)}
+    done = {_text(key, {}) for key in map(parse_reference, given)}
     return {wanted[order[-1]]: _block(order, names, done) for order in orders}
 
 
-def _block(order: Sequence[Key], names: dict[Key, str], done: set[str]) -> Block:
+def _block(order: Sequence[SymbolRef], names: dict[SymbolRef, str], done: set[str]) -> Block:
     """Return the Block of an order whose last key is the function; `done` holds what is there so far."""
     imports, texts = set(), []
     for key in order:
@@ -110,23 +110,23 @@ def _joined(texts: Iterable[str]) -> str:
     return text
 
 
-def _in_order(key: Key, seen: set[Key] | None = None) -> list[Key]:
+def _in_order(key: SymbolRef, seen: set[SymbolRef] | None = None) -> list[SymbolRef]:
     """Return all that a definition needs, itself last: each after what it needs."""
     seen = set() if seen is None else seen
     if key in seen:
         return []
     seen.add(key)
-    needed = [one.target for one in targets(key) if isinstance(one.target, Key)]
+    needed = [one.target for one in targets(key) if isinstance(one.target, SymbolRef)]
     return [*(one for target in needed for one in _in_order(target, seen)), key]
 
 
-def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
+def _names(wanted: dict[SymbolRef, str], needed: Sequence[SymbolRef]) -> dict[SymbolRef, str]:
     """Return the name that each definition gets: its own, or with its module's where that one is taken."""
     names, taken = dict(wanted), {name: _text(key, {}) for key, name in wanted.items()}
-    local: dict[Key, set[str]] = {}  # names that would hide a definition where it is used
+    local: dict[SymbolRef, set[str]] = {}  # names that would hide a definition where it is used
     for key in needed:
         for target, node in targets(key):
-            if isinstance(target, Key) and ast.unparse(node) != target.name:
+            if isinstance(target, SymbolRef) and ast.unparse(node) != target.name:
                 hidden = {name for one in statements(key) for name in _all_bound(one)}
                 local.setdefault(target, set()).update(hidden)
     for key in needed:
@@ -140,13 +140,13 @@ def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
     return names
 
 
-def _text(key: Key, names: dict[Key, str]) -> str:
+def _text(key: SymbolRef, names: dict[SymbolRef, str]) -> str:
     """Return a definition as it is written, with the comment above it, under the names given."""
     lines = module(key.module).lines
     edits: dict[int, list[tuple[int, int, str]]] = {}
     renamed = names.get(key, key.name)
     for target, node in targets(key):
-        if isinstance(target, Key) and names.get(target, target.name) != ast.unparse(node):
+        if isinstance(target, SymbolRef) and names.get(target, target.name) != ast.unparse(node):
             if node.lineno != node.end_lineno:
                 raise InputError(f"{key.module}, line {node.lineno}: expected the name on one line")
             edit = (node.col_offset, node.end_col_offset or 0, names.get(target, target.name))

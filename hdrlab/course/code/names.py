@@ -11,7 +11,7 @@ BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
-class Use(NamedTuple):
+class FreeName(NamedTuple):
     """A name that stands for something outside the piece, and where it is written.
 
     With an attribute, as in weights.hat, `whole` is where both are written.
@@ -22,35 +22,35 @@ class Use(NamedTuple):
     attribute: str
 
 
-def free(node: ast.AST) -> list[Use]:
+def free_names(node: ast.AST) -> list[FreeName]:
     """Return the uses of names that a piece does not bind around them, in the order of reading.
 
     Examples
     --------
-    >>> [use.node.id for use in free(ast.parse("def f(x, y=a): return [x * b for z in y]").body[0])]
+    >>> [use.node.id for use in free_names(ast.parse("def f(x, y=a): return [x * b for z in y]").body[0])]
     ['a', 'b']
     """
-    found: list[Use] = []
+    found: list[FreeName] = []
     waiting: list[tuple[ast.AST, frozenset[str]]] = [(node, frozenset())]
     while waiting:  # by hand: what a student wrote may be nested deeper than calls go
         one, around = waiting.pop()
         if isinstance(one, ast.Name):
             if isinstance(one.ctx, ast.Load) and one.id not in around:
-                found.append(Use(one, one, ""))
+                found.append(FreeName(one, one, ""))
         elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
             if one.value.id not in around:
-                found.append(Use(one.value, one, one.attr))
+                found.append(FreeName(one.value, one, one.attr))
         else:
             waiting += reversed(list(_parts(one, around)))
     return found
 
 
-def bound(node: ast.AST) -> list[str]:
+def bound_names(node: ast.AST) -> list[str]:
     """Return the names that a statement binds where it stands, not those inside functions within it.
 
     Examples
     --------
-    >>> bound(ast.parse("for i, (j, k) in pairs: n = i").body[0])
+    >>> bound_names(ast.parse("for i, (j, k) in pairs: n = i").body[0])
     ['i', 'j', 'k', 'n']
     """
     found: list[str] = []
@@ -84,7 +84,7 @@ def _parts(node: ast.AST, around: frozenset[str]) -> Iterator[tuple[ast.AST, fro
         return
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
     if isinstance(node, COMPREHENSIONS):
-        around = around.union(*(bound(one.target) for one in node.generators))
+        around = around.union(*(bound_names(one.target) for one in node.generators))
         parts = sorted(parts, key=lambda one: isinstance(one, ast.comprehension))
     yield from ((one, around) for one in parts)
 
@@ -93,9 +93,9 @@ def _inside(node: Function, around: frozenset[str]) -> frozenset[str]:
     """Return the names that are bound around what is inside a function."""
     own = around.union(one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg))
     if isinstance(node, ast.Lambda):
-        return own.union(bound(node.body))
+        return own.union(bound_names(node.body))
     inner = (part for one in node.body for part in ast.walk(one) if isinstance(part, ast.Global))
-    return own.union(*map(bound, node.body)).difference(*(part.names for part in inner))
+    return own.union(*map(bound_names, node.body)).difference(*(part.names for part in inner))
 
 
 def head(node: ast.AST) -> list[ast.AST]:
@@ -119,12 +119,13 @@ def modules(source: str | bytes) -> set[str]:
     return found
 
 
-def imported(sources: Iterable[str]) -> list[str]:
+def imported_numpy_modules(sources: Iterable[str]) -> list[str]:
     """Return the parts of numpy and scipy that some sources import, so that they are imported once.
 
     Examples
     --------
-    >>> imported(["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"])
+    >>> sources = ["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"]
+    >>> imported_numpy_modules(sources)
     ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
     """
     found = set().union(*map(modules, sources))

@@ -1,79 +1,110 @@
-"""The library's own source: which definition a name in it stands for. It is read, and not imported.
+"""Find the definition of a name in the library's source, which is read and not imported.
 
-It is read as one writes it on the board: without types, which are for checkers, and without guards,
-the statements that only raise. Both stand in the library; what is left is the equation.
+The source is simplified to what a student writes: without types, and without guards, the statements
+that only raise. What remains is the algorithm.
 """
 
 import ast
 import builtins
 import re
 import textwrap
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course.code.names import Use, bound, free
+from hdrlab.course.code.names import FreeName, bound_names, free_names
 from hdrlab.errors import InputError
 
-HOUSE = "hdrlab"
-# letters of a line
-WIDTH = 110
-# what is for checkers, and what a docstring says of guards
-UNSAID = re.compile(r"  # (?:noqa|type: ignore).*$|, or raise a ValueError[^.\"]*", re.MULTILINE)
-GUARDS = ("require_", "check_")
+PACKAGE = "hdrlab"
+MAX_LINE_CHARACTERS = 110
+# comments for checkers, and what a docstring says about guards
+CHECKER_TEXT = re.compile(
+    r"  # (?:noqa|type: ignore).*$|, or raise a ValueError[^.\"]*", re.MULTILINE
+)
+# the beginning of the name of a function that only raises
+GUARD_PREFIXES = ("require_", "check_")
+# the decorator of a known mistake, see `hdrlab.course.checks.mistakes`
+REGISTRATION = "mistake"
 
 
-class Key(NamedTuple):
-    """A definition's place: the dotted module, or the path of a file, and the name in it."""
+class SymbolRef(NamedTuple):
+    """The place of a definition: a dotted module, or the path of a file, and a name in it."""
 
     module: str
     name: str
 
 
-class Module(NamedTuple):
-    """A module's source: lines and definitions, as on the board, and what each imported name stands for."""
+class Import(NamedTuple):
+    """What an imported name stands for: a module, a name in it ("" for the module), and the statement."""
+
+    module: str
+    name: str
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Module:
+    """The simplified source of a module.
+
+    Attributes
+    ----------
+    lines : its lines
+    definitions : the statements that define each name
+    imported : what each imported name stands for
+    returns : the return annotation of each function that has one
+    """
 
     lines: list[str]
     definitions: dict[str, list[ast.stmt]]
-    imported: dict[
-        str, tuple[str, str, str]
-    ]  # name -> (module, name in it or "", the import as text)
-    returns: dict[str, ast.expr]  # of each function that says it, the type of its answer
+    imported: dict[str, Import]
+    returns: dict[str, ast.expr]
 
 
-def key_of(function: str) -> Key:
-    """Return the place of a function that is given dotted under hdrlab, or as FILE.py:NAME."""
-    file, _, name = function.rpartition(":")
-    home, _, name = ("", "", name) if file else function.rpartition(".")
-    return Key(file or f"{HOUSE}.{home}", name)
+def parse_reference(function: str) -> SymbolRef:
+    """Return the place of a function that is given as a dotted path under hdrlab, or as FILE.py:NAME."""
+    if ":" in function:
+        file, _, name = function.rpartition(":")
+        return SymbolRef(file, name)
+    home, _, name = function.rpartition(".")
+    return SymbolRef(f"{PACKAGE}.{home}", name)
 
 
-def written(key: Key) -> str:
-    """Return the place of a definition in the form that `key_of` takes."""
-    home = key.module
-    return f"{home}:{key.name}" if home.endswith(".py") else f"{home}.{key.name}".partition(".")[2]
+def format_reference(symbol: SymbolRef) -> str:
+    """Return the place of a definition in the form that `parse_reference` reads."""
+    if symbol.module.endswith(".py"):
+        return f"{symbol.module}:{symbol.name}"
+    return f"{symbol.module}.{symbol.name}".partition(".")[2]
 
 
 @cache
 def module(dotted: str) -> Module:
-    """Return the Module of a dotted name, or of a file's path, read and not imported."""
-    spec = None if dotted.endswith(".py") else find_spec(dotted)
-    origin = dotted if spec is None else spec.origin
+    """Return the simplified source of a module, given by its dotted name or a file's path."""
+    origin: str | None = dotted
+    if not dotted.endswith(".py"):
+        spec = find_spec(dotted)
+        origin = spec.origin if spec is not None else dotted
     if origin is None or not origin.endswith(".py"):
         raise InputError(f"expected a module of the library, got {dotted!r}")
     typed = with_builtin_errors(Path(origin).read_text(encoding="utf8"))
-    functions = [one for one in ast.parse(typed).body if isinstance(one, ast.FunctionDef)]
-    returns, text = {one.name: one.returns for one in functions if one.returns}, on_the_board(typed)
+    text = strip_annotations(typed)
     definitions: dict[str, list[ast.stmt]] = {}
-    imported: dict[str, tuple[str, str, str]] = {}
+    imported: dict[str, Import] = {}
     for node in ast.parse(text).body:
         if isinstance(node, ast.Import | ast.ImportFrom):
-            imported |= _imported(node)
+            imported |= _imports(node)
             continue
-        for name in bound(node):
+        for name in bound_names(node):
             definitions.setdefault(name, []).append(node)
-    return Module(text.splitlines(), definitions, imported, returns)
+    returns = {
+        node.name: node.returns
+        for node in ast.parse(typed).body
+        if isinstance(node, ast.FunctionDef) and node.returns
+    }
+    return Module(
+        lines=text.splitlines(), definitions=definitions, imported=imported, returns=returns
+    )
 
 
 def with_builtin_errors(text: str) -> str:
@@ -84,138 +115,149 @@ def with_builtin_errors(text: str) -> str:
     )
 
 
-def on_the_board(text: str) -> str:
+def strip_annotations(text: str) -> str:
     r"""Return a module's text without types and guards; a field that is no plain number is an array.
 
     Examples
     --------
     >>> lines = ("def gain(E: F32, *, k: float = 2) -> F32:", "    if k < 0:", "        raise InputError(k)")
-    >>> print(on_the_board("\n".join([*lines, "    n: int = 3", "    return k * n * E"])))
+    >>> print(strip_annotations("\n".join([*lines, "    n: int = 3", "    return k * n * E"])))
     def gain(E, *, k=2):
         n = 3
         return k * n * E
     """
-    lines, tree = UNSAID.sub("", text).splitlines(), ast.parse(text)
-    functions = [one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)]
-    guards = {one for node in functions for one in node.body if _is_guard(one)}
-    fields = {one for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for one in node.body}
-    typed = [one for one in ast.walk(tree) if isinstance(one, ast.AnnAssign)]
-    registrations = {
-        decorator
-        for node in functions
-        for decorator in node.decorator_list
-        if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "mistake"
-    }
-    parts = [*functions, *guards, *typed, *registrations]
-    for node in sorted(parts, key=lambda one: one.lineno, reverse=True):
-        line, start = lines[node.lineno - 1], node.lineno - 1
-        if node in guards or node in registrations:
+    lines = CHECKER_TEXT.sub("", text).splitlines()
+    nodes = list(ast.walk(ast.parse(text)))
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    annotated = [node for node in nodes if isinstance(node, ast.AnnAssign)]
+    fields = {child for node in nodes if isinstance(node, ast.ClassDef) for child in node.body}
+    removed: set[ast.stmt | ast.expr] = set()
+    for function in functions:
+        removed.update(child for child in function.body if _is_guard(child))
+        removed.update(child for child in function.decorator_list if _is_registration(child))
+    edited = [*functions, *removed, *annotated]
+    # from the last line to the first, so that an edit does not move what is still to be edited
+    for node in sorted(edited, key=lambda node: node.lineno, reverse=True):
+        start = node.lineno - 1
+        if node in removed:
             del lines[start : node.end_lineno]
         elif isinstance(node, ast.FunctionDef):
             body = node.body[0]
-            if not lines[body.lineno - 1][
-                : body.col_offset
-            ].strip():  # else it shares the signature's line
+            body_has_own_line = not lines[body.lineno - 1][: body.col_offset].strip()
+            if body_has_own_line:
                 lines[start : body.lineno - 1] = _signature(node)
         elif isinstance(node, ast.AnnAssign):
-            name, after = line[: node.target.end_col_offset], line[node.annotation.end_col_offset :]
-            lines[start] = (
-                f"{name}: {_plain(node.annotation)}{after}" if node in fields else name + after
-            )
+            name = lines[start][: node.target.end_col_offset]
+            after = lines[start][node.annotation.end_col_offset :]
+            field_type = f": {_plain_type(node.annotation)}" if node in fields else ""
+            lines[start] = name + field_type + after
     return "\n".join(lines) + "\n"
 
 
 def _is_guard(node: ast.stmt) -> bool:
-    """Return whether a statement only raises: an `if` that ends so, or a call of a function that is one."""
+    """Return whether a statement only raises: an `if` that ends so, or a call of a guard function."""
     if isinstance(node, ast.If):
         return isinstance(node.body[-1], ast.Raise) and not node.orelse
-    call = node.value if isinstance(node, ast.Expr) else None
-    return isinstance(call, ast.Call) and ast.unparse(call.func).rpartition(".")[2].startswith(
-        GUARDS
-    )
+    if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
+        return False
+    name = ast.unparse(node.value.func).rpartition(".")[2]
+    return name.startswith(GUARD_PREFIXES)
+
+
+def _is_registration(decorator: ast.expr) -> bool:
+    return isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == REGISTRATION
 
 
 def _signature(node: ast.FunctionDef) -> list[str]:
-    """Return a function's first lines, with names and defaults alone."""
-    for one in ast.walk(node.args):
-        if isinstance(one, ast.arg):
-            one.annotation = None
-    indent, arguments = " " * node.col_offset, ast.unparse(node.args)
-    whole = f"{indent}def {node.name}({arguments}):"
-    if len(whole) <= WIDTH:
-        return [whole]
-    inner = textwrap.wrap(
-        arguments, WIDTH, initial_indent=f"{indent}    ", subsequent_indent=f"{indent}    "
+    """Return the lines of a function's signature, with names and defaults alone."""
+    for part in ast.walk(node.args):
+        if isinstance(part, ast.arg):
+            part.annotation = None
+    indent = " " * node.col_offset
+    arguments = ast.unparse(node.args)
+    line = f"{indent}def {node.name}({arguments}):"
+    if len(line) <= MAX_LINE_CHARACTERS:
+        return [line]
+    deeper = f"{indent}    "
+    wrapped = textwrap.wrap(
+        arguments, MAX_LINE_CHARACTERS, initial_indent=deeper, subsequent_indent=deeper
     )
-    return [f"{indent}def {node.name}(", *inner, f"{indent}):"]
+    return [f"{indent}def {node.name}(", *wrapped, f"{indent}):"]
 
 
-def _plain(annotation: ast.expr) -> str:
-    """Return the type of a field, np.ndarray unless it is of builtin types alone."""
-    used = {one.id for one in ast.walk(annotation) if isinstance(one, ast.Name)}
+def _plain_type(annotation: ast.expr) -> str:
+    """Return a field's type if it consists of builtin types, and np.ndarray otherwise."""
+    used = {node.id for node in ast.walk(annotation) if isinstance(node, ast.Name)}
     return ast.unparse(annotation) if used <= set(dir(builtins)) else "np.ndarray"
 
 
-def _imported(node: ast.Import | ast.ImportFrom) -> dict[str, tuple[str, str, str]]:
-    found = {}
+def _imports(node: ast.Import | ast.ImportFrom) -> dict[str, Import]:
+    """Return what each name that a statement imports stands for."""
+    imports = {}
     for alias in node.names:
         name = alias.asname or alias.name
         if isinstance(node, ast.Import):
-            found[name.split(".")[0]] = (alias.name, "", ast.unparse(ast.Import([alias])))
+            statement = ast.unparse(ast.Import([alias]))
+            imports[name.split(".")[0]] = Import(alias.name, "", statement)
         else:
-            said = ast.unparse(ast.ImportFrom(node.module, [alias], 0))
-            found[name] = (str(node.module), alias.name, said)
-    return found
+            statement = ast.unparse(ast.ImportFrom(node.module, [alias], 0))
+            imports[name] = Import(str(node.module), alias.name, statement)
+    return imports
 
 
-class Found(NamedTuple):
-    """What a use stands for: a definition, or an import as text; and what its copy's name replaces."""
+class Resolved(NamedTuple):
+    """What a used name stands for: a definition, or an import as text; `node` is where it is used."""
 
-    target: Key | str
+    target: SymbolRef | str
     node: ast.expr
 
 
-def _resolved(at: str, use: Use) -> Found | None:
-    """Return what a use in the module `at` stands for; None for a builtin."""
-    here, name = module(at), use.node.id
+def _resolve(at: str, use: FreeName) -> Resolved | None:
+    """Return what a name that the module `at` uses stands for; None for a builtin."""
+    here = module(at)
+    name = use.node.id
     if name in here.definitions:
-        return Found(Key(at, name), use.node)
+        return Resolved(SymbolRef(at, name), use.node)
     if name not in here.imported:
         return None
-    source, original, text = here.imported[name]
-    while (
-        source.split(".")[0] == HOUSE and original in module(source).imported
-    ):  # it is imported there, too
-        source, original, text = module(source).imported[original]
-    if source.split(".")[0] != HOUSE:
-        return Found(text, use.node)
-    if original in module(source).definitions:
-        return Found(Key(source, original), use.node)
-    inner = f"{source}.{original}"
-    if find_spec(inner) and use.attribute in module(inner).definitions:  # a module's function
-        return Found(Key(inner, use.attribute), use.whole)
-    raise InputError(f"{at}, line {use.node.lineno}: {name} cannot be copied from {source}")
+    found = here.imported[name]
+    # a module of the library may import the name from another one
+    while _is_library(found.module) and found.name in module(found.module).imported:
+        found = module(found.module).imported[found.name]
+    if not _is_library(found.module):
+        return Resolved(found.text, use.node)
+    if found.name in module(found.module).definitions:
+        return Resolved(SymbolRef(found.module, found.name), use.node)
+    inner = f"{found.module}.{found.name}"
+    if find_spec(inner) and use.attribute in module(inner).definitions:
+        return Resolved(SymbolRef(inner, use.attribute), use.whole)
+    raise InputError(f"{at}, line {use.node.lineno}: {name} cannot be copied from {found.module}")
 
 
-def statements(key: Key) -> list[ast.stmt]:
-    """Return what defines a name of a module, or raise a ValueError."""
+def _is_library(dotted: str) -> bool:
+    return dotted.split(".")[0] == PACKAGE
+
+
+def statements(symbol: SymbolRef) -> list[ast.stmt]:
+    """Return the statements that define a name of a module, or raise an InputError."""
     try:
-        return module(key.module).definitions[key.name]
+        return module(symbol.module).definitions[symbol.name]
     except KeyError:
         raise InputError(
-            f"expected a function of the library, got {key.module}.{key.name}"
+            f"expected a function of the library, got {symbol.module}.{symbol.name}"
         ) from None
 
 
-def definitions_in(at: str, node: ast.AST) -> list[Key]:
+def definitions_in(at: str, node: ast.AST) -> list[SymbolRef]:
     """Return the definitions of the library that a part of the module `at` uses."""
-    found = [one.target for use in free(node) if (one := _resolved(at, use))]
-    return [one for one in found if isinstance(one, Key)]
+    resolved = [_resolve(at, use) for use in free_names(node)]
+    targets = [found.target for found in resolved if found is not None]
+    return [target for target in targets if isinstance(target, SymbolRef)]
 
 
 @cache
-def targets(key: Key) -> tuple[Found, ...]:
+def targets(symbol: SymbolRef) -> tuple[Resolved, ...]:
     """Return what a definition uses from outside itself, in the order of reading."""
-    uses = [use for node in statements(key) for use in free(node)]
-    found = [one for use in uses if (one := _resolved(key.module, use))]
-    return tuple(one for one in found if one.target != key)
+    uses = [use for node in statements(symbol) for use in free_names(node)]
+    resolved = [_resolve(symbol.module, use) for use in uses]
+    return tuple(found for found in resolved if found is not None and found.target != symbol)

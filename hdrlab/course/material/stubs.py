@@ -20,16 +20,16 @@ def classes(function: str) -> tuple[str, ...]:
     >>> classes("response.debevec.gsolve")
     ('response.debevec.Solution',)
     """
-    key = source.key_of(function)
+    key = source.parse_reference(function)
     returns = source.module(key.module).returns.get(key.name)
     keys = source.definitions_in(key.module, returns) if returns is not None else []
     found = [one for one in keys if isinstance(source.statements(one)[-1], ast.ClassDef)]
-    return tuple(map(source.written, found))
+    return tuple(map(source.format_reference, found))
 
 
 def definition(function: str) -> ast.FunctionDef:
     """Return the library's definition of a function, or raise a ValueError."""
-    node = source.statements(source.key_of(function))[-1]
+    node = source.statements(source.parse_reference(function))[-1]
     if not isinstance(node, ast.FunctionDef):
         raise InputError(f"expected a function of the library, got {function}")
     return node
@@ -47,7 +47,7 @@ def stub(task: Task, opening: str = "") -> str:
     """
     node = definition(task.function)
     arguments = ast.unparse(node.args)
-    home = source.module(source.key_of(task.function).module).definitions
+    home = source.module(source.parse_reference(task.function).module).definitions
     for one in (*node.args.defaults, *node.args.kw_defaults):
         if not isinstance(one, ast.Name):
             continue
@@ -78,7 +78,7 @@ def bare_class(dotted: str) -> str:
         base: np.ndarray
         detail: np.ndarray
     """
-    node = source.statements(source.key_of(dotted))[-1]
+    node = source.statements(source.parse_reference(dotted))[-1]
     assert isinstance(node, ast.ClassDef)
     fields = [one for one in node.body if isinstance(one, ast.AnnAssign)]
     lines = (ast.get_docstring(node) or "").splitlines()

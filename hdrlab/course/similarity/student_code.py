@@ -103,7 +103,7 @@ def _own_statements(text: str, given: Collection[str], others: Collection[str]) 
     for node, part in _statements(text):
         if isinstance(node, ast.Import | ast.ImportFrom) or part in given:
             continue
-        if not set(names.bound(node)) & set(others):
+        if not set(names.bound_names(node)) & set(others):
             yield part
 
 
