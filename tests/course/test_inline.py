@@ -9,9 +9,9 @@ import pytest
 from hdrlab.core import weights
 from hdrlab.course import plan
 from hdrlab.course.code import inline, names, source
-from hdrlab.response.debevec import gsolve
 from hdrlab.course.material import stubs
 from hdrlab.response import debevec
+from hdrlab.response.debevec import gsolve
 
 TASKS = [task for homework in plan.read().homeworks.values() for task in homework.tasks]
 
