@@ -34,7 +34,7 @@ def run_once(path: Path, kept: Path) -> Ran:
 
     It is kept where `hdrlab site` would keep it in its cache.
     """
-    executed = execute.place(path, kept, execute.library_key())
+    executed = execute.executed_path(path, kept, execute.library_key())
     judged = (
         kept
         / "judged"

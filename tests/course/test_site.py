@@ -117,7 +117,8 @@ def test_a_link_leads_to_what_the_site_has_and_is_plain_text_otherwise():
         "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](05_y.ipynb) [d](../assignments/x.ipynb)"
     )
     assert (
-        build._linked(text, {"hw1", "04_x"}) == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
+        build.unlink_missing_notebooks(text, {"hw1", "04_x"})
+        == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
     )
 
 
@@ -370,7 +371,7 @@ def test_a_photograph_in_a_cells_html_is_a_file_to_the_byte(tmp_path):
     shown = {"text/html": f'<img alt="A room" src="{web.data_uri(taken, "jpeg")}">'}
     output = nbformat.v4.new_output("display_data", data=shown)
     cells = [nbformat.v4.new_code_cell("room", outputs=[output])]
-    live.set_apart(one := nbformat.v4.new_notebook(cells=cells), "room", tmp_path, "../apart")
+    live.extract_images(one := nbformat.v4.new_notebook(cells=cells), "room", tmp_path, "../apart")
     assert (tmp_path / "room-p1.jpeg").read_bytes() == taken
     assert (
         'src="../apart/room-p1.jpeg" width="12" height="8"'
@@ -387,7 +388,7 @@ def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_t
         for k, each in enumerate(exact)
     ]
     state = {"_esm": "", "scales": [], "pictures": [None, None], "alt": "A room"}
-    shown = live.live({"state": state, "buffers": apart}, "room-1").state["pictures"]
+    shown = live.export_widget({"state": state, "buffers": apart}, "room-1").state["pictures"]
     light = [base64.b64decode(each["base64"]) for each in shown]
     assert len(light[0]) < len(exact[0]) * 2 / 3
     assert np.abs(web.decode_picture(light[0]).astype(int) - photograph).mean() < 2
@@ -399,7 +400,7 @@ def test_a_dark_page_turns_plots_about_and_leaves_photographs_and_maps_their_col
     line = curves.lines(np.arange(9), {"nine": np.arange(9)}, across="place", up="light")
     slope = tones.maps({"": np.indices((64, 96))[0] - 32}, label="stops", signed=True)
     shown = [
-        live.Live("", "", "", {}, pictures.encode(each), "").as_html("")
+        live.ExportedWidget("", "", "", {}, pictures.encode(each), "").as_html("")
         for each in (line, slope, photograph)
     ]
     assert ["data-ink" in each for each in shown] == [True, False, False]

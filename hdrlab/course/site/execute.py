@@ -1,7 +1,7 @@
-"""Notebooks are run, a few at a time, and kept: the next build runs only what has changed.
+"""Execute notebooks, a few at a time, and cache them: the next build runs only what has changed.
 
-What a notebook shows rests on its own cells and on the library, so both are in the key of what is
-kept.
+The cache key covers the cells of a notebook and the whole library, because both determine the
+outputs.
 """
 
 import asyncio
@@ -18,29 +18,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.course.checks.running import LIBRARY, import_path
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, HdrlabError
 from hdrlab.io.files import replacing
 
-PATIENCE = 600  # seconds for a cell
-# of errors alone a kernel tells, not of its own connections; and what was typed is kept in no
-# history
-QUIET = ["--IPKernelApp.log_level=40", "--HistoryManager.enabled=False"]
+CELL_TIMEOUT_SECONDS = 600
+MAX_SOCKET_PATH_BYTES = 80  # the system allows about 100, and the kernel adds a suffix
+# the kernel logs errors only, and keeps no history of the cells
+KERNEL_ARGUMENTS = ["--IPKernelApp.log_level=40", "--HistoryManager.enabled=False"]
 
 
-class Done(NamedTuple):
-    """A notebook, where its executed copy is, and whether it was run just now."""
+class ExecutedNotebook(NamedTuple):
+    """A notebook, the path of its executed copy, and whether it was run just now (not cached)."""
 
     source: Path
     executed: Path
     fresh: bool
 
 
-class NotebookError(Exception):
-    """A cell of a notebook failed, or its kernel; says which, and how."""
+class NotebookError(HdrlabError):
+    """A cell of a notebook failed, or its kernel died; the message names the cell and the error."""
 
 
 def library_key(*, course: bool = False) -> str:
-    """Return a digest of the library's files and of Python; of the course's too, or not."""
+    """Return a digest of hdrlab's files, Python and NumPy; with `course`, of the course's files, too."""
     digest = hashlib.sha256(f"{sys.version} {np.__version__}".encode())
     for file in sorted(LIBRARY.rglob("*")):
         name = file.relative_to(LIBRARY)
@@ -49,46 +49,51 @@ def library_key(*, course: bool = False) -> str:
     return digest.hexdigest()
 
 
-def place(source: Path, cache: Path, library: str) -> Path:
-    """Return where the executed copy of a notebook is kept, which ran on a library of that key."""
+def executed_path(source: Path, cache: Path, library: str) -> Path:
+    """Return the path in the cache of a notebook executed with the library of this key."""
     own = hashlib.sha256(library.encode() + source.read_bytes()).hexdigest()[:16]
     return cache / "executed" / f"{source.stem}-{own}.ipynb"
 
 
-def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Iterator[Done]:
-    """Run notebooks, at most `jobs` at a time, and yield each when it is done; first those that are kept.
+def run_steps(
+    notebooks: Sequence[Path], cache: Path, *, jobs: int = 2
+) -> Iterator[ExecutedNotebook]:
+    """Execute notebooks, at most `jobs` at a time, and yield each when it is done, cached ones first.
 
     Raises
     ------
     NotebookError
-        For the first cell that fails, or kernel that dies. What has been run is kept nevertheless.
+        For the first cell that fails, or kernel that dies. Finished notebooks stay in the cache.
     """
     key = library_key()
     waiting = []
     for source in notebooks:
-        kept = place(source, cache, key)
+        kept = executed_path(source, cache, key)
         if kept.exists():
-            yield Done(source, kept, False)
+            yield ExecutedNotebook(source, kept, False)
         else:
             waiting.append((source, kept))
     yield from _run_all(waiting, cache, jobs)
 
 
-def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterator[Done]:
-    """Yield what is done. The loop stands still between two of them: their kernels do not."""
+def _run_all(
+    waiting: list[tuple[Path, Path]], cache: Path, jobs: int
+) -> Iterator[ExecutedNotebook]:
+    """Execute the notebooks and yield each finished one; the kernels go on running meanwhile."""
 
-    async def one(source: Path, kept: Path) -> Done:
+    async def run_when_free(source: Path, kept: Path) -> ExecutedNotebook:
         async with free:
             await _run(source, kept, cache)
-        return Done(source, kept, True)
+        return ExecutedNotebook(source, kept, True)
 
     free = asyncio.Semaphore(jobs)
-    with (
-        asyncio.Runner() as runner
-    ):  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
-        # what was ended so has no more to tell
+    # after an error, or Ctrl-C, the runner cancels all tasks: no kernel outlives it
+    with asyncio.Runner() as runner:
+        # cancelled tasks have no errors to report
         runner.get_loop().set_exception_handler(lambda *_: None)
-        tasks = {runner.get_loop().create_task(one(*each)) for each in waiting}
+        tasks = {
+            runner.get_loop().create_task(run_when_free(source, kept)) for source, kept in waiting
+        }
         while tasks:
             done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
             for task in done:
@@ -111,17 +116,20 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     folder.mkdir(parents=True)
     kept.parent.mkdir(parents=True, exist_ok=True)
     client: Any = NotebookClient(
-        notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET
+        notebook,
+        kernel_name="python3",
+        timeout=CELL_TIMEOUT_SECONDS,
+        extra_arguments=KERNEL_ARGUMENTS,
     )
     client.create_kernel_manager()
     sockets = tempfile.mkdtemp(prefix="hdrlab-")
     client.km.connection_file = f"{sockets}/kernel.json"
-    # of ports two kernels may choose the same, of files not; but a socket's path has room for 100
-    # bytes alone
-    client.km.transport = "ipc" if os.name == "posix" and len(os.fsencode(sockets)) < 80 else "tcp"
+    # two kernels may choose the same port, but never the same socket file
+    can_use_files = os.name == "posix" and len(os.fsencode(sockets)) < MAX_SOCKET_PATH_BYTES
+    client.km.transport = "ipc" if can_use_files else "tcp"
     try:
-        # the kernel imports this very hdrlab, writes nothing at home, and stores 400 pictures of a
-        # slider: no Python answers on a page
+        # the kernel imports this very hdrlab, writes nothing to the home folder, and stores 400
+        # frames of a slider, because no Python answers on a web page
         own = {
             "PYTHONPATH": import_path(),
             "IPYTHONDIR": str(folder / "ipython"),
@@ -130,26 +138,23 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
         await client.async_start_new_kernel(cwd=str(folder), env={**os.environ, **own})
         await client.async_start_new_kernel_client()
         for index, cell in enumerate(notebook.cells):
-            where = _named(cell, index)
+            where = _cell_label(cell, index)
             await client.async_execute_cell(cell, index)
         client.set_widgets_metadata()
-    except (
-        CellExecutionError,
-        CellTimeoutError,
-        RuntimeError,
-    ) as error:  # the last where a kernel dies
-        raise NotebookError(f"{source.name}, {where}: {_said(error)}") from None
+    except (CellExecutionError, CellTimeoutError, RuntimeError) as error:
+        # nbclient raises a RuntimeError when the kernel dies
+        raise NotebookError(f"{source.name}, {where}: {_error_text(error)}") from None
     finally:
-        await _end(client, folder, sockets)
+        await _shut_down(client, folder, sockets)
     with replacing(kept) as temporary:
         nbformat.write(notebook, temporary)
     for older in set(kept.parent.glob(f"{source.stem}-????????????????.ipynb")) - {kept}:
         older.unlink()
 
 
-async def _end(client: Any, *folders: Path | str) -> None:
+async def _shut_down(client: Any, *folders: Path | str) -> None:
     try:
-        # none is left of one that never answered
+        # a kernel that never answered is gone already
         if client.km is not None and client.km.has_kernel:
             await client.km.shutdown_kernel(now=True)
     finally:
@@ -159,12 +164,12 @@ async def _end(client: Any, *folders: Path | str) -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def _named(cell: Any, index: int) -> str:
+def _cell_label(cell: Any, index: int) -> str:
     first = next(iter(cell.source.splitlines()), "")
     return f"cell {index + 1} ({cell.get('id', '')!r}, {first[:60]!r})"
 
 
-def _said(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     if name := getattr(error, "ename", ""):
         return f"{name}: {getattr(error, 'evalue', '')}"
     return str(error).strip().splitlines()[0]

@@ -1,11 +1,11 @@
-"""A notebook's widgets, taken out of it: each becomes a file of its own, which its page opens with no kernel.
+"""Export the widgets of an executed notebook, so that a web page runs them without a kernel.
 
-Widgets of one kind share their script, a file of its own, too.
+Each widget becomes a file with its state; widgets of one kind share a file with their script. The
+page shows an image in the widget's place, before its script has run and on paper.
 
-The page carries a picture in the widget's place, so that it is whole before its script has run, and
-on paper. The file is a script and not JSON, since a page that was opened from a folder may read no
-other file. Its bytes are text, fifteen bits a letter: in UTF-16 that is a fifteenth more than they
-are; base64 is a third.
+The files are scripts, not JSON, because a page that was opened from a folder may not read other
+files. Binary data is written as text, 15 bits per letter: in UTF-16 that adds a fifteenth to the
+size, where base64 adds a third.
 """
 
 import base64
@@ -25,62 +25,63 @@ from hdrlab.show.pictures import encode_change, is_ink
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
-# traits of every widget, and what a slider stores again
-NOT_OWN = (
-    "layout",
-    "tabbable",
-    "tooltip",
-    "frame",
-)
-PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
-# bits of a letter, and the letter of 0: none of them means anything in a script
-LETTER = 15
-FIRST = 0x3000
+# traits that are not exported: those of every widget, and the current frame, which is stored twice
+SKIPPED_TRAITS = ("layout", "tabbable", "tooltip", "frame")
+IMAGE_TRAITS = ("stored", "frames", "picture", "pictures")
+BITS_PER_LETTER = 15
+FIRST_LETTER = 0x3000  # no letter from here on has a meaning in a script
 BYTES = re.compile(r'{"base64": "([^"]*)"}')
 EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)?')
 
 
-class Live(NamedTuple):
-    """A widget as its page needs it: name of its files, script, style, state, and its picture.
+class ExportedWidget(NamedTuple):
+    """An exported widget.
 
-    In the state bytes are {"base64": text}; the first of many pictures is {"shown": true}: the page
-    has it.
+    Attributes
+    ----------
+    name : name of its files
+    script, style : JavaScript and CSS
+    state : its traits; bytes are {"base64": text}, and the first frame is {"shown": true}, because
+        the page shows it already
+    picture : the image in its place; empty for a question without one
+    alt : alt text
     """
 
     name: str
     script: str
     style: str
     state: dict[str, Any]
-    picture: bytes  # none where a question is answered without one
+    picture: bytes
     alt: str
 
     @property
     def code(self) -> str:
-        """Name of the file of its script and style."""
+        """Name of the file with its script and style."""
         return f"code-{hashlib.sha256((self.script + self.style).encode()).hexdigest()[:16]}"
 
     def as_html(self, folder: str) -> str:
-        """Return what stands on the page, where `folder` is the address of the files."""
+        """Return the HTML of the widget; `folder` is the address of its files."""
         still = f"<p>{escape(self.alt)}</p>"
         if self.picture:
             source = f'src="{folder}/{self.name}.webp"'
-            still = f'<img {source} alt="{escape(self.alt)}" {_look(self.picture)} loading="lazy">'
+            attributes = f'alt="{escape(self.alt)}" {_image_attributes(self.picture)}'
+            still = f'<img {source} {attributes} loading="lazy">'
         scripts = f'data-code="{folder}/{self.code}.js" data-from="{folder}/{self.name}.js"'
         return f'<div class="live" data-name="{self.name}" {scripts}>{still}</div>'
 
 
-def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, Live]]:
-    """Yield each output of an executed notebook that shows a widget of ours, and the widget."""
+def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, ExportedWidget]]:
+    """Yield each output of an executed notebook that shows a widget of hdrlab, and the widget."""
     models = notebook.metadata.get("widgets", {}).get(STATE, {}).get("state", {})
     shown = (output for output in _outputs(notebook) if VIEW in output.get("data", {}))
     for number, output in enumerate(shown):
         model = models.get(output["data"][VIEW]["model_id"])
         if model is not None and "_esm" in model["state"]:
-            yield output, live(model, f"{name}-{number + 1}")
+            yield output, export_widget(model, f"{name}-{number + 1}")
 
 
-def live(model: Any, name: str) -> Live:
-    """Return a widget from a notebook's record of it."""
+def export_widget(model: Any, name: str) -> ExportedWidget:
+    """Return the exported widget from its model in a notebook's metadata."""
     record = json.loads(json.dumps(model))
     state = record["state"]
     for buffer in record.get("buffers", []):
@@ -89,79 +90,99 @@ def live(model: Any, name: str) -> Live:
         for step in path:
             place = place[step]
         place[last] = {"base64": buffer["data"]}
-    own = {
-        key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)
+    traits = {
+        key: value
+        for key, value in state.items()
+        if not key.startswith("_") and key not in SKIPPED_TRAITS
     }
-    # a question has none
-    shown = next((own[key] for key in PICTURES if own.get(key)), {"base64": ""})
-    shown = shown[0] if isinstance(shown, list) else shown
-    alt = own.get("question") or (own["alts"][0] if "alts" in own else own["alt"])
+    no_image = {"base64": ""}  # as in a question without one
+    shown = next((traits[key] for key in IMAGE_TRAITS if traits.get(key)), no_image)
+    if isinstance(shown, list):
+        shown = shown[0]
     picture = base64.b64decode(shown["base64"])
-    if "scales" in own:  # of pictures that are compared: they have no loss
+    is_comparison = "scales" in traits  # its images are stored without loss
+    if is_comparison:
         picture = encode_change(web.decode_picture(picture))
-        own["pictures"] = [{"base64": _lighter(each["base64"])} for each in own["pictures"]]
-    for many in {"stored", "frames"} & own.keys():
-        own[many] = [{"shown": True}, *own[many][1:]]
-    return Live(name, state["_esm"], state.get("_css", ""), own, picture, alt)
+        traits["pictures"] = [
+            {"base64": _compress_if_photo(image["base64"])} for image in traits["pictures"]
+        ]
+    for key in {"stored", "frames"} & traits.keys():
+        traits[key] = [{"shown": True}, *traits[key][1:]]
+    return ExportedWidget(
+        name=name,
+        script=state["_esm"],
+        style=state.get("_css", ""),
+        state=traits,
+        picture=picture,
+        alt=_alt_text(traits),
+    )
 
 
-def _lighter(exact: str) -> str:
-    """Return a picture without loss in fewer bytes, where it is like a photograph."""
-    picture = base64.b64decode(exact)
+def _alt_text(traits: dict[str, Any]) -> str:
+    """Return the alt text of a widget: its question, or that of its first image."""
+    if traits.get("question"):
+        return traits["question"]
+    return traits["alts"][0] if "alts" in traits else traits["alt"]
+
+
+def _compress_if_photo(lossless: str) -> str:
+    """Return a lossless image (base64) as JPEG where that takes fewer bytes, as for a photo."""
+    picture = base64.b64decode(lossless)
     lossy = web.encode_jpeg(web.decode_picture(picture), quality=95)
     return base64.b64encode(min(picture, lossy, key=len)).decode()
 
 
-def _look(picture: bytes) -> str:
-    """Return a picture's size as its element has it, and whether it is ink."""
+def _image_attributes(picture: bytes) -> str:
+    """Return the HTML attributes of an image: its size, and whether a dark page may invert it."""
     shown = web.decode_picture(picture)
     height, width, _ = shown.shape
-    return f'width="{width}" height="{height}"{" data-ink" * is_ink(shown)}'
+    ink = " data-ink" if is_ink(shown) else ""
+    return f'width="{width}" height="{height}"{ink}'
 
 
-def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
-    """Put the pictures that stand in an executed notebook's HTML into files, fetched as they come into view.
+def extract_images(notebook: Any, name: str, folder: Path, address: str) -> None:
+    """Move the images embedded in an executed notebook's HTML to files, which pages load lazily.
 
-    `address` is that of the folder, from the page.
+    `address` is the address of the folder, as seen from the page.
     """
     number = count(1)
 
-    def moved(embedded: re.Match[str]) -> str:
+    def move(embedded: re.Match[str]) -> str:
         picture = base64.b64decode(embedded[2])
         file = f"{name}-p{next(number)}.{embedded[1]}"
         write_changed(folder / file, picture)
-        return f'src="{address}/{file}" {_look(picture)} loading="lazy"'
+        return f'src="{address}/{file}" {_image_attributes(picture)} loading="lazy"'
 
-    for data in [
-        output["data"] for output in _outputs(notebook) if "text/html" in output.get("data", {})
-    ]:
-        data["text/html"] = EMBEDDED.sub(moved, "".join(data["text/html"]))
-
-
-def write(one: Live, folder: Path) -> None:
-    """Write the files of a widget; what stands there as it should is left alone."""
-    code = json.dumps({"script": one.script, "style": one.style})
-    write_changed(folder / f"{one.code}.js", f'hdrlab.take("{one.code}", {code});\n'.encode())
-    own = BYTES.sub(_packed, json.dumps({"code": one.code, "state": one.state}))
-    write_changed(
-        folder / f"{one.name}.js", f'hdrlab.take("{one.name}", {own});\n'.encode("utf-16")
-    )
-    if one.picture:
-        write_changed(folder / f"{one.name}.webp", one.picture)
+    for output in _outputs(notebook):
+        data = output.get("data", {})
+        if "text/html" in data:
+            data["text/html"] = EMBEDDED.sub(move, "".join(data["text/html"]))
 
 
-def _packed(found: re.Match[str]) -> str:
-    data = base64.b64decode(found[1])
+def write_widget(widget: ExportedWidget, folder: Path) -> None:
+    """Write the files of a widget; unchanged files are left alone."""
+    code = json.dumps({"script": widget.script, "style": widget.style})
+    shared_script = f'hdrlab.take("{widget.code}", {code});\n'
+    write_changed(folder / f"{widget.code}.js", shared_script.encode())
+    state = json.dumps({"code": widget.code, "state": widget.state})
+    state_script = f'hdrlab.take("{widget.name}", {BYTES.sub(_encode_as_letters, state)});\n'
+    write_changed(folder / f"{widget.name}.js", state_script.encode("utf-16"))
+    if widget.picture:
+        write_changed(folder / f"{widget.name}.webp", widget.picture)
+
+
+def _encode_as_letters(encoded: re.Match[str]) -> str:
+    """Return base64 data as text with 15 bits per letter."""
+    data = base64.b64decode(encoded[1])
     bits = np.unpackbits(np.frombuffer(data, np.uint8))
-    words = np.pad(bits, (0, -len(bits) % LETTER)).reshape(-1, LETTER) @ (
-        1 << np.arange(LETTER)[::-1]
-    )
-    letters = (words + FIRST).astype("<u2").tobytes().decode("utf-16-le")
+    padded = np.pad(bits, (0, -len(bits) % BITS_PER_LETTER)).reshape(-1, BITS_PER_LETTER)
+    values = padded @ (1 << np.arange(BITS_PER_LETTER)[::-1])
+    letters = (values + FIRST_LETTER).astype("<u2").tobytes().decode("utf-16-le")
     return f'{{"letters": "{letters}", "length": {len(data)}}}'
 
 
 def write_changed(path: Path, content: bytes) -> None:
-    """Write a file, unless it holds just this: so its time tells whether a page must be made again."""
+    """Write a file unless it has this content: its time shows whether a page must be rebuilt."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_bytes() != content:
         files.write(path, content)

@@ -1,7 +1,7 @@
-"""All that Sphinx reads is put in one folder, and Sphinx makes the site of it.
+"""Build the site: collect everything that Sphinx reads in one folder, and run Sphinx.
 
-out           the site and nothing else; it takes the place of the one before when all of it is made
-.out.cache    beside it, what the next build need not make again: executed notebooks, sources, Sphinx's notes
+out           the site and nothing else; it replaces the previous one once it is complete
+.out.cache    next to it, what the next build reuses: executed notebooks, sources, Sphinx's doctrees
 """
 
 import base64
@@ -19,21 +19,21 @@ import numpy as np
 from markupsafe import Markup
 
 from hdrlab.course.site import live, reference
-from hdrlab.course.site.execute import Done, library_key
+from hdrlab.course.site.execute import ExecutedNotebook, library_key
 from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
 
 PAGES = Path(__file__).parent / "pages"
-FRONT = PAGES / "front.ipynb"  # the picture of the first page
-# keeps GitHub's pages from leaving out what begins with _; its text tells a site of ours
+FRONT = PAGES / "front.ipynb"  # draws the figure of the first page
+# makes GitHub Pages serve files whose names begin with _; its text identifies a site of hdrlab
 MARK = ".nojekyll"
 MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
-WIDGETS = "_widgets"  # where the pages find them
-# folders whose files are all ours
-OWN = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
-# what a notebook says of running it, where nothing runs
-OF_RUNNING = re.compile(
+WIDGETS = "_widgets"  # folder of the exported widgets
+# the build removes outdated files from these folders
+OWN_FOLDERS = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
+# sentences of a notebook that make no sense on a page, where nothing can be run
+SENTENCES_ON_RUNNING = re.compile(
     r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |, and you can break.nothing:.*?it back"
 )
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
@@ -41,7 +41,7 @@ LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
 
 
 class Site(NamedTuple):
-    """What was made: the first page, how many pages and widgets there are, and what Sphinx complained of."""
+    """The result of a build: the first page, the numbers of pages and widgets, and Sphinx's warnings."""
 
     front: Path
     pages: int
@@ -50,17 +50,17 @@ class Site(NamedTuple):
 
 
 def cache_of(out: Path) -> Path:
-    """Return the folder beside a site in which is kept what its next build need not make again."""
+    """Return the cache folder of a site, next to it."""
     return out.resolve().with_name(f".{out.resolve().name}.cache")
 
 
 def claim(out: Path) -> Path:
-    """Mark a folder as a site's, which must be empty or a site of before, and return that of its cache.
+    """Mark a folder as a site of hdrlab, and return its cache folder.
 
     Raises
     ------
     ValueError
-        Where `out` holds something else: a build removes pages that are no more.
+        If `out` is neither empty nor a previous site: a build removes outdated pages.
     """
     mark = out / MARK
     if out.exists() and not out.is_dir():
@@ -77,40 +77,46 @@ def claim(out: Path) -> Path:
 
 def build(
     out: Path,
-    done: Sequence[Done],
+    done: Sequence[ExecutedNotebook],
     handouts: Sequence[Path],
     more: Mapping[str, str],
     *,
     address: str = "",
 ) -> Site:
-    """Make the site of executed notebooks, FRONT among them, of handouts, and of more pages by name.
+    """Build the site from executed notebooks (FRONT among them), handouts, and more pages by name.
 
-    A handout is shown as it is, since its tasks are still to be done. Where nothing has changed
-    since the site was made, it is left as it is. `address` is where it will stand.
+    Handouts are shown without being run: their tasks are still to be done. If nothing has changed
+    since the last build, the site is left as it is. `address` is the URL where it will be published.
     """
     record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
-    ran = sorted(one.executed.name for one in done)
+    ran = sorted(notebook.executed.name for notebook in done)
     made_of = [library_key(course=True), ran, sheets, dict(more), address]
     key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
     if record.exists() and (out / "index.html").exists():
         before = json.loads(record.read_text("utf-8"))
         if before["key"] == key:
             return Site(out / "index.html", *before["site"])
-    record.unlink(missing_ok=True)  # an interrupted build leaves no record
+    record.unlink(missing_ok=True)  # so that an interrupted build leaves no record
     site = _build(out, done, sheets, more, address)
     live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
     return site
 
 
 def _build(
-    out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str], address: str
+    out: Path,
+    done: Sequence[ExecutedNotebook],
+    sheets: dict[str, str],
+    more: Mapping[str, str],
+    address: str,
 ) -> Site:
     source = cache_of(out) / "source"
     html = cache_of(out) / "html"
-    front = next(one for one in done if one.source == FRONT)
+    [front] = [notebook for notebook in done if notebook.source == FRONT]
     notebooks = {
-        one.source.stem: nbformat.read(one.executed, 4) for one in done if one.source != FRONT
+        notebook.source.stem: nbformat.read(notebook.executed, 4)
+        for notebook in done
+        if notebook.source != FRONT
     }
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
     modules = reference.modules()
@@ -122,28 +128,30 @@ def _build(
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
     headings = {name: _title(notebook) for name, notebook in handouts.items()}
     widgets = 0
-    shutil.rmtree(html / WIDGETS, ignore_errors=True)  # of notebooks that may be gone
+    shutil.rmtree(html / WIDGETS, ignore_errors=True)  # some notebooks may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
-            texts[f"{folder}/{name}.ipynb"], count = _prepared(
+            texts[f"{folder}/{name}.ipynb"], count = _prepare_notebook(
                 notebook, name, known, html / WIDGETS
             )
             widgets += count
-    hero = next(one for _, one in live.widgets(nbformat.read(front.executed, 4), "front"))
-    live.write(hero, html / WIDGETS)
+    _, hero = next(live.widgets(nbformat.read(front.executed, 4), "front"))
+    live.write_widget(hero, html / WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
     first = {"hero": Markup(hero.as_html(WIDGETS)), "titles": titles, "handouts": headings}
     texts["index.md"] = render_page(PAGES, "index.md", **first)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
-    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides} | dict(more)
+    for page in guides:
+        texts[page.name] = unlink_missing_notebooks(page.read_text("utf-8"), known)
+    texts |= more
     files = {name: text.encode() for name, text in texts.items()}
-    files |= {f"cases/{one.name}": one.read_bytes() for one in PAGES.glob("cases/*.webp")}
+    files |= {f"cases/{image.name}": image.read_bytes() for image in PAGES.glob("cases/*.webp")}
     for name, content in files.items():
         live.write_changed(source / name, content)
-    _keep(source, set(files))
+    _remove_other_files(source, set(files))
     complaints = _sphinx(source, html, address)
     for part in ("notebooks", "assignments", "reference"):
-        _keep(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
+        _remove_other_files(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
     _publish(html, out)
     return Site(out / "index.html", len(texts), widgets + 1, complaints)
 
@@ -158,31 +166,29 @@ def _title(notebook: Any) -> str:
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
 
 
-def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
-    """Return a notebook without its widgets, which go to `folder`, and how many there are."""
-    found = list(live.widgets(notebook, name))
-    for output, one in found:
-        live.write(one, folder)
-        output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
-    live.set_apart(notebook, name, folder, f"../{WIDGETS}")
+def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
+    """Export a notebook's widgets to `folder`; return its text for Sphinx and the number of widgets."""
+    exported = list(live.widgets(notebook, name))
+    for output, widget in exported:
+        live.write_widget(widget, folder)
+        output["data"] = {"text/html": widget.as_html(f"../{WIDGETS}")}
+    live.extract_images(notebook, name, folder, f"../{WIDGETS}")
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
     if not _title(notebook):
         notebook.cells.insert(0, nbformat.v4.new_markdown_cell(f"# {name}"))
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
-            cell.source = OF_RUNNING.sub("", _linked(cell.source, known))
-        if cell.metadata.get("jupyter", {}).get("source_hidden"):  # as JupyterLab has it
-            # as Sphinx has it
-            cell.metadata["tags"] = [
-                *cell.metadata.get("tags", ()),
-                "hide-input",
-            ]
-    return nbformat.writes(notebook), len(found)
+            cell.source = SENTENCES_ON_RUNNING.sub("", unlink_missing_notebooks(cell.source, known))
+        # JupyterLab folds a cell by its metadata, myst-nb by a tag
+        if cell.metadata.get("jupyter", {}).get("source_hidden"):
+            tags = cell.metadata.get("tags", ())
+            cell.metadata["tags"] = [*tags, "hide-input"]
+    return nbformat.writes(notebook), len(exported)
 
 
-def _linked(text: str, known: set[str]) -> str:
-    """Return Markdown in which a link to a notebook that the site lacks is plain text."""
+def unlink_missing_notebooks(text: str, known: set[str]) -> str:
+    """Return Markdown in which links to notebooks that the site lacks are plain text."""
 
     def link(found: re.Match[str]) -> str:
         return found[0] if found[2] in known else found[1]
@@ -190,17 +196,17 @@ def _linked(text: str, known: set[str]) -> str:
     return re.sub(r"\[([^\]]+)\]\((?:\.\./)?(?:notebooks/|assignments/)?(\w+)\.ipynb\)", link, text)
 
 
-def _preview(hero: live.Live) -> bytes:
-    """Return what a link to the site shows elsewhere: the first page's two pictures, half of each."""
-    one, other = [
-        web.decode_picture(base64.b64decode(each["base64"])) for each in hero.state["pictures"]
+def _preview(hero: live.ExportedWidget) -> bytes:
+    """Return the preview image for links to the site: half of each of the first page's two images."""
+    left, right = [
+        web.decode_picture(base64.b64decode(image["base64"])) for image in hero.state["pictures"]
     ]
-    middle = one.shape[1] // 2
-    return web.encode_jpeg(np.hstack([one[:, :middle], other[:, middle:]]))
+    middle = left.shape[1] // 2
+    return web.encode_jpeg(np.hstack([left[:, :middle], right[:, middle:]]))
 
 
 def _sphinx(source: Path, html: Path, address: str) -> list[str]:
-    """Run Sphinx, and return its complaints."""
+    """Run Sphinx and return its warnings."""
     from sphinx.application import Sphinx
 
     from hdrlab.course.site.sphinx import SETTINGS
@@ -214,18 +220,18 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
     ]
 
 
-def _keep(folder: Path, names: set[str], part: str = "") -> None:
-    """Remove all files of a part of a folder but those that are named."""
-    for file in [one for one in (folder / part).rglob("*") if one.is_file()]:
-        if file.relative_to(folder).as_posix() not in names:
+def _remove_other_files(folder: Path, names: set[str], part: str = "") -> None:
+    """Remove the files of a subfolder that are not in `names`."""
+    for file in list((folder / part).rglob("*")):
+        if file.is_file() and file.relative_to(folder).as_posix() not in names:
             file.unlink()
 
 
 def _publish(html: Path, out: Path) -> None:
-    """Bring what was made to its place, and remove from our folders there what was not."""
+    """Copy the built site to `out`, and remove outdated files from its own folders."""
     files = [file for file in html.rglob("*") if file.is_file() and file.name[0] != "."]
     made = {file.relative_to(html).as_posix() for file in files}
     for name in sorted(made):
         live.write_changed(out / name, (html / name).read_bytes())
-    for part in OWN:
-        _keep(out, made, part)
+    for part in OWN_FOLDERS:
+        _remove_other_files(out, made, part)

@@ -30,9 +30,9 @@ SETTINGS["extensions"].append(__name__)
 
 def setup(app: Any) -> dict[str, Any]:
     """Tell Sphinx what this extension does."""
-    from hdrlab.course.site.words import Words
+    from hdrlab.course.site.words import SearchTokenizer
 
-    app.add_search_language(Words)
+    app.add_search_language(SearchTokenizer)
     # in a line of text, and by itself
     renderers = ((partial(_draw, tag=tag), None) for tag in ("span", "div"))
     app.add_html_math_renderer("drawn", *renderers)

@@ -1,7 +1,6 @@
-r"""What the site's search takes for a word: beside words, a letter of a formula and a function of a letter.
+r"""The words that the site's search finds: words, Greek letters of formulas, and functions such as g(Z).
 
-In a formula stands \lambda, in a text the letter itself, and in code a lambda that means something
-else.
+A formula has \lambda, a text has the letter itself, and a lambda of Python means something else.
 """
 
 import re
@@ -18,19 +17,25 @@ GREEK = {
     "σ": "sigma",
     "τ": "tau",
 }
-CODE = re.compile(r"\blambda\b[\w ,*=.]*:")  # Python's own
-CALL = re.compile(r"\b([A-Za-z])\(([A-Za-z])(?:_\{?\w+\}?)?\)")  # g(Z), and of one pixel g(Z_{ij})
-SPLIT = Path(__file__).with_name("split_query.js")  # the same in the browser
+PYTHON_LAMBDA = re.compile(r"\blambda\b[\w ,*=.]*:")
+FUNCTION_OF_LETTER = re.compile(
+    r"\b([A-Za-z])\(([A-Za-z])(?:_\{?\w+\}?)?\)"
+)  # g(Z), and of one pixel g(Z_{ij})
+SPLITTER_SCRIPT = Path(__file__).with_name("split_query.js")  # the same in the browser
 
 
-class Words(SearchEnglish):
-    """English, g(Z) and λ."""
+class SearchTokenizer(SearchEnglish):
+    """Split English text, with g(Z) and λ as words."""
 
-    js_splitter_code = f"const greek = {GREEK};\n{SPLIT.read_text('utf8')}"
+    js_splitter_code = f"const greek = {GREEK};\n{SPLITTER_SCRIPT.read_text('utf8')}"
 
     def split(self, text: str) -> list[str]:
-        """Return the words of a text; a function of a letter is one word, beside its two letters."""
+        """Return the words of a text; g(Z) gives the word g(z) besides its two letters."""
         plain = re.sub(
-            "[α-ω]", lambda found: f" {GREEK.get(found[0], found[0])} ", CODE.sub(" ", text)
+            "[α-ω]",
+            lambda letter: f" {GREEK.get(letter[0], letter[0])} ",
+            PYTHON_LAMBDA.sub(" ", text),
         )
-        return super().split(plain) + [f"{f}({x})".lower() for f, x in CALL.findall(text)]
+        return super().split(plain) + [
+            f"{f}({x})".lower() for f, x in FUNCTION_OF_LETTER.findall(text)
+        ]
