@@ -85,13 +85,16 @@ class Levels:
 def choose_settings(E: ArrayLike) -> dict[str, float]:
     """Choose the settings of `photograph`, and the saturation, for a radiance map E (H, W[, 3]).
 
-    share : the fraction of the light's contrast that remains, 1 where it spans at most
-        DISPLAY_DECADES
-    key : MIDDLE_KEY; up to twice that if most of the map is bright for its range, down to half of it
-        if most is dark
-    white, black : the scaled and the display luminance beyond which WHITE_FRACTION and
-        BLACK_FRACTION of the pixels lie
-    saturation : 1.25 for grays, 0.95 if half of the pixels have fully saturated colors
+    share
+        The fraction of the light's contrast that remains, 1 where it spans at most DISPLAY_DECADES.
+    key
+        MIDDLE_KEY; up to twice that if most of the map is bright for its range, down to half of it
+        if most is dark.
+    white, black
+        The scaled and the display luminance beyond which WHITE_FRACTION and BLACK_FRACTION of the
+        pixels lie.
+    saturation
+        1.25 for grays, 0.95 if half of the pixels have fully saturated colors.
 
     Examples
     --------

@@ -188,7 +188,7 @@ def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
 def test_a_page_says_what_it_is_to_who_shows_a_link_to_it(made):
     site = made[1]
     told = Addresses((site / "index.html").read_text("utf-8")).told
-    assert told["description"].startswith("A camera turns light into numbers")
+    assert len(told["description"]) > 40
     assert told["og:image"] == f"{ADDRESS}/_static/preview.jpg"
     preview = decode_picture((site / "_static" / "preview.jpg").read_bytes())
     assert preview.shape[1] >= 600 and preview[:, :200].mean() < preview[:, -200:].mean()
@@ -251,10 +251,10 @@ def test_a_page_does_not_say_how_to_run_what_has_been_run(made):
     text = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
     assert "<p>So " in text and "Run the cells" not in text
     welcome = json.loads((NOTEBOOKS / "00_welcome.ipynb").read_text("utf-8"))["cells"][0]["source"]
-    left = build.OF_RUNNING.sub("", "".join(welcome))
-    assert "How to use a page like this.** The gray boxes" in left and left.endswith(
-        "or the arrow keys."
-    )
+    left = build.SENTENCES_ON_RUNNING.sub("", "".join(welcome))
+    assert "Run All Cells" in "".join(welcome) and "Run All Cells" not in left
+    assert "Shift and Enter" in "".join(welcome) and "Shift and Enter" not in left
+    assert "arrow keys" in left
 
 
 def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):

@@ -34,7 +34,7 @@ WIDGETS = "_widgets"  # folder of the exported widgets
 OWN_FOLDERS = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
 # sentences of a notebook that make no sense on a page, where nothing can be run
 SENTENCES_ON_RUNNING = re.compile(
-    r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |, and you can break.nothing:.*?it back"
+    r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |\s+You cannot break anything:.*?Enter\)\."
 )
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
@@ -67,7 +67,7 @@ def claim(out: Path) -> Path:
         raise InputError(f"expected a folder to write the site to, {out} is a file")
     if out.exists() and any(out.iterdir()) and not (mark.exists() and mark.read_bytes() == MADE):
         raise InputError(
-            f"expected an empty folder or a site of before, {out} holds something else"
+            f"{out} is neither empty nor an hdrlab site; choose another folder with --out"
         )
     live.write_changed(mark, MADE)
     cache = cache_of(out)
