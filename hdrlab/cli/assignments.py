@@ -41,10 +41,12 @@ def find_homework(submission: Path, name: str | None, plan: Path | None) -> plan
     if name is None:
         matches = [known for known in homeworks if known in submission.stem.lower()]
         if len(matches) != 1:
-            raise InputError(f"expected --homework, one of {names}: {submission.name} does not say")
+            raise InputError(
+                f"{submission.name} does not name one homework; pass --homework, one of {names}"
+            )
         return homeworks[matches[0]]
     if name not in homeworks:
-        raise InputError(f"expected a homework out of {names}, got {name!r}")
+        raise InputError(f"there is no homework {name!r}; pass --homework, one of {names}")
     return homeworks[name]
 
 

@@ -94,7 +94,7 @@ def plan(
             raise InputError("--map and LOW or HIGH exclude each other; pass one of them")
         low, high = _scene_range(source)
     if low is None or high is None:
-        raise InputError("expected LOW and HIGH in cd/m^2, or --map FILE")
+        raise InputError("pass LOW and HIGH in cd/m^2, or --map FILE")
     bracket = planning.plan(
         low,
         high,

@@ -76,7 +76,7 @@ class GradedClass:
     """A class with its submissions, a grading job for each of them, and the options."""
 
     course: "GradingContext"
-    found: "SubmissionScan"
+    scan: "SubmissionScan"
     jobs: "list[GradingJob]"
     options: ClassOptions
     run: RunOptions
@@ -89,7 +89,9 @@ def load_class(
     from hdrlab.course.classroom import handins, marks, roster, run
 
     if options.roster is None:
-        raise InputError("expected --roster, which says who is in the class")
+        raise InputError(
+            f"{options.submissions} is a folder, which is graded as a class; pass --roster, the class list"
+        )
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
     course = run.GradingContext(
         roster=roster.read(options.roster),
@@ -99,9 +101,9 @@ def load_class(
         before=marks.read(options.before),
     )
     times = handins.read_times(options.received) if options.received else {}
-    found = handins.find(options.submissions, course.roster, times)
-    jobs = run.make_jobs(found.submissions, homework, conditions)
-    return GradedClass(course, found, jobs, options, run_options)
+    scan = handins.find(options.submissions, course.roster, times)
+    jobs = run.make_jobs(scan.submissions, homework, conditions)
+    return GradedClass(course, scan, jobs, options, run_options)
 
 
 def grade_class(graded_class: GradedClass) -> None:
@@ -110,8 +112,8 @@ def grade_class(graded_class: GradedClass) -> None:
 
     course = graded_class.course
     out = graded_class.run.out
-    submissions = graded_class.found.submissions
-    common.echo_notes(graded_class.found.notes)
+    submissions = graded_class.scan.submissions
+    common.echo_notes(graded_class.scan.notes)
     since = graded_class.run.since
     if since is not None:
         since = since.replace(tzinfo=UTC)
@@ -141,9 +143,9 @@ def write_books(graded_class: GradedClass, failures: Sequence[str] = ()) -> tupl
     out = graded_class.run.out
     worksheet = graded_class.options.moodle
     statistics = overview.collect_statistics(run.read_results(out, graded_class.jobs))
-    *_, page = overview.write_class_files(out, course, graded_class.found, statistics, failures)
+    *_, page = overview.write_class_files(out, course, graded_class.scan, statistics, failures)
     if worksheet:
-        rows = overview.gradebook_rows(course, graded_class.found, statistics)
+        rows = overview.gradebook_rows(course, graded_class.scan, statistics)
         notes = moodle.write(out, worksheet, rows, course.roster, course.homework)
         common.echo_notes(notes)
     return page, len(statistics.points)
@@ -212,7 +214,7 @@ def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
         return processes.Processes(grader.grade, options.jobs)
     if options.jobs is not None:
         raise InputError(
-            "expected --jobs or --cluster: a cluster grades as many at a time as it has threads"
+            "--jobs and --cluster exclude each other: a cluster runs a job in each of its threads"
         )
     common.require_modules("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
@@ -250,7 +252,7 @@ def _read_options(results: Path) -> ClassOptions:
     file = results / OPTIONS_FILE
     if not file.is_file():
         raise InputError(
-            f"{results}: expected the results of a class that `hdrlab grade` has graded"
+            f"{results}: has no results of a class; pass the folder that `hdrlab grade` wrote"
         )
     try:
         folder, values = json.loads(file.read_bytes())

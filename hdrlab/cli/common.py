@@ -139,13 +139,13 @@ def tier_error(reason: str) -> InputError:
     from hdrlab.course.sandbox import doctor
 
     first_line = reason.strip().partition("\n")[0].rstrip(".")
-    advice = "hdrlab doctor says more"
+    advice = "run hdrlab doctor for details"
     remedy = doctor.remedy(reason)
     if remedy:
         advice = f"{remedy}; {advice}"
     message = f"{first_line}; {advice}"
     if "practice" not in first_line:
-        message += ". For practice alone, and not for credit: --tier practice"
+        message += "; for practice without credit, pass --tier practice"
     return InputError(message)
 
 
@@ -153,7 +153,8 @@ def require_modules(extra: str, names: Iterable[str]) -> None:
     """Raise InputError with the command to install an extra, if any of its modules is missing."""
     missing = [name for name in names if find_spec(name) is None]
     if missing:
-        raise InputError(f'expected {", ".join(missing)}: pip install "hdrlab[{extra}]"')
+        names_missing = ", ".join(missing)
+        raise InputError(f'missing {names_missing}; run: pip install "hdrlab[{extra}]"')
 
 
 def echo_notes(notes: Iterable[object]) -> None:
@@ -226,7 +227,8 @@ def read_map(source: Path, clean: bool) -> "F32":
     channels = E.size / pixels
     if not clean and 2 * (unknown + black + infinite / channels) >= pixels:
         raise InputError(
-            f"{source}: expected radiance, got {repairs} of {pixels} pixels; --clean repairs all"
+            f"{source}: most pixels are no valid radiance ({repairs}, of {pixels} pixels); "
+            "pass --clean to repair them"
         )
     if repairs:
         click.echo(f"note: {source}: cleaned {repairs}, of {pixels} pixels", err=True)

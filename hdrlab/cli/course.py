@@ -71,7 +71,7 @@ def build(
             secret, note = assignments.read_secret(secret_file)
             if not secret:
                 raise InputError(
-                    "expected --secret-file with --variants, which draws them, as for grade"
+                    "--variants needs --secret-file: the secret determines the parameters of each team"
                 )
             assignments.echo_secret_note(note)
             teams = roster.read(variants).teams()
@@ -112,7 +112,7 @@ def export(
     from hdrlab.course.export import gradescope as gradescope_export, nbgrader as nbgrader_export
 
     if nbgrader is None and gradescope is None:
-        raise InputError("expected --nbgrader DIR or --gradescope DIR")
+        raise InputError("nothing to export; pass --nbgrader DIR or --gradescope DIR")
     course_plan = plans.read(plan)
     if nbgrader is not None:
         common.echo_paths(nbgrader_export.export(course_plan, nbgrader))

@@ -203,7 +203,7 @@ def close(*, folder: Path) -> None:
     with store.writing(folder) as db:
         now = datetime.now().astimezone()
         if not store.settings(db).is_open(now.timestamp()):
-            raise InputError(f"{folder}: expected an open vote, it has ended")
+            raise InputError(f"{folder}: the vote has already ended")
         store.close(db, now)
     click.echo(f"{folder}: closed")
 
@@ -221,7 +221,7 @@ def results(*, folder: Path, out: Path) -> None:
         settings = store.settings(db)
         if settings.is_open(time.time()):
             raise InputError(
-                f"{folder}: expected a vote that has ended, it is open until {settings.closes}"
+                f"{folder}: the vote is open until {settings.closes}; wait, or run hdrlab gallery close"
             )
         rows = list(ballots.gradebook(db))
         changes = store.changes(db)

@@ -51,7 +51,7 @@ def check(
     if task is not None:
         tasks = {known.id: known for known in assignment.tasks}
         if task not in tasks:
-            raise InputError(f"expected a task out of {', '.join(tasks)}, got {task!r}")
+            raise InputError(f"there is no task {task!r}; pass --task, one of {', '.join(tasks)}")
         assignment = assignment._replace(tasks=(tasks[task],))
     conditions = plans.GradingOptions(tier="practice", draw=page is not None)
     result = assignments.grade_submission(submission, assignment, conditions)
@@ -165,7 +165,7 @@ def grade(
 
     if student and secret_file is None:
         raise InputError(
-            "expected --secret-file with --student: else anybody could draw the same inputs"
+            "--student needs --secret-file: without a secret anybody could compute the same inputs"
         )
     if submission.is_dir() and student:
         raise InputError(

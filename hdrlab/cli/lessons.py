@@ -104,7 +104,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
     names = {notebook.stem for notebook in chosen}
     if len(names) < len(chosen) or pages.FRONT.stem in names:
         raise InputError(
-            f"expected notebooks of different names, and none called {pages.FRONT.name}"
+            f"--notebooks: pass notebooks of different names, and none called {pages.FRONT.name}"
         )
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()

@@ -28,7 +28,7 @@ def report(*, project: Path, example: bool) -> None:
     if example:
         source = project / projects.WORDS[0]
         if source.exists():
-            raise InputError(f"{source}: expected no report yet, it exists")
+            raise InputError(f"{source}: already exists; edit it, or remove it first")
         source.write_text(reports.example(), encoding="utf8")
         click.echo(source)
         return
@@ -57,7 +57,7 @@ def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> Non
     from hdrlab.course.projects import project as projects, review, submit as packing
 
     if out.exists() and not packing.is_archive(out):
-        raise InputError(f"{out}: expected a new name or an earlier archive, this is another file")
+        raise InputError(f"{out}: is no archive of hdrlab submit; pass a new name with --out")
     found = projects.look(project)
     other_files = tuple(file for file in found.files if file.resolve() != out.resolve())
     found = found._replace(files=other_files)

@@ -327,7 +327,7 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
     [
         (["--only", "b4"], "b4"),
         (["--only", "b9"], "'b9'"),
-        (["--cluster", "tcp://127.0.0.1:1", "--jobs", "2"], "expected --jobs or --cluster"),
+        (["--cluster", "tcp://127.0.0.1:1", "--jobs", "2"], "--jobs and --cluster"),
     ],
 )
 def test_what_cannot_be_graded_is_told_in_a_line(more, said, grade):

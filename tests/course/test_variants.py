@@ -357,7 +357,7 @@ def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can
 ):
     words = ("course", "build", "--plan", "plan.toml", "--variants", "roster.csv", "--out", "out")
     run(*words, "--sources", SOURCES, code=2)
-    assert "expected --secret-file with --variants" in capsys.readouterr().err
+    assert "--variants needs --secret-file" in capsys.readouterr().err
     words = (*words, "--secret-file", "secret.txt")
     Path("plan.toml").write_text(re.sub(r", parameters = \[.*?\]", "", CLASS))
     run(*words, "--sources", SOURCES, code=2)
