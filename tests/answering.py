@@ -77,10 +77,12 @@ def opened(monkeypatch, *answers, timeout=10.0, **knobs):
     """Return a Subject with one task, f, and the Process behind it."""
     process = Process(*answers, **knobs)
     bits = SimpleNamespace(randbits=lambda count: count)
-    monkeypatch.setattr(module, "Running", process)
+    monkeypatch.setattr(module, "SandboxSession", process)
     monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: process.now))
     monkeypatch.setattr(module, "secrets", bits)
-    sent = SimpleNamespace(send=process.send, receive=process.receive, Damaged=channel.Damaged)
+    sent = SimpleNamespace(
+        send=process.send, receive=process.receive, ProtocolError=channel.ProtocolError
+    )
     monkeypatch.setattr(module, "channel", sent)
     return Subject({"f": "def f(): return 1"}, "a sandbox", timeout, ["numpy"]), process
 

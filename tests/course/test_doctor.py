@@ -27,7 +27,7 @@ def test_a_finding_says_whether_a_tier_works_and_counts(tier, tried, finding, mo
             raise tried
         return tried
 
-    monkeypatch.setattr(doctor, "_tried", trial)
+    monkeypatch.setattr(doctor, "_try_repeatedly", trial)
     monkeypatch.setattr(practice, "DOES_NOT_STOP", ["x", "y"])
     found = doctor.examine(tier)
     assert (found.tier, found.works, found.credit, found.says) == (tier, *finding)
@@ -46,12 +46,12 @@ def test_a_tier_is_tried_three_times(failures, tries, works, monkeypatch):
             raise NoAnswer("ended", "killed")
         return [], 0.0
 
-    monkeypatch.setattr(doctor, "_trial", trial)
+    monkeypatch.setattr(doctor, "_try_once", trial)
     if works:
-        assert doctor._tried("strict") == ([], 0.0)
+        assert doctor._try_repeatedly("strict") == ([], 0.0)
     else:
         with pytest.raises(NoAnswer):
-            doctor._tried("strict")
+            doctor._try_repeatedly("strict")
     assert asked == ["strict"] * tries
 
 
@@ -73,17 +73,17 @@ def test_a_trial_asks_a_function_to_break_out_where_there_are_walls(tier, broken
         def ready(self):
             asked.append("ready")
 
-        def tried(self, secret, target):
+        def break_out(self, secret, target):
             asked.append((secret, target))
             return ["a wall"]
 
     monkeypatch.setattr(doctor, "Subject", Asked)
     monkeypatch.setattr(doctor, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
     monkeypatch.setattr(tiers, "choose", lambda tier: f"{tier} sandbox")
-    assert doctor._trial(tier) == (broken, 1.5)
+    assert doctor._try_once(tier) == (broken, 1.5)
     file = bytes(Path(doctor.__file__).resolve())
     tried = [(file, b"/tmp/hdrlab-doctor")] if broken else []
-    assert asked == [({"ready", "tried"}, f"{tier} sandbox"), "ready", *tried, "closed"]
+    assert asked == [({"ready", "break_out"}, f"{tier} sandbox"), "ready", *tried, "closed"]
 
 
 def test_what_would_help_is_told_by_the_reasons_first_line_and_the_systems_switches(

@@ -215,7 +215,9 @@ def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path,
 def test_values_outside_of_arrays_are_counted_on_both_sides():
     ours, theirs = socket.socketpair()
     with ours, theirs:
-        with pytest.raises(channel.Refused, match="more than 16384 values outside of arrays"):
+        with pytest.raises(
+            channel.UnsupportedValue, match="more than 16384 values outside of arrays"
+        ):
             channel.send(ours, "answer", [0] * 20_000)
         channel.send(ours, "answer", [0] * 16_000)
         assert len(channel.receive(theirs)[2]) == 16_000

@@ -288,7 +288,7 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
     (tmp_path / "python3.11" / "os.py").touch()
     hidden = contents._others(places)
     assert hidden == ["/python/lib/python3.11/site-packages", "/python/lib/python3/dist-packages"]
-    inside = contents.Contents("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), {})
+    inside = contents.SandboxMounts("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), {})
     listed, read = inside.readable()
     assert {Path(path).name for path in listed} == {tmp_path.name, "python3.11", "python3"}
     assert {Path(path).name for path in read} == {"json", "os.py"}
@@ -558,7 +558,9 @@ def test_what_is_missing_is_to_be_installed_and_not_what_is_there_and_did_not_st
     assert doctor.remedy("the practice sandbox gave no answer") == ""
 
 
-@pytest.mark.parametrize(("ended", "works"), [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
+@pytest.mark.parametrize(
+    ("ended", "works"), [(doctor.MAX_ATTEMPTS - 1, True), (doctor.MAX_ATTEMPTS, False)]
+)
 def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, ended, works):
     starts = itertools.count()
 
@@ -566,11 +568,11 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
         if next(starts) >= ended:
             return practice.launch(control)
         words = [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]
-        return running.Launched(running.start(words, {}), lambda: None)
+        return running.SandboxProcess(running.start(words, {}), lambda: None)
 
     monkeypatch.setitem(tiers.TIERS, "practice", lambda: practice.sandbox()._replace(launch=launch))
     finding = doctor.examine("practice")
-    assert finding.works == works and next(starts) == doctor.TRIES
+    assert finding.works == works and next(starts) == doctor.MAX_ATTEMPTS
     assert works or finding[3:] == (
         "the practice sandbox did not start: it was ended by signal 9",
         "",
@@ -582,9 +584,9 @@ def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
 
     def launch(control):
         process = running.start([sys.executable, "-c", "raise SystemExit('no')"], {})
-        return running.Launched(process, lambda: cleared.append(process.returncode))
+        return running.SandboxProcess(process, lambda: cleared.append(process.returncode))
 
-    started = running.Running(practice.sandbox()._replace(launch=launch))
+    started = running.SandboxSession(practice.sandbox()._replace(launch=launch))
     with pytest.raises(tiers.Unavailable, match="did not start: no"):
         started.wait()
     assert cleared == [1]
@@ -640,7 +642,7 @@ def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
 def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subject):
     with pytest.raises(AttributeError, match="has no task other"):
         subject.other(1)
-    with pytest.raises(channel.Refused, match="class function"):
+    with pytest.raises(channel.UnsupportedValue, match="class function"):
         subject.scaled(lambda x: x)
     subject.fresh()
     closed = Subject({"f": ""}, practice.sandbox())

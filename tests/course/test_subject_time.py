@@ -68,9 +68,23 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
         (EOFError(), KILL, 9.0, False, "killed", "f ended its process, and gave no answer"),
         (OSError(), 11, 9.0, True, "died", "f ended its process, and gave no answer"),
         (OSError(), 0, 0.0, True, "died", "f ended its process, and gave no answer"),
-        (channel.Damaged("half"), KILL, 2.0, True, "late", "f took longer than 2 s of a processor"),
-        (channel.Damaged("half"), KILL, 1.0, True, "killed", "f sent what is no answer: half"),
-        (channel.Damaged("half"), 0, 9.0, True, "damaged", "f sent what is no answer: half"),
+        (
+            channel.ProtocolError("half"),
+            KILL,
+            2.0,
+            True,
+            "late",
+            "f took longer than 2 s of a processor",
+        ),
+        (
+            channel.ProtocolError("half"),
+            KILL,
+            1.0,
+            True,
+            "killed",
+            "f sent what is no answer: half",
+        ),
+        (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "f sent what is no answer: half"),
     ],
 )
 def test_who_gave_no_answer_is_told_by_how_the_process_ended(

@@ -10,7 +10,7 @@ import pytest
 
 from hdrlab.course.sandbox import running
 from hdrlab.course.sandbox.inside import channel
-from hdrlab.course.sandbox.running import Launched, Running, Sandbox, Unavailable
+from hdrlab.course.sandbox.running import Sandbox, SandboxProcess, SandboxSession, Unavailable
 
 
 class Process:
@@ -56,7 +56,9 @@ class Supervisor:
             channel.send(end, kind, value, call)
         self.processes.append(self.process())
         number = len(self.ends)
-        return Launched(self.processes[-1], lambda: self.ended.append(number), f"scratch {number}")
+        return SandboxProcess(
+            self.processes[-1], lambda: self.ended.append(number), f"scratch {number}"
+        )
 
     def told(self, which=0):
         """Return the next word that a supervisor was told."""
@@ -69,15 +71,15 @@ READY = ("ready", None, 0)
 
 @pytest.fixture
 def begun():
-    """begun(scripts..., seconds=...) -> a Running and its Supervisor, which are closed at the end."""
+    """begun(scripts..., seconds=...) -> a SandboxSession and its Supervisor, which are closed at the end."""
     held = []
 
     def begun(*scripts, seconds=None, modules=("scipy",), **knobs):
         behind = Supervisor(*scripts, **knobs)
         made = (
-            Running(behind.sandbox, modules, seconds)
+            SandboxSession(behind.sandbox, modules, seconds)
             if seconds
-            else Running(behind.sandbox, modules)
+            else SandboxSession(behind.sandbox, modules)
         )
         held.append((made, behind))
         return made, behind
@@ -205,9 +207,9 @@ def test_a_sandbox_that_is_ended_twice_cannot_be_had(begun):
         (-9, b"", "it was ended by signal 9"),
         (137, b"\n", "it was ended by signal 9"),
         (129, b"", "it was ended by signal 1"),
-        (128, b"", "Damaged"),
-        (0, b"", "Damaged"),
-        (None, b"", "Damaged"),
+        (128, b"", "ProtocolError"),
+        (0, b"", "ProtocolError"),
+        (None, b"", "ProtocolError"),
         (-9, b"last", "last"),
     ],
 )
@@ -243,5 +245,5 @@ def test_what_was_launched_in_vain_leaves_no_socket():
         raise OSError("no room")
 
     with pytest.raises(OSError, match="no room"):
-        Running(Sandbox("practice", False, launch))
+        SandboxSession(Sandbox("practice", False, launch))
     assert made[0].fileno() == -1

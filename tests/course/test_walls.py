@@ -17,10 +17,10 @@ from hdrlab.course.sandbox import (
     strict,
     users,
 )
-from hdrlab.course.sandbox.contents import Contents
+from hdrlab.course.sandbox.contents import SandboxMounts
 from hdrlab.course.sandbox.running import Unavailable
 
-INSIDE = Contents(
+INSIDE = SandboxMounts(
     "/usr",
     "/python/bin/python3",
     {"/b": "/out/b", "/a": "/out/a"},
@@ -209,11 +209,11 @@ def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_pat
     for folder in ("lib/a", "lib/packages/x", "lib/b/packages", "other"):
         (tmp_path / folder).mkdir(parents=True)
     places = {"/in": f"{tmp_path}/lib", "/o": f"{tmp_path}/other", "/none": f"{tmp_path}/none"}
-    inside = Contents("", "", places, ("/in/packages", "/in/b/packages"), {})
+    inside = SandboxMounts("", "", places, ("/in/packages", "/in/b/packages"), {})
     listed, read = inside.readable()
     assert sorted(listed) == [f"{tmp_path}/lib", f"{tmp_path}/lib/b"]
     assert read == [f"{tmp_path}/lib/a", f"{tmp_path}/other"]
-    assert Contents("", "", places, (), {}).readable() == (
+    assert SandboxMounts("", "", places, (), {}).readable() == (
         [],
         [f"{tmp_path}/lib", f"{tmp_path}/other"],
     )

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, NoReturn, Self
 from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
 from hdrlab.course.sandbox.inside import channel
-from hdrlab.course.sandbox.running import Running, Sandbox
+from hdrlab.course.sandbox.running import Sandbox, SandboxSession
 
 TIMEOUT = 10.0  # seconds of a call
 OUTPUT = 1 << 16  # characters of a check that are kept of what was printed
@@ -93,14 +93,14 @@ class Subject:
         self._sources, self._sandbox = dict(sources), sandbox
         self._timeout, self._modules = timeout, modules
         self._left_of_check, self._left_of_all = CHECK * timeout, WHOLE * timeout
-        self._running: Running | None = None
+        self._running: SandboxSession | None = None
         self._link: socket.socket | None = None
         self.calls: list[Call] = []
         self.said, self._kept = "", 0
 
     def __enter__(self) -> Self:
         seconds = CHECK * self._timeout, PROCESSOR * self._timeout
-        self._running = Running(self._sandbox, self._modules, seconds)
+        self._running = SandboxSession(self._sandbox, self._modules, seconds)
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -166,14 +166,14 @@ class Subject:
             if patience <= 0:
                 raise TimeoutError
             if _has_spoken(self._link):
-                raise channel.Damaged("something before it was asked")
+                raise channel.ProtocolError("something before it was asked")
             self._link.settimeout(patience)
             channel.send(self._link, "call", order, call)
             kind, echo, value = channel.receive(self._link, begun + patience)
             if echo != call:
-                raise channel.Damaged("an answer to what was not asked")
+                raise channel.ProtocolError("an answer to what was not asked")
             output, value = _checked(kind, value)
-        except (OSError, EOFError, channel.Damaged) as error:
+        except (OSError, EOFError, channel.ProtocolError) as error:
             self._drop()
             self._spend(time.monotonic() - begun)
             self._explain_silence(task, error)
@@ -207,7 +207,7 @@ class Subject:
                 granted = self._running.granted if self._running.sandbox.forks else math.inf
         if used >= granted - 0.5 and ended == KILLED:
             raise NoAnswer(f"{task} took longer than {granted} s of a processor", "late") from None
-        if isinstance(error, channel.Damaged):
+        if isinstance(error, channel.ProtocolError):
             kind = "killed" if ended == KILLED else "damaged"
             raise NoAnswer(f"{task} sent what is no answer: {error}", kind) from None
         kind = "killed" if ended == KILLED else "died"
@@ -230,9 +230,9 @@ def _has_spoken(link: socket.socket) -> bool:
 
 
 def _checked(kind: str, value: Any) -> tuple[str, Any]:
-    """Return (output, value) of an answer whose form is right, or raise Damaged."""
+    """Return (output, value) of an answer whose form is right, or raise ProtocolError."""
     if not (isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], str)):
-        raise channel.Damaged("an answer without its output")
+        raise channel.ProtocolError("an answer without its output")
     right = kind == "answer"
     match value[1]:
         case str():
@@ -240,7 +240,7 @@ def _checked(kind: str, value: Any) -> tuple[str, Any]:
         case {"error": str(), "message": str(), "text": str(), "line": int() | None, **rest}:
             right |= kind == "raised" and not rest
     if not right:
-        raise channel.Damaged("an answer of no kind")
+        raise channel.ProtocolError("an answer of no kind")
     return value
 
 

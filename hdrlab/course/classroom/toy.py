@@ -25,7 +25,7 @@ from hdrlab.show.pages.templates import render_page
 HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
-ATTACKS = Path(__file__).parent / "toy_attacks.txt"  # in place of functions
+ATTACKS = Path(__file__).parent / "toy_attacks.py"
 TOY: dict[str, Any] = tomllib.loads(Path(__file__).with_name("toy.toml").read_text("utf8"))
 COMMAND, HANDED = TOY["command"], TOY["handed"]
 

@@ -1,10 +1,11 @@
-"""A Result in the forms that others read: Gradescope's results.json, JUnit's XML, a table for a spreadsheet.
+"""Write a Result in the formats that other programs read: Gradescope, JUnit and a spreadsheet.
 
-Whatever a student wrote stays text in them: XML without control characters, cells that are no
-formula.
+Text from students cannot break them: XML has no control characters, and no cell is a formula.
 """
 
+import json
 from pathlib import Path
+from typing import Any
 
 from hdrlab.course.reports import csv_tables, feedback, results
 from hdrlab.io.files import write
@@ -14,39 +15,78 @@ FILES = ("result.json", "gradescope.json", "junit.xml", "result.csv", "feedback.
 
 
 def gradescope(result: results.Result) -> bytes:
-    """Return results.json as Gradescope's autograder expects it: a test for each promise.
+    """Return results.json as Gradescope's autograder expects it, with a test for each check.
 
-    Of a hidden check, the outcome is shown when grades are published, and why it failed never is.
+    The outcome of a hidden check is shown once grades are published. Why it failed is never shown.
     """
-    return feedback.environment().get_template("gradescope.json").render(result=result).encode()
+    output = list(result.problems)
+    if not result.for_credit:
+        output.append(f"For practice. {result.why_practice}")
+    report = {
+        "score": result.score,
+        "output": "\n".join(output),
+        "output_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": [_gradescope_test(result, check) for check in result.checks],
+    }
+    return json.dumps(report, indent=1).encode()
+
+
+def _gradescope_test(result: results.Result, check: results.Check) -> dict[str, Any]:
+    """Return a check as a test in Gradescope's results.json."""
+    score, max_score = results.points((check,))
+    message = ""
+    if not check.hidden:
+        message = check.message
+        mistake = result.misconceptions.get(check.task)
+        if message and mistake:
+            message = f"{message}\nIt looks as if: {mistake}"
+    return {
+        "name": f"{check.task}: {check.promise}",
+        "score": score,
+        "max_score": max_score,
+        "status": "passed" if check.outcome == "holds" else "failed",
+        "output": message,
+        "output_format": "text",
+        "visibility": "after_published" if check.hidden else "visible",
+    }
 
 
 def junit(result: results.Result) -> bytes:
-    """Return JUnit's XML: a suite for each task, a case for each promise."""
+    """Return JUnit's XML, with a suite for each task and a case for each check."""
     return feedback.environment().get_template("junit.xml").render(result=result).encode()
 
 
 def table(result: results.Result) -> str:
-    """Return a Result as CSV, a header and a row: who, what, and the points of each task."""
-    earned = [results.points(result.of(task))[0] for task in result.tasks]
-    row = [*(getattr(result, name) for name in COLUMNS), *earned]
-    return csv_tables.csv_text([*COLUMNS, *result.tasks], [row])
+    """Return a Result as CSV, with a header and one row: its total and the points of each task."""
+    row = [result.student, result.homework, result.tier, result.score, result.max_score]
+    task_points = [results.points(result.of(task))[0] for task in result.tasks]
+    return csv_tables.csv_text([*COLUMNS, *result.tasks], [[*row, *task_points]])
 
 
-def write_results(folder: Path, result: results.Result, shown: bytes | None = None) -> list[Path]:
-    """Write a Result in all forms into a folder, which is made where it is missing; return the files.
+def write_results(
+    folder: Path, result: results.Result, team_json: bytes | None = None
+) -> list[Path]:
+    """Write a Result in all formats into a folder, and return the files.
 
-    The JSON is written last: where it is, all of it is. It is `shown` where a team is to read it,
-    and the whole Result unless told. The files are for their owner's eyes.
+    Only the owner of the files can read them. The JSON is written last: if it exists, so do all
+    the others.
+
+    Parameters
+    ----------
+    folder : created if it does not exist
+    result : Result
+    team_json : what result.json holds; by default, the whole Result
     """
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     contents = {
         "gradescope.json": gradescope(result),
         "junit.xml": junit(result),
         "result.csv": table(result).encode(),
         "feedback.html": feedback.page(result).encode(),
-        "result.json": results.to_json(result) if shown is None else shown,
+        "result.json": results.to_json(result) if team_json is None else team_json,
     }
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     for name, data in contents.items():
         write(folder / name, data, private=True)
     return [folder / name for name in FILES]

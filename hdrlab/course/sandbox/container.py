@@ -35,7 +35,7 @@ def sandbox() -> running.Sandbox:
     return running.Sandbox("container", True, launch, program=filters.program("check"))
 
 
-def launch(control: socket) -> running.Launched:
+def launch(control: socket) -> running.SandboxProcess:
     """Start the supervisor behind the fence, as a spare user who reads what root has opened."""
     inside, found = contents(), running.packages()
     libraries = [folder for one in found.values() if os.path.isdir(folder := f"{one}.libs")]
@@ -56,4 +56,6 @@ def launch(control: socket) -> running.Launched:
             ),
             environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
         )
-        return running.Launched(running.start(words, {}, control.fileno()), held.pop_all().close)
+        return running.SandboxProcess(
+            running.start(words, {}, control.fileno()), held.pop_all().close
+        )

@@ -1,6 +1,6 @@
 """What a sandbox holds: the interpreter, the libraries it needs, numpy, scipy, and four files of ours.
 
-An interpreter keeps other packages beside its own modules. They are left out: `Contents.hidden`
+An interpreter keeps other packages beside its own modules. They are left out: `SandboxMounts.hidden`
 names those folders.
 """
 
@@ -18,7 +18,7 @@ PYTHON, PACKAGES, COURSE = "/python", "/packages", "/course"  # where they are i
 OURS = ("supervisor.py", "worker.py", "channel.py", "system.py")
 
 
-class Contents(NamedTuple):
+class SandboxMounts(NamedTuple):
     """Files and folders, by where they are inside: {"/python/lib": "/usr/local/lib", ...}.
 
     Attributes
@@ -59,7 +59,7 @@ class Contents(NamedTuple):
 
 
 @cache
-def contents() -> Contents:
+def contents() -> SandboxMounts:
     """Return what this interpreter and its numpy and scipy need."""
     prefix = os.path.realpath(sys.base_prefix)
     binary = os.path.realpath(getattr(sys, "_base_executable", sys.executable))
@@ -76,7 +76,7 @@ def contents() -> Contents:
                 places[f"{PACKAGES}/{os.path.basename(path)}"] = path
     places |= {f"{COURSE}/{name}": str(PROGRAM.with_name(name)) for name in OURS}
     inside = {name: f"{PACKAGES}/{os.path.basename(folder)}" for name, folder in packages().items()}
-    return Contents(prefix, python, places, tuple(_others(places)), inside)
+    return SandboxMounts(prefix, python, places, tuple(_others(places)), inside)
 
 
 def _libraries() -> dict[str, str]:

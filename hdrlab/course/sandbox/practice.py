@@ -25,7 +25,7 @@ def sandbox() -> running.Sandbox:
     return running.Sandbox("practice", False, launch, forks=hasattr(os, "fork"), limits=OWN_LIMITS)
 
 
-def launch(control: socket) -> running.Launched:
+def launch(control: socket) -> running.SandboxProcess:
     """Start the supervisor with this interpreter, in an empty folder, without this process's environment."""
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
     python = getattr(
@@ -39,11 +39,11 @@ def launch(control: socket) -> running.Launched:
     with ExitStack() as held:
         held.callback(shutil.rmtree, scratch, ignore_errors=True)
         if hasattr(control, "share"):  # on Windows
-            return running.Launched(
+            return running.SandboxProcess(
                 _shared(words, environment, control, scratch), held.pop_all().close
             )
         process = running.start(words, environment, control.fileno(), folder=scratch)
-        return running.Launched(process, held.pop_all().close, scratch)
+        return running.SandboxProcess(process, held.pop_all().close, scratch)
 
 
 def _shared(

@@ -44,7 +44,7 @@ class Unavailable(RuntimeError):
     """A tier that this machine cannot give, and why."""
 
 
-class Launched(NamedTuple):
+class SandboxProcess(NamedTuple):
     """A process that was started, what to do when it has ended, and a folder that it removes at its end."""
 
     process: subprocess.Popen[bytes]
@@ -69,14 +69,14 @@ class Sandbox(NamedTuple):
 
     tier: str
     credit: bool
-    launch: Callable[[socket.socket], Launched]
+    launch: Callable[[socket.socket], SandboxProcess]
     program: bytes = b""
     alone: bool = False
     forks: bool = True
     limits: dict[str, int] = LIMITS
 
 
-class Running:
+class SandboxSession:
     """A sandbox that was started for one submission.
 
     Parameters
@@ -171,7 +171,7 @@ class Running:
         """Return the value of the next word from the supervisor, which must be of this kind."""
         came, call, value = channel.receive(self._control, time.monotonic() + seconds)
         if came != kind or call not in (0, self._checks):
-            raise channel.Damaged(f"expected {kind!r}, got {came[:80]!r}")
+            raise channel.ProtocolError(f"expected {kind!r}, got {came[:80]!r}")
         return value
 
     def _last_words(self) -> str:

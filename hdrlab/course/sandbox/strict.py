@@ -15,12 +15,12 @@ from socket import socket
 from typing import BinaryIO
 
 from hdrlab.course.sandbox import descent, filters, users
-from hdrlab.course.sandbox.contents import PYTHON, Contents, contents
+from hdrlab.course.sandbox.contents import PYTHON, SandboxMounts, contents
 from hdrlab.course.sandbox.running import (
     ENVIRONMENT,
     RULES,
-    Launched,
     Sandbox,
+    SandboxProcess,
     Unavailable,
     command,
     start,
@@ -60,7 +60,7 @@ def bubblewrap() -> str:
     return path
 
 
-def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
+def walls(inside: SandboxMounts, sources: dict[str, str], rules: int) -> list[str]:
     """Return bubblewrap's options.
 
     `sources` says where the places of the inside are outside, and `rules` is the filter's
@@ -77,7 +77,7 @@ def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
     return [*options, "--remount-ro", "/", "--chdir", "/", "--seccomp", str(rules), "--"]
 
 
-def launch(bwrap: str, control: socket) -> Launched:
+def launch(bwrap: str, control: socket) -> SandboxProcess:
     """Start the supervisor behind the walls; root becomes a spare user first."""
     inside = contents()
     supervisor = command(inside.python, inside.program, control.fileno(), inside.packages)
@@ -90,7 +90,9 @@ def launch(bwrap: str, control: socket) -> Launched:
             words = [bwrap, *walls(inside, staged, rules.fileno()), *supervisor]
             paths = list(inside.places.values())
             words = users.descend(user=user, stage=paths, command=words, environment={})
-        return Launched(start(words, {}, control.fileno(), rules.fileno()), held.pop_all().close)
+        return SandboxProcess(
+            start(words, {}, control.fileno(), rules.fileno()), held.pop_all().close
+        )
 
 
 def _readable(program: bytes) -> BinaryIO:

@@ -36,18 +36,21 @@ DTYPES = (
 BYTES = "bytes"  # the one other kind of raw bytes
 
 
-class Damaged(ValueError):
+class ProtocolError(ValueError):
     """A frame that is none."""
 
 
-class Refused(TypeError):
+class UnsupportedValue(TypeError):
     """A value that does not travel."""
 
 
 def pack(value: Any, arrays: list[np.ndarray | bytes], depth: int = 0) -> Any:
-    """Return `value` as a tree, and append its arrays and bytes to `arrays`; Refused says what cannot go."""
+    """Return `value` as a tree, and append its arrays and bytes to `arrays`.
+
+    Raises UnsupportedValue for a value that cannot be sent.
+    """
     if depth > DEPTH:
-        raise Refused(f"lists within lists, more than {DEPTH} deep")
+        raise UnsupportedValue(f"lists within lists, more than {DEPTH} deep")
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, str):
@@ -60,28 +63,32 @@ def pack(value: Any, arrays: list[np.ndarray | bytes], depth: int = 0) -> Any:
         return {"array": str(len(arrays) - 1)}
     if isinstance(value, int):
         if not -WHOLE < value < WHOLE:
-            raise Refused("an integer of more than 64 bits")
+            raise UnsupportedValue("an integer of more than 64 bits")
         return int(value)
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else {"float": repr(float(value))}
     if isinstance(value, dict):
         if not all(isinstance(key, str | int) for key in value):
-            raise Refused("a dict with a key that is neither text nor integer")
+            raise UnsupportedValue("a dict with a key that is neither text nor integer")
         return {"dict": [[pack(one, arrays, depth + 1) for one in pair] for pair in value.items()]}
     if isinstance(value, list | tuple):
         items = [pack(one, arrays, depth + 1) for one in value]
         return items if isinstance(value, list) else {"tuple": items}
-    raise Refused(f"an object of the class {type(value).__name__[:80]}")
+    raise UnsupportedValue(f"an object of the class {type(value).__name__[:80]}")
 
 
 def _plain(array: np.ndarray) -> np.ndarray:
-    """Return an array of a dtype from the list, contiguous and little-endian, or raise Refused."""
+    """Return an array of a dtype from the list, contiguous and little-endian, or raise UnsupportedValue."""
     if array.dtype.name not in DTYPES:
-        raise Refused(f"an array of dtype {array.dtype.name[:80]}, and not of {', '.join(DTYPES)}")
+        raise UnsupportedValue(
+            f"an array of dtype {array.dtype.name[:80]}, and not of {', '.join(DTYPES)}"
+        )
     if array.ndim > DIMENSIONS:
-        raise Refused(f"an array of {array.ndim} dimensions, and not of {DIMENSIONS} at most")
+        raise UnsupportedValue(
+            f"an array of {array.ndim} dimensions, and not of {DIMENSIONS} at most"
+        )
     if array.nbytes > BODY:  # before it is copied: a broadcast array claims much and holds little
-        raise Refused(f"an array of {array.nbytes} bytes, and not of {BODY} at most")
+        raise UnsupportedValue(f"an array of {array.nbytes} bytes, and not of {BODY} at most")
     return np.array(array, dtype=array.dtype.newbyteorder("<"), order="C", copy=None)
 
 
@@ -108,18 +115,20 @@ def _label(name: int, array: np.ndarray | bytes) -> dict[str, Any]:
 
 
 def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None:
-    """Send one frame; Refused, and nothing sent, where the value does not travel."""
+    """Send one frame; UnsupportedValue, and nothing sent, where the value does not travel."""
     arrays: list[np.ndarray | bytes] = []
     tree = pack(value, arrays)
     if _is_large(tree):
-        raise Refused(f"more than {VALUES} values outside of arrays")
+        raise UnsupportedValue(f"more than {VALUES} values outside of arrays")
     labels = [_label(j, array) for j, array in enumerate(arrays)]
     whole = {"kind": kind, "call": call, "value": tree, "arrays": labels}
     header = json.dumps(whole, allow_nan=False).encode()
     if len(header) > HEADER:
-        raise Refused(f"{len(header)} bytes of values outside of arrays, and not {HEADER} at most")
+        raise UnsupportedValue(
+            f"{len(header)} bytes of values outside of arrays, and not {HEADER} at most"
+        )
     if sum(label["bytes"] for label in labels) > BODY:
-        raise Refused(f"arrays of more than {BODY} bytes in all")
+        raise UnsupportedValue(f"arrays of more than {BODY} bytes in all")
     to.sendall(struct.pack(">I", len(header)) + header)
     for array in arrays:
         raw = array if isinstance(array, bytes) else array.reshape(-1).view(np.uint8).data
@@ -136,19 +145,19 @@ def receive(source: socket.socket, deadline: float | None = None) -> tuple[str, 
         Where the other end has closed.
     TimeoutError
         Where the deadline passes.
-    Damaged
+    ProtocolError
         Where what came is no frame, or is cut short.
     """
     (size,) = struct.unpack(">I", _exactly(source, 4, deadline, first=True))
     if size > HEADER:
-        raise Damaged(f"a header that claims {size} bytes, more than {HEADER}")
+        raise ProtocolError(f"a header that claims {size} bytes, more than {HEADER}")
     head = _parse(bytes(_exactly(source, size, deadline)))
     labels = [_check_label(label, j) for j, label in enumerate(head["arrays"])]
     if sum(nbytes for *_, nbytes in labels) > BODY:
-        raise Damaged(f"arrays that claim more than {BODY} bytes in all")
+        raise ProtocolError(f"arrays that claim more than {BODY} bytes in all")
     arrays = [_build(dtype, shape, _exactly(source, n, deadline)) for dtype, shape, n in labels]
     if _is_large(head["value"]):
-        raise Damaged(f"more than {VALUES} values outside of arrays")
+        raise ProtocolError(f"more than {VALUES} values outside of arrays")
     waiting = deque((str(j), array) for j, array in enumerate(arrays))
     return head["kind"], head["call"], _unpack(head["value"], waiting)
 
@@ -164,7 +173,7 @@ def _exactly(
             source.settimeout(max(deadline - time.monotonic(), 1e-3))
         came = source.recv_into(view[got:])
         if came == 0 and (got or not first):
-            raise Damaged("a frame that is cut short")
+            raise ProtocolError("a frame that is cut short")
         if came == 0:
             raise EOFError("the other end has closed")
         got += came
@@ -174,17 +183,17 @@ def _exactly(
 
 
 def _parse(header: bytes) -> dict[str, Any]:
-    """Return the header, or raise Damaged where it is no JSON object with the four fields."""
+    """Return the header, or raise ProtocolError where it is no JSON object with the four fields."""
     try:
         head = json.loads(header.decode(), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
-        raise Damaged("a header that is no JSON") from error
+        raise ProtocolError("a header that is no JSON") from error
     if not isinstance(head, dict) or set(head) != {"kind", "call", "value", "arrays"}:
-        raise Damaged("a header without its four fields")
+        raise ProtocolError("a header without its four fields")
     if not (
         type(head["kind"]) is str and type(head["call"]) is int and type(head["arrays"]) is list
     ):
-        raise Damaged("a header whose fields are of other types")
+        raise ProtocolError("a header whose fields are of other types")
     return head
 
 
@@ -193,18 +202,18 @@ def _no_constant(word: str) -> Any:
 
 
 def _check_label(label: Any, j: int) -> tuple[str, tuple[int, ...], int]:
-    """Return (dtype, shape, bytes) of the j-th array, which agree with each other, or raise Damaged."""
+    """Return (dtype, shape, bytes) of the j-th array, which agree with each other, or raise ProtocolError."""
     if not isinstance(label, dict) or set(label) != {"name", "dtype", "shape", "bytes"}:
-        raise Damaged("an array without name, dtype, shape and bytes")
+        raise ProtocolError("an array without name, dtype, shape and bytes")
     dtype, shape, nbytes = label["dtype"], label["shape"], label["bytes"]
     if label["name"] != str(j) or dtype not in (*DTYPES, BYTES) or type(nbytes) is not int:
-        raise Damaged("an array of another name or dtype")
+        raise ProtocolError("an array of another name or dtype")
     if type(shape) is not list or len(shape) > DIMENSIONS:
-        raise Damaged("an array without a shape")
+        raise ProtocolError("an array without a shape")
     if not all(type(n) is int and 0 <= n <= BODY for n in shape):
-        raise Damaged("an array of an absurd shape")
+        raise ProtocolError("an array of an absurd shape")
     if math.prod(shape) * (1 if dtype == BYTES else np.dtype(dtype).itemsize) != nbytes:
-        raise Damaged("an array whose bytes do not fill its shape")
+        raise ProtocolError("an array whose bytes do not fill its shape")
     return dtype, tuple(shape), nbytes
 
 
@@ -219,13 +228,13 @@ def _build(dtype: str, shape: tuple[int, ...], data: bytearray) -> Any:
 
 
 def _unpack(tree: Any, arrays: deque[tuple[str, Any]], depth: int = 0) -> Any:
-    """Return the value that a tree stands for, or raise Damaged; each array is used once, in order.
+    """Return the value that a tree stands for, or raise ProtocolError; each array is used once, in order.
 
     One that stood in a list a thousand times would be small here, and huge where the list becomes
     an array.
     """
     if depth > DEPTH:
-        raise Damaged(f"a tree that is more than {DEPTH} deep")
+        raise ProtocolError(f"a tree that is more than {DEPTH} deep")
     if tree is None or isinstance(tree, bool | str | float):
         return tree
     if isinstance(tree, int) and -WHOLE < tree < WHOLE:
@@ -241,11 +250,11 @@ def _unpack(tree: Any, arrays: deque[tuple[str, Any]], depth: int = 0) -> Any:
             return float(word)
         case {"array": str(name), **rest} if not rest and arrays and arrays[0][0] == name:
             return arrays.popleft()[1]
-    raise Damaged("a tree with a branch of no kind")
+    raise ProtocolError("a tree with a branch of no kind")
 
 
 def _pair(pair: Any, arrays: deque[tuple[str, Any]], depth: int) -> tuple[Any, Any]:
     """Return the key, a text or an integer, and the value of an entry of a dict."""
     if not (isinstance(pair, list) and len(pair) == 2 and isinstance(pair[0], str | int)):
-        raise Damaged("a dict with a key that is neither text nor integer")
+        raise ProtocolError("a dict with a key that is neither text nor integer")
     return pair[0], _unpack(pair[1], arrays, depth + 1)

@@ -129,5 +129,5 @@ def serve(link: socket.socket, channel: Any) -> None:
             kind, value = "raised", complaint(error)
         try:
             channel.send(link, kind, (output.take(), value), call)
-        except channel.Refused as error:
+        except channel.UnsupportedValue as error:
             channel.send(link, "refused", (output.take(), str(error)[:MESSAGE]), call)
