@@ -12,7 +12,8 @@ where a window is bright.
 """
 
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,14 +25,24 @@ from hdrlab.core.arrays import F32, F64, ArrayLike
 STOP_TOLERANCE = 1 / 12
 
 
-class State(NamedTuple):
-    """One shot of the loop."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """One shot of the loop.
 
-    EV: float  # stops, what it was taken with
-    B: F32  # (H, W), on the sensor
-    w: F64  # (H, W), of the mode
-    B_pre: float  # the reading
-    EV_opt: float  # stops, what to take the next one with
+    Attributes
+    ----------
+    EV : exposure value of the shot
+    B : (H, W) brightness on the sensor
+    w : (H, W) weights of the metering mode
+    B_pre : the reading
+    EV_opt : exposure value for the next shot
+    """
+
+    EV: float
+    B: F32
+    w: F64
+    B_pre: float
+    EV_opt: float
 
 
 def measure_brightness(
@@ -69,7 +80,7 @@ def expose_steps(
         B = photograph(E, EV)
         w = metering.weights(B, mode, at=at)
         EV_opt = EV - metering.correction(B, w, target)
-        yield State(EV, B, w, metering.reading(B, w), EV_opt)
+        yield State(EV=EV, B=B, w=w, B_pre=metering.reading(B, w), EV_opt=EV_opt)
         if abs(EV_opt - EV) < STOP_TOLERANCE:
             return
         EV = EV_opt

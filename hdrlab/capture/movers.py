@@ -9,6 +9,7 @@ E_j    radiance that frame j saw         light_j + (1 - mask_j) E
 The embedded places bring a visitor: `Figure(place.mover, place.mask)` of `scenes.layers`.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +32,8 @@ class Figure(NamedTuple):
     mask: F32
 
 
-class Moving(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Moving:
     """A bracket of a scene in which a figure moves, and the truth.
 
     Attributes

@@ -15,7 +15,7 @@ two photographs is taken because dust, vignetting and unlike pixels are the same
 cancel.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,7 +28,8 @@ ROUNDING_VARIANCE = 1 / 12
 SAFE_SIGNAL_SHARE = 0.8
 
 
-class Transfer(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Transfer:
     """A sensor, from its own noise.
 
     Attributes
@@ -124,4 +125,12 @@ def calibrate(Z: ArrayLike) -> Transfer:
             "expected noise that grows with the light, as of RAW levels; got one that does not"
         )
     R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope
-    return Transfer(1 / slope, float(R), float(mean[0]), float(S.max() / slope), S, V, used)
+    return Transfer(
+        gain=1 / slope,
+        read_noise=float(R),
+        black=float(mean[0]),
+        full_well=float(S.max() / slope),
+        S=S,
+        V=V,
+        used=used,
+    )

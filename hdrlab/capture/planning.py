@@ -20,6 +20,7 @@ each luminance that fills a photograph.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -40,27 +41,45 @@ _MAX_SEARCH_NODES = 1000
 _SAME_TIME_STOPS = 0.01
 
 
-class Plan(NamedTuple):
-    """Photographs to take, from the shortest: what the dial says, what it does, and what each holds."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Plan:
+    """Photographs to take, from the shortest to the longest.
 
-    names: tuple[str, ...]  # (n,) as on the dial; a time beyond it is in seconds
-    times: F64  # (n,) s, true
-    holds: F64  # (n, 2) cd/m^2, lowest and highest luminance of each photograph
-    step: float  # stops from one to the next
+    Attributes
+    ----------
+    names : (n,) times as on the dial; a time beyond its ends is in seconds
+    times : (n,) true times, seconds
+    holds : (n, 2) lowest and highest luminance that each photograph holds, cd/m^2
+    step : stops from one photograph to the next
+    """
+
+    names: tuple[str, ...]
+    times: F64
+    holds: F64
+    step: float
 
 
 class Model(NamedTuple):
-    """A camera's noise; the numbers here are those of a good one, and photon transfer finds them."""
+    """A camera's noise. The defaults are those of a good camera; photon transfer measures them.
 
-    full_well: float = (
-        20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half
-    )
-    read_noise: float = 5.0  # R, electrons, before the amplifier
-    gain: float = 5.0  # K, electrons per level at the lowest speed; at twice the speed half of it
-    converter_noise: float = 0.0  # q, levels, after the amplifier
-    speeds: tuple[float, ...] = (100.0,)  # S, ISO
-    pause: float = 0.2  # s after each photograph
-    aperture: float = 8.0  # F, f-number
+    Attributes
+    ----------
+    full_well : electrons of a full pixel at the lowest speed; half of it at twice the speed
+    read_noise : R, electrons, before the amplifier
+    gain : K, electrons per level at the lowest speed; half of it at twice the speed
+    converter_noise : q, levels, after the amplifier
+    speeds : S, ISO
+    pause : seconds after each photograph
+    aperture : F, f-number
+    """
+
+    full_well: float = 20_000.0
+    read_noise: float = 5.0
+    gain: float = 5.0
+    converter_noise: float = 0.0
+    speeds: tuple[float, ...] = (100.0,)
+    pause: float = 0.2
+    aperture: float = 8.0
 
 
 class Shots(NamedTuple):
@@ -132,7 +151,8 @@ def plan(
     reach = math.log2(fills / 2.0**first / L_low)
     times = np.exp2(first + step * np.arange(count(reach, usable, usable - step)))
     holds = np.stack([fills / times * 2.0**-usable, fills / times], axis=1).astype(np.float64)
-    return Plan(tuple(_name(t, dial) for t in times), times, holds, step)
+    names = tuple(_name(time, dial) for time in times)
+    return Plan(names=names, times=times, holds=holds, step=step)
 
 
 def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.intp]:

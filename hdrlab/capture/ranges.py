@@ -11,6 +11,7 @@ of the highlights are full. A shorter one loses the shadows, in noise and in ste
 coarse for them.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -28,8 +29,17 @@ class Range(NamedTuple):
     decibels: float
 
 
-class ExposedLevels(NamedTuple):
-    """What one exposure makes of each luminance (K,): its level, the signal over noise, and what is lost."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ExposedLevels:
+    """What one exposure makes of each of K luminances.
+
+    Attributes
+    ----------
+    Z : (K,) level
+    snr : (K,) signal-to-noise ratio
+    full : (K,) True where the pixel is full
+    noise : (K,) True where the signal-to-noise ratio is below 1
+    """
 
     Z: NDArray[np.int64]
     snr: F64
@@ -99,7 +109,8 @@ def expose_levels(
     N = np.minimum(sensor.full_well * X, full_electrons(sensor))
     Z = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black
     ratio = snr(X, sensor)
-    return ExposedLevels(Z, ratio, sensor.full_well * X >= full_electrons(sensor), ratio < 1)
+    full = sensor.full_well * X >= full_electrons(sensor)
+    return ExposedLevels(Z=Z, snr=ratio, full=full, noise=ratio < 1)
 
 
 def levels_per_stop(bits: int) -> NDArray[np.int64]:

@@ -15,6 +15,7 @@ The end cells are open, so clamping and rounding are part of the model, and dark
 say what they know instead of being cut.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,8 @@ class Nodes(NamedTuple):
     at: Indices
 
 
-class Support(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Support:
     """The nodes that matter for each pixel: those of pixel i are k[start[i] : start[i + 1]].
 
     P(z | m_qk) is needed at `cells`, each (q, k, z) once. Pair j of a pixel and a node uses cell
@@ -130,7 +132,7 @@ def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Su
     at = (np.cumsum(is_used) - 1)[cell]
     start = np.append(0, np.cumsum(counts))
     cells = np.unravel_index(np.flatnonzero(is_used), P.shape)
-    return Support(start, k, cells, at)
+    return Support(start=start, k=k, cells=cells, at=at)
 
 
 def posterior(P: F64, p: F64, near: Support) -> tuple[F64, F64]:

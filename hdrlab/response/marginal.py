@@ -16,7 +16,8 @@ and of Fisher scoring for theta alternate, from where `self_calibration` stopped
 """
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -43,8 +44,18 @@ _INITIAL_EM_STEPS = 5
 _SUPPORT_WIDTHS = (3.0, 2.0)
 
 
-class State(NamedTuple):
-    """After a step: c (order - 1,), R (P - 1,), sigma, log-likelihood, and the gain the step promised."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """The fit after a step.
+
+    Attributes
+    ----------
+    c : (order - 1,) coefficients
+    R : (P - 1,) ratios
+    sigma : noise
+    likelihood : log-likelihood
+    promise : gain in log-likelihood that the step promised
+    """
 
     c: F64
     R: F64
@@ -53,8 +64,17 @@ class State(NamedTuple):
     promise: float
 
 
-class Task(NamedTuple):
-    """What stays while theta climbs: nodes, their support, and a prior on theta with its stiffness (A, A)."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Task:
+    """What does not change while theta is improved.
+
+    Attributes
+    ----------
+    at : nodes
+    near : their support
+    prior : (A,) theta that the prior prefers
+    stiffness : (A, A) inverse covariance of the prior
+    """
 
     at: likelihood.Nodes
     near: likelihood.Support
@@ -62,8 +82,17 @@ class Task(NamedTuple):
     stiffness: F64
 
 
-class Point(NamedTuple):
-    """Unknowns theta (A,), the log-likelihood there, the shares of the supporting nodes, scores (N, A)."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """The likelihood at some unknowns.
+
+    Attributes
+    ----------
+    theta : (A,) unknowns
+    likelihood : log-likelihood
+    weights : shares of the supporting nodes
+    scores : (N, A) derivatives for each pixel
+    """
 
     theta: F64
     likelihood: float
@@ -92,7 +121,10 @@ def evaluate(theta: F64, p: F64, task: Task) -> Point:
     ln, weights = likelihood.posterior(P, p, task.near)
     penalty = ((theta - task.prior) @ task.stiffness @ (theta - task.prior)) / 2
     return Point(
-        theta, float(ln.sum() - penalty), weights, likelihood.scores(weights, task.near, J, dm, ds)
+        theta=theta,
+        likelihood=float(ln.sum() - penalty),
+        weights=weights,
+        scores=likelihood.scores(weights, task.near, J, dm, ds),
     )
 
 
@@ -161,13 +193,19 @@ def fit_steps(
     stiff = likelihood.stiffness(len(theta), Z.shape[1], trust)
     for blur in _SUPPORT_WIDTHS:
         at, near, p = begin(Z, theta, blur)
-        task = Task(at, near, prior, stiff)
+        task = Task(at=at, near=near, prior=prior, stiffness=stiff)
         here = evaluate(theta, p, task)
         for _ in range(max_iterations):
             here, promise = ascend(here, task)
             theta = here.theta
             c, tau, noise = unpack(theta, Z.shape[1])
-            yield State(c, np.exp(tau[:-1] - tau[1:]), noise, here.likelihood, promise)
+            yield State(
+                c=c,
+                R=np.exp(tau[:-1] - tau[1:]),
+                sigma=noise,
+                likelihood=here.likelihood,
+                promise=promise,
+            )
             if promise < tolerance:
                 break
 

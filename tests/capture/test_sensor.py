@@ -286,7 +286,7 @@ def test_a_converter_has_no_level_beyond_its_last_and_none_below_0():
 def test_what_just_fills_a_sensor_is_lost():
     full = Sensor(full_well=1000, gain=1, bits=12, black=0, read_noise=1)
     found = ranges.expose_levels([0.5, 1.0, 2.0], 1.0, full)
-    assert found[2].tolist() == [False, True, True]
+    assert found.full.tolist() == [False, True, True]
 
 
 @pytest.mark.parametrize("sensitivity", [0, -1, np.inf, np.nan])

@@ -74,7 +74,7 @@ def test_the_scores_are_the_derivatives_of_the_likelihood():
     one = ambiguity.draw_trial(np.random.default_rng(1), pixels=300)
     theta = np.r_[one.c * 0.99, np.log(one.R[::-1]).cumsum()[::-1], np.log(SIGMA)]
     at, near, p = marginal.begin(one.Z, theta, 3.0)
-    task = marginal.Task(at, near, theta, np.zeros((len(theta),) * 2))
+    task = marginal.Task(at=at, near=near, prior=theta, stiffness=np.zeros((len(theta),) * 2))
     scores = marginal.evaluate(theta, p, task).scores.sum(axis=0)
     for j, h in enumerate(1e-6 * np.eye(len(theta))):
         up, down = (marginal.evaluate(theta + sign * h, p, task).likelihood for sign in (1, -1))

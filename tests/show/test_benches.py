@@ -114,7 +114,9 @@ def test_a_staircase_has_the_levels_of_the_converter():
 
 def test_a_transfer_curve_has_a_line_of_slope_one_over_the_gain():
     S = np.linspace(0, 4000, 9)
-    found = photon_transfer.Transfer(5.0, 5.0, 64.0, 20_000.0, S, 1 + S / 5, S < 3000)
+    found = photon_transfer.Transfer(
+        gain=5.0, read_noise=5.0, black=64.0, full_well=20_000.0, S=S, V=1 + S / 5, used=S < 3000
+    )
     line = sensors.transfer(found).lines[-1]
     (x0, x1), (y0, y1) = line.get_xdata(), line.get_ydata()
     assert (y1 - y0) / (x1 - x0) == pytest.approx(0.2)
