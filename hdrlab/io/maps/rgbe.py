@@ -6,21 +6,20 @@ E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 
 
 Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio
 and most others decode m / 256, the lower end, and so does hdrlab: a file read and written again is
-then unchanged. Run-length scanlines go through imagecodecs; the equations below serve the other
-files, and say what it does.
+then unchanged. imagecodecs decodes run-length scanlines; the equations below serve the other files.
 """
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
-from typing import NamedTuple
 
 import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, NDArray, as_radiance
 from hdrlab.core.optional import imagecodecs
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files
 
 # the last line of the header, such as -Y 768 +X 512
@@ -28,28 +27,42 @@ RESOLUTION = re.compile(r"([-+])([XY]) +(\d{1,10}) +([-+])([XY]) +(\d{1,10})")
 # 2^(e - 128) / 256, of each exponent e
 SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)
 SCALE[0] = 0
-# how rows and columns run, in the order of EXIF's orientations
+# How rows and columns run, in the order of EXIF's orientations.
 AXES = ("-Y+X", "-Y-X", "+Y-X", "+Y+X", "+X-Y", "-X-Y", "-X+Y", "+X+Y")
-# pixels: the longest run that one code of two bytes stands for
-LONGEST_RUN = 127
-# letters of a comment: OpenCV reads lines of up to 127
-COMMENT = 100
-# rows: a band that is encoded at a time
+FORMAT = "32-bit_rle_rgbe"
+MAX_RADIANCE = 2.0**127
+MAX_HEADER_BYTES = 2**16
+# Two bytes code a run of at most this many pixels.
+MAX_RUN_PIXELS = 127
+# Lengths of scanlines that can be run-length coded.
+MIN_RUN_LENGTH_SCANLINE = 8
+MAX_RUN_LENGTH_SCANLINE = 32767
+# OpenCV reads header lines of up to 127 characters.
+MAX_COMMENT_CHARACTERS = 100
+# Rows that are encoded at a time.
 BAND_ROWS = 64
+# Pixels of which a flat file stores a repetition count have this value, without the exponent.
+REPEAT_MARK = 0x010101
+MIN_EXPOSURE = 1e-30
+MAX_EXPOSURE = 1e30
 
 
-class Header(NamedTuple):
-    """What a Radiance file says before its pixels.
+@dataclass(frozen=True)
+class Header:
+    """What a Radiance file states before its pixels.
 
     Attributes
     ----------
-    height, width : of the picture, upright
-    axes : the resolution line's order and signs, such as "-Y+X": rows from the top, each from the
-        left
-    exposure : (3,) what the pixels were multiplied by: the product of all EXPOSURE and COLORCORR
-        lines
-    lines : the header's lines
-    start : where the pixels begin, in bytes
+    height, width
+        Of the upright image.
+    axes
+        Order and signs of the resolution line. "-Y+X" means rows from the top, each from the left.
+    exposure
+        (3,) what the pixels were multiplied by: the product of all EXPOSURE and COLORCORR lines.
+    lines
+        The lines of the header.
+    start
+        The offset of the pixels, in bytes.
     """
 
     height: int
@@ -89,15 +102,18 @@ def read(path: str | Path) -> F32:
     [[[1.0, 0.5, 0.25]]]
     """
     header = read_header(path)
-    scanlines, length = (header.height, header.width)[:: 1 if header.axes[1] == "Y" else -1]
+    scanlines = header.height
+    length = header.width
+    if header.axes[1] == "X":
+        scanlines, length = length, scanlines
     with open(path, "rb") as file:
         file.seek(header.start)
         data = file.read()
-    if 8 <= length <= 32767 and b"\2\2\0" <= data[:3] < b"\2\2\x80" and len(data) > 3:
-        E = _run_lengths(path, data, scanlines, length)
+    if _has_run_length_scanlines(data, length):
+        E = _decode_run_lengths(path, data, scanlines, length)
     else:
         files.check_size(path, scanlines, length, 4 * scanlines, available=len(data))
-        E = to_radiance(_pixels(path, data, scanlines, length))
+        E = to_radiance(_decode_flat_pixels(path, data, scanlines, length))
     E = np.ascontiguousarray(decode.upright(E, 1 + AXES.index(header.axes)))
     if np.any(header.exposure != 1):
         E /= header.exposure.astype(np.float32)
@@ -130,21 +146,21 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     """
     E = as_radiance(E)
     height, width = E.shape[:2]
-    if E.max() >= 2.0**127:
-        raise FileFormatError(
-            f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}"
-        )
+    if E.max() >= MAX_RADIANCE:
+        raise InputError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
     E = np.broadcast_to(E if E.ndim == 3 else E[..., None], (height, width, 3))
-    room = bytearray(
-        BAND_ROWS * (4 + 4 * (width + width // 128 + 1))
-    )  # for a band in which nothing repeats
+    header = "#?RADIANCE\n"
+    for comment in comments:
+        for line in wrap(comment, MAX_COMMENT_CHARACTERS):
+            header += f"# {line}\n"
+    header += f"FORMAT={FORMAT}\n\n-Y {height} +X {width}\n"
+    # Enough for a band in which no pixel is repeated.
+    buffer = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))
     with files.replacing(path) as name, open(name, "wb") as file:
-        said = "".join(f"# {line}\n" for one in comments for line in wrap(one, COMMENT))
-        head = f"#?RADIANCE\n{said}FORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
-        file.write(head.encode("ascii", "replace"))
+        file.write(header.encode("ascii", "replace"))
         for y in range(0, height, BAND_ROWS):
             band = np.ascontiguousarray(E[y : y + BAND_ROWS])
-            file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
+            file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=buffer))
 
 
 def to_radiance(pixels: NDArray[np.uint8]) -> F32:
@@ -167,12 +183,22 @@ def to_pixels(E: F32) -> NDArray[np.uint8]:
     return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
 
 
-def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
-    """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
-    if (stated := data[2] * 256 + data[3]) != length:
-        raise FileFormatError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
-    least = scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN))
-    files.check_size(path, scanlines, length, least, available=len(data))
+def _has_run_length_scanlines(data: bytes, length: int) -> bool:
+    """Return whether the first scanline begins with 2, 2 and its length in two bytes."""
+    is_possible = MIN_RUN_LENGTH_SCANLINE <= length <= MAX_RUN_LENGTH_SCANLINE
+    return is_possible and len(data) > 3 and data[:2] == b"\2\2" and data[2] < 0x80
+
+
+def _decode_run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
+    """Return E of run-length scanlines."""
+    stated_length = data[2] * 256 + data[3]
+    if stated_length != length:
+        raise FileFormatError(
+            f"{path}: expected scanlines of {length} pixels, got one of {stated_length}"
+        )
+    runs_per_channel = -(-length // MAX_RUN_PIXELS)
+    min_bytes = scanlines * (4 + 4 * 2 * runs_per_channel)
+    files.check_size(path, scanlines, length, min_bytes, available=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
@@ -182,21 +208,25 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
         ) from None
 
 
-def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.uint8]:
-    """Return the pixels (H, W, 4) of flat scanlines, among which (1, 1, 1, n) repeats the pixel before it.
+def _decode_flat_pixels(
+    path: str | Path, data: bytes, scanlines: int, length: int
+) -> NDArray[np.uint8]:
+    """Return the pixels (H, W, 4) of flat scanlines, in which (1, 1, 1, n) repeats the pixel before.
 
-    Such marks in a row are the digits of one count in base 256, the lowest first: the oldest run
-    lengths.
+    Several such marks in a row are the digits of one count in base 256, the lowest first: the oldest
+    kind of run lengths.
     """
     count = scanlines * length
     words = np.frombuffer(data, "<u4", min(len(data) // 4, count))
-    marks, place = (words & 0xFFFFFF) == 0x010101, np.arange(len(words))
-    pixel = np.maximum.accumulate(np.where(marks, -1, place))  # the last that is not a mark
+    is_mark = (words & 0xFFFFFF) == REPEAT_MARK
+    place = np.arange(len(words))
+    # For each word, the place of the last one that is not a mark.
+    pixel = np.maximum.accumulate(np.where(is_mark, -1, place))
     digit = np.clip(place - pixel - 1, 0, 4)
-    counts = np.where(marks, (words >> 24).astype(np.int64) << 8 * digit, 1)
-    made = np.cumsum(counts)
-    last = int(np.searchsorted(made, count))
-    if last == len(made) or made[last] != count or marks[0]:
+    counts = np.where(is_mark, (words >> 24).astype(np.int64) << 8 * digit, 1)
+    totals = np.cumsum(counts)
+    last = int(np.searchsorted(totals, count))
+    if last == len(totals) or totals[last] != count or is_mark[0]:
         size = f"{scanlines} scanlines of {length} pixels"
         raise FileFormatError(f"{path}: expected {size}, they are damaged or cut short")
     repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
@@ -204,59 +234,84 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
 
 
 def read_header(path: str | Path) -> Header:
-    """Return the Header of the Radiance file at `path`, or raise a ValueError."""
+    """Return the header of a Radiance file, or raise a FileFormatError."""
     with open(path, "rb") as file:
-        return parse(path, file.read(1 << 16))
+        return parse_header(path, file.read(MAX_HEADER_BYTES))
 
 
-def parse(path: str | Path, head: bytes) -> Header:
-    """Return what the lines down to the resolution say, or raise a ValueError that names the file."""
-    lines, start = [], 0
-    while (end := head.find(b"\n", start)) >= 0:
-        line, start = head[start:end].decode("latin-1"), end + 1
-        if match := RESOLUTION.fullmatch(line.rstrip("\r")):
-            break
-        if line.strip():
-            lines.append(line.rstrip())
-    else:
-        match = None
-    # the mark need not come first: tools of Radiance put lines of their own before it
+def parse_header(path: str | Path, head: bytes) -> Header:
+    """Return what the lines down to the resolution state.
+
+    Raises
+    ------
+    FileFormatError
+        Naming the file, if it is not a Radiance file or its header is damaged.
+    """
+    lines, resolution, start = _split_header(head)
+    match = RESOLUTION.fullmatch(resolution.rstrip("\r"))
+    # "#?" need not come first: tools of Radiance put lines of their own before it.
     if match is None or not any(line.startswith("#?") for line in lines):
         raise FileFormatError(
             f"{path}: expected a Radiance file (#?RADIANCE, -Y 768 +X 512), got {head[:16]!r}"
         )
-    if line.endswith("\r"):
+    if resolution.endswith("\r"):
         raise FileFormatError(
-            f"{path}: expected a binary file, its line ends became CR LF: copied as text"
+            f"{path}: its line ends are CR LF, so it was copied as text; copy it as a binary file"
         )
-    values = dict(part.split("=", 1) for part in lines if "=" in part)
-    if (form := values.get("FORMAT", "32-bit_rle_rgbe").strip()) != "32-bit_rle_rgbe":
-        raise FileFormatError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form[:60]!r}")
-    sign, axis, first, sign2, axis2, second = match.groups()
-    if axis == axis2:
+    values = dict(line.split("=", 1) for line in lines if "=" in line)
+    pixel_format = values.get("FORMAT", FORMAT).strip()
+    if pixel_format != FORMAT:
+        raise FileFormatError(f"{path}: expected FORMAT={FORMAT}, got {pixel_format[:60]!r}")
+    sign, axis, scanlines, second_sign, second_axis, length = match.groups()
+    if axis == second_axis:
         raise FileFormatError(
-            f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}"
+            f"{path}: expected one X and one Y in the resolution, got {resolution[:60]!r}"
         )
-    height, width = (int(first), int(second))[:: 1 if axis == "Y" else -1]
+    height = int(scanlines)
+    width = int(length)
+    if axis == "X":
+        height, width = width, height
     files.check_size(path, height, width)
     return Header(
-        height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start
+        height=height,
+        width=width,
+        axes=sign + axis + second_sign + second_axis,
+        exposure=_parse_exposure(path, lines),
+        lines=tuple(lines),
+        start=start,
     )
 
 
-def _exposure(path: str | Path, lines: list[str]) -> F64:
-    """Return the product of the EXPOSURE and COLORCORR lines: each tool that changed the pixels adds one."""
+def _split_header(head: bytes) -> tuple[list[str], str, int]:
+    """Return the lines of the header, the resolution line or "", and the offset of the pixels."""
+    lines: list[str] = []
+    start = 0
+    while True:
+        end = head.find(b"\n", start)
+        if end < 0:
+            return lines, "", start
+        line = head[start:end].decode("latin-1")
+        start = end + 1
+        if RESOLUTION.fullmatch(line.rstrip("\r")):
+            return lines, line, start
+        if line.strip():
+            lines.append(line.rstrip())
+
+
+def _parse_exposure(path: str | Path, lines: list[str]) -> F64:
+    """Return the product of the EXPOSURE and COLORCORR lines, of which every tool adds one."""
     product = np.ones(3)
     for line in lines:
         name, _, value = line.partition("=")
-        if name in ("EXPOSURE", "COLORCORR"):
-            try:
-                product = product * np.array(value.split(), dtype=np.float64)
-            except ValueError:
-                raise FileFormatError(
-                    f"{path}: expected numbers in its header, got {line[:60]!r}"
-                ) from None
-    if not np.all((product > 1e-30) & (product < 1e30)):
+        if name not in ("EXPOSURE", "COLORCORR"):
+            continue
+        try:
+            product = product * np.array(value.split(), dtype=np.float64)
+        except ValueError:
+            raise FileFormatError(
+                f"{path}: expected numbers in its header, got {line[:60]!r}"
+            ) from None
+    if not np.all((product > MIN_EXPOSURE) & (product < MAX_EXPOSURE)):
         raise FileFormatError(
             f"{path}: expected positive exposures in its header, got {product.tolist()}"
         )

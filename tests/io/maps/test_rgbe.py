@@ -223,9 +223,7 @@ def test_xyze_colours_are_refused_by_name(tmp_path):
 def test_a_file_that_was_copied_as_text_is_told_so(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)))
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    with pytest.raises(
-        ValueError, match="x.hdr: expected a binary file, its line ends became CR LF"
-    ):
+    with pytest.raises(ValueError, match="x.hdr: .*CR LF"):
         rgbe.read(path)
 
 
