@@ -39,7 +39,7 @@ class Search(NamedTuple):
 def similarity(w: F32, matches: Matches) -> float:
     """Return MBDS(T | S) [Sen12 sec. 3]."""
     pairs = zip(w, matches.completeness, strict=True)
-    completeness = sum(float((each * field.d).mean()) for each, field in pairs)
+    completeness = sum(float((weight * field.d).mean()) for weight, field in pairs)
     return completeness / len(w) + float(matches.coherence.d.mean())
 
 
@@ -57,9 +57,9 @@ def search(
     back = patchmatch.make_sources(T[None], settings.side)
     rows = Q.rows.reshape(*Q.shape, -1)
     coherence = search_one_way(P, Q, at[0], settings, rng)
-    completeness = (
-        search_one_way(rows[q], back, one, settings, rng) for q, one in enumerate(at[1])
-    )
+    completeness = [
+        search_one_way(rows[q], back, start, settings, rng) for q, start in enumerate(at[1])
+    ]
     return Matches(coherence, tuple(completeness))
 
 
@@ -67,11 +67,9 @@ def search_one_way(
     P: F32, Q: Sources, at: Indices, settings: Search, rng: np.random.Generator
 ) -> Field:
     """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
-    at = (
-        at
-        if at.shape[:2] == P.shape[:2]
-        else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
-    )
+    height, width = P.shape[:2]
+    if at.shape[:2] != (height, width):
+        at = patchmatch.upscale_field(at, (height, width))
     first = patchmatch.start_field(P, Q, at)
     steps = patchmatch.search_steps(P, Q, first, radius=settings.radius, rng=rng)
     return last(field for _, field in zip(range(settings.rounds), steps, strict=False))
@@ -95,9 +93,9 @@ def vote(S: F32, w: F32, matches: Matches, side: int) -> F32:
     """
     shape = S.shape[1:3]
     total, count = patchmatch.sum_votes(S, matches.coherence.at, shape, side)
-    for picture, each, field in zip(S, w / len(S), matches.completeness, strict=True):
-        if each.any():
-            more, votes = patchmatch.sum_given_votes(picture, field.at, each, shape, side)
-            total = total + more
+    for picture, weight, field in zip(S, w / len(S), matches.completeness, strict=True):
+        if weight.any():
+            sums, votes = patchmatch.sum_given_votes(picture, field.at, weight, shape, side)
+            total = total + sums
             count = count + votes
     return total / count[..., None]

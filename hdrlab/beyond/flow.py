@@ -39,8 +39,8 @@ def warp(f: F32, u: F32) -> F32:
     places = np.indices(u.shape[1:]) + u
     planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
     channels = np.moveaxis(planes, -1, 0)
-    found = [map_coordinates(one, places, order=1, mode="nearest") for one in channels]
-    return np.stack(found, axis=-1).reshape(f.shape)
+    warped = [map_coordinates(plane, places, order=1, mode="nearest") for plane in channels]
+    return np.stack(warped, axis=-1).reshape(f.shape)
 
 
 def lands_inside(u: F32) -> Mask:
@@ -51,12 +51,13 @@ def lands_inside(u: F32) -> Mask:
 
 
 def halve_flow(u: F32) -> tuple[F32, F32]:
-    """Return the flows from the moment between a and b to either: half the way, back and forth.
+    """Return the flows from the moment half-way between a and b to a and to b.
 
-    u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u /
-    2).
+    u belongs to the pixels of a. Two iterations of u(p - u / 2) give the flow at the pixels of the
+    moment half-way.
     """
     half = (u / 2).astype(np.float32)
     for _ in range(2):
-        half = (np.stack([warp(one, -half) for one in u]) / 2).astype(np.float32)
+        moved = np.stack([warp(component, -half) for component in u])
+        half = (moved / 2).astype(np.float32)
     return -half, half

@@ -1,4 +1,4 @@
-"""Frames with those before and after them, one at a time: a film need not fit into memory."""
+"""Sliding windows over the frames of a video, which need not fit into memory."""
 
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -9,9 +9,9 @@ Item = TypeVar("Item")
 
 
 def slide_windows(items: Iterable[Item], span: int) -> Iterator[tuple[int, tuple[Item, ...]]]:
-    """Yield of each item its place in the window, and the window: up to `span` items on either side.
+    """Yield the place of each item in its window, and the window of up to `span` items on either side.
 
-    Only 2 span + 1 items are held, and each window is yielded as soon as its last item is there.
+    Only 2 span + 1 items are kept, and each window is yielded as soon as its last item is there.
 
     Examples
     --------
@@ -19,9 +19,9 @@ def slide_windows(items: Iterable[Item], span: int) -> Iterator[tuple[int, tuple
     [(0, ('a', 'b')), (1, ('a', 'b', 'c')), (1, ('b', 'c'))]
     """
     blank: Any = object()
-    window = deque([blank] * (2 * span + 1), maxlen=2 * span + 1)  # whose middle is the item
-    for item in chain(items, repeat(blank, span)):
-        window.append(item)
-        if window[span] is not blank:
-            before = sum(one is not blank for one in list(window)[:span])
-            yield before, tuple(one for one in window if one is not blank)
+    slots = deque([blank] * (2 * span + 1), maxlen=2 * span + 1)
+    for next_item in chain(items, repeat(blank, span)):
+        slots.append(next_item)
+        if slots[span] is not blank:
+            place = sum(item is not blank for item in list(slots)[:span])
+            yield place, tuple(item for item in slots if item is not blank)

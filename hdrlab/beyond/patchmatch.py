@@ -1,4 +1,4 @@
-"""PatchMatch: for each patch of one picture, a patch like it in others (Barnes et al., SIGGRAPH 2009).
+"""PatchMatch: find a similar patch in other pictures for each patch (Barnes et al., SIGGRAPH 2009).
 
 T      target            (H, W, C) float32
 S      sources           (N, H, W, C) float32, of one size
@@ -7,9 +7,9 @@ P, Q   patches           rows of side^2 C numbers, of each place (y, x) of its u
 at     the field         (h, w, 3) int: which source, y and x: where the patch like that at (y, x) is
 d      distance          (h, w), ||P - Q||^2 + the price of Q, which is inf where a patch is barred
 
-A random field has a few good matches by chance. What is good spreads: the neighbour of a patch is
-probably like the neighbour of its match. The paper goes through the picture pixel by pixel; here
-all pixels ask the same neighbour at once, so that numpy can do it.
+A random field has a few good matches by chance. Good matches propagate: the neighbour of a patch is
+probably similar to the neighbour of its match. The paper processes the picture pixel by pixel; here
+all pixels try the match of the same neighbour at once, in numpy.
 """
 
 from collections.abc import Iterator
@@ -58,8 +58,8 @@ def make_sources(S: F32, side: int, price: F32 | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
     rows = cut_patches(S, side)
     price = np.zeros(S.shape[:-1], np.float32) if price is None else price
-    each = cut_patches(price[..., None], side).sum(axis=-1)
-    return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
+    patch_prices = cut_patches(price[..., None], side).sum(axis=-1)
+    return Sources(rows.reshape(-1, rows.shape[-1]), patch_prices.ravel(), rows.shape[:3])
 
 
 def distance(P: F32, Q: Sources, at: Indices) -> F32:
@@ -115,16 +115,17 @@ def random_places(at: Indices, radius: int, count: int, rng: np.random.Generator
 def search_steps(
     P: F32, Q: Sources, field: Field, *, radius: int, rng: np.random.Generator
 ) -> Iterator[Field]:
-    """Yield the field after each round: every neighbour's match, then chance, from `radius` down to 1."""
+    """Yield the field after each round: propagation, then random search from `radius` down to 1."""
     while True:
         for step in NEIGHBOURS:
             field = keep_nearer(field, P, Q, propagate(field.at, step))
         for source in range(1, Q.shape[0]):  # the same place in another picture
             field = keep_nearer(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *UNBOUNDED))
-        reach = radius
-        while reach:
-            field = keep_nearer(field, P, Q, random_places(field.at, reach, Q.shape[0], rng))
-            reach //= 2
+        current_radius = radius
+        while current_radius:
+            places = random_places(field.at, current_radius, Q.shape[0], rng)
+            field = keep_nearer(field, P, Q, places)
+            current_radius //= 2
         yield field
 
 
@@ -139,17 +140,16 @@ def upscale_field(at: Indices, shape: tuple[int, int]) -> Indices:
     ratios = np.divide(shape, at.shape[:2])
     own = [(np.arange(n) / r).astype(int) for n, r in zip(shape, ratios, strict=True)]
     coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
-    shift = (
-        at[np.ix_(*own)] - coarse
-    )  # which source, and how far away in pixels of the coarser scale
+    # number of the source, and displacement in pixels of the coarser scale
+    shift = at[np.ix_(*own)] - coarse
     return identity_field(*shape) + np.rint(shift * np.array([1, *ratios])).astype(int)
 
 
 def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F32, F32]:
-    """Return the sums (H, W, C) of what the matches in S say of each pixel, and how many say it (H, W).
+    """Return the sums (H, W, C) of the votes of the matches in S for each pixel, and their number (H, W).
 
-    Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes
-    inside.
+    Each patch of the target has a match, whose pixels vote for the pixels of the patch. So a pixel
+    has side^2 votes, and fewer near the edge.
     """
     h, w = at.shape[:2]
     total = np.zeros((*shape, S.shape[-1]), np.float32)
@@ -164,18 +164,17 @@ def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F
 def sum_given_votes(
     S: F32, at: Indices, weight: F32, shape: tuple[int, int], side: int
 ) -> tuple[F32, F32]:
-    """Return the same sums, of the votes that patches of one source S (H, W, C) give to their matches.
+    """Return the same sums of the votes that patches of one source S (H, W, C) give to their matches.
 
-    `at` leads from the source to the target, and `weight` (h, w) says what each patch is worth.
+    `at` is the field from the source to the target, and `weight` (h, w) the weight of each patch.
     """
     h, w = weight.shape
     sums = np.zeros((S.shape[-1] + 1, shape[0] * shape[1]))
     for dy in range(side):
         for dx in range(side):
             pixel = ((at[..., 1] + dy) * shape[1] + at[..., 2] + dx).ravel()
-            for c, plane in enumerate(
-                [*np.moveaxis(S[dy : dy + h, dx : dx + w], -1, 0), np.ones((h, w))]
-            ):
+            planes = [*np.moveaxis(S[dy : dy + h, dx : dx + w], -1, 0), np.ones((h, w))]
+            for c, plane in enumerate(planes):
                 sums[c] += np.bincount(pixel, (weight * plane).ravel(), sums.shape[1])
     total = sums.reshape(-1, *shape).astype(np.float32)
     return np.moveaxis(total[:-1], 0, -1), total[-1]

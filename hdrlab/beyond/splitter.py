@@ -1,20 +1,20 @@
-"""One lens, three sensors: beam splitters share out the light of one moment (Tocci et al., SIGGRAPH 2011).
+"""One lens, three sensors: beam splitters divide the light of one moment (Tocci et al., SIGGRAPH 2011).
 
 E      radiance      (H, W) or (H, W, 3), in the unit that fills a pixel that gets all the light
-e      share         (N,), of the light that each sensor gets, the most first
+e      share         (N,), of the light that each sensor gets, largest first
 c      channel       (H, W) int, 0 to 2: the colour of each pixel, the same on all sensors; None on gray ones
 Z      levels        (N, H, W) uint8 or uint16, linear
-B, D   radiance that a brighter sensor saw, Z / e, and that of all darker ones together, (H, W)
-u      share of the pixels around that are full in B, 0 to 1, in a window of 5 x 5
-P      what a full pixel of B would have shown: D sum B / sum D over those around that are not full
+B, D   radiance from a brighter sensor, Z / e, and that from all darker sensors, (H, W)
+u      fraction of the pixels in a window of 5 x 5 that are full in B, 0 to 1
+P      prediction of a full pixel of B: D sum B / sum D over the pixels of the window that are not full
 
-All sensors see one picture at one time, so nothing can leave a ghost. And they see it through
-splitters that throw nearly no light away: the second takes what the first reflects, and what it
-reflects in turn goes back through the first, which lets most of it pass to the third sensor.
+All sensors photograph the same moment, so there are no ghosts. And the splitters waste nearly no
+light: the second one gets the light that the first one reflects, and the light that it reflects
+goes back through the first, which transmits most of it to the third sensor.
 
-Merging does not average all sensors. Where the brightest is not full it is the cleanest, and is
-taken alone; the others come in where it fills, gently, for their noise is greater: [Tocci11 sec. 5]
-has four cases.
+The merge does not average all sensors. Where the brightest sensor is not full, it has the least
+noise and is used alone. Where it is full, the others replace it gradually, as they are noisier:
+[Tocci11 sec. 5] has four cases.
 """
 
 from collections.abc import Iterator
@@ -30,22 +30,22 @@ from hdrlab.core.filters.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 
-# shares of the light, by the first pellicle, and by the second of what the first reflected
+# of the first and the second beam splitter
 REFLECTANCES = (0.08, 0.06)
-# of the top level: from here on a pixel counts as full
+# pixels are full from this fraction of the top level on
 CLIPPING_LEVEL = 0.9
 # pixels
 WINDOW_SIDE = 5
 
 
 class State(NamedTuple):
-    """What the sensors from the darkest to this one say together.
+    """The merge of the sensors from the darkest to this one.
 
     Attributes
     ----------
-    sensor : which one came last, 0 the brightest
-    E : (H, W), radiance, as the pixels see it
-    case : (H, W) uint8, 1 to 4: which rule held, 0 of the darkest sensor, which has no darker one
+    sensor : number of the last sensor, 0 is the brightest
+    E : (H, W), radiance
+    case : (H, W) uint8, 1 to 4: the case of each pixel; 0 for the darkest sensor
     """
 
     sensor: int
@@ -101,64 +101,68 @@ def shoot(
     array([16384,  8192], dtype=uint16)
     """
     E = as_radiance(E)
-    each = as_shares(e)
+    e = as_shares(e)
     rng = np.random.default_rng(rng)
     if not 8 <= bits <= 16:
         raise InputError(f"expected 8 to 16 bits, got {bits}")
     shoot_one = partial(
         assorted.shoot, full_well=full_well, read_noise=read_noise, bits=16, rng=rng
     )
-    Z = np.stack([shoot_one(E, np.full(E.shape[:2], share), c) for share in each])
+    Z = np.stack([shoot_one(E, np.full(E.shape[:2], share), c) for share in e])
     step = 65535 / (2**bits - 1)
     return np.round(np.round(Z / step) * step).astype(np.uint16)
 
 
 def full_share(full: Mask) -> F64:
-    """Return u, the share of the window's pixels that are full."""
+    """Return u, the fraction of the window's pixels that are full."""
     return uniform_filter(full.astype(np.float64), WINDOW_SIDE, mode="nearest")
 
 
 def predict_full(B: F64, D: F64, full: Mask) -> F64:
     """Return P = D sum B / sum D over the window's pixels that are not full [Tocci11 sec. 5].
 
-    The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near
-    zero.
+    The paper takes the mean of the quotients B / D. The quotient of the sums is robust against a D
+    near zero.
     """
-    b, d = (uniform_filter(np.where(full, 0, one), WINDOW_SIDE, mode="nearest") for one in (B, D))
+    b = uniform_filter(np.where(full, 0, B), WINDOW_SIDE, mode="nearest")
+    d = uniform_filter(np.where(full, 0, D), WINDOW_SIDE, mode="nearest")
     return np.where(d > 0, D * b / np.where(d > 0, d, 1), D)
 
 
 def join_sensors(B: F64, D: F64, full: Mask) -> tuple[F64, NDArray[np.uint8]]:
-    """Return the radiance of two sensors, and which of four cases each pixel is [Tocci11 sec. 5].
+    """Return the radiance from two sensors, and the case, 1 to 4, of each pixel [Tocci11 sec. 5].
 
-    1  nothing around is full          B
-    2  something around is full        (1 - u) B + u D
-    3  full, but not all around is     (1 - u) P + u D
-    4  all is full                     D
+    1  no pixel of the window is full                    B
+    2  not full, but another pixel of the window is      (1 - u) B + u D
+    3  full, but not all pixels of the window are        (1 - u) P + u D
+    4  all pixels of the window are full                 D
     """
     u = full_share(full)
-    some = u > 1e-9
-    every = u > 1 - 1e-9
-    own = np.where(full, predict_full(B, D, full), B)
-    E = np.where(some, np.where(every, D, (1 - u) * own + u * D), B)
-    return E, np.where(full, np.where(every, 4, 3), np.where(some, 2, 1)).astype(np.uint8)
+    some_full = u > 1e-9
+    all_full = u > 1 - 1e-9
+    bright = np.where(full, predict_full(B, D, full), B)
+    mixed = (1 - u) * bright + u * D
+    E = np.where(some_full, np.where(all_full, D, mixed), B)
+    case = np.where(full, np.where(all_full, 4, 3), np.where(some_full, 2, 1))
+    return E, case.astype(np.uint8)
 
 
 def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> Iterator[State]:
-    """Yield the State from the darkest sensor alone to all of them; parameters are those of `merge`."""
-    each = as_shares(e)
+    """Yield the State of the darkest sensor, and after each brighter one; parameters as of `merge`."""
+    e = as_shares(e)
     stack = np.asarray(Z)
-    if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(each):
+    if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(e):
         raise InputError(
-            f"expected levels ({len(each)}, H, W), a picture per share, got {describe(stack)}"
+            f"expected levels ({len(e)}, H, W), a picture per share, got {describe(stack)}"
         )
     if not 0 < full <= 1:
-        raise InputError(f"expected a level that counts as full, above 0 and at most 1, got {full}")
+        raise InputError(f"expected a clipping level above 0 and at most 1, got {full}")
     X = stack / (levels(stack) - 1)
-    E = X[-1] / each[-1]
-    yield State(len(each) - 1, E, np.zeros(E.shape, np.uint8))
-    for j in range(len(each) - 2, -1, -1):
-        E, case = join_sensors(X[j] / each[j], E, X[j] >= full)
+    darkest = len(e) - 1
+    E = X[darkest] / e[darkest]
+    yield State(darkest, E, np.zeros(E.shape, np.uint8))
+    for j in reversed(range(darkest)):
+        E, case = join_sensors(X[j] / e[j], E, X[j] >= full)
         yield State(j, E, case)
 
 
@@ -176,12 +180,12 @@ def merge(
     c : (H, W) int, optional
         Channels of a colour mosaic; the merged mosaic is interpolated after merging.
     full : float
-        The level, 1 the top, from which on a pixel counts as full.
+        Pixels are full from this fraction of the top level on.
 
     Returns
     -------
     E : (H, W) or (H, W, 3) float32
-        Where the darkest sensor is full, the least that the light can be.
+        A lower bound where the darkest sensor is full.
 
     Raises
     ------
@@ -204,11 +208,11 @@ def merge(
 
 
 def as_shares(e: ArrayLike) -> F64:
-    """Return shares (N,), falling, at most 1 in all, or raise a ValueError."""
-    each = np.asarray(e, np.float64)
-    falling = each.ndim == 1 and len(each) and np.all(each > 0) and np.all(np.diff(each) < 0)
-    if not (falling and each.sum() < 1.001):
+    """Return the shares (N,) of the light, or raise a ValueError unless they fall and sum to at most 1."""
+    e = np.asarray(e, np.float64)
+    is_falling = e.ndim == 1 and len(e) and np.all(e > 0) and np.all(np.diff(e) < 0)
+    if not (is_falling and e.sum() < 1.001):
         raise InputError(
-            f"expected positive, falling shares of the light, at most 1 in all, got {each}"
+            f"expected positive, falling shares of the light, at most 1 in all, got {e}"
         )
-    return each
+    return e

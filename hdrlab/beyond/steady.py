@@ -28,14 +28,14 @@ SMALLEST_LUMINANCE = float(np.finfo(np.float32).tiny)
 
 
 class State(NamedTuple):
-    """A frame that is done: its display luminance, and what it was adapted to.
+    """The display luminance of a frame, and its adaptation.
 
     Attributes
     ----------
     E : the frame itself, float32
     Ld : (H, W) float32, 0 to 1
     own : log average of the frame by itself
-    average : Lav, with the frames around
+    average : Lav, over the frame and its neighbours
     white : scaled luminance that became white
     """
 
@@ -66,22 +66,23 @@ def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> FrameStatistics:
 
 def adapt(window: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:
     """Return Lav = exp(mean of the frames' logarithms), and white, at least 1  [Kang03 sec. 5]."""
-    average = float(np.exp(np.mean([one.log for one in window])))
-    high = float(np.exp(np.mean(np.log([max(one.high, SMALLEST_LUMINANCE) for one in window]))))
+    average = float(np.exp(np.mean([frame.log for frame in window])))
+    highs = [max(frame.high, SMALLEST_LUMINANCE) for frame in window]
+    high = float(np.exp(np.mean(np.log(highs))))
     return average, max(1.0, key * high / average)
 
 
 def tonemap_steps(
     frames: Iterable[ArrayLike], operator: Callable[..., F32], *, key: float = 0.18, span: int = 1
 ) -> Iterator[State]:
-    """Yield the State of each frame as soon as `span` more are there.
+    """Yield the tone-mapped State of each frame, adapted over time, as soon as `span` more are there.
 
     Parameters
     ----------
     frames : radiance (H, W) or (H, W, 3), all in one unit
-    operator : of `tonemap.reinhard`'s kind: operator(L, key=, white=) -> Ld
-    key : what the log average becomes
-    span : how many frames before and after count; 0 is each frame by itself
+    operator : operator(L, key=, white=) -> Ld, such as `tonemap.reinhard.tonemap`
+    key : the value that the log average becomes
+    span : number of frames before and after that are averaged; 0 is each frame by itself
 
     Raises
     ------
@@ -112,26 +113,26 @@ def tonemap_steps(
 
 
 def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
-    """Return the root mean square of (y_(i-1) - 2 y_i + y_(i+1)) / 4, y in levels of 0 to 255.
+    """Return the flicker, the root mean square of (y_(i-1) - 2 y_i + y_(i+1)) / 4, y in levels of 0 to 255.
 
-    A steady change has no second difference. What goes up and down by a level from frame to frame
-    counts one.
+    y is the mean level of a frame. A steady change has no second difference. A mean that goes up
+    and down by a level from frame to frame has a flicker of 1.
 
     Parameters
     ----------
     Ld : at least three frames (H, W), display luminance, 0 to 1
-    still : (H, W) bool, where nothing of the scene changes; everywhere by default. An operator that
-        follows
-        each frame keeps the mean of the whole, and changes that of all that did not change.
+    still : (H, W) bool, the static part of the scene, which the mean is taken over; everything by
+        default. An operator that adapts to each frame keeps the mean of the whole frame, and so
+        changes the static part.
 
     Examples
     --------
     >>> round(flicker(np.full((2, 2), y) for y in (0.1, 0.2, 0.1, 0.2)), 1)
     17.3
     """
-    shown = [colour.encode_srgb(np.asarray(one, np.float64)) for one in Ld]
+    encoded = [colour.encode_srgb(np.asarray(frame, np.float64)) for frame in Ld]
     part = ... if still is None else np.asarray(still, bool)
-    y = np.array([255 * float(one[part].mean()) for one in shown])
+    y = np.array([255 * float(frame[part].mean()) for frame in encoded])
     if len(y) < 3:
         raise InputError(f"expected at least three frames, got {len(y)}")
     return float(np.sqrt(np.mean((np.diff(y, 2) / 4) ** 2)))

@@ -1,8 +1,8 @@
 """Blends of two lights, and the curve that joins them (Wilburn, Xu and Matsushita, CVPR 2008, sec. 2).
 
-While the shutter is open a pixel sees one of two lights, L_0 for a share alpha of the time, L_1 for
-the rest. So it gathers I = alpha I_0 + (1 - alpha) I_1 [eq. 4]: an exposure that is known but for a
-scale and an offset.
+While the shutter is open, a pixel receives one of two lights, L_0 for a fraction alpha of the time,
+and L_1 for the rest. So it integrates I = alpha I_0 + (1 - alpha) I_1 [eq. 4]: an exposure that is
+known except for a scale and an offset.
 
 I  relative irradiance   (l,), any unit, any zero: alpha, or 0, 1, 2 ... along a ramp, or exposure time
 M  brightness            (l,), 0 to 1: pixel level over the highest one
@@ -19,10 +19,10 @@ import numpy as np
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.errors import InputError
 
-# The paper's typical range of brightnesses that are measurements.
+# the paper's typical range of brightnesses that are measurements
 MIN_BRIGHTNESS = 15 / 255
 MAX_BRIGHTNESS = 240 / 255
-# Entries of a table: between two of them a response is straight to a millionth.
+# entries of a table; between two of them, a response is straight to a millionth
 TABLE_SIZE = 1024
 GRID = np.linspace(0, 1, TABLE_SIZE)
 
@@ -70,9 +70,9 @@ def make_blend(
 
 
 def select_blends(blends: Sequence[Blend], *, min_samples: int = 3) -> list[Blend]:
-    """Return the blends that constrain the curve, or raise a ValueError where there is none.
+    """Return the blends that constrain the curve, or raise a ValueError if there is none.
 
-    A blend has two unknowns of its own, s and r, which take up its first two samples: those with
+    A blend has two unknowns of its own, s and r, which use up its first two samples. So blends with
     fewer than `min_samples` are left out.
     """
     blends = [make_blend(blend.I, blend.M, low=0, high=1) for blend in blends]
@@ -107,34 +107,33 @@ def normalize(M: F64, X: F64, s: F64, r: F64) -> InverseResponse:
 def build_response(
     blends: Sequence[Blend], g: F64, s: F64, r: F64, *, ends: float
 ) -> InverseResponse:
-    """Return g, a table over the measured range, without the part `ends` of the samples at either end.
+    """Return g, a table over the measured range, without a fraction `ends` of the samples at either end.
 
-    The lowest and highest brightness measured are there because of their noise, and no curve
-    through such samples is right. So a sample counts where its irradiance puts it, at s_j I_ij +
-    r_j.
+    The lowest and the highest measured brightness are extreme because of their noise, and no curve
+    through such samples is right. So the samples are ordered by s_j I_ij + r_j, and not by their
+    brightness.
 
     Raises
     ------
     ValueError
-        For a part that is not in 0 to 0.25.
+        For a fraction that is not in 0 to 0.25.
     """
     if not 0 <= ends < 0.25:
         raise InputError(f"expected ends from 0 to 0.25, got {ends}")
-    M = np.linspace(*brightness_range(blends), len(g))
-    X = np.concatenate(
-        [scale * blend.I + zero for blend, scale, zero in zip(blends, s, r, strict=True)]
-    )
+    darkest, brightest = brightness_range(blends)
+    M = np.linspace(darkest, brightest, len(g))
+    X = np.concatenate([s_j * blend.I + r_j for blend, s_j, r_j in zip(blends, s, r, strict=True)])
     low, high = np.quantile(np.interp(X, g, M), [ends, 1 - ends])
     inner = np.linspace(low, high, TABLE_SIZE)
     return normalize(inner, np.interp(inner, M, g), s, r)
 
 
 def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = False) -> F64:
-    """Return found - truth (1024,) over the brightnesses that both measured; the truth goes from 0 to 1.
+    """Return found - truth (1024,) over the common range of brightness, where the truth goes from 0 to 1.
 
-    Scale and offset are ambiguous [Wilburn08 sec. 2.1]: both curves go from 0 to 1 [sec. 5], or,
-    with `fit`, those of `found` are the ones that fit best, which separates errors of shape from
-    those of the two ends.
+    Scale and offset are ambiguous [Wilburn08 sec. 2.1]. So both curves are scaled to 0 ... 1 [sec.
+    5]. With `fit`, `found` gets the scale and offset that fit best, which separates errors of the
+    shape from errors at the two ends.
 
     Raises
     ------
@@ -148,31 +147,33 @@ def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = Fa
             f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}"
         )
     M = np.linspace(low, high, TABLE_SIZE)
-    X, Y = (np.interp(M, curve.M, curve.X) for curve in (found, truth))
+    X = np.interp(M, found.M, found.X)
+    Y = np.interp(M, truth.M, truth.X)
     X = (X - X[0]) / (X[-1] - X[0])
     Y = (Y - Y[0]) / (Y[-1] - Y[0])
     return np.polyval(np.polyfit(X, Y, 1), X) - Y if fit else X - Y
 
 
 def rmse(found: InverseResponse, truth: InverseResponse) -> float:
-    """Return the root of the mean squared `difference`: the paper's RMSE; its largest is the disparity."""
+    """Return the root mean square of `difference`, the paper's RMSE (its maximum is the disparity)."""
     return float(np.sqrt(np.mean(difference(found, truth) ** 2)))
 
 
 def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) -> F64:
-    """Return g = ln f^-1 (n,), g[n // 2] = 0: the table that every merge takes.
+    """Return the response g = ln f^-1 (n,), g[n // 2] = 0, as every merge expects it.
 
     Parameters
     ----------
     joined : InverseResponse
         What a join found.
     black : float
-        The X without any light, below the X of the lowest level measured. Blends do not constrain
-        it, their offset is ambiguous [Wilburn08 sec. 2.1]; where their darker light is nearly none,
-        it is their offset, `joined.r.min()`.
+        The X without any light, below the X of the lowest measured level. Blends do not constrain
+        it, as their offset is ambiguous [Wilburn08 sec. 2.1]. If their darker light is nearly
+        black, it is their offset, `joined.r.min()`.
     n : int
-        Levels of the table. Below the measured range the curve runs straight to (0, `black`), above
-        it goes on with its last slope; level 0 gets the middle of its cell, for ln 0 has no number.
+        Number of levels. Below the measured range, the curve is a straight line to (0, `black`);
+        above it, it continues with its last slope. Level 0 gets the value at a quarter of a level,
+        as ln 0 is not finite.
 
     Raises
     ------
@@ -196,6 +197,7 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     slope = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0)
     levels = np.arange(n) / (n - 1)
     levels[0] = 0.25 / (n - 1)
-    table = np.interp(levels, np.r_[0, M, 1], np.r_[0, X, X[-1] + slope * (1 - M[-1])])
+    white = X[-1] + slope * (1 - M[-1])
+    table = np.interp(levels, np.r_[0, M, 1], np.r_[0, X, white])
     g = np.log(np.maximum(table, 1e-12))
     return g - g[n // 2]

@@ -8,16 +8,16 @@ M        brightness             (4, 6[, 3]) of the patches, 0 to 1
 t        exposure times         (P,) seconds
 X        exposure               R times the light; of one patch in many photographs, t times what it reflects
 
-A plane seen by a camera without distortion is a homography away from the photograph; four corners
-fix its eight numbers. One photograph gives six points of the inverse response, by the reflectances
-that are known. Several with different times need none: along one patch exposure is proportional to
-time, which is a blend of its own with a scale, the patch's brightness in that place under that
-light, and no offset. `joining` finds the scales and one curve: Wilburn's ground truth.
+A homography maps a plane to its photograph by a camera without distortion, and four corners
+determine its eight parameters. One photograph gives six points of the inverse response, as the
+reflectances of the gray patches are known. Several photographs with different times need no
+reflectances: the exposure of a patch is proportional to time, which is a blend with a scale and
+without an offset. `joining` finds the scales and one curve: Wilburn's ground truth.
 
 The reflectances are the specification of the chart, McCamy, Marcus and Davidson, A color-rendition
 chart, 1976, as the package colour-science lists it ("ColorChecker 1976"). Printed charts differ:
 BabelColor's mean of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above for
-black. Whoever has measured a chart passes its own R.
+black. Pass your own R if you have measured your chart.
 """
 
 from pathlib import Path
@@ -33,12 +33,12 @@ from hdrlab.errors import InputError
 
 ROWS = 4
 COLUMNS = 6
-# Space between the patches of the classic chart, over a patch's width.
+# between the patches of the classic chart, over a patch's width
 GAP = 0.15
-# Y of the patches in %, row by row, under illuminant C.
+# Y of the patches in %, row by row, under illuminant C
 LUMINANCE = np.loadtxt(Path(__file__).with_name("colorchecker.csv"), delimiter=",")
 LUMINANCE.setflags(write=False)
-# R of the gray patches: gray reflects all wavelengths alike, so it is one number for every channel.
+# R of the gray patches, the same for every channel, as gray reflects all wavelengths equally
 NEUTRAL = LUMINANCE[3] / 100
 UNIT_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
 
@@ -62,13 +62,14 @@ def homography(source: ArrayLike, target: ArrayLike) -> F64:
 
 
 def _as_corners(points: ArrayLike) -> F64:
-    """Return points (4, 2) that turn one way at each of four corners, or raise a ValueError."""
+    """Return the points (4, 2) if they are the corners of a convex quadrilateral, or raise a ValueError."""
     corners = np.asarray(points, np.float64)
     if corners.shape != (4, 2) or not np.all(np.isfinite(corners)):
         raise InputError(f"expected four corners (4, 2), (x, y) in pixels, got {describe(corners)}")
     edges = np.roll(corners, -1, axis=0) - corners
     turns = np.linalg.det(np.stack([edges, np.roll(edges, -1, axis=0)], axis=1))
-    if not abs(np.sign(turns).sum()) == 4 or np.abs(turns).min() < 1e-6 * np.ptp(corners) ** 2:
+    turn_the_same_way = abs(np.sign(turns).sum()) == 4
+    if not turn_the_same_way or np.abs(turns).min() < 1e-6 * np.ptp(corners) ** 2:
         raise InputError(f"expected the corners of a convex quadrilateral, got {corners.tolist()}")
     return corners
 
@@ -119,7 +120,9 @@ def read_patches(
     stack = as_stack(np.asarray(image)[None])
     if rows < 1 or columns < 1 or not gap >= 0 or not 0 < core <= 1:
         raise InputError(f"expected {rows=}, {columns=} > 0, {gap=} >= 0 and 0 < {core=} <= 1")
-    H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
+    width = columns + gap * (columns - 1)
+    height = rows + gap * (rows - 1)
+    H = homography(UNIT_SQUARE * [width, height], corners)
     shape = np.array(stack.shape[1:3])
     if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
         raise InputError(
@@ -212,9 +215,8 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
             f"expected patches brighter the more they reflect, got {m.round(4).tolist()}"
         )
     brightness = np.linspace(m[0], m[-1], blends.TABLE_SIZE)
-    return blends.normalize(
-        brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1)
-    )
+    exposure = PchipInterpolator(m, x)(brightness)
+    return blends.normalize(brightness, exposure, s=np.ones(1), r=np.zeros(1))
 
 
 def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
@@ -223,15 +225,14 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     Parameters
     ----------
     M : (P, K) float
-        Brightness of K patches in P photographs, one channel, 0 to 1. Any patches will do, coloured
-        ones too.
+        Brightness of K patches in P photographs, one channel, 0 to 1. The patches may be coloured.
     times : (P,) float
         Seconds.
 
     Returns
     -------
     InverseResponse
-        s is each patch's exposure per second; r is what no light has.
+        s is each patch's exposure per second; r is the X without any light.
 
     Raises
     ------

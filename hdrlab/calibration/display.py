@@ -93,37 +93,46 @@ def draw_schedule(
     >>> draw_schedule(two, shape=(1, 3)).tolist()
     [[[255, 0, 255]], [[0, 0, 255]]]
     """
-    high, low, rows, columns, steps, patch, border = schedule
-    if not high or not all(0 <= low < one <= 255 for one in high):
+    high = schedule.high
+    low = schedule.low
+    patch = schedule.patch
+    border = schedule.border
+    steps = schedule.steps
+    if not high or not all(0 <= low < P_hi <= 255 for P_hi in high):
         raise InputError(
             f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}"
         )
     if patch < 1 or border < 0:
-        raise InputError(
-            f"expected a patch of a pixel and a border of 0 at least, got {patch} and {border}"
-        )
-    last_step = np.tile(np.round(mixing_ratios(rows, columns, steps) * steps), (len(high), 1))
-    need = [count * (patch + border) - border for count in last_step.shape]
-    if need[0] > shape[0] or need[1] > shape[1]:
-        raise InputError(f"expected pictures of at least {need[0]} x {need[1]} pixels, got {shape}")
-    P_hi = np.repeat(high, rows)[:, None]
-    values = [np.where(step < last_step, P_hi, low).astype(np.uint8) for step in range(steps)]
-    return np.stack([draw_patches(one, patch=patch, border=border, shape=shape) for one in values])
+        raise InputError(f"expected patch >= 1 and border >= 0 pixels, got {patch} and {border}")
+    alpha = mixing_ratios(schedule.rows, schedule.columns, steps)
+    last_step = np.tile(np.round(alpha * steps), (len(high), 1))
+    height, width = (count * (patch + border) - border for count in last_step.shape)
+    if height > shape[0] or width > shape[1]:
+        raise InputError(f"expected pictures of at least {height} x {width} pixels, got {shape}")
+    P_hi = np.repeat(high, schedule.rows)[:, None]
+    pictures = []
+    for step in range(steps):
+        values = np.where(step < last_step, P_hi, low).astype(np.uint8)
+        pictures.append(draw_patches(values, patch=patch, border=border, shape=shape))
+    return np.stack(pictures)
 
 
 def find_corners(picture: ArrayLike) -> F64:
     """Return the corners (4, 2), (x, y) pixels, of the grid in a picture (H, W) where all patches are bright.
 
-    So they are in the first picture of a sequence. The corners are the bright pixels farthest along
-    the diagonals; half a pixel out, for a pixel has a width.
+    All patches are bright in the first picture of a sequence. The corners are the bright pixels
+    that are farthest along the diagonals, moved out by half a pixel, to the pixel's own corner.
     """
-    bright = np.asarray(picture, np.float64)
-    *_, y, x = np.nonzero(np.atleast_2d(bright > bright.max() / 4))
-    if bright.ndim != 2 or not bright.max() > 0 or np.ptp(x) == 0 or np.ptp(y) == 0:
-        raise InputError("expected a picture (H, W) of a grid, bright on black")
+    message = "expected a picture (H, W) of a grid, bright on black"
+    picture = np.asarray(picture, np.float64)
+    if picture.ndim != 2 or not picture.max() > 0:
+        raise InputError(message)
+    y, x = np.nonzero(picture > picture.max() / 4)
+    if np.ptp(x) == 0 or np.ptp(y) == 0:
+        raise InputError(message)
     signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    far = [int(np.argmax(sx * x + sy * y)) for sx, sy in signs]
-    return np.column_stack([x[far], y[far]]) + signs / 2
+    farthest = [int(np.argmax(sx * x + sy * y)) for sx, sy in signs]
+    return np.column_stack([x[farthest], y[farthest]]) + signs / 2
 
 
 def read_blends(
@@ -138,8 +147,8 @@ def read_blends(
     """Return the blends of a photograph of the display: a list per channel, with a Blend per grid.
 
     `corners` are the outer corners of the corner patches of all grids together, see
-    `chart.read_patches`; `core` is the part of a patch that is read; `low` and `high` are the
-    limits of what counts as measured.
+    `chart.read_patches`; `core` is the part of a patch that is read; brightnesses between `low` and
+    `high` are measurements.
 
     Raises
     ------
@@ -160,16 +169,16 @@ def read_blends(
 
 
 def recover_display(P: ArrayLike, joined: blends.InverseResponse) -> tuple[F64, F64]:
-    """Return the display's own response: its pixel values (n + 1,), and their light over that of the largest.
+    """Return the response of the display: pixel values (n + 1,), and their light over that of the largest.
 
-    Blend j shows the pixel value P_j for the share alpha and black for the rest, so s_j is the
-    light of P_j above black: several blends calibrate the screen as well as the camera [Wilburn08
-    sec. 6]. The first of the n + 1 is black itself, 0.
+    Blend j shows the pixel value P_j for a fraction alpha of the time and black for the rest. So
+    s_j is the light of P_j above black, and several blends calibrate the screen as well as the
+    camera [Wilburn08 sec. 6]. The first of the n + 1 values is black, 0.
 
     Raises
     ------
     ValueError
-        Where there is not one pixel value per blend.
+        If there is not one pixel value per blend.
     """
     P = np.asarray(P, np.float64)
     if P.shape != joined.s.shape:

@@ -10,16 +10,17 @@ p     predicted brightness  g^-1(s_j I_ij + r_j), g of the iteration before
 v     slope                 g' of the iteration before, v_k at B-spline k
 lambda  `smoothness`
 
-A polynomial of degree 6 is stiff where a response bends and swings where it is straight, and a
-simplex may stop on its way. Here every iteration is least squares in c, s and r with c >= 0,
+A polynomial of degree 6 is too stiff where a response bends and oscillates where it is straight,
+and a simplex may stop too early. Here every iteration is a least-squares problem in c, s and r with
+c >= 0,
 
     sum_ij ((g(p) - s_j I_ij - r_j) / v(p) + m_ij - p)^2 + lambda sum_k ((c / h)''_k / v_k)^2,
 
-the Gauss-Newton form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m; put into g, as in
-eq. 5, it would be on both sides of the fit and flatten the curve. So g is taken at the predicted
-brightness p. The third differences of the spline's coefficients, second ones of its slopes, are
-taken relative to the slope: a toe a hundred times flatter than the shoulder is smoothed a hundred
-times less.
+the Gauss-Newton form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m. If m were the
+argument of g, as in eq. 5, noise would be on both sides of the fit and flatten the curve. So g is
+evaluated at the predicted brightness p. The third differences of the spline's coefficients, which
+are second differences of its slopes, are divided by the slope: a toe a hundred times flatter than
+the shoulder is smoothed a hundred times less.
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,12 +42,12 @@ from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
 from hdrlab.errors import InputError
 
-# Of the mean slope: what is flatter can hardly be distinguished from a step.
-MIN_SLOPE = 1e-3
+# relative to the mean slope; a flatter part can hardly be distinguished from a step
+MIN_RELATIVE_SLOPE = 1e-3
 
 
 class State(NamedTuple):
-    """After an iteration: the curve g and its slope v (1024,), scales s and offsets r (n,), and the cost."""
+    """The curve g and its slope v (1024,), scales s and offsets r (n,), and the cost after an iteration."""
 
     g: F64
     v: F64
@@ -88,9 +89,9 @@ def slope_curvature(v: F64, count: int) -> F64:
 def build_equations(
     blends: Sequence[Blend], p: F64, v: F64, count: int, offset: bool
 ) -> list[tuple[F64, F64, F64]]:
-    """Return A, F, b of each blend: A c - F (s, r) = b; the widest one's scale is 1, no unknown.
+    """Return A, F, b of each blend: A c - F (s, r) = b. The scale of the widest blend is 1, no unknown.
 
-    p holds the blends' predicted brightnesses one after the other.
+    p contains the predicted brightnesses of all blends, one blend after the other.
     """
     widest = int(np.argmax([np.ptp(blend.M) for blend in blends]))
     weight = 1 / np.interp(p, GRID, v)
@@ -107,7 +108,7 @@ def build_equations(
 
 
 def eliminate(A: F64, F: F64, b: F64) -> F64:
-    """Return [A b] without the part that the blend's own unknowns take up: (1 - Q Q^T) [A b], F = Q R."""
+    """Return [A b] with the blend's own unknowns eliminated: (1 - Q Q^T) [A b], F = Q R."""
     Q = np.linalg.qr(F)[0]
     rows = np.column_stack([A, b])
     return rows - Q @ (Q.T @ rows)
@@ -119,10 +120,10 @@ def solve_increments(
     """Return c >= 0 and the cost of all blends' equations together; with offsets free, c_0 is 0."""
     rows = [eliminate(*system) for system in systems]
     rows.append(np.pad(penalty, ((0, 0), (0, 1))))
-    R = np.asarray(
-        np.linalg.qr(np.vstack(rows), mode="r")
-    )  # K + 1 rows with the same least squares
-    R[:, 0] *= not offset
+    # K + 1 rows with the same least-squares solution
+    R = np.asarray(np.linalg.qr(np.vstack(rows), mode="r"))
+    if offset:
+        R[:, 0] = 0
     c, norm = nnls(R[:, :-1], R[:, -1])
     return c, float(norm**2)
 
@@ -138,15 +139,22 @@ def update(
         raise InputError(
             "expected brightness that rises with irradiance, the blends fit a flat curve best"
         )
-    x = [np.linalg.lstsq(F, A @ c - b, rcond=None)[0] for A, F, b in systems]
-    s = np.array([one[0] if len(one) == 1 + offset else 1.0 for one in x])
-    r = np.array([one[-1] if offset else 0.0 for one in x])
-    return State(g, np.maximum(np.gradient(g, GRID), MIN_SLOPE * (g[-1] - g[0])), s, r, cost)
+    s = np.ones(len(systems))
+    r = np.zeros(len(systems))
+    for j, (A, F, b) in enumerate(systems):
+        unknowns = np.linalg.lstsq(F, A @ c - b, rcond=None)[0]
+        has_scale = len(unknowns) == 1 + offset
+        if has_scale:
+            s[j] = unknowns[0]
+        if offset:
+            r[j] = unknowns[-1]
+    v = np.maximum(np.gradient(g, GRID), MIN_RELATIVE_SLOPE * (g[-1] - g[0]))
+    return State(g, v, s, r, cost)
 
 
 def predict_brightness(blends: Sequence[Blend], state: State) -> F64:
-    """Return p = g^-1(s_j I_ij + r_j), of one blend after the other."""
-    rising = state.g + 1e-12 * state.g[-1] * GRID  # so that a flat stretch has one answer
+    """Return p = g^-1(s_j I_ij + r_j), one blend after the other."""
+    rising = state.g + 1e-12 * state.g[-1] * GRID  # so that the inverse is unique where g is flat
     X = [s * blend.I + r for blend, s, r in zip(blends, state.s, state.r, strict=True)]
     return np.interp(np.concatenate(X), rising, GRID)
 
@@ -166,16 +174,16 @@ def join_steps(
         raise InputError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
     p = np.concatenate([blend.M for blend in blends])
     v = np.ones_like(GRID)
-    before = GRID
+    previous = GRID
     for _ in range(max_iterations):
         state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)
         yield state
-        now = state.g / state.g[-1]
-        if np.abs(now - before).max() < tolerance:
+        curve = state.g / state.g[-1]
+        if np.abs(curve - previous).max() < tolerance:
             return
         p = predict_brightness(blends, state)
         v = state.v
-        before = now
+        previous = curve
 
 
 def join(

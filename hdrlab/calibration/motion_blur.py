@@ -3,14 +3,15 @@
 row    brightness      (W,), 0 to 1, of one scan line: bright, a dark region, bright
 I      irradiance      0, 1, 2 ... from the dark end of a ramp to the bright one: linear if the motion is
 
-While the edge passes, a pixel sees white for a while and black for the rest; from pixel to pixel
-that share changes evenly, if the edge moves evenly. The two edges of a dark region betray a motion
-that does not: what makes the left ramp too steep at its dark end makes the right one too steep at
-its bright end, and their curves part.
+While the edge passes, a pixel receives white for a part of the time and black for the rest. If the
+edge moves with constant speed, that fraction changes linearly from pixel to pixel. The two edges of
+a dark region reveal a motion that is not linear: what makes the left ramp too steep at its dark end
+makes the right ramp too steep at its bright end, and their curves differ.
 """
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ from hdrlab.calibration.blends import (
 from hdrlab.core.arrays import F64, ArrayLike, NDArray, as_stack, levels
 from hdrlab.errors import InputError
 
-# Fraction of the range: the paper's good example stays below, its bad one has 0.028.
+# fraction of the range; the paper's good example is below, its bad example has 0.028
 MAX_RMSE = 0.01
 
 
@@ -42,8 +43,9 @@ class Ramp(NamedTuple):
     rises: bool
 
 
-class Comparison(NamedTuple):
-    """Whether left and right edges agree: the RMSE between their curves, and the curves."""
+@dataclass(frozen=True)
+class Comparison:
+    """Whether left and right edges agree, the RMSE between their curves, and the curves."""
 
     linear: bool
     rmse: float
@@ -63,25 +65,27 @@ def classify(row: F64, *, low: float, high: float, width: int) -> NDArray[np.int
 def straighten_edges(found: Sequence[Ramp]) -> list[Ramp]:
     """Return the ramps with ends that lie on straight lines over the rows, as the target's edges do.
 
-    Where a ramp ends by its own noise, noise has chosen its last samples: just before it is bright
-    enough there are those that are too dark. A line through the ends of all rows (Theil and Sen's,
-    the median of all slopes) hardly depends on the noise of a single one. Ramps far off it belong
-    to something else.
+    The end of a single ramp depends on its noise, which makes its last samples too dark. A line
+    through the ends of all rows (Theil and Sen's, with the median of all slopes) hardly depends on
+    the noise of a single row. Ramps far from it belong to something else.
     """
     edges = defaultdict(list)
-    count = Counter[int]()
-    for one in found:
-        edges[count[one.row], one.rises].append(one)
-        count[one.row] += 1
+    ramps_in_row = Counter[int]()
+    for ramp in found:
+        edges[ramps_in_row[ramp.row], ramp.rises].append(ramp)
+        ramps_in_row[ramp.row] += 1
     return sorted(ramp for edge in edges.values() for ramp in _straighten(edge))
 
 
 def _straighten(edge: Sequence[Ramp]) -> list[Ramp]:
     """Return the ramps of one edge with their ends on two lines, without those off by a tenth of a ramp."""
-    row, start, stop, _ = np.array(edge).T
+    row = np.array([ramp.row for ramp in edge])
+    start = np.array([ramp.start for ramp in edge])
+    stop = np.array([ramp.stop for ramp in edge])
     if len(np.unique(row)) < 3:
         return list(edge)
-    first, last = np.maximum([_fit_line(row, start), _fit_line(row, stop)], 0)
+    first = np.maximum(_fit_line(row, start), 0)
+    last = np.maximum(_fit_line(row, stop), 0)
     near = np.maximum(np.abs(first - start), np.abs(last - stop)) <= (last - first) / 10
     return [
         edge[k]._replace(start=int(first[k]), stop=int(last[k]))
@@ -91,9 +95,10 @@ def _straighten(edge: Sequence[Ramp]) -> list[Ramp]:
 
 def _fit_line(x: NDArray[np.intp], y: NDArray[np.intp]) -> F64:
     """Return the whole numbers nearest to a straight line through y (x), by the slopes of all pairs."""
-    some = slice(None, None, len(x) // 500 + 1)  # for pairs are many
-    found = theilslopes(y[some], x[some])
-    return np.rint(found.intercept + found.slope * x)
+    # at most 500 samples, as there are many pairs
+    every = len(x) // 500 + 1
+    line = theilslopes(y[::every], x[::every])
+    return np.rint(line.intercept + line.slope * x)
 
 
 def find_ramps(
@@ -113,9 +118,9 @@ def find_ramps(
     low, high : float
         What is dark and what is bright, 0 to 1: the paper's typical range is 15 to 240 of 255.
     width : int
-        Pixels of the median that keeps noise from ending a ramp.
+        Pixels of the median filter, which prevents noise from ending a ramp.
     shortest : int
-        Pixels of a ramp that is worth it.
+        Minimum length of a ramp in pixels.
 
     Raises
     ------
@@ -148,8 +153,14 @@ def find_ramps(
 def read_blends(image: ArrayLike, ramps: Sequence[Ramp]) -> list[Blend]:
     """Return the Blends of ramps in an image (R, W), I = 0, 1, 2 ... from the dark end [sec. 2.2]."""
     stack = as_stack(np.asarray(image)[None])
-    M = [stack[0, row, start:stop][:: 1 if rises else -1] for row, start, stop, rises in ramps]
-    return [make_blend(np.arange(len(m)), m / (levels(stack) - 1), low=0, high=1) for m in M]
+    blends = []
+    for ramp in ramps:
+        Z = stack[0, ramp.row, ramp.start : ramp.stop]
+        if not ramp.rises:
+            Z = Z[::-1]
+        M = Z / (levels(stack) - 1)
+        blends.append(make_blend(np.arange(len(M)), M, low=0, high=1))
+    return blends
 
 
 def join(
@@ -159,11 +170,10 @@ def join(
     smoothness: float = 1e-3,
     ends: float = 0.025,
 ) -> InverseResponse:
-    """Return the inverse response that all ramps of an image (R, W) join in; see `joining.join`.
+    """Return the inverse response that joins all ramps of an image (R, W); see `joining.join`.
 
-    Single pixels are noisier than means over a display's patches, so the spline is stiffer; and
-    each ramp's place is known by its own noise alone, so its first and last two samples or so are
-    left out.
+    Single pixels are noisier than means over a display's patches, so the spline is stiffer. And the
+    ends of a ramp depend on its noise, so about two samples at either end are left out.
     """
     blends = read_blends(image, find_ramps(image) if ramps is None else ramps)
     return joining.join(blends, smoothness=smoothness, ends=ends)
@@ -210,9 +220,11 @@ def compare_edges(
     True
     """
     ramps = find_ramps(image) if ramps is None else ramps
-    left, right = ([one for one in ramps if one.rises == rises] for rises in (False, True))
+    left = [ramp for ramp in ramps if not ramp.rises]
+    right = [ramp for ramp in ramps if ramp.rises]
     if not left or not right:
         raise InputError(f"expected ramps on both sides, got {len(left)} down and {len(right)} up")
-    curves = join(image, left), join(image, right)
-    apart = rmse(*curves)
-    return Comparison(apart <= limit, apart, *curves)
+    left_curve = join(image, left)
+    right_curve = join(image, right)
+    error = rmse(left_curve, right_curve)
+    return Comparison(linear=error <= limit, rmse=error, left=left_curve, right=right_curve)

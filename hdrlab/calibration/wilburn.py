@@ -6,15 +6,15 @@ g     inverse response      g(m) = sum_k a_k m^k, a_0 = 0, sum_k a_k = 1: g(0) =
 E     error                 sum_ij (s_j I_ij + r_j - g(m_ij))^2  [eq. 5, where the print has s_i for s_j and
                             lets i run to l_j, one too far]
 
-The paper takes powers of the brightness itself. Its constraint then fixes g at brightness 0 and 1,
-outside of what was measured, and in between the scales can shrink and g lie down flat, with hardly
-an error. Here the two points lie at the ends of the measured range, where the paper compares its
+The paper uses powers of the brightness itself. Its constraint then fixes g at brightness 0 and 1,
+outside of the measured range; in between, the scales can shrink and g can become flat with hardly
+any error. Here the two points are at the ends of the measured range, where the paper compares its
 curves.
 
-For a given g the best s_j and r_j are a straight line through (I_ij, g(m_ij)), so the simplex
-searches the d - 1 free coefficients alone. What the lines leave is linear in a, hence E = a^T Q a,
-with a table Q (d + 1, d + 1) that is made once, however many samples there are. `joining` has a
-better posed way.
+For a given g, the best s_j and r_j are a straight line through (I_ij, g(m_ij)), so the simplex
+searches only the d - 1 free coefficients. The residuals of the lines are linear in a, so E = a^T Q
+a, with a matrix Q (d + 1, d + 1) that is computed once for any number of samples. `joining` solves
+a better-posed problem.
 """
 
 from collections.abc import Iterator, Sequence

@@ -97,9 +97,10 @@ def weight(F: F32, powers: Sequence[float] = (1, 1, 1)) -> F32:
 
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
     """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
-    each = [weight(split_planes(Z), powers) for Z in images]
-    total = sum(each)
-    yield from (W / total for W in each)
+    stack = [weight(split_planes(Z), powers) for Z in images]
+    total = sum(stack)
+    for W in stack:
+        yield W / total
 
 
 def add_term(blended: F32, W: F32, detail: F32) -> F32:
@@ -114,7 +115,8 @@ def fuse_steps(
 
     R_k = sum_j W_j,k L_j,k at every level [Mertens07]: a photograph adds its term to all of them.
     """
-    stack, powers = as_stack(images), (contrast, saturation, exposedness)
+    stack = as_stack(images)
+    powers = (contrast, saturation, exposedness)
     if not all(0 <= power < np.inf for power in powers):
         raise InputError(
             f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}"
@@ -122,8 +124,10 @@ def fuse_steps(
     depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns
     blended: list[F32] = []
     for j, W in enumerate(weights(stack, powers)):
-        Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(split_planes(stack[j]), depth)
-        blended = blended or [np.zeros_like(detail) for detail in Lk]
+        Wk = pyramid.gaussian(W, depth)
+        Lk = pyramid.laplacian(split_planes(stack[j]), depth)
+        if not blended:
+            blended = [np.zeros_like(detail) for detail in Lk]
         blended = list(map(add_term, blended, Wk, Lk))
         yield State(j, Wk, Lk, blended)
 

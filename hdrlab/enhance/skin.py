@@ -1,4 +1,4 @@
-"""Skin in a photograph, by its colour (Battiato et al. 2008, sec. 1.3.2).
+"""Skin detection by colour (Battiato et al. 2008, sec. 1.3.2).
 
 Z      picture       (..., 3) levels 0 to 255, sRGB
 x      chrominance   (..., 2) = (Cb, Cr), levels around 0
@@ -7,15 +7,15 @@ d      Mahalanobis distance of a pixel from them
 p      density p(x | skin)
 r, g   R / (R + G + B), G / (R + G + B): colour without brightness
 
-Two ways. A Gaussian over the chrominance says how likely a colour is skin's. And the colours of
-skin under many lamps, from candle to sky, lie in the (r, g) plane in a crescent between two
-parabolas: the skin locus. It is wider, for it takes any lamp: it finds more skin, and wood, hair
-and orange cloth too.
+There are two methods. A Gaussian over the chrominance gives the probability density of a skin
+colour. And the colours of skin under many light sources, from candle to sky, lie in a crescent of
+the (r, g) plane between two parabolas, the skin locus. As it includes any light source, it finds
+more skin, but also wood, hair and orange cloth.
 
-The Gaussian comes from a training set. The default one is computed: skin is a stack of filters,
-melanin over blood, so its log reflectance moves along a line from light to dark. The line goes
-through the two skins of the ColorChecker and a little beyond, with more or less blood, shade and
-white balance. `fit` takes one of your own.
+The Gaussian comes from a training set. The default training set is computed: skin is a stack of
+filters, melanin over blood, so its log reflectance moves along a line from light to dark. The line
+goes through the two skins of the ColorChecker and a little beyond, with more or less blood, shade
+and white balance. `fit` computes the Gaussian of another training set.
 """
 
 from typing import NamedTuple
@@ -25,40 +25,39 @@ import numpy as np
 from hdrlab.core.arrays import F64, ArrayLike, Mask
 from hdrlab.errors import InputError
 
-LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
-CHROMA = np.array(
-    [[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]]
-)  # Cb, Cr of RGB [BT.601]
+# Y of RGB [BT.601]
+LUMA = np.array([0.299, 0.587, 0.114])
+# Cb, Cr of RGB [BT.601]
+CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])
 # sRGB of the ColorChecker's two skins
 LIGHT = (194, 150, 130)
 DARK = (115, 82, 68)
 # parabolas in r [Soriano03]
 UPPER = (-1.3767, 1.0743, 0.1452)
 LOWER = (-0.776, 0.5601, 0.1766)
-# squared radius of the white that is left out of the locus
-WHITE = 0.0004
-# Mahalanobis distance: of a Gaussian, 96 % lie nearer
-REACH = 2.5
+# squared distance from white in the (r, g) plane; nearer colours are left out of the locus
+WHITE_RADIUS_SQUARED = 0.0004
+# 96 % of a Gaussian lie within this Mahalanobis distance
+MAX_DISTANCE = 2.5
 
 
 class Skin(NamedTuple):
-    """What skin looks like: mean (2,) and covariance (2, 2) of (Cb, Cr)."""
+    """The colour of skin: mean (2,) and covariance (2, 2) of (Cb, Cr)."""
 
     mu: F64
     S: F64
 
 
-# Of the computed training set, at the brightness of a visibility image; a test computes it again.
+# from the computed training set, at the brightness of a visibility image; a test computes it again
 DEFAULT = Skin(
     np.array([-17.12975, 23.91754]), np.array([[20.25376, -25.10826], [-25.10826, 49.34927]])
 )
 
 
 def chrominance(Z: ArrayLike) -> F64:
-    """Return x = 128 (Cb, Cr) / Y of levels (..., 3): the chrominance that a colour would have at level 128.
+    """Return x = 128 (Cb, Cr) / Y of levels (..., 3), the chrominance of the same colour at level 128.
 
-    Cb and Cr alone shrink in the shade, and so would the distance from gray; divided by Y they do
-    not.
+    Without the division by Y, Cb and Cr would be smaller in the shade.
     """
     Z = np.asarray(Z, np.float64)
     return 128 * (Z @ CHROMA.T) / np.maximum(Z @ LUMA, 1)[..., None]
@@ -70,7 +69,7 @@ def fit(Z: ArrayLike) -> Skin:
     Raises
     ------
     ValueError
-        For fewer than three pixels, or colours that lie on one line: they have no covariance.
+        For fewer than three pixels, or colours on one line, whose covariance is singular.
     """
     Z = np.asarray(Z, np.float64)
     if Z.ndim != 2 or Z.shape[1] != 3 or len(Z) < 3:
@@ -86,8 +85,9 @@ def fit(Z: ArrayLike) -> Skin:
 
 def distance(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
     """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8]."""
-    away = chrominance(Z) - skin.mu
-    return np.sqrt(np.einsum("...i,ij,...j->...", away, np.linalg.inv(skin.S), away))
+    difference = chrominance(Z) - skin.mu
+    inverse = np.linalg.inv(skin.S)
+    return np.sqrt(np.einsum("...i,ij,...j->...", difference, inverse, difference))
 
 
 def likelihood(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
@@ -96,13 +96,13 @@ def likelihood(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
     return np.exp(-(distance(Z, skin) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
 
 
-def find_by_chrominance(Z: ArrayLike, skin: Skin = DEFAULT, *, reach: float = REACH) -> Mask:
+def find_by_chrominance(Z: ArrayLike, skin: Skin = DEFAULT, *, reach: float = MAX_DISTANCE) -> Mask:
     """Return the pixels (...) whose Mahalanobis distance from skin is below `reach`."""
     return distance(Z, skin) < reach
 
 
 def find_by_locus(Z: ArrayLike) -> Mask:
-    """Return the pixels (...) between the parabolas of the skin locus, white left out [Soriano03].
+    """Return the pixels (...) between the parabolas of the skin locus, except white [Soriano03].
 
     Examples
     --------
@@ -113,8 +113,9 @@ def find_by_locus(Z: ArrayLike) -> Mask:
     total = np.maximum(Z.sum(axis=-1), 1)
     r = Z[..., 0] / total
     g = Z[..., 1] / total
-    white = (r - 1 / 3) ** 2 + (g - 1 / 3) ** 2 <= WHITE
-    return (np.polyval(LOWER, r) < g) & (g < np.polyval(UPPER, r)) & ~white & (r > g)
+    is_white = (r - 1 / 3) ** 2 + (g - 1 / 3) ** 2 <= WHITE_RADIUS_SQUARED
+    is_in_locus = (np.polyval(LOWER, r) < g) & (g < np.polyval(UPPER, r))
+    return is_in_locus & ~is_white & (r > g)
 
 
 FINDERS = {"chrominance": find_by_chrominance, "locus": find_by_locus}

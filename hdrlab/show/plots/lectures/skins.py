@@ -26,7 +26,7 @@ def _pixels(Z: ArrayLike) -> F64:
     return Z.reshape(-1, 3)[:: -(-Z.size // 3 // MOST)]
 
 
-def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.REACH) -> Axes:
+def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.MAX_DISTANCE) -> Axes:
     """Draw the chrominance of pixels, and the ellipse within `reach` of the Gaussian of skin."""
     x = skin.chrominance(_pixels(Z))
     ax = axes(4.6, 4.2)
