@@ -1,14 +1,14 @@
-"""Photographs as values that one can compare: what each of them would have been in another's exposure.
+"""Photographs as values that can be compared after converting them to a common exposure.
 
 Z      photographs         (P, H, W[, 3]) levels;  t  (P,) times, s;  g  (n[, 3]) ln exposure of each level
 X      exposure            share of a full pixel, exp g(Z) / exp g(n - 1), 0 to 1
 v      value               X^(1 / 2.2), (H, W, C) float32: equal differences look about equal
 H      radiance            (H, W, C), in the unit of g per second
 full   exp g(n - 1)        (C,), exposure of a full pixel
-noise  (H, W, C)           what one level more would add to the value
+noise  (H, W, C)           change of the value for a change of one level
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,7 +32,8 @@ LEVEL_TOLERANCE = 3
 CLIPPING_LEVEL = 0.98
 
 
-class Values(NamedTuple):
+@dataclass(frozen=True)
+class Values:
     """Photographs as values.
 
     Attributes
@@ -75,13 +76,14 @@ def boost(v: F32, ratio: float) -> F32:
 
 
 def consistent_range(v: F32, noise: F32, clipped: Mask, t: float, full: F32) -> tuple[F32, F32]:
-    """Return the least and the most radiance that fits a photograph: within 3 levels of what it shows.
+    """Return the lowest and highest radiance that is consistent with a photograph, within 3 levels.
 
-    Where it is clipped it says "at least", and nothing of the most.
+    A clipped pixel is a lower bound, and has no upper one.
     """
-    few = np.float32(LEVEL_TOLERANCE) * noise
-    least = radiance(np.where(clipped, v, np.maximum(v - few, 0)), t, full)
-    return least, np.where(clipped, np.float32(np.inf), radiance(v + few, t, full))
+    tolerance = np.float32(LEVEL_TOLERANCE) * noise
+    low = radiance(np.where(clipped, v, np.maximum(v - tolerance, 0)), t, full)
+    high = np.where(clipped, np.float32(np.inf), radiance(v + tolerance, t, full))
+    return low, high
 
 
 def resize_picture(picture: Array, shape: tuple[int, int]) -> F32:
@@ -107,5 +109,11 @@ def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
     z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
-    noise = look_up_levels(np.gradient(v, axis=0), Z)
-    return Values(look_up_levels(v, Z), z, noise, z > CLIPPING_LEVEL, t, full)
+    return Values(
+        v=look_up_levels(v, Z),
+        z=z,
+        noise=look_up_levels(np.gradient(v, axis=0), Z),
+        clipped=z > CLIPPING_LEVEL,
+        t=t,
+        full=full,
+    )

@@ -30,24 +30,24 @@ from hdrlab.core import bracket, steps
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Indices
 from hdrlab.errors import InputError
 
-# where the search of both ways begins
+# the initial fields of the search in both directions
 Fields = tuple[Indices, tuple[Indices, ...]]
 
-# of the sides of a scale to those of the next coarser one
+# sides of a scale over those of the next coarser one
 SCALE_RATIO = 2**0.5
-# levels, 1 the top, between which the reference begins to be trusted, and ceases to be
+# levels, 1 is the top: the weight of the reference rises over the first range, and falls over the second
 TRUSTED_LEVELS: tuple[synthesis.Ramp, synthesis.Ramp] = ((0.05, 0.2), (0.85, 0.95))
 
 
 class State(NamedTuple):
-    """Where the synthesis stands after a round of a scale.
+    """The synthesis after a round of a scale.
 
     Attributes
     ----------
-    scale, round : from 0, the coarsest scale and what is before its first round
+    scale, round : from 0, the coarsest scale and the state before its first round
     H : (h, w, C), radiance
-    I : (P, h, w, C), what each exposure makes of it, in values
-    mbds : (P,), by how much the exposures were unlike the photographs in this round; NaN before the
+    I : (P, h, w, C), the values of H in each exposure
+    mbds : (P,), dissimilarity of the exposures and the photographs in this round; NaN before the
         first
     """
 
@@ -67,18 +67,20 @@ def improve(
 ) -> tuple[State, list[Fields]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures = []
-    found = []
-    unlike = []
+    next_fields = []
+    mbds = []
     for k, (T, at) in enumerate(zip(state.I, fields, strict=True)):
         S, price = synthesis.boost_photographs(k, scene)
         w = synthesis.weigh_patches(k, scene, price, settings.side)
-        both = search(T, S, price, at, settings, rng)
-        pictures.append(vote(S, w, both, settings.side))
-        found.append((both.coherence.at, tuple(field.at for field in both.completeness)))
-        unlike.append(similarity(w, both))
-    H = synthesis.blend_reference(synthesis.merge_exposures(np.stack(pictures), scene), scene)
+        matches = search(T, S, price, at, settings, rng)
+        pictures.append(vote(S, w, matches, settings.side))
+        completeness = tuple(field.at for field in matches.completeness)
+        next_fields.append((matches.coherence.at, completeness))
+        mbds.append(similarity(w, matches))
+    merged = synthesis.merge_exposures(np.stack(pictures), scene)
+    H = synthesis.blend_reference(merged, scene)
     I_k = synthesis.extract_exposures(H, scene)
-    return State(state.scale, state.round + 1, H, I_k, np.array(unlike)), found
+    return State(state.scale, state.round + 1, H, I_k, np.array(mbds)), next_fields
 
 
 def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
@@ -91,20 +93,24 @@ def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
 def as_scene(
     images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None
 ) -> synthesis.Scene:
-    """Return the Scene of photographs in any order, checked."""
-    each = ldr_values.as_values(images, times, g)
-    order = bracket.short_to_long(np.asarray(images), each.t)
+    """Return the checked Scene of photographs in any order."""
+    values = ldr_values.as_values(images, times, g)
+    order = bracket.short_to_long(np.asarray(images), values.t)
     place = len(order) // 2
     if reference is not None:
         if not 0 <= reference < len(order):
             raise InputError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
         place = int(np.flatnonzero(order == reference)[0])
-    alpha = synthesis.trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
-    v = each.v[order]
-    noise = each.noise[order]
-    clipped = each.clipped[order]
-    t = each.t[order]
-    return synthesis.Scene(v, noise, clipped, t, each.full, place, alpha)
+    rising, falling = TRUSTED_LEVELS
+    return synthesis.Scene(
+        L=values.v[order],
+        noise=values.noise[order],
+        clipped=values.clipped[order],
+        t=values.t[order],
+        full=values.full,
+        reference=place,
+        alpha=synthesis.trapezoid(values.z[order[place]], rising, falling),
+    )
 
 
 def synthesise_steps(
@@ -123,26 +129,23 @@ def synthesise_steps(
     sizes = plan_scales(finest.L.shape[1:3], coarsest)
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
         raise InputError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
+    round_counts = plan_rounds(rounds, len(sizes))
     generator = np.random.default_rng(rng)
-    state = None
-    fields = None
-    for scale, (shape, count) in enumerate(
-        zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)
-    ):
+    H = synthesis.guess_radiance(finest)
+    fields = start_fields(sizes[0], len(finest.t), side)
+    unknown = np.full(len(finest.t), np.nan)
+    for scale, (shape, count) in enumerate(zip(sizes, round_counts, strict=True)):
         scene = synthesis.resize_scene(finest, shape)
-        H = ldr_values.resize_picture(
-            synthesis.guess_radiance(finest) if state is None else state.H, shape
-        )
-        H = H if state is None else synthesis.blend_reference(H, scene)
-        state = State(
-            scale, 0, H, synthesis.extract_exposures(H, scene), np.full(len(scene.t), np.nan)
-        )
+        H = ldr_values.resize_picture(H, shape)
+        if scale > 0:
+            H = synthesis.blend_reference(H, scene)
+        state = State(scale, 0, H, synthesis.extract_exposures(H, scene), unknown)
         yield state
-        fields = start_fields(shape, len(scene.t), side) if fields is None else fields
-        settings = Search(side, 2, max(shape) if scale == 0 else 4)
+        settings = Search(side, rounds=2, radius=max(shape) if scale == 0 else 4)
         for _ in range(count):
             state, fields = improve(state, scene, fields, settings, generator)
             yield state
+        H = state.H
 
 
 def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) -> Array:
@@ -151,22 +154,21 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Photographs in any order, roughly aligned; what moves may be anywhere. Small ones: see
-        above.
+        Photographs in any order, roughly aligned; anything may move. Use small ones: see above.
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
         Response, ln exposure of each level.
     reference : int, optional
-        Which photograph's moment it is; the middle exposure's by default.
+        Number of the photograph whose moment is shown; by default that of the middle exposure.
     side : int
-        Of a patch, pixels, odd.
+        Side of a patch in pixels, odd.
     coarsest : int
         Shorter side of the coarsest scale, pixels.
     rounds : (int, int)
-        Of search and vote at the coarsest scale and at the finest; those between lie between.
+        Rounds of search and vote at the coarsest and at the finest scale; interpolated between.
     rng : int or Generator
-        Where PatchMatch looks by chance.
+        Seed or generator of PatchMatch's random search.
 
     Returns
     -------
@@ -198,18 +200,21 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
 
 
 def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
-    """Return how many rounds each of `count` scales has: as many less from scale to scale."""
+    """Return the number of rounds of each of `count` scales, interpolated between both ends."""
     if not min(rounds) >= 0:
         raise InputError(
             f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}"
         )
-    return np.rint(np.linspace(*rounds, count)).astype(int).tolist()
+    first, last = rounds
+    return np.rint(np.linspace(first, last, count)).astype(int).tolist()
 
 
 def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Fields]:
-    """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
-    h, w = (n - side + 1 for n in shape)
-    return [
-        (patchmatch.identity_field(h, w, k), (patchmatch.identity_field(h, w),) * count)
-        for k in range(count)
-    ]
+    """Return the initial fields: each patch itself, in the photograph of the same exposure."""
+    h = shape[0] - side + 1
+    w = shape[1] - side + 1
+    fields = []
+    for k in range(count):
+        completeness = (patchmatch.identity_field(h, w),) * count
+        fields.append((patchmatch.identity_field(h, w, k), completeness))
+    return fields

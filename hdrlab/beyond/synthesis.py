@@ -11,7 +11,8 @@ Lambda (P, H, W, C)          how far to trust a value
     E(H) = sum of  alpha (h(L_ref) - H)^2 + (1 - alpha) MBDS(H | L_1, ..., L_P)        [Sen12 sec. 3]
 """
 
-from typing import NamedTuple
+import dataclasses
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,13 +22,14 @@ from hdrlab.core.arrays import F32, F64, Mask
 
 Ramp = tuple[float, float]
 
-# of noise: a noisy picture of a patch is as far from a clean one as its own noise is large
+# times the squared noise: the expected squared distance of a noisy patch from a clean one
 NOISE_PRICE = 2.0
-# weight of a value near black or clipping: where no photograph measures, it still decides
-LEAST_WEIGHT = 1e-4
+# of a value near black or clipping, for pixels that no photograph measures well
+MIN_WEIGHT = 1e-4
 
 
-class Scene(NamedTuple):
+@dataclass(frozen=True)
+class Scene:
     """The photographs at one scale, from short to long.
 
     Attributes
@@ -69,13 +71,16 @@ def triangle(v: F32) -> F32:
 
 
 def trust_weights(I: F32) -> F32:  # noqa: E741
-    """Return Lambda(I_k), the triangle; but 1 in the shortest's highlights and the longest's shadows.
+    """Return Lambda(I_k), but 1 in the highlights of the shortest and the shadows of the longest exposure.
 
-    No other photograph measures more there.
+    No other photograph measures these better.
     """
     w = triangle(I)
-    w[0], w[-1] = np.where(I[0] > 0.5, 1, w[0]), np.where(I[-1] < 0.5, 1, w[-1])
-    return np.maximum(w, LEAST_WEIGHT)
+    shortest = np.where(I[0] > 0.5, 1, w[0])
+    longest = np.where(I[-1] < 0.5, 1, w[-1])
+    w[0] = shortest
+    w[-1] = longest
+    return np.maximum(w, MIN_WEIGHT)
 
 
 def merge_exposures(I: F32, scene: Scene) -> F32:  # noqa: E741
@@ -95,16 +100,15 @@ def blend_reference(H: F32, scene: Scene) -> F32:
     k = scene.reference
     v = scene.L[k]
     t = scene.t[k]
-    within = np.clip(H, *consistent_range(v, scene.noise[k], scene.clipped[k], t, scene.full))
-    return scene.alpha * radiance(v, t, scene.full) + (1 - scene.alpha) * within
+    low, high = consistent_range(v, scene.noise[k], scene.clipped[k], t, scene.full)
+    return scene.alpha * radiance(v, t, scene.full) + (1 - scene.alpha) * np.clip(H, low, high)
 
 
 def guess_radiance(scene: Scene) -> F32:
-    """Return what to begin with: h(L_ref), or where it is clipped what a shorter exposure has, if more.
+    """Return the initial guess: h(L_ref), or where it is clipped the maximum with shorter exposures.
 
-    The paper begins with the reference alone. But a flat, clipped region is like any other flat
-    thing, and would be filled with the nearest wall; so nothing is searched where staying put
-    explains the photographs.
+    The paper begins with the reference alone. But a flat, clipped region is similar to any other
+    flat region, and would be filled with the nearest wall.
     """
     k = scene.reference
     H = [radiance(v, t, scene.full) for v, t in zip(scene.L[: k + 1], scene.t, strict=False)]
@@ -119,36 +123,37 @@ def extract_exposures(H: F32, scene: Scene) -> F32:
 def boost_photographs(k: int, scene: Scene) -> tuple[F32, F32]:
     """Return g_k(L_q) of all photographs (P, h, w, C), and the price of each of their pixels (P, h, w).
 
-    The price is the squared noise that a photograph has in exposure k: of two patches that look
-    alike the cleaner one is taken. A pixel that a longer exposure clips has no price: how full it
-    would be in exposure k is unknown.
+    The price is the squared noise that a photograph has in exposure k: of two similar patches, the
+    cleaner one is preferred. The price is infinite for a pixel that a longer exposure clips, as its
+    value in exposure k is unknown.
     """
     ratios = scene.t[k] / scene.t
     g = np.stack([boost(v, ratio) for v, ratio in zip(scene.L, ratios, strict=True)])
-    noise = np.stack([boost(one, ratio) for one, ratio in zip(scene.noise, ratios, strict=True)])
+    noise = np.stack([boost(n, ratio) for n, ratio in zip(scene.noise, ratios, strict=True)])
     noise = np.where(g < 1, noise, 0)
     unknown = scene.clipped.any(axis=-1) & (scene.t > scene.t[k])[:, None, None]
     return g, np.where(unknown, np.float32(np.inf), NOISE_PRICE * (noise**2).sum(axis=-1))
 
 
 def weigh_patches(k: int, scene: Scene, price: F32, side: int) -> F32:
-    """Return w (P, h', w'): how much the patches of each photograph have to be found again in I_k.
+    """Return w (P, h', w'), the weight with which each photograph's patches must appear in I_k.
 
-    As much as they are well exposed, where they are usable; and only those of the neighbouring
-    exposures, for one that is much longer or shorter has little to say about exposure k.
+    It is their mean exposedness, and 0 for patches with an infinite price. Only neighbouring
+    exposures count: a much longer or shorter one has little in common with exposure k.
     """
-    near = np.abs(np.arange(len(scene.L)) - k) <= 1
-    well = triangle(scene.L).min(axis=-1, keepdims=True) * near[:, None, None, None]
-    barred = np.isinf(cut_patches(price[..., None], side)).any(axis=-1)
-    return np.where(barred, 0, cut_patches(well, side).mean(axis=-1)).astype(np.float32)
+    is_near = np.abs(np.arange(len(scene.L)) - k) <= 1
+    exposedness = triangle(scene.L).min(axis=-1, keepdims=True) * is_near[:, None, None, None]
+    is_barred = np.isinf(cut_patches(price[..., None], side)).any(axis=-1)
+    weight = cut_patches(exposedness, side).mean(axis=-1)
+    return np.where(is_barred, 0, weight).astype(np.float32)
 
 
 def resize_scene(scene: Scene, shape: tuple[int, int]) -> Scene:
-    """Return the scene at another size; a pixel is clipped where one of those that it stands for is."""
-    L, noise = (
-        np.stack([resize_picture(v, shape) for v in all_]) for all_ in (scene.L, scene.noise)
-    )
-    clipped = np.stack([resize_picture(one, shape) > 1e-3 for one in scene.clipped])
-    return scene._replace(
-        L=L, noise=noise, clipped=clipped, alpha=resize_picture(scene.alpha, shape)
+    """Return the scene at another size; a pixel is clipped if one of its original pixels is."""
+    return dataclasses.replace(
+        scene,
+        L=np.stack([resize_picture(v, shape) for v in scene.L]),
+        noise=np.stack([resize_picture(noise, shape) for noise in scene.noise]),
+        clipped=np.stack([resize_picture(mask, shape) > 1e-3 for mask in scene.clipped]),
+        alpha=resize_picture(scene.alpha, shape),
     )

@@ -1,14 +1,16 @@
 """The bilateral filter, fast on a coarse grid over place and level.
 
 v        signal                (H, W), and g, w, k as in `core.filters.bilateral`
-h        node spacing          pixels, odd, at most SPACING sigma_s
+h        node spacing          pixels, odd, at most MAX_SPACING sigma_s
 z        level of a node       low, low + step, ...: Z of them, step at most sigma_r / 2
 
-Take the level as a third axis, and what differs much is far away: the filter is a Gaussian blur of
-that space (Paris and Durand, ECCV 2006), and what is blurred is known from few nodes.
+With the level as a third axis, pixels that differ much are far from each other, and the filter is a
+Gaussian blur of that space (Paris and Durand, ECCV 2006). A blurred space can be sampled at few
+nodes.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -19,20 +21,20 @@ from hdrlab.core.filters.bilateral import Filtered, require_signal
 from hdrlab.errors import InputError
 from hdrlab.fast import blur
 
-# levels in all
+# number of levels
 MIN_LEVELS = 8
 MAX_LEVELS = 1000
-# of sigma_s
-SPACING = 0.55
-# levels per sigma_r, at least, and bins of a histogram per level
-LEVELS = 2
-BINS = 4
-# a closeness below 1e-15 is none: the least numbers of float32 are slow
-NOTHING = 1e-15
-TINY = 1e-30
+# of the nodes, relative to sigma_s
+MAX_SPACING = 0.55
+LEVELS_PER_SIGMA_R = 2
+BINS_PER_LEVEL = 4
+# a smaller closeness is set to 0, as the smallest numbers of float32 are slow
+MIN_CLOSENESS = 1e-15
+SMALLEST_DIVISOR = 1e-30
 
 
-class Axes(NamedTuple):
+@dataclass(frozen=True)
+class Axes:
     """The grid: spacing h, Y rows of X nodes, and Z levels, the lowest and their step."""
 
     h: int
@@ -47,23 +49,34 @@ class Axes(NamedTuple):
 
 def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
     """Return the grid that holds v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
-    h = max(1, 2 * int((SPACING * sigma_s + 1) / 2) - 1)
+    h = max(1, 2 * int((MAX_SPACING * sigma_s + 1) / 2) - 1)
     low = float(v.min())
     extent = float(np.ptp(v))
-    step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
-    if extent > (most := MAX_LEVELS * step):
-        raise InputError(f"expected a range of at most {most:g} for {sigma_r=}, got {describe(v)}")
-    Y, X = ((n - 1) // h + 2 for n in v.shape)
-    return Axes(h, X, Y, low, step, int(extent / step) + 2, sigma_s, sigma_r)
+    step = min(sigma_r / LEVELS_PER_SIGMA_R, max(extent / MIN_LEVELS, SMALLEST_DIVISOR))
+    max_extent = MAX_LEVELS * step
+    if extent > max_extent:
+        raise InputError(
+            f"expected a range of at most {max_extent:g} for {sigma_r=}, got {describe(v)}"
+        )
+    return Axes(
+        h=h,
+        X=(v.shape[1] - 1) // h + 2,
+        Y=(v.shape[0] - 1) // h + 2,
+        low=low,
+        step=step,
+        Z=int(extent / step) + 2,
+        sigma_s=sigma_s,
+        sigma_r=sigma_r,
+    )
 
 
 def _histograms(v: F32, a: Axes) -> Iterator[F32]:
     """Yield for each row of nodes the histograms (X, bins) of the h x h pixels around them, bins shared."""
-    bins = a.Z * BINS
+    bins = a.Z * BINS_PER_LEVEL
     start = (np.arange(v.shape[1]) + a.h // 2) // a.h * bins
     for j in range(a.Y):
         rows = v[max(0, j * a.h - a.h // 2) : j * a.h + a.h // 2 + 1]
-        t = (rows - np.float32(a.low)) * np.float32(BINS / a.step)
+        t = (rows - np.float32(a.low)) * np.float32(BINS_PER_LEVEL / a.step)
         # a pixel is shared between the two bins beside it, and jumps from none to the next
         left = np.floor(t)
         index = (left.astype(np.intp) + start).ravel()
@@ -75,11 +88,11 @@ def _histograms(v: F32, a: Axes) -> Iterator[F32]:
 
 def _closeness(a: Axes) -> F32:
     """Return the matrix (bins, 2 Z) that takes a histogram to (sum of w, sum of w (v_q - z)) for each z."""
-    v = np.arange(a.Z * BINS) * (a.step / BINS)
+    v = np.arange(a.Z * BINS_PER_LEVEL) * (a.step / BINS_PER_LEVEL)
     z = np.arange(a.Z) * a.step
     d = v[:, None] - z
     w = np.exp(-(d**2) / (2 * a.sigma_r**2))
-    w[w < NOTHING] = 0
+    w[w < MIN_CLOSENESS] = 0
     return np.concatenate([w, w * d], axis=1).astype(np.float32)
 
 
@@ -99,21 +112,21 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
     g = blur._taps((a.sigma_s**2 - (a.h**2 - 1) / 4) ** 0.5 / a.h)
     r = len(g) // 2
     w = _closeness(a)
-    K = blur._band(g, blur.NODES)
+    K = blur._band(g, blur.NODES_PER_TILE)
     recent = np.zeros(
         (len(g), a.X * 2 * a.Z), np.float32
     )  # the rows in reach; row j stands at j mod len(g)
-    row = np.zeros((a.X + -a.X % blur.NODES + 2 * r, 2 * a.Z), np.float32)
+    row = np.zeros((a.X + -a.X % blur.NODES_PER_TILE + 2 * r, 2 * a.Z), np.float32)
     counted = _histograms(v, a)
     area = np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
     for j in range(a.Y + r):
         recent[j % len(g)] = 0
         if j < a.Y:
             row[r : r + a.X] = next(counted) @ w
-            recent[j % len(g)] = blur._product(K, blur.NODES, row)[: a.X].ravel()
+            recent[j % len(g)] = blur._product(K, blur.NODES_PER_TILE, row)[: a.X].ravel()
         if j >= r:
             near = (np.roll(g, j + 1) @ recent).reshape(a.X, 2, a.Z)
-            away = near[:, 1] / np.maximum(near[:, 0], TINY)  # 0 where nothing is near
+            away = near[:, 1] / np.maximum(near[:, 0], SMALLEST_DIVISOR)  # 0 where nothing is near
             rise = np.diff(away, append=away[:, -1:])
             yield Row(near[:, 0] * area, away + np.complex64(1j) * rise)
 
@@ -128,7 +141,8 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     x = np.arange(v.shape[1])
     z = (v - np.float32(a.low)) * np.float32(1 / a.step)
     level = np.floor(z)
-    first, last = (row.away.view(np.float32).ravel() for row in (above, below))
+    first = above.away.view(np.float32).ravel()
+    last = below.away.view(np.float32).ravel()
     away = (y / a.h).astype(np.float32) * (last - first)
     away += first
     place = level.astype(np.intp) + x // a.h * a.Z

@@ -17,10 +17,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hdrlab.core.arrays import F32, ArrayLike
 from hdrlab.errors import InputError
 
-# rows of a product: more would multiply more of the band's zeros, fewer idle the processor
-TILE = 16
+# with more rows, more of the band's zeros are multiplied; with fewer, the processor idles
+TILE_ROWS = 16
 # rows of a product on the coarse grid
-NODES = 8
+NODES_PER_TILE = 8
 
 
 def gaussian(image: ArrayLike, sigma: float) -> F32:
@@ -34,10 +34,10 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
         raise InputError(
             f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}"
         )
-    h = (
-        2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1
-    )  # the largest power of two up to sigma / 2
-    return _direct(image, sigma) if h == 1 else _coarse(image, sigma, h)
+    if sigma < 4:
+        return _direct(image, sigma)
+    largest_power_of_two = 2 ** int(np.log2(sigma / 2))
+    return _coarse(image, sigma, largest_power_of_two)
 
 
 def _taps(sigma: float, *, reach: float = 4) -> F32:
@@ -76,15 +76,15 @@ def _product(K: F32, step: int, image: F32) -> F32:
 
 def _pad(image: F32, margin: int) -> F32:
     """Return `image` continued by reflection, `margin` all round, and at the far ends up to whole tiles."""
-    return np.pad(image, [(margin, margin + -n % TILE) for n in image.shape], mode="symmetric")
+    return np.pad(image, [(margin, margin + -n % TILE_ROWS) for n in image.shape], mode="symmetric")
 
 
 def _inside(padded: F32, k: F32, margin: int) -> F32:
     """Return the blur by taps k of what lies `margin` inside `padded`, as far as it fills whole tiles."""
-    K = _band(k, TILE)
+    K = _band(k, TILE_ROWS)
     cut = margin - len(k) // 2
     core = padded[cut : len(padded) - cut, cut : padded.shape[1] - cut]
-    return _product(K, TILE, np.ascontiguousarray(_product(K, TILE, core).T)).T
+    return _product(K, TILE_ROWS, np.ascontiguousarray(_product(K, TILE_ROWS, core).T)).T
 
 
 def _direct(image: F32, sigma: float) -> F32:
@@ -107,13 +107,13 @@ def _coarse(image: F32, sigma: float, h: int) -> F32:
     few = _sampled(
         np.ascontiguousarray(_sampled(image, k, h).T), k, h
     )  # (nodes across, nodes down)
-    U = _spline(h, NODES)
+    U = _spline(h, NODES_PER_TILE)
     W = image.shape[1]
-    across = np.ascontiguousarray(_product(U, NODES, few)[:W].T)  # (nodes down, W)
+    across = np.ascontiguousarray(_product(U, NODES_PER_TILE, few)[:W].T)  # (nodes down, W)
     blurred = np.empty_like(image)
-    for first in range(0, -(-len(image) // h), NODES):
-        rows = blurred[first * h : (first + NODES) * h]
-        np.matmul(U[: len(rows)], across[first : first + NODES + 3], out=rows)
+    for first in range(0, -(-len(image) // h), NODES_PER_TILE):
+        rows = blurred[first * h : (first + NODES_PER_TILE) * h]
+        np.matmul(U[: len(rows)], across[first : first + NODES_PER_TILE + 3], out=rows)
     return blurred
 
 
@@ -122,17 +122,19 @@ def _sampled(image: F32, k: F32, h: int) -> F32:
 
     Reflection folds the ends of the band matrix inward, so the picture is read where it stands.
     """
-    K = _band(k, NODES, h)
+    K = _band(k, NODES_PER_TILE, h)
     n = len(image)
-    few = np.empty((NODES * (-(-n // (NODES * h)) + 1), image.shape[1]), np.float32)
-    for first in range(0, len(few), NODES):
+    few = np.empty(
+        (NODES_PER_TILE * (-(-n // (NODES_PER_TILE * h)) + 1), image.shape[1]), np.float32
+    )
+    for first in range(0, len(few), NODES_PER_TILE):
         place = (np.arange(K.shape[1]) + (first - 1) * h - len(k) // 2) % (2 * n)
         rows = np.minimum(place, 2 * n - 1 - place)
         low = rows.min()
         high = rows.max() + 1
         folded = K
         if not np.array_equal(rows, np.arange(low, high)):
-            folded = np.zeros((NODES, high - low), np.float32)
+            folded = np.zeros((NODES_PER_TILE, high - low), np.float32)
             np.add.at(folded.T, rows - low, K.T)
-        np.matmul(folded, image[low:high], out=few[first : first + NODES])
+        np.matmul(folded, image[low:high], out=few[first : first + NODES_PER_TILE])
     return few

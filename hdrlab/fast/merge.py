@@ -32,11 +32,12 @@ from hdrlab.radiance.merge import (
 )
 from hdrlab.radiance.stuck import repair_stuck
 
-# of a block: its planes and sums stay in the processor's cache
-ROWS = 24
-# rows whose memory is given back at once, and bytes of a large page
-BAND = 256
-PAGE = 1 << 21
+# as many rows as have planes and sums that stay in the processor's cache
+BLOCK_ROWS = 24
+# rows whose memory is given back at a time
+RELEASED_ROWS = 256
+# of a large page of memory
+PAGE_BYTES = 2**21
 # the terms a, b of one frame of t seconds, from w and g over the levels
 TERMS: dict[str, Callable[[F64, F64, float], tuple[F64, F64]]] = {
     "log": lambda w, g, t: (w * (g - np.log(t)), w),
@@ -87,13 +88,13 @@ def merge_with_quality(
     quality = np.empty(pixels.shape[1:3], np.uint8)
 
     def merge_rows(start: int) -> None:
-        rows = slice(start, start + ROWS)
+        rows = slice(start, start + BLOCK_ROWS)
         shown = None if mask is None else np.stack([mask[j, rows] for j in order])
         _merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], quality[rows])
 
-    starts = range(0, len(quality), ROWS)
+    starts = range(0, len(quality), BLOCK_ROWS)
     for start, _ in zip(starts, map_in_threads(merge_rows, starts), strict=True):
-        if isinstance(images, Expendable) and start % BAND == 0:
+        if isinstance(images, Expendable) and start % RELEASED_ROWS == 0:
             for j in order[1:-1]:  # the shortest and the longest tell what is stuck
                 _release(stack[j, :start])
     plan.pairs.clear()  # the tables are needed no more
@@ -104,8 +105,8 @@ def merge_with_quality(
 
 def _release(rows: Array) -> None:
     """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
-    start = -(-rows.ctypes.data // PAGE) * PAGE
-    stop = (rows.ctypes.data + rows.nbytes) // PAGE * PAGE
+    start = -(-rows.ctypes.data // PAGE_BYTES) * PAGE_BYTES
+    stop = (rows.ctypes.data + rows.nbytes) // PAGE_BYTES * PAGE_BYTES
     if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
         ctypes.CDLL(None).madvise(
             ctypes.c_void_p(start), ctypes.c_size_t(stop - start), mmap.MADV_DONTNEED

@@ -8,7 +8,7 @@ from hdrlab.core.arrays import F32, Array, levels
 from hdrlab.enhance import mertens
 from hdrlab.fast import _bands, pyramid, with_parts
 
-_BAND = 16  # rows
+_BAND_ROWS = 16
 
 
 def _split_planes(Z: Array) -> F32:
@@ -37,8 +37,8 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
 def add_term(blended: F32, W: F32, detail: F32) -> F32:
     """Return the sum of W_i,k L_i,k so far and the next W_j,k L_j,k [Mertens07]."""
     total = np.empty_like(blended)
-    for top in range(0, len(W), _BAND):
-        rows = slice(top, top + _BAND)
+    for top in range(0, len(W), _BAND_ROWS):
+        rows = slice(top, top + _BAND_ROWS)
         band = np.multiply(W[rows], detail[:, rows], out=total[:, rows])
         band += blended[:, rows]
     return total

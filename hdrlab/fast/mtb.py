@@ -22,16 +22,16 @@ from hdrlab.errors import InputError
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]
-# pixels: a level of at most this many is compared as a whole
-WHOLE = 2**18
-# pixels: in the largest level of at most this many an offset is validated
-OVERVIEW = 2**20
-# pixels: the percentiles of this many are those of all
-ENOUGH = 2**17
-# pixels of a band of rows that fits the processor's cache
-CACHE = 2**18
-# rows of a band, an even number, of which every third byte is picked
-BAND = 32
+# a smaller level is compared as a whole, a larger one in some of its rows
+MAX_COMPARED_PIXELS = 2**18
+# an offset is validated in the largest level that is not larger
+MAX_OVERVIEW_PIXELS = 2**20
+# percentiles are computed from about this many pixels
+PERCENTILE_PIXELS = 2**17
+# as many pixels as stay in the processor's cache
+PIXELS_PER_BAND = 2**18
+# an even number
+BAND_ROWS = 32
 
 
 class Photograph:
@@ -43,7 +43,7 @@ class Photograph:
             self.Y.append(_shrink(self.Y[-1]))
         self.h = [_histogram(Y) for Y in self.Y]
         self.overview = next(
-            (j for j, Y in enumerate(self.Y) if Y.size <= OVERVIEW), len(self.Y) - 1
+            (j for j, Y in enumerate(self.Y) if Y.size <= MAX_OVERVIEW_PIXELS), len(self.Y) - 1
         )
         self._bits: dict[tuple[int, ...], Words] = {}
         self._thresholds: dict[tuple[float, int], int] = {}
@@ -127,10 +127,10 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
 
 def _gray(image: Array, luma: bool) -> Array:
     Y = np.empty(image.shape[:2], np.uint8)
-    for row in range(0, len(Y), BAND):
-        Z = image[row : row + BAND].copy()
+    for row in range(0, len(Y), BAND_ROWS):
+        Z = image[row : row + BAND_ROWS].copy()
         green = Z.ndim == 3 and Z.itemsize == 1 and not luma
-        Y[row : row + BAND] = Z[..., 1] if green else lesson.gray(Z, luma=luma)
+        Y[row : row + BAND_ROWS] = Z[..., 1] if green else lesson.gray(Z, luma=luma)
     return Y
 
 
@@ -138,26 +138,26 @@ def _shrink(Y: Array) -> Array:
     rows = Y.shape[0] // 2 * 2
     columns = Y.shape[1] // 2 * 2
     half = np.empty((rows // 2, columns // 2), np.uint8)
-    for row in range(0, rows, BAND):
-        two = np.ascontiguousarray(Y[row : min(row + BAND, rows), :columns]).view(np.uint16)
+    for row in range(0, rows, BAND_ROWS):
+        two = np.ascontiguousarray(Y[row : min(row + BAND_ROWS, rows), :columns]).view(np.uint16)
         two = (two & 255) + (two >> 8)
-        half[row // 2 : (row + BAND) // 2] = (two[::2] + two[1::2] + 2) >> 2
+        half[row // 2 : (row + BAND_ROWS) // 2] = (two[::2] + two[1::2] + 2) >> 2
     return half
 
 
 def _every(Y: Array) -> int:
     """Return of how many rows one is compared."""
-    return -(-Y.size // WHOLE)
+    return -(-Y.size // MAX_COMPARED_PIXELS)
 
 
 def _histogram(Y: Array) -> NDArray[np.int64]:
-    rows = np.linspace(0, len(Y) - 1, min(len(Y), ENOUGH // Y.shape[1] + 1)).astype(int)
+    rows = np.linspace(0, len(Y) - 1, min(len(Y), PERCENTILE_PIXELS // Y.shape[1] + 1)).astype(int)
     return np.bincount(Y[rows].ravel(), minlength=256)
 
 
 def _bitmaps(Y: Array, t: int) -> Words:
     packed = []
-    for Z in np.array_split(Y, Y.size // CACHE + 1):
+    for Z in np.array_split(Y, Y.size // PIXELS_PER_BAND + 1):
         mask = np.empty((2, *Z.shape), bool)
         mask[0] = t < Z
         mask[1] = lesson.exclusion(Z, t)

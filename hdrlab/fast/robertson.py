@@ -23,10 +23,10 @@ from hdrlab.errors import InputError
 from hdrlab.fast import with_parts
 from hdrlab.response import robertson
 
-# samples at a time: their indices stay in the processor's cache
-BLOCK = 2**15
-# pixels of a frame: an even choice of about so many has the ranks of all
-PIXELS = 2**16
+# as many samples as have indices that stay in the processor's cache
+SAMPLES_PER_BLOCK = 2**15
+# ranks are computed from a regular grid of about this many pixels
+RANKED_PIXELS = 2**16
 
 
 class Joint:
@@ -43,8 +43,8 @@ class Joint:
         own = np.zeros(n)
         self.pixels = np.zeros(n, np.int64)
         self.w = w
-        for start in range(0, len(Z), BLOCK):
-            z = Z[start : start + BLOCK].T.astype(np.intp)
+        for start in range(0, len(Z), SAMPLES_PER_BLOCK):
+            z = Z[start : start + SAMPLES_PER_BLOCK].T.astype(np.intp)
             d = t**2 @ w[z]
             z, d = (z, d) if d.all() else (z[:, d > 0], d[d > 0])
             self.pixels += np.bincount(z.ravel(), minlength=n)
@@ -124,7 +124,7 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
 def _thinned(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
     """Return the samples of `by_rank`, from an even choice of the pixels."""
     stack = as_stack(images)
-    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / max(PIXELS, 4 * count))))
+    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / max(RANKED_PIXELS, 4 * count))))
     few = (slice(None), slice(every // 2, None, every), slice(every // 2, None, every))
     shown = as_mask(valid, stack)
     return sampling.by_rank(stack[few], count, valid=None if shown is None else shown[few])

@@ -144,7 +144,7 @@ def test_closeness_is_the_gaussian_of_the_distance_between_bin_and_level():
     a = grid._axes(room(), sigma_s=8, sigma_r=0.4)
     w, away = np.split(grid._closeness(a), 2, axis=1)
     assert w[0, 0] == 1 and away[0, 0] == 0
-    one = grid.LEVELS * grid.BINS  # sigma_r away
+    one = grid.LEVELS_PER_SIGMA_R * grid.BINS_PER_LEVEL  # sigma_r away
     assert w[one, 0] == pytest.approx(np.exp(-0.5)) and away[one, 0] == pytest.approx(
         0.4 * np.exp(-0.5)
     )

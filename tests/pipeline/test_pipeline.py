@@ -63,8 +63,8 @@ def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held
 def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_memory_back(
     hand_held, monkeypatch
 ):
-    monkeypatch.setattr(quick, "PAGE", 1 << 12)
-    monkeypatch.setattr(quick, "BAND", quick.ROWS)
+    monkeypatch.setattr(quick, "PAGE_BYTES", 1 << 12)
+    monkeypatch.setattr(quick, "RELEASED_ROWS", quick.BLOCK_ROWS)
     expected = assemble(hand_held[0])
     taken = hand_held[0]._replace(images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, in_place=True, release=True)
