@@ -179,10 +179,16 @@ CHANGES = (
         ("tests/tonemap", "tests/fast"),
     ),
     Change(
-        "another private constant of a search",
+        "another constant of a search",
         False,
-        replace("hdrlab/diagnostics/exposure_times.py", "STRIPES = 20", "STRIPES = 24"),
-        ("tests/diagnostics", "tests/pipeline"),
+        replace("hdrlab/pipeline/recovery.py", "STRIPE_COUNT = 20", "STRIPE_COUNT = 24"),
+        ("tests/pipeline",),
+    ),
+    Change(
+        "another number of samples in a search",
+        False,
+        replace("hdrlab/align/light.py", "_LATTICE_PIXELS = 8_000", "_LATTICE_PIXELS = 9_000"),
+        ("tests/align", "tests/pipeline"),
     ),
     Change("a function moved, with a re-export", False, move_function, ("tests/tonemap",)),
     Change(
@@ -210,17 +216,28 @@ CHANGES = (
         ("tests/test_front_door.py",),
     ),
     Change(
+        "a stage refactored into two functions",
+        False,
+        replace(
+            "hdrlab/pipeline/checks.py",
+            "    return not spread <= MIN_WORTHLESS_STOPS",
+            "    return not _is_at_most(spread, MIN_WORTHLESS_STOPS)\n\n\n"
+            "def _is_at_most(value: float, limit: float) -> bool:\n    return bool(value <= limit)",
+        ),
+        ("tests/pipeline",),
+    ),
+    Change(
         "late days: a started day is free",
         True,
         replace(
             "hdrlab/course/classroom/late.py",
-            "max(0, -((due - received) // DAY))",
-            "max(0, (received - due) // DAY)",
+            "-((due - received) // ONE_DAY)",
+            "(received - due) // ONE_DAY",
         ),
         ("tests/course/test_late.py",),
     ),
     Change(
-        "merge: exposure time forgotten",
+        "merge: the exposure time is forgotten",
         True,
         replace(
             "hdrlab/radiance/merge.py",
@@ -230,16 +247,84 @@ CHANGES = (
         ("tests/radiance",),
     ),
     Change(
-        "Reinhard: the white point does not reach white",
+        "Reinhard: the white point does not become white",
         True,
         replace("hdrlab/tonemap/reinhard.py", "Lm / white**2", "Lm / white"),
         ("tests/tonemap",),
     ),
     Change(
-        "Debevec: the smoothness term is ignored",
+        "Debevec: the smoothness term is lost",
         True,
         replace("hdrlab/response/debevec.py", "np.array([1, -2, 1])", "np.array([0, 0, 0])"),
         ("tests/response",),
+    ),
+    Change(
+        "MTB: pixels near the median are compared",
+        True,
+        replace(
+            "hdrlab/align/mtb.py",
+            "return (Y > t + NOISE) | (Y < t - NOISE)",
+            "return np.ones_like(Y, bool)",
+        ),
+        ("tests/align", "hdrlab/course/checks/specification/test_exclusion.py"),
+    ),
+    Change(
+        "EXIF: the ISO speed is ignored",
+        True,
+        replace(
+            "hdrlab/io/exif_exposure.py",
+            "t * (S / speeds[0]) * (f_numbers[0] / N) ** 2",
+            "t * (f_numbers[0] / N) ** 2",
+        ),
+        ("tests/io",),
+    ),
+    Change(
+        "submit: the place of a photo is kept",
+        True,
+        replace("hdrlab/io/metadata.py", 'IFD.GPSInfo: "location",', ""),
+        ("tests/io/test_metadata.py", "tests/course/test_submit.py"),
+    ),
+    Change(
+        "assemble: a worthless map gets a tone-mapped picture",
+        True,
+        replace(
+            "hdrlab/pipeline/checks.py",
+            "return not spread <= MIN_WORTHLESS_STOPS",
+            "return False",
+        ),
+        ("tests/pipeline", "tests/cli/test_assemble.py"),
+    ),
+    Change(
+        "regrade: never-lower lowers scores",
+        True,
+        replace(
+            "hdrlab/course/classroom/regrade.py",
+            "return new.score < old.score",
+            "return new.score > old.score",
+        ),
+        ("tests/course/test_regrade.py",),
+    ),
+    Change(
+        "gallery: a team votes for itself",
+        True,
+        replace("hdrlab/course/gallery/schema.sql", "RAISE(ABORT, 'own team')", "'own team'"),
+        ("tests/course/test_gallery.py",),
+    ),
+    Change(
+        "Gradescope: every check passes",
+        True,
+        replace(
+            "hdrlab/course/reports/gradebook.py",
+            '"passed" if check.outcome == "holds" else "failed"',
+            '"passed"',
+        ),
+        ("tests/course/test_results.py",),
+    ),
+    Change(
+        "Radiance files: colors are half as bright",
+        True,
+        replace("hdrlab/io/maps/rgbe.py", "np.arange(256) - 136", "np.arange(256) - 137"),
+        ("tests/io",),
     ),
 )
 
