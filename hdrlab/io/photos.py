@@ -1,7 +1,7 @@
-"""Photographs in, as arrays, and pictures out.
+"""Read photos as arrays, and write pictures.
 
-A bracket's headers are read first: they say whether the frames go together and in which order. Then
-each is decoded once, straight into its place, several at a time.
+The headers of a bracket are read first. They tell whether the frames go together, and in which
+order. Then each frame is decoded once, straight into its place, several at a time.
 """
 
 import warnings
@@ -21,19 +21,29 @@ from hdrlab.io import album, files, raw
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
-PICTURES: dict[str, dict[str, Any]] = {".png": {"compress_level": 1}}
-PICTURES |= dict.fromkeys((".jpg", ".jpeg"), {"quality": 95, "subsampling": 0})
-PICTURES |= dict.fromkeys((".tif", ".tiff"), {"compression": "tiff_deflate"})
+JPEG_OPTIONS = {"quality": 95, "subsampling": 0}
+TIFF_OPTIONS = {"compression": "tiff_deflate"}
+# Pillow's options by the suffix of the picture.
+PICTURES: dict[str, dict[str, Any]] = {
+    ".png": {"compress_level": 1},
+    ".jpg": JPEG_OPTIONS,
+    ".jpeg": JPEG_OPTIONS,
+    ".tif": TIFF_OPTIONS,
+    ".tiff": TIFF_OPTIONS,
+}
+# imagecodecs' options for PNG: no search for repetitions, of which photos have hardly any.
+PNG_OPTIONS = {"level": 1, "strategy": 2, "filter": 128}
+# Every so many rows and columns of a photo serve to measure its brightness.
+BRIGHTNESS_STEP = 8
 
 
 def read_photo(path: str | Path) -> Array:
-    """Read one photograph, upright.
+    """Read one photo, upright.
 
     Parameters
     ----------
     path : a JPEG, PNG, TIFF, WebP, AVIF, HEIC or JPEG XL file, gray or RGB, of 8 to 16 bits, or a
-        RAW file;
-        colours of another space than sRGB are converted by the file's profile
+        RAW file; colors of another space than sRGB are converted by the file's profile
 
     Returns
     -------
@@ -41,7 +51,7 @@ def read_photo(path: str | Path) -> Array:
 
     Raises
     ------
-    ValueError
+    FileFormatError
         For a file that is none of these, or is damaged.
 
     Examples
@@ -66,21 +76,18 @@ def read_bracket(
     note: Callable[[str], object] = warnings.warn,
     progress: Callable[[Sequence[Path]], Iterable[Path]] = iter,
 ) -> Bracket:
-    """Read a bracket of photographs, with their exposure times.
+    """Read a bracket of photos, with their exposure times.
 
     Parameters
     ----------
-    paths : the photographs, or one folder, of which all photographs are taken, sorted by name; see
-        `select`
-    times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the
-        photographs
-        or by file name, or the path of a list (see `hdrlab.io.times.read_times`), of which numbers
-        without a unit are seconds or 1/seconds, whichever the brightness of the photographs says
-    mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered
-        scan
-    note : what is called with each sentence to know: what was left out, and what the camera had
-        changed
-    progress : what to wrap the paths in while they are decoded, such as tqdm
+    paths : the photos, or one folder, from which hdrlab uses the photos that form one bracket; see
+        `hdrlab.io.album.select`
+    times : None for the times in EXIF; else seconds of equivalent exposure, in the order of the
+        photos or by file name, or the path of a list (see `hdrlab.io.times.read_times`). Numbers of
+        a list without a unit are seconds or 1/seconds, whichever fits the brightness of the photos
+    mask : the color (R, G, B) of pixels to ignore, such as the border of a registered scan
+    note : called with each note: which photos were skipped, and what the camera had changed
+    progress : wraps the paths while they are decoded, such as tqdm
 
     Returns
     -------
@@ -88,8 +95,8 @@ def read_bracket(
 
     Raises
     ------
-    ValueError
-        For files that are no photographs or do not go together, and for times missing or not
+    InputError
+        For files that are no photos or do not go together, and for times that are missing or not
         positive.
 
     Examples
@@ -101,41 +108,42 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    found, notes = album.select(paths)
-    headers, more = album.turn_alike([read_header(path) for path in found])
+    selected, notes = album.select(paths)
+    headers, more_notes = album.turn_alike([read_header(path) for path in selected])
     _check_alike(headers)
-    for said in (*notes, *more, *_processed(headers)):
-        note(said)
-    names, exposures = (
-        [header.path.name for header in headers],
-        [header.exposure for header in headers],
-    )
-    seconds, inverse = bracket_times(names, exposures, times)
+    for sentence in (*notes, *more_notes, *_processing_notes(headers)):
+        note(sentence)
+    names = [header.path.name for header in headers]
+    seconds, inverse = bracket_times(names, [header.exposure for header in headers], times)
     order = np.argsort(seconds, kind="stable")
     headers = [headers[j] for j in order]
-    linear = headers[0].kind == "RAW"
-    balance = raw.balance(headers[0].path) if linear else None
+    names = [header.path.name for header in headers]
+    is_raw = headers[0].kind == "RAW"
+    balance = raw.balance(headers[0].path) if is_raw else None
     images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
     if mask is not None and images.ndim != 4:
-        raise InputError(f"expected RGB photographs for the mask colour {mask}, these are gray")
+        raise InputError(f"the mask color {mask} needs RGB photos, these are gray")
     valid = None if mask is None else np.empty(images.shape[:3], bool)
 
-    def fill(j: int) -> None:
+    def decode_frame(j: int) -> None:
         decode_photo(headers[j], images[j], balance=balance)
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
-    filled = map_in_threads(fill, range(len(headers)))
+    decoded = map_in_threads(decode_frame, range(len(headers)))
     for _ in progress([header.path for header in headers]):
-        next(filled)
-    names = [header.path.name for header in headers]
-    if inverse and are_inverse(sorted(seconds), [image[::8, ::8].mean() for image in images]):
-        seconds = inverse
-    return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=linear)
+        next(decoded)
+    if inverse:
+        brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
+        if are_inverse(sorted(seconds), brightness):
+            seconds = inverse
+    return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=is_raw)
 
 
 def write_picture(path: str | Path, image: ArrayLike) -> None:
-    """Write a picture for the eye, as PNG, JPEG or TIFF by suffix, whole or not at all.
+    """Write a picture as PNG, JPEG or TIFF, by its suffix.
+
+    If writing fails, an existing file stays as it was.
 
     Parameters
     ----------
@@ -155,41 +163,45 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    suffix, picture = files.require_suffix(path, PICTURES, "a picture file"), as_picture(image)
+    suffix = files.require_suffix(path, PICTURES, "a picture file")
+    picture = as_picture(image)
     with files.replacing(path) as name:
-        if (
-            suffix == ".png" and imagecodecs
-        ):  # no search for repetitions, which photographs hardly have
-            name.write_bytes(imagecodecs.png_encode(picture, level=1, strategy=2, filter=128))
+        if suffix == ".png" and imagecodecs:
+            name.write_bytes(imagecodecs.png_encode(picture, **PNG_OPTIONS))
         else:
             Image.fromarray(picture).save(name, **PICTURES[suffix])
 
 
 def _check_alike(headers: list[PhotoHeader]) -> None:
-    """Raise a ValueError that names the first photograph and one that does not go with it."""
+    """Raise an InputError that names the first photo and one that does not go with it."""
     first = headers[0]
     for other in headers[1:]:
         if (first.kind == "RAW") != (other.kind == "RAW"):
-            what = "RAW photographs and others cannot be mixed"
+            reason = "RAW photographs and others cannot be mixed"
         elif first.shape[:2] != other.shape[:2]:
-            what = "expected frames of one size"
+            reason = "expected frames of one size"
         elif (first.shape, first.dtype) != (other.shape, other.dtype):
-            what = "expected frames all gray or all RGB, all of 8 or all of 16 bits"
+            reason = "expected frames all gray or all RGB, all of 8 or all of 16 bits"
         else:
             continue
-        raise InputError(f"{what}: {_short(first)}, {_short(other)}")
+        raise InputError(f"{reason}: {_describe(first)}, {_describe(other)}")
 
 
-def _processed(headers: list[PhotoHeader]) -> list[str]:
-    """Return one sentence on photographs of which no single response can be recovered."""
-    found = [header for header in headers if header.processing]
-    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-    why = "so no one curve describes it: for a bracket switch HDR off, or take RAW"
-    return [f"{one.path.name}{more} {one.processing}, {why}" for one in found[:1]]
+def _processing_notes(headers: list[PhotoHeader]) -> list[str]:
+    """Return a note on the photos that no single response curve describes."""
+    processed = [header for header in headers if header.processing]
+    if not processed:
+        return []
+    first = processed[0]
+    more = f" (and {len(processed) - 1} more)" if len(processed) > 1 else ""
+    return [
+        f"{first.path.name}{more} {first.processing}, so no one curve describes it: "
+        "for a bracket switch HDR off, or take RAW"
+    ]
 
 
-def _short(header: PhotoHeader) -> str:
+def _describe(header: PhotoHeader) -> str:
     height, width = header.shape[:2]
-    colour = "RGB" if len(header.shape) == 3 else "gray"
+    channels = "RGB" if len(header.shape) == 3 else "gray"
     bits = 8 * header.dtype.itemsize
-    return f"{header.path.name} is {width} x {height}, {colour}, {bits} bits, {header.kind}"
+    return f"{header.path.name} is {width} x {height}, {channels}, {bits} bits, {header.kind}"

@@ -213,9 +213,7 @@ def test_pixels_of_the_mask_colour_are_not_valid(tmp_path):
 
 def test_a_mask_colour_needs_colour_photographs(tmp_path):
     bracket_of(tmp_path, image=RGB8[..., 0])
-    with pytest.raises(
-        ValueError, match=r"expected RGB photographs for the mask colour \(0, 0, 255\)"
-    ):
+    with pytest.raises(ValueError, match=r"\(0, 0, 255\).*gray"):
         read_bracket(tmp_path, mask=(0, 0, 255))
 
 
