@@ -133,7 +133,8 @@ def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name
             f"task-{task.id}" in cells
             and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
         )
-        assert f"({task.points:g} points{', the minimum' * task.minimum})" in prose
+        required = ", required" if task.minimum else ""
+        assert f"({task.points:g} points{required})" in prose
     assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
     assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
 
@@ -211,12 +212,12 @@ tasks = [{ id = "to_radiance", function = "io.maps.rgbe.to_radiance", points = 1
 """
 
 
-def test_a_sheet_marks_the_tasks_that_are_the_minimum(made):
+def test_an_assignment_marks_the_required_tasks(made):
     tasks = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
     assert [task.id for task in tasks if task.minimum] == ["align", "gsolve", "merge", "display"]
     for name in ("hw1", "hw2", "hw3", "hw4"):
         heads = [cell["source"].partition("\n")[0] for cell in made(name).assignment["cells"]]
-        assert sum(head.endswith(" points, the minimum)") for head in heads) == 1, name
+        assert sum(head.endswith(" points, required)") for head in heads) == 1, name
 
 
 def test_the_projects_sheet_says_what_earns_how_many_points_by_hand(made):

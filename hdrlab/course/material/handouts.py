@@ -128,7 +128,7 @@ def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
     """Return prose with what the plan says in place of its names in braces."""
     tasks = sum(one.points for one in homework.tasks)
     said = {
-        "points": f"{task.points:g} points{', the minimum' * task.minimum}" if task else "",
+        "points": _points_text(task),
         "total": f"{homework.points + sum(one.points for one in homework.by_hand):g}",
         "choice": f"Choose: the tasks give {tasks:g} points, of which {homework.points:g} count at most.",
         "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
@@ -140,16 +140,28 @@ def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
     return text
 
 
+def _points_text(task: Task | None) -> str:
+    """Return the points of a task, and whether everybody must write it."""
+    if task is None:
+        return ""
+    required = ", required" if task.minimum else ""
+    return f"{task.points:g} points{required}"
+
+
 def _judged(one: ManualTask) -> str:
     """Return what a person judges as an item of a list, and what earns how many points below it."""
     return "\n  - ".join([f"- **{one.title}** ({one.points:g} points)", *one.rubric])
 
 
 def lateness(plan: Plan) -> str:
-    """Return what being late costs, in words."""
-    free, cost = plan.late.free_days, plan.late.points_a_day
-    beyond = f"each further one costs {cost:g} of the points"
-    return f"Of late days you have {free:g} in the whole course; {beyond}."
+    """Return what late days cost, as a sentence for the assignment."""
+    free_days = plan.late.free_days
+    cost = plan.late.points_a_day
+    points = "1 point" if cost == 1 else f"{cost:g} points"
+    if free_days == 0:
+        return f"Each late day costs {points}."
+    days = "1 late day" if free_days == 1 else f"{free_days:g} late days"
+    return f"You have {days} for the whole course; each extra day costs {points}."
 
 
 def _markdown(text: str) -> dict[str, Any]:
