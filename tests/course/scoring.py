@@ -69,9 +69,9 @@ def score(task, subject, seed=0, variant=""):
     """
     said = answered(task, subject, seed, variant)
     asked = PLAN.task(task)._replace(variant=variant)
-    found = (
-        misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
-    )
+    found = None
+    if any(said.values()):
+        found = misconceptions.closest(asked, subject.calls[: plugin.MAX_REMEMBERED_CALLS])
     worth = [Fraction(str(points)) for _, _, points, *_ in checks(task, variant)]
     each = [
         Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")

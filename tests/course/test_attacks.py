@@ -12,7 +12,7 @@ import pytest
 import siege
 
 from hdrlab.course import plan
-from hdrlab.course.checks.compare import Different, same
+from hdrlab.course.checks.compare import AnswerMismatch, same
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
@@ -108,7 +108,7 @@ def points(subject, student="a"):
             came = subject.double(x)
             same(came, 2 * x, 1e-9)
             held += 1
-        except (NoAnswer, Different) as error:
+        except (NoAnswer, AnswerMismatch) as error:
             said.append(str(error))
     return held, said
 

@@ -31,10 +31,6 @@ def fixture(checking, name):
     return getattr(found, "__wrapped__", None) or found.__pytest_wrapped__.obj
 
 
-def test_what_is_kept_of_a_check_is_bounded():
-    assert (plugin.CALLS, plugin.LONGEST, plugin.SAID, plugin.DRAWN) == (20, 1500, 4000, 3_000_000)
-
-
 def test_the_job_is_read_and_its_worker_registered(tmp_path):
     (tmp_path / "job.json").write_text('{"by": "json:dumps", "more": 1}', encoding="utf8")
     said, options = [], []
@@ -45,7 +41,7 @@ def test_the_job_is_read_and_its_worker_registered(tmp_path):
     )
     plugin.pytest_configure(config)
     assert said == [
-        ("markers", plugin.MARKER),
+        ("markers", plugin.POINTS_MARKER),
         ('{"by": "json:dumps", "more": 1}', "hdrlab-checking"),
     ]
     plugin.pytest_addoption(SimpleNamespace(addoption=lambda name, **_: options.append(name)))

@@ -10,7 +10,7 @@ import pytest
 from checked import Asked, item
 
 from hdrlab.course.checks import compare, misconceptions, plugin
-from hdrlab.course.checks.compare import Different
+from hdrlab.course.checks.compare import AnswerMismatch
 from hdrlab.course.checks.mistakes import KnownMistake
 from hdrlab.course.checks.subject import NoAnswer
 from hdrlab.course.sandbox.running import Unavailable
@@ -62,7 +62,7 @@ def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printe
         (NoAnswer("hat raised E", "raised"), "no answer", "raised", "hat raised E"),
         (NoAnswer("", "missing"), "no answer", "missing", ""),
         (NoAnswer("too long", "late"), "no answer", "late", "too long"),
-        (Different("n" * 1501), "fails", "", "n" * 1500),
+        (AnswerMismatch("n" * 1501), "fails", "", "n" * 1500),
         (AssertionError(), "fails", "", "The promise does not hold"),
         (AssertionError("a\n +  where b"), "fails", "", "a"),
         (
@@ -92,12 +92,12 @@ def test_what_does_not_hold_is_written_with_its_words(raised, outcome, kind, mes
 
 
 def test_of_a_difference_what_came_is_described_where_it_has_axes():
-    told = plugin._message(Different("w: no", came=np.ones(3)))
+    told = plugin._message(AnswerMismatch("w: no", came=np.ones(3)))
     assert told.startswith("w: no\nYours: shape (3,)")
-    assert plugin._message(Different("n" * 1600, came=np.ones(3))).startswith(
+    assert plugin._message(AnswerMismatch("n" * 1600, came=np.ones(3))).startswith(
         "n" * 1500 + "\nYours"
     )
-    assert plugin._message(Different("w: no", came=np.array(1.0))) == "w: no"
+    assert plugin._message(AnswerMismatch("w: no", came=np.array(1.0))) == "w: no"
 
 
 @pytest.mark.parametrize(
@@ -111,9 +111,9 @@ def test_of_a_difference_what_came_is_described_where_it_has_axes():
     ],
 )
 def test_a_difference_that_can_be_drawn_travels_as_text(kind, shape, drawn, checking, monkeypatch):
-    monkeypatch.setattr(plugin, "DRAWN", 4)
+    monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
     truth, came = np.zeros(shape), np.ones(shape, np.float32)
-    error = Different("no", expected=truth, came=came, kind=kind)
+    error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
     checking._ended(item(), error)
     checking.job["draw"] = False
     checking._ended(item(), error)
@@ -122,8 +122,8 @@ def test_a_difference_that_can_be_drawn_travels_as_text(kind, shape, drawn, chec
     if drawn:
         texts = [base64.b64encode(one.astype("<f8").tobytes()).decode() for one in (truth, came)]
         assert first == {"kind": kind, "shape": list(shape), "expected": texts[0], "came": texts[1]}
-    assert plugin._differs(Different("no", expected=truth, kind="curve")) is None
-    assert plugin._differs(Different("no", came=truth, kind="curve")) is None
+    assert plugin._differs(AnswerMismatch("no", expected=truth, kind="curve")) is None
+    assert plugin._differs(AnswerMismatch("no", came=truth, kind="curve")) is None
 
 
 def test_of_hidden_checks_nothing_is_kept_to_name_a_mistake_by(checking):

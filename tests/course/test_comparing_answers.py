@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.course.checks import compare
-from hdrlab.course.checks.compare import Different, finite, numbers, parts, plain, same, states
+from hdrlab.course.checks.compare import AnswerMismatch, finite, numbers, parts, plain, same, states
 
 
 @pytest.fixture(autouse=True)
@@ -17,7 +17,7 @@ def notes():
 
 def refused(ask, *given, **named):
     """Return the words of a refusal, which are the same as those that are remembered."""
-    with pytest.raises(Different) as raised:
+    with pytest.raises(AnswerMismatch) as raised:
         ask(*given, **named)
     assert str(raised.value) == raised.value.message
     return str(raised.value)
@@ -26,7 +26,7 @@ def refused(ask, *given, **named):
 def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_is_remembered():
     compare.require(True, "it holds")
     compare.require([0], "something is there")
-    with pytest.raises(Different, match="^it does not hold$") as raised:
+    with pytest.raises(AnswerMismatch, match="^it does not hold$") as raised:
         compare.require(0, "it does not hold", came=np.ones(2))
     assert (raised.value.kind, raised.value.expected, raised.value.came.tolist()) == (
         "values",
@@ -232,7 +232,7 @@ def test_where_a_nan_is_expected_outside_the_mask_a_number_may_come():
     ],
 )
 def test_a_difference_remembers_both_arrays_and_how_it_is_drawn(shape, named, kind):
-    with pytest.raises(Different) as raised:
+    with pytest.raises(AnswerMismatch) as raised:
         same(np.ones(shape), np.zeros(shape), 0.5, **named)
     assert raised.value.kind == kind
     assert not raised.value.expected.any() and raised.value.came.all()

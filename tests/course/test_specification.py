@@ -190,5 +190,5 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
     ],
 )
 def test_what_is_no_array_of_numbers_is_told_by_what_came_instead(came, said):
-    with pytest.raises(compare.Different, match=said):
+    with pytest.raises(compare.AnswerMismatch, match=said):
         compare.numbers(came)

@@ -1,10 +1,10 @@
-"""Comparing an answer with what was expected, and remembering both, so that the difference can be drawn.
+"""Compare an answer with what is expected, and keep both so that the difference can be drawn.
 
-came      what a student's function answered: the plain arrays that the channel built, and nothing else
+came      the answer of a student's function: plain arrays that the channel built, and nothing else
 expected  what the specification says it should be
 
-Asked in this order: answered, a kind of number, shape, finite, and at last `error <= tolerance`,
-which a NaN does not pass.
+The order of the comparison: is there an answer, is it numbers, shape, finite, and at last
+`error <= tolerance`, which a NaN does not pass.
 """
 
 from collections.abc import Iterator
@@ -15,12 +15,21 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 Kind = Literal["image", "curve", "values"]
-# of the check that runs: forms that were accepted, though the sheet asks for another
+# fewer values than that are shown as numbers, not as a curve
+MIN_CURVE_VALUES = 9
+# of the running check: forms of answers that were accepted, though the sheet asks for another
 notes: list[str] = []
 
 
-class Different(AssertionError):
-    """An answer that is not what was expected; `expected` and `came` are arrays of one shape, or None."""
+class AnswerMismatch(AssertionError):
+    """An answer is not what is expected.
+
+    Attributes
+    ----------
+    message : what differs
+    expected, came : arrays of the same shape, or None
+    kind : how to draw the two
+    """
 
     def __init__(
         self,
@@ -31,67 +40,76 @@ class Different(AssertionError):
         kind: Kind = "values",
     ) -> None:
         super().__init__(message)
-        self.message, self.expected, self.came, self.kind = message, expected, came, kind
+        self.message = message
+        self.expected = expected
+        self.came = came
+        self.kind = kind
+
+
+# the old name, which checks of instructors' own tasks may import
+Different = AnswerMismatch
 
 
 def points(n: float, *, needs: str = "") -> Any:
-    """Mark a check: what its promise is worth, 1 otherwise, and the one without which it earns nothing."""
-    import pytest  # which is there where checks run, and slow to import elsewhere
+    """Mark a check: the points of its promise, and the check without which it earns nothing."""
+    import pytest  # slow to import, and needed only where checks run
 
     return pytest.mark.points(n, needs=needs)
 
 
-def require(holds: Any, said: str, **remembered: Any) -> None:
-    """Raise Different, with what is said and remembered, where something does not hold."""
-    if not holds:
-        raise Different(said, **remembered)
+def require(condition: Any, message: str, **details: Any) -> None:
+    """Raise AnswerMismatch with the message and details if a condition does not hold."""
+    if not condition:
+        raise AnswerMismatch(message, **details)
 
 
 def numbers(came: Any, *, what: str = "the answer") -> Array:
-    """Return an answer as an array of numbers, or raise Different that says what came instead."""
+    """Return an answer as an array of real numbers, or raise AnswerMismatch."""
     require(came is not None, f"{what}: expected numbers, and nothing came (None)")
     if isinstance(came, tuple | list):
         came = as_listed(came, what)
-    one = not isinstance(came, tuple | list | str | bytes | dict)
-    require(one, f"{what}: expected one array of numbers, got {_named(came)}")
+    is_one_array = not isinstance(came, tuple | list | str | bytes | dict)
+    require(is_one_array, f"{what}: expected one array of numbers, got {_describe(came)}")
     array = np.asarray(came)
     require(array.dtype.kind in "biuf", f"{what}: expected real numbers, got dtype {array.dtype}")
     return array
 
 
 def as_listed(came: Any, what: str = "the answer") -> Any:
-    """Return a list of numbers, or of lists of them, as an array; what is no such list as it is."""
+    """Return a list of numbers, nested or not, as an array, and anything else unchanged."""
     try:
         array = np.array(came)
-    except ValueError:  # ragged, or of no numbers
+    except ValueError:  # a ragged list
         return came
     if not array.size or array.dtype.kind not in "biuf":
         return came
-    notes.append(f"{what}: {_named(came)} was taken for an array of shape {array.shape}")
+    notes.append(f"{what}: {_describe(came)} was taken for an array of shape {array.shape}")
     return array
 
 
 def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> Array:
-    """Return an array of that shape if its own differs by axes of length 1 alone, or raise Different."""
+    """Return an array in a shape that differs by axes of length 1 at most, or raise AnswerMismatch."""
     if array.shape == shape:
         return array
-    if [n for n in array.shape if n > 1] != [n for n in shape if n > 1] or not array.size:
-        raise Different(f"{what}: expected shape {shape}, got shape {array.shape}")
+    long_axes = [n for n in array.shape if n > 1]
+    expected_long_axes = [n for n in shape if n > 1]
+    if long_axes != expected_long_axes or not array.size:
+        raise AnswerMismatch(f"{what}: expected shape {shape}, got shape {array.shape}")
     notes.append(f"{what}: shape {array.shape} was taken for {shape}")
     return array.reshape(shape)
 
 
 def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
-    """Return the first `count` parts of an answer of several, or raise Different."""
-    several = isinstance(came, tuple | list) and len(came) >= count
-    require(several, f"{what}: expected {count} things, got {_named(came)}")
+    """Return the first `count` parts of an answer in several parts, or raise AnswerMismatch."""
+    has_parts = isinstance(came, tuple | list) and len(came) >= count
+    require(has_parts, f"{what}: expected {count} things, got {_describe(came)}")
     return tuple(came[:count])
 
 
 def states(came: Any, *, what: str = "the steps") -> list[Any]:
-    """Return what a generator yielded, at least one state, or raise Different."""
-    yielded = isinstance(came, list | tuple) and len(came)
-    require(yielded, f"{what}: expected a generator that yields states, got {_named(came)}")
+    """Return the states that a generator yielded, at least one, or raise AnswerMismatch."""
+    has_states = isinstance(came, list | tuple) and len(came) > 0
+    require(has_states, f"{what}: expected a generator that yields states, got {_describe(came)}")
     return list(came)
 
 
@@ -105,11 +123,11 @@ def same(
     picture: bool = False,
     where: Any = None,
 ) -> Array:
-    """Return the answer as an array if it is what was expected within `tolerance`, or raise Different.
+    """Return the answer as an array if it is as expected within `tolerance`, or raise AnswerMismatch.
 
     Parameters
     ----------
-    came, expected : arrays or numbers; a NaN that is expected must come as one
+    came, expected : arrays or numbers; where NaN is expected, the answer must be NaN
     tolerance : the largest difference of a value that is still the same, in the unit of the values
     what : the answer's name in the message
     kind : how to draw it; by default a curve for (n,), values for all else
@@ -117,74 +135,86 @@ def same(
     where : mask; values elsewhere may be anything
     """
     wanted = np.asarray(expected)
-    kind = (
-        "image"
-        if picture
-        else kind or ("curve" if wanted.ndim == 1 and wanted.size > 8 else "values")
-    )
     array = as_shape(numbers(came, what=what), wanted.shape, what)
-    asked = np.ones(wanted.shape, bool) if where is None else np.broadcast_to(where, wanted.shape)
-    values, truth = array.astype(np.float64), wanted.astype(np.float64)
+    compared = np.broadcast_to(True if where is None else where, wanted.shape)
+    values = array.astype(np.float64)
+    truth = wanted.astype(np.float64)
     unknown = np.isnan(truth)
-    both: dict[str, Any] = {"expected": wanted, "came": array, "kind": kind}
-    _require_finite(values[asked & ~unknown], what, **both)
-    count = np.count_nonzero(~np.isnan(values[asked & unknown]))
+    details: dict[str, Any] = {
+        "expected": wanted,
+        "came": array,
+        "kind": _kind(wanted, kind, picture=picture),
+    }
+    _require_finite(values[compared & ~unknown], what, **details)
+    count = np.count_nonzero(~np.isnan(values[compared & unknown]))
     require(
         not count,
         f"{what}: expected NaN where nothing is known, got numbers at {count} places",
-        **both,
+        **details,
     )
-    error = np.where(asked & ~unknown, np.abs(values - truth), 0.0)
+    error = np.where(compared & ~unknown, np.abs(values - truth), 0.0)
     if not error.max(initial=0.0) <= tolerance:
-        at = np.unravel_index(int(np.argmax(error)), error.shape)
-        place = f" at {tuple(int(i) for i in at)}" if error.ndim else ""
-        allowed = f"; the difference may be {tolerance:.2g}" if tolerance else ""
-        off = (
-            f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off"
-            if error.ndim
-            else ""
-        )
-        message = f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}{allowed}{off}"
-        raise Different(message, **both)
+        message = _largest_error(error, values, truth, tolerance)
+        raise AnswerMismatch(f"{what}: {message}", **details)
     return array
 
 
+def _kind(expected: Array, kind: Kind | None, *, picture: bool) -> Kind:
+    """Return how to draw an answer."""
+    if picture:
+        return "image"
+    if kind is not None:
+        return kind
+    is_curve = expected.ndim == 1 and expected.size >= MIN_CURVE_VALUES
+    return "curve" if is_curve else "values"
+
+
+def _largest_error(error: Array, values: Array, truth: Array, tolerance: float) -> str:
+    """Return a message about the value with the largest error."""
+    index = np.unravel_index(int(np.argmax(error)), error.shape)
+    place = ""
+    wrong_values = ""
+    if error.ndim:
+        place = f" at {tuple(int(i) for i in index)}"
+        wrong_values = f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off"
+    allowed = f"; the difference may be {tolerance:.2g}" if tolerance else ""
+    return f"expected {truth[index]:.6g}{place}, got {values[index]:.6g}{allowed}{wrong_values}"
+
+
 def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Array:
-    """Return an answer of which only the shape is known beforehand, if it is finite, or raise Different."""
+    """Return a finite answer of which only the shape is known beforehand, or raise AnswerMismatch."""
     array = as_shape(numbers(came, what=what), shape, what)
     _require_finite(array.astype(np.float64), what)
     return array
 
 
-def _require_finite(values: Array, what: str, **remembered: Any) -> None:
-    """Raise Different where a value is NaN or infinite."""
+def _require_finite(values: Array, what: str, **details: Any) -> None:
+    """Raise AnswerMismatch if a value is NaN or infinite."""
     bad = np.count_nonzero(~np.isfinite(values))
-    require(
-        not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered
-    )
+    require(not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **details)
 
 
-def _named(came: Any) -> str:
-    """Return what came, in few words, and never by asking the thing itself."""
+def _describe(came: Any) -> str:
+    """Return the kind of an answer in a few words, without calling any of its methods."""
     if came is None:
         return "nothing (None)"
     if isinstance(came, tuple | list | bytes | str):
         return f"{type(came).__name__} of {len(came)}"
-    return (
-        "one array" if isinstance(came, np.ndarray | np.generic | int | float) else "something else"
-    )
+    if isinstance(came, np.ndarray | np.generic | int | float):
+        return "one array"
+    return "something else"
 
 
 def plain(answer: Any) -> Any:
-    """Return an answer of trusted code as the channel brings those of students: arrays, tuples, lists.
+    """Return an answer of trusted code in the form in which the channel brings those of students.
 
-    A NamedTuple becomes a tuple, what a generator yields a list; a number becomes an array without
-    axes.
+    A NamedTuple becomes a tuple, a generator a list of what it yields, and a number an array
+    without axes.
     """
     if answer is None or isinstance(answer, bytes | str):
         return answer
     if isinstance(answer, tuple):
-        return tuple(plain(one) for one in answer)
+        return tuple(plain(part) for part in answer)
     if isinstance(answer, Iterator | list):
-        return [plain(one) for one in answer]
+        return [plain(part) for part in answer]
     return np.array(answer)

@@ -1,8 +1,9 @@
-"""The grader's half of pytest: it gives the specification its subject, and writes down what became of it.
+"""The grader's pytest plugin: it runs the specification on a student's code and writes the results.
 
-The specification's files say `subject.gsolve(...)`. In the tests of hdrlab that is the library;
-here it is a student's code in another process. What is asked for stands in a job, a JSON file; what
-comes of it is written line by line into another, so that nothing is lost if this process is ended.
+The specification's files call `subject.gsolve(...)`. In hdrlab's own tests the subject is the
+library. Here it is a student's code in another process. A JSON file, the job, says what to check.
+The plugin writes each result into another file as soon as it is known, so nothing is lost if this
+process is killed.
 """
 
 import base64
@@ -25,29 +26,36 @@ from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import running, tiers
 from hdrlab.course.sandbox.inside import system
 
-CALLS = 20  # of a task that are kept to recognise a mistake by
-LONGEST = 1500  # characters of a message
-SAID = 4000  # characters of what a function printed
-MARKER = "points(n, needs=''): what a promise is worth, and the one without which it earns nothing"
-WHERE = re.compile(r"\n *\+  where")  # begins what pytest adds to a plain assert
-ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  # of an object: it is another in each run
-DRAWN = 3_000_000  # values of an image that is drawn, at most
+# calls of a task that are kept to recognize a mistake
+MAX_REMEMBERED_CALLS = 20
+MAX_MESSAGE_CHARACTERS = 1500
+# of what a function printed
+MAX_PRINTED_CHARACTERS = 4000
+# values of an image that is drawn
+MAX_DRAWN_VALUES = 3_000_000
+POINTS_MARKER = (
+    "points(n, needs=''): the points of a promise, and the check without which it earns nothing"
+)
+# the start of what pytest appends to the message of a plain assert
+ASSERT_DETAILS = re.compile(r"\n *\+  where")
+# the address of an object, which differs from run to run
+MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Take the name of the job's file."""
-    parser.addoption("--job", help="JSON: what is to be checked, and how")
+    """Add the option with the name of the job's file."""
+    parser.addoption("--job", help="JSON file that says what to check, and how")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the job and who does it, and know the specification's marker."""
-    config.addinivalue_line("markers", MARKER)
+    """Register the marker of the specification, and the plugin that the job names."""
+    config.addinivalue_line("markers", POINTS_MARKER)
     job = json.loads(Path(config.getoption("--job")).read_text(encoding="utf8"))
     config.pluginmanager.register(resolve_name(job["by"])(job), "hdrlab-checking")
 
 
 class Missing:
-    """The subject of a task that was not handed in, or that took too long: nothing is asked of it."""
+    """The subject of a task that was not handed in, or took too long: every call raises NoAnswer."""
 
     said = ""
 
@@ -59,25 +67,26 @@ class Missing:
 
 
 class GradingPlugin:
-    """One run of the checks: the job, the subject, and what is written down."""
+    """One run of the checks: read the job, run the subject, write the results."""
 
     def __init__(self, job: dict[str, Any]) -> None:
-        self.job, self.open = job, ExitStack()
+        self.job = job
+        self.open = ExitStack()
         self.calls: dict[str, list[tuple[Any, ...]]] = {}
         self.failed: set[str] = set()
         self.late: set[str] = set()
 
     def pytest_sessionstart(self) -> None:
-        """Start the sandbox first: it gets ready while the checks are collected."""
+        """Start the sandbox, which gets ready while pytest collects the checks."""
         if not system.end_with(self.job["grader"]):  # if it is killed, this is to end, too
             pytest.exit("the grader has ended")
-        sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
-        subject = Subject(sources, sandbox, self.job["timeout"], self.job["modules"])
+        sandbox = tiers.choose(self.job["tier"])
+        subject = Subject(self.job["sources"], sandbox, self.job["timeout"], self.job["modules"])
         self.submission = self.open.enter_context(subject)
 
     @pytest.fixture
     def subject(self, request: pytest.FixtureRequest) -> Subject | Missing:
-        """Return the student's functions, afresh: nothing that one check left behind serves the next."""
+        """Return the student's functions in a fresh process, so that no check affects the next one."""
         if task_of(request.node) not in self.job["sources"]:
             return Missing()
         if task_of(request.node) in self.late:
@@ -88,11 +97,11 @@ class GradingPlugin:
 
     @pytest.fixture
     def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
-        """Return what this student's inputs to this task are drawn from."""
+        """Return the random generator of this student's inputs to this task."""
         return np.random.default_rng(int(self.job["seeds"].get(task_of(request.node), 0)))
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
-        """Write down every check before the first is run."""
+        """Write a line for every check before the first one runs."""
         for item in session.items:
             worth = item.get_closest_marker("points")
             self._write(
@@ -108,7 +117,7 @@ class GradingPlugin:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
-        """Write down how a check ended."""
+        """Write a line when a check has ended."""
         report = yield
         if call.when == "call" or call.excinfo is not None:
             self._ended(item, call.excinfo and call.excinfo.value)
@@ -116,16 +125,15 @@ class GradingPlugin:
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
-        said = ADDRESS.sub("", subject.said[:SAID])
+        said = MEMORY_ADDRESS.sub("", subject.said[:MAX_PRINTED_CHARACTERS])
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(task_of(item), [])
-            kept += [
-                (one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]
-            ]
-        if isinstance(raised, running.Unavailable):  # nothing can be said of the submission
+            room = MAX_REMEMBERED_CALLS - len(kept)
+            kept += [(call.args, call.kwargs, call.answer) for call in subject.calls[:room]]
+        if isinstance(raised, running.Unavailable):  # the machine failed, not the submission
             return self._write(unavailable=str(raised))
         if raised is None:
-            notes = "\n".join(dict.fromkeys(compare.notes))[:LONGEST]
+            notes = "\n".join(dict.fromkeys(compare.notes))[:MAX_MESSAGE_CHARACTERS]
             return self._write(ended=_id(item), outcome="holds", message=notes, said=said)
         if not self._is_hidden(item):
             self.failed.add(task_of(item))
@@ -137,7 +145,7 @@ class GradingPlugin:
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        """Write down which well-known mistakes the answers show."""
+        """Write a line for each task whose answers show a known mistake."""
         for task in sorted(self.failed):
             with suppress(
                 Exception
@@ -161,12 +169,12 @@ class GradingPlugin:
 
 
 def _id(item: pytest.Item) -> str:
-    """Return what tells a check from all others; pytest's own id may be the same for files of two folders."""
+    """Return an id of a check that is unique; pytest's own may be the same for files of two folders."""
     return f"{item.path}::{item.name}"
 
 
 def task_of(item: pytest.Item) -> str:
-    """Return the id of the task that a check is of."""
+    """Return the id of the task that a check belongs to."""
     return item.path.stem.removeprefix("test_")
 
 
@@ -181,27 +189,42 @@ def promise_of(item: pytest.Item) -> str:
 
 
 def hints(check: object) -> list[str]:
-    """Return the hints of a check, from a nudge to nearly the answer: the paragraphs of its docstring."""
-    return [" ".join(one.split()) for one in (inspect.getdoc(check) or "").split("\n\n") if one]
+    """Return the hints of a check, the paragraphs of its docstring. Each says more than the last."""
+    paragraphs = (inspect.getdoc(check) or "").split("\n\n")
+    return [" ".join(paragraph.split()) for paragraph in paragraphs if paragraph]
 
 
 def _message(raised: BaseException) -> str:
-    """Return why a check does not hold, in words."""
-    said = ADDRESS.sub("", WHERE.split(str(raised))[0]).strip()
-    if isinstance(raised, compare.Different) and raised.came is not None and np.ndim(raised.came):
-        return f"{said[:LONGEST]}\nYours: {describe(raised.came)}"
+    """Return the message for a check that does not hold."""
+    said = MEMORY_ADDRESS.sub("", ASSERT_DETAILS.split(str(raised))[0]).strip()
+    if (
+        isinstance(raised, compare.AnswerMismatch)
+        and raised.came is not None
+        and np.ndim(raised.came)
+    ):
+        return f"{said[:MAX_MESSAGE_CHARACTERS]}\nYours: {describe(raised.came)}"
     if isinstance(raised, AssertionError):
         empty = "" if isinstance(raised, NoAnswer) else "The promise does not hold"
-        return (said or empty)[:LONGEST]
-    return f"The answer could not be compared: {type(raised).__name__}: {said}"[:LONGEST]
+        return (said or empty)[:MAX_MESSAGE_CHARACTERS]
+    return f"The answer could not be compared: {type(raised).__name__}: {said}"[
+        :MAX_MESSAGE_CHARACTERS
+    ]
 
 
 def _differs(raised: BaseException) -> dict[str, Any] | None:
-    """Return the two arrays of a difference that can be drawn, as text."""
-    if not isinstance(raised, compare.Different) or raised.kind == "values":
+    """Return the two arrays of a difference that can be drawn, as text, or None."""
+    if not isinstance(raised, compare.AnswerMismatch) or raised.kind == "values":
         return None
-    if raised.expected is None or raised.came is None or raised.expected.size > DRAWN:
+    if raised.expected is None or raised.came is None or raised.expected.size > MAX_DRAWN_VALUES:
         return None
-    both = [np.asarray(one, "<f8") for one in (raised.expected, raised.came)]
-    texts = [base64.b64encode(one.tobytes()).decode() for one in both]
-    return {"kind": raised.kind, "shape": both[0].shape, "expected": texts[0], "came": texts[1]}
+    return {
+        "kind": raised.kind,
+        "shape": raised.expected.shape,
+        "expected": _encode(raised.expected),
+        "came": _encode(raised.came),
+    }
+
+
+def _encode(array: np.ndarray) -> str:
+    """Return an array as base 64 of little-endian float64."""
+    return base64.b64encode(np.asarray(array, "<f8").tobytes()).decode()

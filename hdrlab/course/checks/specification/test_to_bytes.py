@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.course.checks.compare import Different, points, require, same
+from hdrlab.course.checks.compare import AnswerMismatch, points, require, same
 from hdrlab.io.maps import pfm
 
 
@@ -18,11 +18,11 @@ def asked(subject, E):
 
 
 def as_read(data):
-    """Return what hdrlab reads out of the bytes, or raise Different with the reader's words."""
+    """Return what hdrlab reads out of the bytes, or raise AnswerMismatch with the reader's words."""
     try:
         return pfm.from_bytes(data)
     except ValueError as error:
-        raise Different(f"the file cannot be read: {error}") from None
+        raise AnswerMismatch(f"the file cannot be read: {error}") from None
 
 
 def test_the_file_begins_with_the_kind_of_map(subject, rng):
