@@ -1,11 +1,11 @@
-"""Which frame contradicts all others?
+"""Which photo contradicts all others?
 
 B   ln times, as stated   (P,)
 
-The typical patch of two neighbours, flat or not, misses their times by some stops. A frame without
-which all others agree is the one that is wrong: by its time, or because it shows another scene, or
-another light. Where the others agree without either of two, as three of four often do, nobody can
-tell which.
+The typical patch of two neighbors, flat or not, misses their times by some stops. If all other photos
+agree without one photo, that one is wrong: its time is wrong, or it shows another scene, or another
+light. If the others agree without either of two photos, as three of four often do, nobody can tell
+which one is wrong.
 """
 
 import numpy as np
@@ -13,17 +13,28 @@ import numpy as np
 from hdrlab.core.arrays import F64, ArrayLike, as_stack
 from hdrlab.diagnostics import flat_patches, response_steps
 
-# stops in a typical patch: what contradicts all others, and what agrees
-CONTRARY, AGREEING = 0.3, 0.1
+# stops in a typical patch, by which photos contradict each other
+MIN_CONTRARY_STOPS = 0.3
+# stops in a typical patch, up to which photos agree
+MAX_AGREEING_STOPS = 0.1
+# At least so many photos remain, and this fraction of them.
+MIN_KEPT_PHOTOS = 3
+MIN_KEPT_FRACTION = 2 / 3
 
 
 def find_outlying_frames(
     images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return the frames that contradict all others, while these agree; none where more than a third would.
+    """Find the photos that contradict all others, while these agree with each other.
 
-    Frames are left out one by one, each time the one without which the others agree best. The
-    second tuple holds those without which, in place of the last, the others agree as well.
+    Photos are left out one at a time, each time the one without which the others agree best.
+
+    Returns
+    -------
+    outliers : tuple of int
+        Empty if more than a third of the photos would be left out.
+    rivals : tuple of int
+        Photos that could be left out in place of the last one: the others agree as well.
 
     Examples
     --------
@@ -38,27 +49,34 @@ def find_outlying_frames(
     """
     stack = as_stack(images)
     B = np.log(response_steps.as_ascending_times(times, len(stack)))
-    found = flat_patches.find_flat_patches(stack, valid=valid)
-    kept, rivals = list(range(len(B))), tuple[int, ...]()
-    error = first = measure_misfit(found, B)
-    while error > AGREEING and first > CONTRARY and len(kept) > max(3, np.ceil(2 * len(B) / 3)):
-        rests = [[k for k in kept if k != j] for j in kept]
-        errors = [measure_misfit(found.of(rest), B[rest]) for rest in rests]
+    patches = flat_patches.find_flat_patches(stack, valid=valid)
+    kept = list(range(len(B)))
+    rivals: tuple[int, ...] = ()
+    error = measure_misfit(patches, B)
+    if error <= MIN_CONTRARY_STOPS:
+        return (), ()
+    min_kept = max(MIN_KEPT_PHOTOS, np.ceil(MIN_KEPT_FRACTION * len(B)))
+    while error > MAX_AGREEING_STOPS and len(kept) > min_kept:
+        remaining = [[k for k in kept if k != j] for j in kept]
+        errors = [measure_misfit(patches.of(frames), B[frames]) for frames in remaining]
         best = int(np.argmin(errors))
         rivals = tuple(
-            j for j, e in zip(kept, errors, strict=True) if e <= AGREEING and j != kept[best]
+            j
+            for j, other_error in zip(kept, errors, strict=True)
+            if other_error <= MAX_AGREEING_STOPS and j != kept[best]
         )
-        error, kept = errors[best], rests[best]
-    return (
-        (tuple(sorted(set(range(len(B))) - set(kept))), rivals) if error <= AGREEING else ((), ())
-    )
+        error = errors[best]
+        kept = remaining[best]
+    if error > MAX_AGREEING_STOPS:
+        return (), ()
+    return tuple(j for j in range(len(B)) if j not in kept), rivals
 
 
-def measure_misfit(found: flat_patches.FlatPatches, B: F64) -> float:
-    """Return the most by which neighbours miss ln times B in a typical patch, flat or not, in stops."""
-    H = flat_patches.count_pairs(found.Z, np.ones(found.Z.shape[2:], bool))
+def measure_misfit(patches: flat_patches.FlatPatches, B: F64) -> float:
+    """Return the most by which neighbors miss ln times B in a typical patch, flat or not, in stops."""
+    all_patches = np.ones(patches.Z.shape[2:], bool)
+    H = flat_patches.count_pairs(patches.Z, all_patches)
     fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))
-    errors = response_steps.measure_biases(H, B, fit, sizes=True)[
-        response_steps.find_informative(H)
-    ]
-    return float(np.nanmax(errors, initial=0))
+    biases = response_steps.measure_biases(H, B, fit, sizes=True)
+    is_informative = response_steps.find_informative(H)
+    return float(np.nanmax(biases[is_informative], initial=0))

@@ -245,7 +245,7 @@ def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
 
 def test_times_are_not_estimated_from_two_photographs_or_without_flat_patches(taken):
     images, true = taken(5)[:2]
-    assert "two photographs" in estimate_times(images[:2], true[:2]).reason
+    assert "two photos" in estimate_times(images[:2], true[:2]).reason
     noise = np.random.default_rng(0).integers(0, 256, (3, 60, 80, 3), dtype=np.uint8)
     assert "too few patches" in estimate_times(noise, [1, 2, 4]).reason
 
