@@ -167,11 +167,10 @@ def refine_times(state: Assembly, response: Method, stated_spread: float) -> Ass
 
 def _describe_replaced_times(spread: float, times: arrays.F64) -> str:
     """Return the warning that relative times replace the stated ones."""
-    amount = "beyond measure" if np.isinf(spread) else f"by {spread:.2f} stops"
-    return (
-        f"the stated times contradict the pixels {amount}, so they were not used, but "
-        f"{describe_relative_times(times)}"
-    )
+    relative = describe_relative_times(times)
+    if np.isinf(spread):
+        return warning_text("replaced_immeasurable", relative=relative)
+    return warning_text("replaced", stops=spread, relative=relative)
 
 
 def correct_times(
