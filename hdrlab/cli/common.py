@@ -215,17 +215,19 @@ def read_map(source: Path, clean: bool) -> "F32":
     """
     from hdrlab.io import radiance
 
-    E, unknown, infinite, negative, black = radiance.read_sanitized(source)
+    sanitized = radiance.read_sanitized(source)
+    E = sanitized.E
     count_by_repair = {
-        "unknown pixels": unknown,
-        "infinite values": infinite,
-        "pixels with a negative channel": negative,
-        "pixels below black": black,
+        "unknown pixels": sanitized.unknown,
+        "infinite values": sanitized.infinite,
+        "pixels with a negative channel": sanitized.negative,
+        "pixels below black": sanitized.black,
     }
     repairs = ", ".join(f"{count} {name}" for name, count in count_by_repair.items() if count)
     pixels = E.shape[0] * E.shape[1]
     channels = E.size / pixels
-    if not clean and 2 * (unknown + black + infinite / channels) >= pixels:
+    invalid = sanitized.unknown + sanitized.black + sanitized.infinite / channels
+    if not clean and 2 * invalid >= pixels:
         raise InputError(
             f"{source}: most pixels are no valid radiance ({repairs}, of {pixels} pixels); "
             "pass --clean to repair them"

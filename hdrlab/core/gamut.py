@@ -17,7 +17,7 @@ show: there the half stands, and shadows keep their detail.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -36,7 +36,8 @@ BRADFORD = np.array(
 )
 
 
-class Sanitized(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sanitized:
     """Radiance that every operator takes, and counts of what was repaired.
 
     Attributes
@@ -79,10 +80,10 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
 
     Examples
     --------
-    >>> found = sanitize([[[0.2, 0.4, -0.1], [np.nan, 1.0, 1.0], [0.2, 0.4, np.inf]]])
-    >>> found.E[0, 0].round(3)  # its luminance is still 0.321
+    >>> result = sanitize([[[0.2, 0.4, -0.1], [np.nan, 1.0, 1.0], [0.2, 0.4, np.inf]]])
+    >>> result.E[0, 0].round(3)  # its luminance is still 0.321
     array([0.251, 0.367, 0.076], dtype=float32)
-    >>> found[1:]
+    >>> result.unknown, result.infinite, result.negative, result.black
     (1, 1, 1, 0)
     """
     array = np.asanyarray(E)

@@ -4,6 +4,7 @@ Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read; a
 read, too.
 """
 
+import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -67,8 +68,8 @@ def read_sanitized(path: str | Path) -> gamut.Sanitized:
     primaries = primaries_of(path)
     if primaries is None:
         return gamut.sanitize(E)
-    found = gamut.sanitize(E, weights=gamut.xyz_matrix(primaries)[1])
-    return found._replace(E=gamut.to_srgb(found.E, primaries))
+    sanitized = gamut.sanitize(E, weights=gamut.xyz_matrix(primaries)[1])
+    return dataclasses.replace(sanitized, E=gamut.to_srgb(sanitized.E, primaries))
 
 
 def read_valid(path: str | Path) -> arrays.F32:
