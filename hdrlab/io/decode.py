@@ -156,7 +156,7 @@ def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeade
     path = Path(path)
     require_no_folder(path, "a photo")
     if path.suffix.lower() in raw.SUFFIXES:
-        raw_shape, exposure = raw.look(path)
+        raw_shape, exposure = raw.read_shape_and_exposure(path)
         return PhotoHeader(path, "RAW", raw_shape, np.dtype(np.uint16), exposure=exposure)
     with open(path, "rb") as file:
         head = file.read(HEADER_BYTES)

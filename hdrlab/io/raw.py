@@ -18,38 +18,53 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core import arrays, optional
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
 SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})
-# of a clipped pixel
+# The value of a clipped pixel.
 WHITE_LEVEL = 65535
-# compression 52546 of a DNG, as an entry of TIFF says it [DNG 1.7.1]; LibRaw does not decode it
+# Compression 52546 of a DNG, as an entry of TIFF in either byte order [DNG 1.7.1]. LibRaw does not
+# decode it.
 JPEG_XL = re.compile(rb"\x03\x01\x03\0\x01\0\0\0\x42\xcd|\x01\x03\0\x03\0\0\0\x01\xcd\x42")
-# rows
+# Rows that are converted at a time: the floats of a whole photo would fill the memory.
 BAND_ROWS = 64
+HEADER_BYTES = 2**18
+# LibRaw's orientations that turn by a quarter.
+QUARTER_TURNS = (5, 6)
+# Bytes of pixels for one byte of the file, at most.
+BEST_COMPRESSION_RATIO = 64
 
 Balance = tuple[float, float, float, float]
 
 
-def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
-    """Return the upright shape (H, W, 3) and the Exposure of the RAW file at `path`."""
+def read_shape_and_exposure(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
+    """Return the upright shape (H, W, 3) and the exposure of a RAW file."""
     with _open(path) as file:
-        sizes, other = file.sizes, file.other
         if file.num_colors != 3:
-            raise InputError(f"{path}: expected a sensor of three colours, got {file.num_colors}")
-        # by 5 and 6 it is turned by a quarter
-        height, width = (sizes.iheight, sizes.iwidth)[:: -1 if sizes.flip in (5, 6) else 1]
-        values = (other.shutter_speed, other.aperture, other.iso_speed)
-    check_size(path, height, width, height * width // 64)
-    return (height, width, 3), Exposure(
-        *(float(value) if 0 < value < np.inf else None for value in values)
-    )
+            raise FileFormatError(
+                f"{path}: expected a sensor of three colors, got {file.num_colors}"
+            )
+        height = file.sizes.iheight
+        width = file.sizes.iwidth
+        if file.sizes.flip in QUARTER_TURNS:
+            height, width = width, height
+        exposure = Exposure(
+            seconds=_positive_or_none(file.other.shutter_speed),
+            f_number=_positive_or_none(file.other.aperture),
+            iso=_positive_or_none(file.other.iso_speed),
+        )
+    check_size(path, height, width, height * width // BEST_COMPRESSION_RATIO)
+    return (height, width, 3), exposure
+
+
+def _positive_or_none(value: float) -> float | None:
+    return float(value) if 0 < value < np.inf else None
 
 
 def balance(path: str | Path) -> Balance:
-    """Return the white balance that the camera chose, or that of daylight where it chose none."""
+    """Return the white balance that the camera chose, or that of daylight if it chose none."""
     with _open(path) as file:
         chosen = list(file.camera_whitebalance)
         if not all(np.isfinite(chosen)) or min(chosen[:3]) <= 0:
@@ -59,43 +74,43 @@ def balance(path: str | Path) -> Balance:
 
 
 def decode(path: str | Path, white_balance: Balance | None = None) -> arrays.NDArray[np.uint16]:
-    """Return Z, linear sRGB (H, W, 3); the photograph's own white balance serves where none is given."""
-    white_balance = balance(path) if white_balance is None else white_balance
+    """Return Z, linear sRGB (H, W, 3), by default with the photo's own white balance."""
+    if white_balance is None:
+        white_balance = balance(path)
     with _open(path) as file:
         matrix = file.color_matrix[:, :3].astype(np.float32)
-        alike = {
-            "gamma": (1, 1),
-            "no_auto_bright": True,
-            "adjust_maximum_thr": 0.0,
-            "output_bps": 16,
-        }
-        sensor = optional.rawpy.ColorSpace.raw
-        camera = file.postprocess(output_color=sensor, user_wb=list(white_balance), **alike)
+        camera = file.postprocess(
+            output_color=optional.rawpy.ColorSpace.raw,
+            user_wb=list(white_balance),
+            gamma=(1, 1),
+            no_auto_bright=True,
+            adjust_maximum_thr=0.0,
+            output_bps=16,
+        )
     return to_srgb(camera, matrix)
 
 
 def to_srgb(camera: arrays.NDArray[np.uint16], matrix: arrays.F32) -> arrays.NDArray[np.uint16]:
-    """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
+    """Return the camera's colors as sRGB's, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
-    for y in range(
-        0, len(camera), BAND_ROWS
-    ):  # of a whole photograph the float values would fill the memory
+    for y in range(0, len(camera), BAND_ROWS):
         band = camera[y : y + BAND_ROWS]
         mixed = np.clip(np.rint(band @ matrix.T), 0, WHITE_LEVEL)
-        Z[y : y + BAND_ROWS] = np.where(
-            (band == WHITE_LEVEL).any(axis=-1, keepdims=True), WHITE_LEVEL, mixed
-        )
+        is_clipped = (band == WHITE_LEVEL).any(axis=-1, keepdims=True)
+        Z[y : y + BAND_ROWS] = np.where(is_clipped, WHITE_LEVEL, mixed)
     return Z
 
 
 @contextmanager
 def _open(path: str | Path) -> Iterator[Any]:
-    with open(path, "rb") as stream:  # a missing file is a FileNotFoundError here as elsewhere
-        packed = JPEG_XL.search(stream.read(1 << 18))
+    """Open a RAW file, and turn LibRaw's errors into a FileFormatError that names it."""
+    with open(path, "rb") as stream:  # a missing file raises FileNotFoundError, as elsewhere
+        is_jpeg_xl = JPEG_XL.search(stream.read(HEADER_BYTES)) is not None
     try:
         with optional.rawpy.imread(str(path)) as file:
             yield file
     except (optional.rawpy.LibRawError, optional.rawpy.NotSupportedError) as error:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
-        reason = "it does not read JPEG XL, set the camera to lossless JPEG" if packed else reason
-        raise InputError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
+        if is_jpeg_xl:
+            reason = "it does not read JPEG XL, set the camera to lossless JPEG"
+        raise FileFormatError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
