@@ -189,6 +189,8 @@ def compared(folder: Path) -> Mapping[str, ArrayLike]:
 def chi_square(taken: Bracket) -> Iterator[float]:
     """Yield chi-square per degree of freedom of flat green parts: with all that errs, and by chance."""
     state = pipeline.measure_deviation(pipeline.assemble(taken))
+    if state.s is None:
+        raise RuntimeError("the standard deviation was not measured")
     images, t = state.bracket.images[..., 1], state.bracket.times[:, None, None]
     noise = estimate_noise(state.bracket.images, t.ravel(), state.g, state.E)
     g, E = (

@@ -107,7 +107,7 @@ def measure_motion(
     if mask is not None:
         is_seen = is_seen & mask[grid]
     relative_weights = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
-    R, W = _sum_residuals(Z, curves, times_s, relative_weights, is_seen)
+    R, W = _sum_residuals(Z, curves, times_s, relative_weights, np.asarray(is_seen))
     rows = measure_bands(R.sum(axis=2), W.sum(axis=2), channel_count * R.shape[2])
     columns = measure_bands(R.sum(axis=1), W.sum(axis=1), channel_count * R.shape[1])
     fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK**2 * channel_count)

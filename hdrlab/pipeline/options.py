@@ -7,8 +7,9 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.choices import require_choice
 from hdrlab.pipeline.assembly import Method
-from hdrlab.radiance.merge import METHODS as MERGES
+from hdrlab.radiance.merge import METHODS
 
+MERGES = tuple(METHODS)
 TIMES = ("correct", "stated", "estimate")
 GHOSTS = ("none", "auto", "regions", "reference")
 FLARE = ("none", "glare")

@@ -181,5 +181,5 @@ def _check_noise(name: str, value: ArrayLike, channels: int, *, minimum: float) 
         (numbers >= minimum) & (numbers < np.inf)
     ):
         raise InputError(
-            f"expected {name} of at least {minimum:g}, one number or one a channel, got {value}"
+            f"expected {name} of at least {minimum:g}, one number or one a channel, got {value!r}"
         )

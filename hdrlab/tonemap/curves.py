@@ -74,7 +74,11 @@ def spread(L: F32, Ld: F32, *, bins: int = 64) -> tuple[F32, F32, F32]:
     luminance = [L.flat[pixels[len(pixels) // 2]] for pixels in classes]
     lowest = [Ld.flat[pixels].min() for pixels in classes]
     highest = [Ld.flat[pixels].max() for pixels in classes]
-    return np.float32(luminance), np.float32(lowest), np.float32(highest)
+    return (
+        np.asarray(luminance, np.float32),
+        np.asarray(lowest, np.float32),
+        np.asarray(highest, np.float32),
+    )
 
 
 def tonemap(

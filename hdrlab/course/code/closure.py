@@ -160,7 +160,7 @@ def _needed(
             continue
         providers[needed_name] = _providers(task.cell, binding.get(needed_name, ()))
         new = [statement for statement in providers[needed_name] if statement.place not in chosen]
-        needs = set()
+        needs: set[str] = set()
         for statement in new:
             chosen[statement.place] = statement
             needs |= statement.needs

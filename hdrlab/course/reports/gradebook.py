@@ -60,9 +60,10 @@ def junit(result: results.Result) -> bytes:
 
 def table(result: results.Result) -> str:
     """Return a Result as CSV, with a header and one row: its total and the points of each task."""
-    row = [result.student, result.homework, result.tier, result.score, result.max_score]
-    task_points = [results.points(result.of(task))[0] for task in result.tasks]
-    return csv_tables.csv_text([*COLUMNS, *result.tasks], [[*row, *task_points]])
+    row: list[str | int | float | None] = []
+    row += [result.student, result.homework, result.tier, result.score, result.max_score]
+    row += [results.points(result.of(task))[0] for task in result.tasks]
+    return csv_tables.csv_text([*COLUMNS, *result.tasks], [row])
 
 
 def write_results(

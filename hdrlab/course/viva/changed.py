@@ -74,7 +74,7 @@ def _replace_numpy_empty(value):  # type: ignore[no-untyped-def]  # its text run
     def empty_like(array, dtype=None, *_, **__):  # type: ignore[no-untyped-def]
         return numpy.full_like(array, value, dtype)
 
-    numpy.empty = empty
+    numpy.empty = empty  # type: ignore[misc]
     numpy.empty_like = empty_like
 
 
