@@ -18,7 +18,7 @@ from hdrlab.course.reports.results import Check
 
 
 def split_points(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
-    """Return points shared out by weights, in whole and half points that sum to them.
+    """Split points by weights into whole and half points whose sum is the points.
 
     The halves that are left over go to the largest remainders, and what is less than a half to the
     largest share.
@@ -28,10 +28,16 @@ def split_points(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction
     >>> [float(one) for one in split_points(Fraction(10), [Fraction(n) for n in (1, 4, 3, 3)])]
     [1.0, 3.5, 3.0, 2.5]
     """
-    exact = [2 * points * weight / (sum(weights) or 1) for weight in weights]
-    by_remainder = sorted(range(len(exact)), key=lambda k: floor(exact[k]) - exact[k])
-    raised = set(by_remainder[: floor(2 * points) - sum(map(floor, exact))])
-    shares = [Fraction(floor(one) + (k in raised), 2) for k, one in enumerate(exact)]
+    total_weight = sum(weights) or 1
+    exact_halves = [2 * points * weight / total_weight for weight in weights]
+    whole_halves = [floor(halves) for halves in exact_halves]
+    by_remainder = sorted(
+        range(len(weights)), key=lambda k: whole_halves[k] - exact_halves[k]
+    )  # the largest remainder first
+    left_over = floor(2 * points) - sum(whole_halves)
+    for k in by_remainder[:left_over]:
+        whole_halves[k] += 1
+    shares = [Fraction(halves, 2) for halves in whole_halves]
     shares[shares.index(max(shares))] += points - sum(shares)
     return shares
 
@@ -69,15 +75,17 @@ def attribute_failures(
 
 def _root(check: Check, broken: Mapping[str, Check], needs: Mapping[str, str]) -> Check:
     """Return the failure that a failure follows from, or the failure itself."""
-    if (above := needs.get(check.name)) in broken:
-        return _root(broken[str(above)], broken, needs)
-    return next(one for one in broken.values() if one.name == check.name or _ends_alike(one, check))
+    needed = needs.get(check.name, "")
+    if needed in broken:
+        return _root(broken[needed], broken, needs)
+    for failure in broken.values():
+        if failure.name == check.name or _ends_alike(failure, check):
+            return failure
+    return check
 
 
-def _ends_alike(one: Check, other: Check) -> bool:
+def _ends_alike(check: Check, other: Check) -> bool:
     """Return whether two checks had no answer for the same reason."""
-    return (
-        bool(one.kind)
-        and one.kind == other.kind
-        and (one.kind == "late" or one.message == other.message)
-    )
+    if not check.kind or check.kind != other.kind:
+        return False
+    return check.kind == "late" or check.message == other.message
