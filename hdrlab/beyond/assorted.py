@@ -78,7 +78,8 @@ def shoot(
     array([[128,  64],
            [ 32,  16]], dtype=uint8)
     """
-    E, e = as_radiance(E), _transparency(e, np.shape(E)[:2])
+    E = as_radiance(E)
+    e = _transparency(e, E.shape[:2])
     if (c is None) != (E.ndim == 2) or bits not in (8, 16):
         raise InputError(
             f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}"

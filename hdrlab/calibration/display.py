@@ -106,7 +106,9 @@ def draw_schedule(
         raise InputError(f"expected patch >= 1 and border >= 0 pixels, got {patch} and {border}")
     alpha = mixing_ratios(schedule.rows, schedule.columns, steps)
     last_step = np.tile(np.round(alpha * steps), (len(high), 1))
-    height, width = (count * (patch + border) - border for count in last_step.shape)
+    grid_rows, grid_columns = last_step.shape
+    height = grid_rows * (patch + border) - border
+    width = grid_columns * (patch + border) - border
     if height > shape[0] or width > shape[1]:
         raise InputError(f"expected pictures of at least {height} x {width} pixels, got {shape}")
     P_hi = np.repeat(high, schedule.rows)[:, None]

@@ -148,7 +148,8 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     place = level.astype(np.intp) + x // a.h * a.Z
     at = place + y * (a.X * a.Z)
     there = away.view(np.complex64).ravel()
-    left, right = (some.take(at, mode="clip").view(np.float32) for some in (there, there[a.Z :]))
+    left = there.take(at, mode="clip").view(np.float32)
+    right = there[a.Z :].take(at, mode="clip").view(np.float32)
     right -= left
     right *= np.repeat(x % a.h / a.h, 2).astype(np.float32)
     left += right

@@ -106,7 +106,7 @@ class Photograph:
         half = kept.shape[1] // 2
         quarters = product((slice(n), slice(n, None)), (slice(half), slice(half, None)))
         return np.array(
-            [[one[quarter].sum(dtype=np.int64) for one in ones] for quarter in quarters]
+            [[counts[quarter].sum(dtype=np.int64) for counts in ones] for quarter in quarters]
         )
 
 

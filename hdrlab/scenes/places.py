@@ -135,9 +135,13 @@ def layers(name: str, shape: Shape | None = None) -> Layers:
         raise InputError(f"expected one of {', '.join(PLACES)}, got {name!r}")
     read = read_layers(FOLDER / f"{name}.exr")
     visitor = read["mover"]
-    found = Layers(read["radiance"], read["depth"], visitor[..., :3], visitor[..., 3])
+    if shape is None:
+        shape = read["depth"].shape
     return Layers(
-        *(resample(layer, found.depth.shape if shape is None else shape) for layer in found)
+        radiance=resample(read["radiance"], shape),
+        depth=resample(read["depth"], shape),
+        mover=resample(visitor[..., :3], shape),
+        mask=resample(visitor[..., 3], shape),
     )
 
 
@@ -147,9 +151,8 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     Parameters
     ----------
     place : Layers
-    offset : (dy, dx) whole pixels, how far down and right of his place in the layer the visitor
-        stands; what
-        leaves the frame is not seen
+    offset : (dy, dx) whole pixels, by which the visitor is moved down and to the right; parts
+        outside of the frame are cut off
 
     Returns
     -------
@@ -172,10 +175,10 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     ----------
     Porter and Duff, Compositing digital images, SIGGRAPH 1984.
     """
-    move = np.asarray(offset)
-    if move.shape != (2,) or move.dtype.kind not in "iu":
-        raise InputError(f"expected an offset (dy, dx) of whole pixels, got {describe(move)}")
-    return compose_moment(place.radiance, Figure(place.mover, place.mask), move)[0]
+    offset = np.asarray(offset)
+    if offset.shape != (2,) or offset.dtype.kind not in "iu":
+        raise InputError(f"expected an offset (dy, dx) of whole pixels, got {describe(offset)}")
+    return compose_moment(place.radiance, Figure(place.mover, place.mask), offset)[0]
 
 
 def resample(layer: F32, shape: Shape) -> F32:

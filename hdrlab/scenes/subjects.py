@@ -49,7 +49,7 @@ SUBJECTS = {"backlight": backlight, "snow": snow, "locomotive": locomotive}
 
 
 def _read(name: str, shape: Shape) -> Subject:
-    """Return a Subject; of its pixels those that it covers wholly are its mask."""
+    """Return a Subject, with the pixels that it covers completely as its mask."""
     picture = resample(read_layers(FOLDER / f"{name}.exr")["subject"], shape)
     E = picture[..., :3]
     mask = picture[..., 3] > 0.99
