@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and headers that are not believed before they are checked."""
+"""Write files completely or not at all, and check what headers claim before using it."""
 
 import errno
 import os
@@ -11,20 +11,20 @@ from typing import BinaryIO
 
 from hdrlab.errors import FileFormatError, InputError
 
-# 134 million: beyond any camera, and 1.6 GB as float32 RGB
-MAX_PIXELS = 1 << 27
+# Beyond any camera, and 1.6 GB as float32 RGB.
+MAX_PIXELS = 2**27
 
 
 class OtherPixels(InputError):
-    """A picture that is no photograph of a bracket: with a palette, of CMYK, of floats, ..."""
+    """An image that cannot be a frame of a bracket: with a palette, of CMYK, of floats, ..."""
 
 
 @contextmanager
 def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
-    """Yield a temporary name beside `path`, which takes the place of `path` when the block ends well.
+    """Yield a temporary name next to `path`, which replaces `path` when the block succeeds.
 
-    When the block fails, or is interrupted, the temporary file is removed and what stood at `path`
-    stays. A private file is for its owner's eyes, from the first byte on.
+    If the block fails or is interrupted, the temporary file is removed and `path` stays as it was.
+    Nobody but its owner can read a private file, from the first byte on.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def write(path: str | Path, content: str | bytes, *, private: bool = False) -> P
 
 
 def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
-    """Return the suffix of a file's name in small letters, or raise a ValueError where it is not known."""
+    """Return the suffix of a file's name in lower case, or raise an InputError if it is not known."""
     suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise InputError(
@@ -114,9 +114,9 @@ def require_no_folder(path: str | Path, what: str) -> None:
 
 
 def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
-    """Raise a ValueError where a file to be written is one that is read, under whatever name.
+    """Raise an InputError if a file to be written is also read, under whatever name.
 
-    Links lead to the same file, and so does another name where capitals do not count.
+    A link names the same file, and so does another spelling on a disk that ignores case.
     """
     inputs = [path for path in read if os.path.exists(path)]
     for path, source in product(filter(os.path.exists, written), inputs):
@@ -127,9 +127,9 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
 
 
 def reserve(file: BinaryIO, size: int) -> None:
-    """Ask the disk for `size` bytes at once: a full disk is found before the first byte, and it is quicker.
+    """Reserve `size` bytes on the disk, which finds a full disk early and is quicker.
 
-    Systems that cannot do so are left alone.
+    Does nothing on systems without posix_fallocate.
     """
     if hasattr(os, "posix_fallocate"):
         try:
@@ -142,18 +142,18 @@ def reserve(file: BinaryIO, size: int) -> None:
 def check_size(
     path: str | Path, height: int, width: int, least: int = 0, *, available: int | None = None
 ) -> None:
-    """Raise a ValueError where a header claims an absurd size, before anything of that size is allocated.
+    """Raise a FileFormatError if a header claims an absurd size, before memory is allocated.
 
-    `least` is the number of bytes that such a picture takes at the format's best compression, and
-    `available` the number that the file has for it: all its bytes by default.
+    `least` is the number of bytes that such an image takes at the format's best compression, and
+    `available` the number that the file has for it, by default all its bytes.
     """
     claim = f"{path}: its header claims {width} x {height} pixels"
     if height < 1 or width < 1:
-        raise InputError(f"{claim}, expected at least one")
+        raise FileFormatError(f"{claim}, expected at least one")
     if height * width > MAX_PIXELS:
-        raise InputError(f"{claim}, expected at most {MAX_PIXELS} in all")
+        raise FileFormatError(f"{claim}, expected at most {MAX_PIXELS} in all")
     size = Path(path).stat().st_size if available is None else available
     if size < least:
-        raise InputError(
+        raise FileFormatError(
             f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged"
         )
