@@ -148,7 +148,7 @@ def _is_interrupt(error: Exception) -> bool:
 
 
 def _limit_threads_and_memory() -> None:
-    """Use one BLAS thread and one memory pool: the matrices here are small, and threads only wait."""
+    """Use one BLAS thread and one memory pool: for small matrices, more threads only wait."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with suppress(AttributeError, OSError, TypeError):
         ctypes.CDLL(None).mallopt(MALLOPT_ARENA_MAX, 1)

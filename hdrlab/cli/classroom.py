@@ -1,4 +1,4 @@
-"""Grade all submissions of a class. `hdrlab grade FOLDER` and `hdrlab regrade` call these functions."""
+"""Grade all submissions of a class: the work of `hdrlab grade FOLDER` and `hdrlab regrade`."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -90,7 +90,8 @@ def load_class(
 
     if options.roster is None:
         raise InputError(
-            f"{options.submissions} is a folder, which is graded as a class; pass --roster, the class list"
+            f"{options.submissions} is a folder, which is graded as a class; "
+            "pass --roster, the class list"
         )
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
     course = run.GradingContext(
@@ -107,7 +108,7 @@ def load_class(
 
 
 def grade_class(graded_class: GradedClass) -> None:
-    """Grade the submissions of a class that have no result yet, and write its gradebook and page."""
+    """Grade the submissions of a class that have no result yet; write its gradebook and page."""
     from hdrlab.course.classroom import jobs as grading_jobs, run
 
     course = graded_class.course
@@ -272,7 +273,8 @@ def _read_options(results: Path) -> ClassOptions:
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(
-            f"{file}: expected the options that `hdrlab grade` recorded ({error!r}); grade the class again"
+            f"{file}: expected the options that `hdrlab grade` recorded ({error!r}); "
+            "grade the class again"
         ) from None
 
 

@@ -71,7 +71,7 @@ def build(
             secret, note = assignments.read_secret(secret_file)
             if not secret:
                 raise InputError(
-                    "--variants needs --secret-file: the secret determines the parameters of each team"
+                    "--variants needs --secret-file: the secret determines each team's parameters"
                 )
             assignments.echo_secret_note(note)
             teams = roster.read(variants).teams()
@@ -155,7 +155,7 @@ def pack(*, folder: Path, plan: Path | None) -> None:
 @course.command()
 @click.argument("folder", type=common.INPUT_PATH)
 def toy(*, folder: Path) -> None:
-    """Create an example class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile."""
+    """Create an example class in FOLDER: a dozen good, late, wrong and hostile submissions."""
     from hdrlab.course.classroom import toy as toy_class
     from hdrlab.course.sandbox import doctor
 

@@ -221,7 +221,8 @@ def results(*, folder: Path, out: Path) -> None:
         settings = store.settings(db)
         if settings.is_open(time.time()):
             raise InputError(
-                f"{folder}: the vote is open until {settings.closes}; wait, or run hdrlab gallery close"
+                f"{folder}: the vote is open until {settings.closes}; "
+                "wait, or run hdrlab gallery close"
             )
         rows = list(ballots.gradebook(db))
         changes = store.changes(db)

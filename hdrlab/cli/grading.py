@@ -156,9 +156,9 @@ def grade(
 
     The file of --secret-file holds one line that nobody else may know. Do not lose it.
 
-    If SUBMISSION is a folder, hdrlab grades every submission in it (this requires --roster), several
-    at a time, and writes a gradebook and a page about the class. After an interruption, the next
-    run grades the rest. The options from --roster to --cluster apply only to a folder.
+    If SUBMISSION is a folder, hdrlab grades every submission in it (this requires --roster),
+    several at a time, and writes a gradebook and a page about the class. After an interruption, the
+    next run grades the rest. The options from --roster to --cluster apply only to a folder.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder

@@ -57,8 +57,8 @@ def video(
 ) -> None:
     """Make an HDR film from FRAMES whose exposure times alternate.
 
-    FRAMES is a folder of photos, sorted by name, or a film, which needs the extra `video`. The first
-    frame has the first of --times, the second frame the second one, and so on, over and over.
+    FRAMES is a folder of photos, sorted by name, or a film, which needs the extra `video`. The
+    first frame has the first of --times, the second frame the second one, and so on, over and over.
 
     hdrlab fills in what a frame's own exposure lacks from its neighbors, after motion compensation.
     If --out ends in .gif or .mp4, the film is tone-mapped. A name without a suffix becomes a folder

@@ -1,7 +1,7 @@
 """The command that prepares an oral examination on a student's own code: `viva`."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 
 import click
 
@@ -10,6 +10,16 @@ from hdrlab.course import plan as plans
 
 # the examiner that runs in the sandbox, module:class
 EXAMINER = "hdrlab.course.viva.examining:Examining"
+
+
+@dataclass(frozen=True)
+class VivaOptions:
+    """The options that the pages repeat, so that the questions can be made again."""
+
+    submission: Path
+    student: str
+    tier: str
+    seed: int | None
 
 
 @click.command(cls=common.Command)
@@ -84,7 +94,7 @@ def viva(
     except Unavailable as error:
         raise common.tier_error(str(error)) from None
     common.echo_notes(read.problems)
-    options = SimpleNamespace(submission=submission, student=student, tier=tier, seed=seed)
+    options = VivaOptions(submission=submission, student=student, tier=tier, seed=seed)
     for name, text in pages.pages(questions, homework=assignment, asked=options, read=read):
         click.echo(write(folder / name, text))
     (folder / "examiner.html").chmod(0o600)
