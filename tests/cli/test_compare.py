@@ -54,7 +54,7 @@ def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
     ("options", "said"),
     [
         (["--operators", "reinhard,magic"], "magic"),
-        (["--operators", "reinhard,"], "expected a method"),
+        (["--operators", "reinhard,"], "got ''"),
         (["--size", "1"], "--size"),
         (["--way", "best"], "--way"),
         (["-o", "sheet.jpg"], ".png"),
