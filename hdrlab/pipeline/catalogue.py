@@ -6,8 +6,10 @@ used: it gives the same result in less time.
 """
 
 from collections.abc import Callable
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from hdrlab.core.choices import require_choice
@@ -15,40 +17,28 @@ from hdrlab.core.choices import require_choice
 # The function that each method of a chapter defines.
 VERBS = {"align": "align", "response": "recover", "tonemap": "tonemap"}
 
-# The methods of each chapter, in alphabetical order. They are listed here so that the command line
-# can offer them without importing them.
-METHODS = {
-    "align": (
-        "cerman",
-        "homography",
-        "mtb",
-    ),
-    "response": (
-        "debevec",
-        "grossberg",
-        "linear",
-        "mann",
-        "marginal",
-        "mitsunaga",
-        "robertson",
-        "space",
-    ),
-    "tonemap": (
-        "brush",
-        "chiu",
-        "curves",
-        "durand",
-        "fattal",
-        "local_laplacian",
-        "reinhard",
-        "ward",
-    ),
-}
-
 
 def names(chapter: str) -> list[str]:
     """Return the names of a chapter's methods, in alphabetical order."""
-    return list(METHODS[chapter])
+    return list(_find_methods(chapter))
+
+
+@cache
+def _find_methods(chapter: str) -> tuple[str, ...]:
+    """Return the names of the files of a chapter that define its function.
+
+    A new method is one new file: it is found here, by its function's definition. The files are read
+    as text, not imported, so that the command line can offer the methods without loading them.
+    """
+    folder = Path(__file__).parents[1] / chapter
+    definition = f"\ndef {VERBS[chapter]}("
+    return tuple(
+        sorted(
+            path.stem
+            for path in folder.glob("*.py")
+            if definition in path.read_text(encoding="utf8")
+        )
+    )
 
 
 def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
@@ -68,7 +58,7 @@ def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
     """
     if callable(name):
         return name
-    require_choice(f"method of {chapter}", name, METHODS[chapter])
+    require_choice(f"method of {chapter}", name, names(chapter))
     verb = VERBS[chapter]
     if find_spec(f"hdrlab.fast.{name}"):
         fast_module = import_module(f"hdrlab.fast.{name}")

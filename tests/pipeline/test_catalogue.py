@@ -3,7 +3,6 @@
 import inspect
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -63,11 +62,3 @@ def test_a_setting_that_a_method_does_not_have_is_refused_with_those_it_has():
     check_settings("align", "mtb", {"bits": 5})
     with pytest.raises(ValueError, match="a setting of mtb out of .*bits.*, got 'bytes'"):
         check_settings("align", "mtb", {"bytes": 5})
-
-
-@pytest.mark.parametrize("chapter", catalogue.VERBS)
-def test_every_module_of_a_chapter_that_defines_its_verb_is_in_the_catalogue(chapter):
-    folder = Path(catalogue.__file__).parents[1] / chapter
-    verb = f"\ndef {catalogue.VERBS[chapter]}("
-    modules = [path.stem for path in folder.glob("*.py") if verb in path.read_text("utf-8")]
-    assert catalogue.names(chapter) == sorted(modules)
