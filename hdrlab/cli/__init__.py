@@ -102,10 +102,16 @@ def run(arguments: Sequence[str] | None = None) -> None:
         if settings.debug:
             traceback.print_exc()
         message, exit_code = _describe(error)
-        if exit_code == EXIT_BUG and not settings.debug:
+        if _is_bug(error) and not settings.debug:
             traceback.print_exc()
         click.echo(f"hdrlab: {visible(message)}", err=True)
     sys.exit(exit_code)
+
+
+def _is_bug(error: Exception) -> bool:
+    """Return whether an error is none of those that hdrlab, click or the system raise on purpose."""
+    on_purpose = (click.exceptions.Abort, click.ClickException, HdrlabError, OSError, MemoryError)
+    return not isinstance(error, on_purpose) and not _is_interrupt(error)
 
 
 def _describe(error: Exception) -> tuple[str, int]:
