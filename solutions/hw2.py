@@ -152,8 +152,8 @@ pictures.picture(
 #
 # A response function is smooth, so a polynomial of low order can represent its inverse:
 # $f^{-1}(M) = \sum_{k=1}^{K} c_k M^k$ with $M = Z/255$ and $f^{-1}(1) = 1$. Shutter times are only
-# roughly known, so the method corrects them, alternating with the curve. For photos that are
-# neighbors in time, with the ratio $R_q = t_q / t_{q+1} < 1$,
+# roughly known, so the method corrects them, alternating with the curve. For photos with
+# adjacent exposure times and the ratio $R_q = t_q / t_{q+1} < 1$,
 #
 # $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #

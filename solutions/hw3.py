@@ -263,7 +263,7 @@ pictures.picture(
 # ## 12 · The exposure ratio of a linear camera ({points})
 #
 # A linear camera's pixel value is proportional to exposure. So if one photo got $k$ times the
-# exposure of another, a value $x$ of the one corresponds to $y = k\, x$ of the other. Pairs of such
+# exposure of another, a value $x$ in the darker photo is $y = k\, x$ in the brighter one. Pairs of such
 # values, each with a weight $v$, determine $k$ (Cerman and Hlavac, 2006). Least squares minimize
 # $\sum \bigl(v\,(y - k\,x)\bigr)^2$ over the pairs in use. Some pairs are wrong, for example
 # because something moved. They are found in rounds:

@@ -139,8 +139,8 @@ pictures.picture(
 # The sum in the denominator, $k(p)$, says how many pixels contribute to the mean at $p$. A pixel
 # that differs from all its neighbors only has itself: it is its own base and keeps no detail. The
 # paper uses another base for such pixels. We use the mean, blurred by a Gaussian of $\sigma = 2$
-# pixels. The certainty $u$ of a base increases with the logarithm of $k$, from 0 for one pixel to 1
-# for the square root of all pixels:
+# pixels. The certainty $u$ of a base increases with the logarithm of $k$, from 0 at $k = 1$ to 1
+# where $k$ reaches the square root of the effective number of pixels, $2 \pi \sigma_s^2$:
 #
 # $$u = \frac{\ln k}{\ln \sqrt{2 \pi \sigma_s^2}}, \text{ at least 0 and at most 1}, \qquad
 #   \text{base} = u\, \text{mean} + (1 - u)\, \mathrm{blur}(\text{mean}).$$

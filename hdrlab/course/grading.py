@@ -33,7 +33,8 @@ from hdrlab.course.sanitize import sanitize_text
 from hdrlab.course.submission import SubmittedCode
 from hdrlab.errors import InputError
 
-WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
+# for all checks of an assignment; the calls of a submission have 200 s, see `checks.subject`
+ALL_CHECKS_TIMEOUT_SECONDS = 240.0
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
 STRICT = GradingOptions()
 VERSIONS = {one.__name__: one.__version__ for one in (hdrlab, np, scipy)}
@@ -98,7 +99,7 @@ def heard_steps(
         files = _reworded(files_of(homework, conditions.hidden), homework, folder)
         yield {"specification": specification(files)}
         job = _job(folder, read, homework, conditions, **more)
-        for line in running.run(folder, job, files, WHOLE):
+        for line in running.run(folder, job, files, ALL_CHECKS_TIMEOUT_SECONDS):
             if "unavailable" in line:
                 raise Unavailable(line["unavailable"])
             yield line

@@ -18,16 +18,6 @@ def opened(monkeypatch):
     return partial(answering.opened, monkeypatch)
 
 
-def test_what_a_submission_may_take_is_what_the_page_for_instructors_says():
-    assert (module.TIMEOUT, module.OUTPUT, module.REMEMBERED, module.KILLED) == (
-        10,
-        65536,
-        8 << 20,
-        9,
-    )
-    assert (module.CHECK, module.WHOLE, module.PROCESSOR, module.SETTLE) == (3, 20, 4, 1)
-
-
 @pytest.mark.parametrize("timeout", [2.0, 10.0])
 def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, opened):
     subject, process = opened(timeout=timeout)

@@ -19,12 +19,16 @@ from hdrlab.course.checks import compare
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.running import Sandbox, SandboxSession
 
-TIMEOUT = 10.0  # seconds of a call
+DEFAULT_CALL_TIMEOUT_SECONDS = 10.0
 OUTPUT = 1 << 16  # characters of a check that are kept of what was printed
 REMEMBERED = 1 << 23  # bytes of a check's answers that are kept in `calls`
-CHECK, WHOLE = 3, 20  # how much longer than a call one check may take, and all of a submission's
-PROCESSOR = 4.0  # the same, of a processor's time for all of a submission's calls
-SETTLE = 1.0  # seconds for a process to end that has closed its link
+# Limits as multiples of the time of one call: for one check, for all checks of a submission, and
+# for the processor time of all calls of a submission.
+CHECK_TIMEOUT_FACTOR = 3
+SUBMISSION_TIMEOUT_FACTOR = 20
+PROCESSOR_TIMEOUT_FACTOR = 4.0
+# for a process to end after it has closed its connection
+EXIT_TIMEOUT_SECONDS = 1.0
 KILLED = (
     9  # the signal that ends a process from outside; no tier for credit lets a function send it
 )
@@ -87,19 +91,20 @@ class Subject:
         self,
         sources: Mapping[str, str],
         sandbox: Sandbox,
-        timeout: float = TIMEOUT,
+        timeout: float = DEFAULT_CALL_TIMEOUT_SECONDS,
         modules: Sequence[str] = (),
     ) -> None:
         self._sources, self._sandbox = dict(sources), sandbox
         self._timeout, self._modules = timeout, modules
-        self._left_of_check, self._left_of_all = CHECK * timeout, WHOLE * timeout
+        self._left_of_check = CHECK_TIMEOUT_FACTOR * timeout
+        self._left_of_all = SUBMISSION_TIMEOUT_FACTOR * timeout
         self._running: SandboxSession | None = None
         self._link: socket.socket | None = None
         self.calls: list[Call] = []
         self.said, self._kept = "", 0
 
     def __enter__(self) -> Self:
-        seconds = CHECK * self._timeout, PROCESSOR * self._timeout
+        seconds = CHECK_TIMEOUT_FACTOR * self._timeout, PROCESSOR_TIMEOUT_FACTOR * self._timeout
         self._running = SandboxSession(self._sandbox, self._modules, seconds)
         return self
 
@@ -114,7 +119,7 @@ class Subject:
         self._drop()
         self._sources |= sources
         self.calls, self.said, self._kept = [], "", 0
-        self._left_of_check = CHECK * self._timeout
+        self._left_of_check = CHECK_TIMEOUT_FACTOR * self._timeout
 
     @property
     def left(self) -> float:
@@ -188,11 +193,16 @@ class Subject:
     def _used_up(self) -> str:
         """Return which time is used up, in words; "" where there is some."""
         if self._running is not None and self._running.left <= 0:
-            return f"the {PROCESSOR * self._timeout:g} s of a processor for a whole submission are used up"
+            limit = PROCESSOR_TIMEOUT_FACTOR * self._timeout
+            return f"the {limit:g} s of a processor for a whole submission are used up"
         if self._left_of_all <= 0:
-            return f"the {WHOLE * self._timeout:g} s for a whole submission are used up"
+            return f"the {SUBMISSION_TIMEOUT_FACTOR * self._timeout:g} s for a whole submission are used up"
         over = self._left_of_check <= 0
-        return f"the {CHECK * self._timeout:g} s for one check are used up" if over else ""
+        return (
+            f"the {CHECK_TIMEOUT_FACTOR * self._timeout:g} s for one check are used up"
+            if over
+            else ""
+        )
 
     def _explain_silence(self, task: str, error: Exception) -> NoReturn:
         """Raise the NoAnswer of a call whose process is late, gone, or wrote what is no answer."""
@@ -203,7 +213,7 @@ class Subject:
         ended, used, granted = KILLED, 0.0, math.inf  # where the supervisor is gone, too
         with contextlib.suppress(OSError, EOFError, ValueError):
             if self._running is not None:
-                ended, used = self._running.clear(SETTLE)
+                ended, used = self._running.clear(EXIT_TIMEOUT_SECONDS)
                 granted = self._running.granted if self._running.sandbox.forks else math.inf
         if used >= granted - 0.5 and ended == KILLED:
             raise NoAnswer(f"{task} took longer than {granted} s of a processor", "late") from None
