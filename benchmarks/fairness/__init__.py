@@ -32,7 +32,7 @@ import pytest
 from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions, plugin
-from hdrlab.course.checks.subject import TIMEOUT, NoAnswer, Subject
+from hdrlab.course.checks.subject import DEFAULT_CALL_TIMEOUT_SECONDS, NoAnswer, Subject
 from hdrlab.course.code.names import imported_numpy_modules
 from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
@@ -96,7 +96,9 @@ def graded(item: tuple[Homework, dict[str, tuple[str, str]], int]) -> list[Score
     homework, chosen, seeds = item
     sources = {task: source for task, (_, source) in chosen.items()}
     modules = tuple(imported_numpy_modules(sources.values()))
-    with Subject(sources, tiers.choose("practice"), TIMEOUT * seeds, modules) as subject:
+    with Subject(
+        sources, tiers.choose("practice"), DEFAULT_CALL_TIMEOUT_SECONDS * seeds, modules
+    ) as subject:
         return [
             score(subject, task, chosen[task.id][0], f"student {k}")
             for k in range(seeds)

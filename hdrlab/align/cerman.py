@@ -126,8 +126,8 @@ def search(pyramid: list[F32]) -> Iterator[State]:
         descents = [descend(X, start, reach, close) for start in starts]
         path, errors = min(descents, key=lambda descent: descent[1][-1])
         H = rigid(X.shape[1:], path[-1])
-        yield State(level=level, X=X.copy(), path=path, errors=errors, H=H)
         starts = [2 * path[-1]]
+        yield State(level=level, X=X.copy(), path=path, errors=errors, H=H)
         reach = _FINER_SIMPLEX_PIXELS
 
 

@@ -115,7 +115,7 @@ def test_a_pair_is_searched_from_coarse_to_fine_and_the_error_falls_along_each_p
     assert warp.corner_distance(states[-1].H, truth[0], SHAPE) < 0.3
 
 
-def test_what_is_done_to_a_state_does_not_reach_the_search(room):
+def test_changing_a_yielded_state_does_not_change_the_search(room):
     taken, _ = shoot(room, [warp.turn(SHAPE, 1, (3, 2)), np.eye(3)])
     for state in cerman.align_steps(taken.images, taken.times, true_g()):
         last = state.H.copy()

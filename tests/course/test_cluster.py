@@ -84,7 +84,12 @@ def graded(address, home, work=errands.grade, **knobs):
 
 
 def contents(folder):
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+    """Return the bytes of every file of a folder but its lock, which holds no result."""
+    return {
+        path.name: path.read_bytes()
+        for path in sorted(folder.iterdir())
+        if path.name != jobs.LOCK_NAME
+    }
 
 
 def whole(home):

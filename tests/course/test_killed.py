@@ -81,10 +81,11 @@ def begin(home, out, *more):
 
 
 def contents(folder):
+    """Return the bytes of every file of a folder but its lock, which holds no result."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in folder.rglob("*")
-        if path.is_file()
+        if path.is_file() and path.name != jobs.LOCK_NAME
     }
 
 
@@ -143,7 +144,9 @@ def graded(home, out, rng, most, *more, others=list):
         run = begin(home, out, *more)
         now = besieged(run, rng, most - kills, others)
         told = run.communicate(timeout=1800)[1].decode()
-        stopped = now >= doctor.TRIES and "sandbox did not start: it was ended by signal 9" in told
+        stopped = (
+            now >= doctor.MAX_ATTEMPTS and "sandbox did not start: it was ended by signal 9" in told
+        )
         assert run.returncode in (0, -signal.SIGKILL) or stopped, told
         kills += now
         told = "warning" if run.returncode else told
