@@ -129,7 +129,7 @@ def test_links_between_the_pages_of_the_repository_lead_somewhere():
 
 def test_one_version_stands_in_the_package_the_changes_and_the_citation():
     citation = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
-    newest = re.search(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.M)[1]
+    newest = re.search(r"^## (\d.+)$", text_of(ROOT / "CHANGELOG.md"), re.M)[1]
     assert hdrlab.__version__ == newest == citation["version"]
     assert (
         citation["license"] == tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["license"]
