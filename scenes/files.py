@@ -9,7 +9,7 @@ from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.optional import OpenEXR
 from hdrlab.io.files import replacing
 from hdrlab.io.maps.exr import LARGEST_HALF
-from hdrlab.io.maps.layers import CHANNELS
+from hdrlab.io.maps.layers import CHANNEL_NAMES
 
 
 def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
@@ -34,12 +34,12 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
         )
     parts = []
     for name, layer in arrays.items():
-        if layer.ndim not in (2, 3) or layer[0, 0].size not in CHANNELS:
+        if layer.ndim not in (2, 3) or layer[0, 0].size not in CHANNEL_NAMES:
             raise ValueError(f"expected {name} to have 1, 3 or 4 channels, got shape {layer.shape}")
         if not (layer.min() >= 0 and layer.max() <= LARGEST_HALF):  # NaN fails as well
             raise ValueError(f"expected {name} in 0 to {LARGEST_HALF:.0f}, got {describe(layer)}")
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         pixels = np.ascontiguousarray(layer, np.float16)
-        parts.append(OpenEXR.Part(header, {CHANNELS[layer[0, 0].size]: pixels}, name))
+        parts.append(OpenEXR.Part(header, {CHANNEL_NAMES[layer[0, 0].size]: pixels}, name))
     with replacing(path) as temporary, OpenEXR.File(parts) as file:
         file.write(str(temporary))

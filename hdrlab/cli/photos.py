@@ -192,7 +192,7 @@ def assemble(
         description = executor.submit(common.describe_map, assembly.E)
         developed = _develop(assembly, tonemap) if picture or report else None
         if uncertainty and assembly.s is not None:
-            both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
+            both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
             layers.write_layers(uncertainty, both, comments=comments)
             click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
         if developed and picture:

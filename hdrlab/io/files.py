@@ -65,21 +65,23 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
 
 
 def write(path: str | Path, content: str | bytes, *, private: bool = False) -> Path:
-    r"""Write a file whole or not at all, and return it; text in UTF-8, where half a character becomes a "?".
+    r"""Write a file completely or not at all, and return its path.
 
     Parameters
     ----------
     path
-        The file; its folder must be there.
+        The file; its folder must exist.
     content
-        Text, or bytes, written as they are.
+        Bytes, or text, which is written in UTF-8; a lone surrogate becomes a "?".
     private
-        Whether it is for its owner's eyes alone, from the first byte on.
+        Whether nobody but its owner can read the file, from the first byte on.
 
     Raises
     ------
-    FileNotFoundError, ValueError
-        As `replacing` has them: no folder, or the name of one.
+    FileNotFoundError
+        Where the folder of `path` does not exist.
+    InputError
+        Where `path` is a folder or a device, which cannot be replaced.
 
     Examples
     --------
@@ -95,7 +97,7 @@ def write(path: str | Path, content: str | bytes, *, private: bool = False) -> P
 
 
 def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
-    """Return the suffix of a file's name in lower case, or raise an InputError if it is not known."""
+    """Return the suffix of a file's name in lower case, or raise an InputError if it is unknown."""
     suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise InputError(

@@ -1,7 +1,7 @@
-"""Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF.
+"""Read and write radiance maps by suffix: RGBE (.hdr, .pic, .rad), PFM, OpenEXR and TIFF.
 
-Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read; a .jxl of floats is
-read, too.
+A .jpg with a gain map (Ultra HDR) is read as the brightest screen shows it. A .jxl file of floats
+is read, too.
 """
 
 import dataclasses
@@ -22,9 +22,10 @@ SUFFIXES: dict[str, ModuleType] = {
     ".rad": rgbe,
     ".pfm": pfm,
     ".exr": exr,
+    ".tif": tiff,
+    ".tiff": tiff,
 }
-SUFFIXES |= {".tif": tiff, ".tiff": tiff}
-# which to write takes a picture as well, or is for a screen
+# Ultra HDR files need a picture as well as a radiance map, so `write_radiance` cannot write them.
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
 
@@ -36,9 +37,8 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> arrays.F32:
     path : a .hdr, .pic, .rad, .pfm, .exr, .tif, .tiff or .jxl file, or a .jpg or .jpeg with a gain
         map
     clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the
-        mean of its
-        neighbours, infinity the largest finite value, and a negative channel makes its pixel less
-        colourful
+        mean of its neighbors, infinity the largest finite value, and a negative channel makes its
+        pixel less colorful
 
     Returns
     -------
@@ -73,7 +73,7 @@ def read_sanitized(path: str | Path) -> gamut.Sanitized:
 
 
 def read_valid(path: str | Path) -> arrays.F32:
-    """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
+    """Return the radiance map; raise an InputError that counts the values that are no radiance."""
     require_no_folder(path, "a radiance map")
     E = format_of(path, READ).read(path)
     try:
@@ -85,10 +85,10 @@ def read_valid(path: str | Path) -> arrays.F32:
 
 
 def primaries_of(path: str | Path) -> tuple[float, ...] | None:
-    """Return the primaries and the white that an .exr file names, where they are not those of sRGB.
+    """Return the primaries and the white of an .exr file, or None if they are those of sRGB.
 
-    Two files of one photograph in different primaries so give one picture. Files of other
-    kinds are taken to hold those of sRGB, as nearly all do.
+    With them, two files of one photo in different primaries give the same radiance map. Files of
+    other formats are assumed to have the primaries of sRGB, as nearly all do.
     """
     if format_of(path, READ) is not exr:
         return None
@@ -102,14 +102,15 @@ def primaries_of(path: str | Path) -> tuple[float, ...] | None:
 def write_radiance(
     path: str | Path, E: arrays.ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
 ) -> None:
-    """Write a radiance map, in the format that the file's suffix names, whole or not at all.
+    """Write a radiance map, in the format that the file's suffix names, completely or not at all.
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file; what it held is replaced
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file; an existing one is replaced
     E : (H, W, 3) or (H, W) radiance, finite and not negative
-    half : True for 16-bit floats, in .exr alone
-    comments : sentences for the header of the file; .pfm has no place for them
+    half : True for 16-bit floats, in .exr only
+    comments : sentences for the header of the file; they are dropped for .pfm, whose header has no
+        place for them
 
     Raises
     ------
@@ -127,10 +128,14 @@ def write_radiance(
     form = format_of(path)
     if half and form is not exr:
         raise InputError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
-    knobs = ({"half": True} if half else {}) | ({} if form is pfm else {"comments": comments})
-    form.write(path, E, **knobs)
+    if form is pfm:
+        pfm.write(path, E)
+    elif form is exr:
+        exr.write(path, E, half=half, comments=comments)
+    else:
+        form.write(path, E, comments=comments)
 
 
 def format_of(path: str | Path, formats: Mapping[str, ModuleType] = SUFFIXES) -> ModuleType:
-    """Return the module that reads, or writes, files of this suffix, or raise a ValueError."""
+    """Return the module that reads or writes files of this suffix, or raise an InputError."""
     return formats[require_suffix(path, formats, "a radiance file")]

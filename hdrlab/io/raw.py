@@ -1,12 +1,12 @@
-"""RAW photographs, through LibRaw: linear, so that there is no response to recover.
+"""Read RAW photos through LibRaw. They are linear, so there is no response to recover.
 
-    raw    sensor values of one colour per pixel, above the black level, proportional to exposure
+    raw    sensor values of one color per pixel, above the black level, proportional to exposure
     Z      (H, W, 3) uint16, linear RGB with the primaries of sRGB
 
-All frames of a bracket must be developed alike: LibRaw's brightening, which looks at the picture,
-is off; the white level is the camera's, not the brightest value found; one white balance, of the
-shortest exposure, serves all. Once the camera's colours are mixed into those of sRGB, clipped ones
-are no longer known: so a pixel that is clipped in any colour is made white in all.
+All frames of a bracket must be developed alike. LibRaw's automatic brightening is off. The white
+level is the camera's, not the brightest value of the photo. All frames get the white balance of the
+shortest exposure. After the conversion to sRGB one cannot see which colors of a pixel were clipped,
+so a pixel that is clipped in any color becomes white.
 """
 
 import re
@@ -91,7 +91,7 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> arrays.NDA
 
 
 def to_srgb(camera: arrays.NDArray[np.uint16], matrix: arrays.F32) -> arrays.NDArray[np.uint16]:
-    """Return the camera's colors as sRGB's, Z = M camera, and white where any of them is clipped."""
+    """Return the camera's colors in sRGB, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
     for y in range(0, len(camera), BAND_ROWS):
         band = camera[y : y + BAND_ROWS]

@@ -1,13 +1,13 @@
-"""Response curves by their suffix: tables of our own, and the files of pfstools.
+"""Read and write response curves: tables (.csv), and the files of pfstools (.m).
 
-g  response  (n,) or (n, 3), ln exposure of each pixel level, g[n // 2] = 0
-f  f^-1      exp g, the exposure of each level, in any unit
+g  response  (n,) or (n, 3), ln exposure of each pixel value z, g[n // 2] = 0
+f  f^-1      exp g, the exposure of each pixel value, in any unit
 
-.csv  a line per level: the level, then g of red, green and blue, or of gray; the header says so
-.m    pfstools: a block of Octave's text format per channel (IR, IG, IB; IY for gray), each line log10 f,
-      level, f; and a block W of weights, without which it refuses the file
-
-The first keeps every bit, the second 10 digits.
+.csv  One line per pixel value: z, then g of red, green and blue, or of gray, as the header states.
+      It keeps every bit.
+.m    One block in Octave's text format per channel (IR, IG and IB, or IY for gray), with log10 f,
+      z and f on each line, and a block W of weights, without which pfstools refuses the file. It
+      keeps 10 digits.
 """
 
 import re
@@ -21,29 +21,32 @@ from hdrlab.core.weights import gaussian
 from hdrlab.errors import InputError
 from hdrlab.io.files import replacing, require_no_folder, require_suffix
 
-# three channels of 65536 levels take 10 million
-MAX_FILE_BYTES = 32 << 20
-CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
-UNIT = " (ln exposure)"
-MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
-BLOCK = re.compile(
+# Three channels of 65536 pixel values take 10 million bytes.
+MAX_FILE_BYTES = 32 * 2**20
+# The names of the columns and of pfstools' matrices, by the number of channels.
+COLUMN_NAMES = {1: ("gray",), 3: ("red", "green", "blue")}
+MATRIX_NAMES = {1: ("IY",), 3: ("IR", "IG", "IB")}
+COLUMN_UNIT = " (ln exposure)"
+MATRIX_HEADER = re.compile(
     r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M
 )
-NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?\s*", re.ASCII | re.IGNORECASE)
+DECIMAL_NUMBER = re.compile(
+    r"\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?\s*", re.ASCII | re.IGNORECASE
+)
 
 
 def write_curve(path: str | Path, g: ArrayLike) -> None:
-    """Write a response in the format that the file's suffix names, whole or not at all.
+    """Write a response in the format that the file's suffix names, completely or not at all.
 
     Parameters
     ----------
-    path : a .csv or .m file; what it held is replaced
-    g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each level
+    path : a .csv or .m file; an existing one is replaced
+    g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each pixel value
 
     Raises
     ------
-    ValueError
-        For another suffix, and for what is no response: not finite, or of another shape.
+    InputError
+        For another suffix, and for a response that is not finite or has another shape.
 
     Examples
     --------
@@ -69,13 +72,13 @@ def read_curve(path: str | Path) -> F64:
     Returns
     -------
     (n,) or (n, 3) float64
-        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools leaves the
-        channels in other proportions. Levels of no exposure, where it found nothing, are filled
-        from their neighbours.
+        g, ln exposure of each pixel value, shifted to 0 at n // 2 in every channel, because
+        pfstools does not normalize the channels. Pixel values with no exposure, where pfstools
+        found nothing, are interpolated from their neighbors.
 
     Raises
     ------
-    ValueError
+    InputError
         For another suffix, and for a file that is damaged, cut short or not of its format.
 
     Examples
@@ -101,42 +104,49 @@ def read_curve(path: str | Path) -> F64:
 
 
 def suffix_of(path: str | Path) -> str:
-    """Return the suffix that names a file's format, or raise a ValueError."""
+    """Return the suffix that names a file's format, or raise an InputError."""
     return require_suffix(path, FORMS, "a response curve")
 
 
 def as_curve(g: ArrayLike) -> F64:
-    """Return g as float64 (n,) or (n, 3), n = 256 or 65536, within float32, or raise a ValueError."""
+    """Return g as float64 (n,) or (n, 3), n = 256 or 65536, or raise an InputError.
+
+    The values must be finite, and exp g must fit into float32.
+    """
     curve = np.asarray(g)
-    if (
-        curve.dtype.kind not in "iuf"
-        or curve.ndim not in (1, 2)
-        or curve.shape[1:] not in ((), (3,))
-    ):
+    is_number = curve.dtype.kind in "iuf"
+    is_table = curve.ndim in (1, 2) and curve.shape[1:] in ((), (3,))
+    if not is_number or not is_table:
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
         raise InputError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
-    if not np.all(np.abs(curve) <= MAX_LN_EXPOSURE):  # NaN neither
+    is_within_limits = np.abs(curve) <= MAX_LN_EXPOSURE  # False for NaN
+    if not np.all(is_within_limits):
         limits = f"-{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}"
         raise InputError(f"expected ln exposures from {limits}, got {describe(curve)}")
     return curve.astype(np.float64)
 
 
 def _write_csv(path: Path, g: F64) -> None:
+    """Write g with all its digits."""
     columns = g.reshape(len(g), -1)
-    header = ",".join(["level", *(name + UNIT for name in CHANNELS[columns.shape[1]])])
-    lines = [",".join([str(z), *map(repr, row)]) for z, row in enumerate(columns.tolist())]
-    path.write_text("\n".join([header, *lines, ""]), encoding="ascii")
+    names = COLUMN_NAMES[columns.shape[1]]
+    lines = [",".join(["level", *(name + COLUMN_UNIT for name in names)])]
+    for z, row in enumerate(columns.tolist()):
+        lines.append(",".join([str(z), *map(repr, row)]))
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
 def _read_csv(path: Path) -> F64:
+    """Return g of a .csv file, or raise an InputError."""
     header, _, body = path.read_text(encoding="latin-1").partition("\n")
-    names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
-    if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
+    names = [name.strip().removesuffix(COLUMN_UNIT) for name in header.split(",")]
+    has_columns = names[0] == "level" and tuple(names[1:]) in COLUMN_NAMES.values()
+    if not has_columns or COLUMN_UNIT not in header:
         raise InputError(
-            f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}"
+            f"expected the columns level, red, green and blue{COLUMN_UNIT}, got {header[:80]!r}"
         )
-    table = numbers(body, len(names), ",")
+    table = parse_table(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
         raise InputError(
             f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ..."
@@ -146,44 +156,47 @@ def _read_csv(path: Path) -> F64:
 
 def _write_pfstools(path: Path, g: F64) -> None:
     """Write g as pfstools does, with 10 digits."""
-    columns, z = g.reshape(len(g), -1), np.arange(len(g))
-    about = (
-        "Camera response curve, channel {}\ndata layout: log10(response) | camera output | response"
-    )
+    columns = g.reshape(len(g), -1)
+    z = np.arange(len(g))
     with open(path, "w", encoding="ascii") as file:
-        for name, one in zip(MATRICES[columns.shape[1]], columns.T, strict=True):
-            table = np.column_stack([one / np.log(10), z, np.exp(one)])
-            _write_block(file, about.format(name), name, table)
+        for name, channel in zip(MATRIX_NAMES[columns.shape[1]], columns.T, strict=True):
+            comment = f"Camera response curve, channel {name}\n"
+            comment += "data layout: log10(response) | camera output | response"
+            table = np.column_stack([channel / np.log(10), z, np.exp(channel)])
+            _write_matrix(file, comment, name, table)
+        comment = "Weighting function\ndata layout: weight | camera output"
         table = np.column_stack([gaussian(len(g)), z])
-        _write_block(file, "Weighting function\ndata layout: weight | camera output", "W", table)
+        _write_matrix(file, comment, "W", table)
 
 
-def _write_block(file: TextIO, about: str, name: str, table: F64) -> None:
-    """Write a block of Octave's text format; pfstools goes by the lines of rows and columns."""
+def _write_matrix(file: TextIO, comment: str, name: str, table: F64) -> None:
+    """Write a matrix in Octave's text format; pfstools needs the numbers of rows and columns."""
     rows, columns = table.shape
-    head = f"{about}\nname: {name}\ntype: matrix\nrows: {rows}\ncolumns: {columns}"
-    np.savetxt(file, table, [" %.9e", "%4d", "%.9e"][:columns], header=head)
+    header = f"{comment}\nname: {name}\ntype: matrix\nrows: {rows}\ncolumns: {columns}"
+    np.savetxt(file, table, [" %.9e", "%4d", "%.9e"][:columns], header=header)
     file.write("\n")
 
 
 def _read_pfstools(path: Path) -> F64:
-    """Return ln f of a file of pfstools, or raise a ValueError."""
+    """Return ln f of a file of pfstools, or raise an InputError."""
     text = path.read_text(encoding="latin-1").replace("\r\n", "\n")
-    heads = list(BLOCK.finditer(text))
-    rows = {int(head[2]) for head in heads}
-    if tuple(head[1] for head in heads) not in MATRICES.values() or len(rows) != 1:
-        got = ", ".join(f"{head[1]} of {head[2]} levels" for head in heads[:4]) or "none"
+    headers = list(MATRIX_HEADER.finditer(text))
+    names = tuple(header[1] for header in headers)
+    row_counts = {int(header[2]) for header in headers}
+    if names not in MATRIX_NAMES.values() or len(row_counts) != 1:
+        got = ", ".join(f"{header[1]} of {header[2]} levels" for header in headers[:4]) or "none"
         raise InputError(
             f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}"
         )
-    f = [_read_block(text[head.end() :], *rows) for head in heads]
+    (rows,) = row_counts
+    f = [_read_matrix(text[header.end() :], rows) for header in headers]
     return squeeze_gray(ln_exposure(np.stack(f, axis=-1)))
 
 
-def _read_block(text: str, rows: int) -> F64:
-    """Return f (rows,) of the block whose lines begin the text."""
+def _read_matrix(text: str, rows: int) -> F64:
+    """Return f (rows,) of the matrix whose lines begin the text."""
     *lines, _ = text.split("\n", rows)
-    table = numbers("\n".join([*lines, ""]), 3)
+    table = parse_table("\n".join([*lines, ""]), 3)
     if not np.array_equal(table[:, 1], np.arange(rows)):
         raise InputError(
             f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?"
@@ -197,7 +210,7 @@ def squeeze_gray(columns: F64) -> F64:
 
 
 def ln_exposure(f: F64) -> F64:
-    """Return ln f (n, channels), with levels of no exposure on lines between those that have one.
+    """Return ln f (n, channels), interpolated linearly where f is 0.
 
     Examples
     --------
@@ -208,21 +221,24 @@ def ln_exposure(f: F64) -> F64:
         raise InputError(
             f"expected exposures that are not negative, and not all zero, got {describe(f)}"
         )
-    level = np.arange(len(f))
-    filled = [np.interp(level, level[one > 0], np.log(one[one > 0])) for one in f.T]
+    z = np.arange(len(f))
+    filled = []
+    for channel in f.T:
+        is_known = channel > 0
+        filled.append(np.interp(z, z[is_known], np.log(channel[is_known])))
     return np.stack(filled, axis=-1)
 
 
-def numbers(text: str, columns: int, separator: str | None = None) -> F64:
-    """Return the numbers of a text (lines, columns), or raise a ValueError that names the line.
+def parse_table(text: str, columns: int, separator: str | None = None) -> F64:
+    """Return the numbers of a text (lines, columns), or raise an InputError that names the line.
 
-    The last line must end too: a number that was cut short is a number still.
+    The last line must have an end: without one, its last number may have been cut short.
     """
     if not text.endswith("\n"):
         raise InputError("expected a table whose last line ends: is it cut short?")
     rows = [line.split(separator) for line in text.splitlines()]
     for count, row in enumerate(rows, 1):
-        if len(row) != columns or not all(map(NUMBER.fullmatch, row)):
+        if len(row) != columns or not all(map(DECIMAL_NUMBER.fullmatch, row)):
             got = (separator or " ").join(row)[:60]
             raise InputError(
                 f"expected {columns} numbers in line {count} of its table, got {got!r}"
@@ -230,5 +246,5 @@ def numbers(text: str, columns: int, separator: str | None = None) -> F64:
     return np.array(rows, np.float64).reshape(-1, columns)
 
 
-# how each is written and read, by its suffix
+# The functions that write and read a file, by its suffix.
 FORMS = {".csv": (_write_csv, _read_csv), ".m": (_write_pfstools, _read_pfstools)}

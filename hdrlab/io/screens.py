@@ -1,9 +1,9 @@
-"""Pictures for screens that are brighter than white: PNG and AVIF of PQ's codes, JPEG XL of floats.
+"""Write images for HDR screens: PNG and AVIF with PQ code values, JPEG XL with floats.
 
-A PNG or an AVIF says by three numbers what its codes mean: primaries, curve and matrix [ITU-T
-H.273]. The PNG says it in a chunk cICP [PNG 3rd edition 11.3.2.6], the AVIF in a box nclx. A
-program that does not know them shows the codes as they are, gray and pale. A JPEG XL here holds no
-codes but the light itself.
+In PNG and AVIF, three numbers state what the code values mean: primaries, transfer function and
+matrix [ITU-T H.273]. PNG stores them in a chunk cICP [PNG 3rd edition 11.3.2.6], AVIF in a box
+nclx. A program that does not know them shows the code values as they are, gray and pale. The JPEG
+XL files store linear light instead of code values.
 """
 
 import struct
@@ -16,16 +16,25 @@ from hdrlab.core.arrays import ArrayLike
 from hdrlab.core.optional import imagecodecs
 from hdrlab.io import files
 
-# primaries, and the matrix from them to what an AVIF holds [H.273 tables 2 and 4]; PQ is a curve
-# [table 3]
-PRIMARIES, PQ = {"bt2020": (9, 9), "p3": (12, 6)}, 16
-HEADER = 33  # bytes of a PNG before its second chunk
-# of AVIF: off by half a code in the mean, by a code and a half at most; 99 by twice as much
-QUALITY = 100
+# The numbers of ITU-T H.273: primaries [table 2], transfer function [3] and matrix [4].
+COLOR_PRIMARIES = {"bt2020": 9, "p3": 12}
+TRANSFER_PQ = 16
+MATRIX_IDENTITY = 0
+AVIF_MATRIX = {"bt2020": 9, "p3": 6}
+FULL_RANGE = 1
+# The signature of a PNG and its first chunk, IHDR.
+PNG_HEADER_BYTES = 33
+MAX_PNG_CODE = 2**16 - 1
+AVIF_BITS = 10
+MAX_AVIF_CODE = 2**AVIF_BITS - 1
+# The error is half a code value in the mean and 1.5 at most; it is twice as large for 99.
+AVIF_QUALITY = 100
+AVIF_SPEED = 6
+AVIF_PIXEL_FORMAT_444 = 1
 
 
 def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> None:
-    r"""Write PQ's signal as PNG of 16 bits with a chunk cICP, whole or not at all.
+    r"""Write a PQ signal as PNG of 16 bits with a chunk cICP, completely or not at all.
 
     Parameters
     ----------
@@ -47,14 +56,17 @@ def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> N
     b'cICP\t\x10\x00\x01'
     """
     files.require_suffix(path, (".png",), "a picture of this kind")
-    chunk = b"cICP" + bytes((PRIMARIES[primaries][0], PQ, 0, 1))
-    chunk = struct.pack(">L", 4) + chunk + struct.pack(">L", zlib.crc32(chunk))
-    data = imagecodecs.png_encode(np.rint(65535 * np.asarray(v)).astype(np.uint16))
-    files.write(path, data[:HEADER] + chunk + data[HEADER:])
+    body = bytes((COLOR_PRIMARIES[primaries], TRANSFER_PQ, MATRIX_IDENTITY, FULL_RANGE))
+    named_body = b"cICP" + body
+    checksum = zlib.crc32(named_body)
+    chunk = struct.pack(">L", len(body)) + named_body + struct.pack(">L", checksum)
+    codes = np.rint(MAX_PNG_CODE * np.asarray(v)).astype(np.uint16)
+    data = imagecodecs.png_encode(codes)
+    files.write(path, data[:PNG_HEADER_BYTES] + chunk + data[PNG_HEADER_BYTES:])
 
 
 def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> None:
-    """Write PQ's signal as AVIF of 10 bits with a box nclx, whole or not at all.
+    """Write a PQ signal as AVIF of 10 bits with a box nclx, completely or not at all.
 
     Parameters
     ----------
@@ -76,14 +88,22 @@ def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> 
     True
     """
     files.require_suffix(path, (".avif",), "a picture of this kind")
-    colour, matrix = PRIMARIES[primaries]
-    said = {"primaries": colour, "transfer": PQ, "matrix": matrix, "pixelformat": 1}  # 4:4:4
-    codes = np.rint(1023 * np.asarray(v)).astype(np.uint16)
-    files.write(path, imagecodecs.avif_encode(codes, QUALITY, bitspersample=10, speed=6, **said))
+    codes = np.rint(MAX_AVIF_CODE * np.asarray(v)).astype(np.uint16)
+    data = imagecodecs.avif_encode(
+        codes,
+        AVIF_QUALITY,
+        bitspersample=AVIF_BITS,
+        speed=AVIF_SPEED,
+        primaries=COLOR_PRIMARIES[primaries],
+        transfer=TRANSFER_PQ,
+        matrix=AVIF_MATRIX[primaries],
+        pixelformat=AVIF_PIXEL_FORMAT_444,
+    )
+    files.write(path, data)
 
 
 def write_jxl(path: str | Path, E: ArrayLike) -> None:
-    """Write light as JPEG XL of 32-bit floats without loss, whole or not at all.
+    """Write linear light as lossless JPEG XL of 32-bit floats, completely or not at all.
 
     Parameters
     ----------

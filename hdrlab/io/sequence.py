@@ -1,12 +1,12 @@
-"""Frames in and out: a folder of photographs, a film, an animation.
+"""Read and write sequences of frames: folders of photos, films, animations and radiance maps.
 
-Films are read and written through imageio by PyAV, which is an extra (`pip install hdrlab[video]`),
-for it brings 35 MB of codecs that no still picture needs. PyAV rather than an ffmpeg program beside
-Python: frames come as arrays without a pipe, an error has a name, and there is nothing to find on
-the path. An animation, .gif, is written by Pillow, and is not read: its 256 colours are no
-exposures.
+Films are read and written by PyAV through imageio. PyAV is an extra (`pip install hdrlab[video]`),
+because it brings 35 MB of codecs that photos do not need. It is used instead of an ffmpeg program
+because frames come as arrays without a pipe, errors are Python exceptions, and there is no program
+to find on the path. Animations (.gif) are written by Pillow. They are not read, because their 256
+colors are no exposures.
 
-Frames are decoded one at a time: a film need not fit into memory.
+Frames are decoded one at a time, so that a film need not fit into memory.
 """
 
 from collections.abc import Iterable, Iterator
@@ -23,13 +23,13 @@ from hdrlab.errors import InputError
 from hdrlab.io import album, photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
 
-FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
-WRITTEN = (".gif", ".mp4")
-MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
+FILM_SUFFIXES = {".mp4", ".mov", ".mkv", ".avi", ".webm"}
+WRITABLE_SUFFIXES = (".gif", ".mp4")
+MAX_FRAMES_PER_SECOND = 1000
 
 
 def read(path: str | Path) -> Iterator[Array]:
-    """Yield the frames of a film, or of a folder of photographs sorted by name.
+    """Yield the frames of a film, or of a folder of photos in the order of their names.
 
     Parameters
     ----------
@@ -37,14 +37,15 @@ def read(path: str | Path) -> Iterator[Array]:
 
     Returns
     -------
-    frames (H, W) or (H, W, 3) uint8, or uint16 from photographs of 16 bits, all of one size, one at
-    a time
+    frames (H, W) or (H, W, 3) uint8, or uint16 from photos of 16 bits, all of one size, one at a
+    time
 
     Raises
     ------
-    ValueError
-        For something else, a damaged file, no frames, or frames that do not go together. What is
-        wrong with a file's beginning is said at once, what is wrong later when it is reached.
+    InputError
+        For another kind of file, a damaged file, no frames, or frames that differ in size or depth.
+        If the beginning of a film is damaged, `read` itself raises it. If a later part is, the
+        iterator raises it there.
 
     Examples
     --------
@@ -59,36 +60,42 @@ def read(path: str | Path) -> Iterator[Array]:
     if path.is_dir():
         files = album.photographs(path)
         return require_alike((photos.read_photo(file) for file in files), path)
-    if path.suffix.lower() not in FILMS:
+    if path.suffix.lower() not in FILM_SUFFIXES:
         raise InputError(
-            f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILMS))})"
+            f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILM_SUFFIXES))})"
         )
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     frames = require_alike(decode_frames(path), path)
-    first = next(frames)  # an unreadable file is found before anything is done with it
+    # Decoding the first frame now finds an unreadable file before the caller does any work.
+    first = next(frames)
     return chain([first], frames)
 
 
 def count(path: str | Path) -> int | None:
-    """Return how many frames there are, where that is known without decoding them: in a folder."""
-    return len(album.photographs(path)) if Path(path).is_dir() else None
+    """Return the number of frames in a folder, or None for a film, which stores no exact number."""
+    if not Path(path).is_dir():
+        return None
+    return len(album.photographs(path))
 
 
-def require_films(path: Path) -> None:
-    """Raise a ValueError where PyAV is not installed."""
+def require_pyav(path: Path) -> None:
+    """Raise an InputError if PyAV is not installed, which `path` needs."""
     import importlib.util
 
     if importlib.util.find_spec("av") is None:
-        raise InputError(f"{path}: {MISSING}")
+        raise InputError(
+            f"{path}: films need the extra `video`; install it (pip install hdrlab[video]), or use "
+            "a folder of frames or a .gif"
+        )
 
 
 def decode_frames(path: Path) -> Iterator[Array]:
     """Yield the frames of a film, (H, W, 3) uint8."""
-    require_films(path)
+    require_pyav(path)
     try:
         with iio.imopen(path, "r", plugin="pyav") as file:
-            source: Any = file  # what its plug-in takes beyond the common type
+            source: Any = file  # the plug-in has methods that the common type does not declare
             height, width = source.properties(index=0).shape[:2]
             if height * width > MAX_PIXELS:
                 raise InputError(f"its header claims {width} x {height} pixels")
@@ -96,41 +103,43 @@ def decode_frames(path: Path) -> Iterator[Array]:
                 yield np.asarray(frame)[..., :3]
     except GeneratorExit:
         raise
-    except Exception as error:  # on damaged files the codecs raise what they like
+    except Exception as error:  # on damaged files the codecs raise exceptions of any type
         raise InputError(f"{path}: it is cut short or damaged ({error})") from None
 
 
 def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
-    """Yield the frames; raise a ValueError where there is none, or one that differs from the first."""
+    """Yield the frames; raise an InputError if there is none, or if one differs from the first."""
     first = None
     for number, frame in enumerate(frames, 1):
-        first = frame if first is None else first
+        if first is None:
+            first = frame
         if (frame.shape, frame.dtype) != (first.shape, first.dtype):
-            got = f"{first.shape} {first.dtype} and, number {number}, {frame.shape} {frame.dtype}"
-            raise InputError(f"{path}: expected frames of one size and depth, got {got}")
+            raise InputError(
+                f"{path}: expected frames of one size and depth, got {first.shape} {first.dtype}, "
+                f"and {frame.shape} {frame.dtype} in frame {number}"
+            )
         yield frame
     if first is None:
         raise InputError(f"{path}: expected at least one frame, got none")
 
 
 def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> int:
-    """Write frames as an animation or a film, whole or not at all, as they come.
+    """Write frames as an animation or a film, completely or not at all, while they are computed.
 
     Parameters
     ----------
     path : .gif, or .mp4 (H.264, whose sides are even: an odd row or column is cut off)
     frames : (H, W) or (H, W, 3) uint8, all of one size
-    rate : frames a second; a .gif knows only hundredths of a second
+    rate : frames per second; a .gif stores the time of a frame in hundredths of a second
 
     Returns
     -------
-    count : how many they were
+    count : the number of frames
 
     Raises
     ------
-    ValueError
-        For another suffix, a rate that is not positive, or frames that are not pictures of one
-        size.
+    InputError
+        For another suffix, a rate that is not positive, or frames that are not images of one size.
 
     Examples
     --------
@@ -140,64 +149,81 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
     """
     path = Path(path)
     require_writable(path)
-    if not 0 < rate <= 1000:
-        raise InputError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
+    if not 0 < rate <= MAX_FRAMES_PER_SECOND:
+        raise InputError(
+            f"expected a rate above 0 and at most {MAX_FRAMES_PER_SECOND} frames a second, "
+            f"got {rate}"
+        )
     pictures = require_alike((web.as_rgb(as_picture(frame)) for frame in frames), path)
     with replacing(path) as name:
-        return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
+        if path.suffix.lower() in FILM_SUFFIXES:
+            return _write_film(name, pictures, rate)
+        return _write_gif(name, pictures, rate)
 
 
 def _write_film(path: Path, frames: Iterator[Array], rate: float) -> int:
-    first, written = next(frames), 0  # which may be none
+    """Write a film frame by frame, and return the number of frames."""
+    # Without any frame, `next` raises before the file is opened.
+    first = next(frames)
+    written = 0
     with iio.imopen(path, "w", plugin="pyav") as file:
         film: Any = file
         film.init_video_stream("libx264", fps=float(rate))
         for frame in chain([first], frames):
-            even = frame[: len(frame) // 2 * 2, : frame.shape[1] // 2 * 2]
+            height, width = frame.shape[:2]
+            even = frame[: height // 2 * 2, : width // 2 * 2]
             film.write_frame(np.ascontiguousarray(even))
             written += 1
     return written
 
 
 def _write_gif(path: Path, frames: Iterable[Array], rate: float) -> int:
-    """Write them all at once: of an animation the frames are small."""
-    shown = np.stack(list(frames))
+    """Write an animation in one piece, because its frames are small, and return their number."""
+    images = np.stack(list(frames))
+    milliseconds = 1000 / rate
     with iio.imopen(path, "w", plugin="pillow") as file:
-        cast(Any, file).write(shown, duration=1000 / rate, loop=0)
-    return len(shown)
+        cast(Any, file).write(images, duration=milliseconds, loop=0)
+    return len(images)
 
 
 def write_maps(folder: str | Path, maps: Iterable[F32], *, suffix: str = ".exr") -> int:
     """Write radiance maps as 0001.exr, 0002.exr, ... into a new folder, all of them or none.
 
+    Returns
+    -------
+    count : the number of maps
+
     Raises
     ------
-    ValueError
-        Where the folder is there and holds something, and for another suffix than a radiance map's.
+    InputError
+        For a folder that exists and is not empty, for no maps, and for a suffix that is not a
+        radiance map's.
     """
-    folder, number = Path(folder).resolve(), 0
+    folder = Path(folder).resolve()
     require_new(folder)
+    count = 0
     with TemporaryDirectory(prefix=".hdrlab-", dir=folder.parent) as scratch:
-        made = Path(scratch) / "maps"
-        made.mkdir()
-        for number, E in enumerate(maps, 1):
-            radiance.write_radiance(made / f"{number:04d}{suffix}", E)
-        if not number:
+        unfinished = Path(scratch) / "maps"
+        unfinished.mkdir()
+        for E in maps:
+            count += 1
+            radiance.write_radiance(unfinished / f"{count:04d}{suffix}", E)
+        if count == 0:
             raise InputError(f"{folder}: expected at least one map, got none")
-        made.replace(folder)
-    return number
+        unfinished.replace(folder)
+    return count
 
 
 def require_new(folder: Path) -> None:
-    """Raise a ValueError where a folder cannot be made, or holds something already."""
+    """Raise an InputError if a folder cannot be created, or exists and is not empty."""
     folder = folder.resolve()
     if not folder.parent.is_dir():
         raise FileNotFoundError(f"cannot write {folder.name}: there is no folder {folder.parent}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError(f"{folder}: expected a folder that is new or empty, it holds something")
+        raise InputError(f"{folder}: expected a folder that is new or empty, it is not empty")
 
 
 def require_writable(path: Path) -> None:
-    """Raise a ValueError for a suffix that is not written, or for films where PyAV is not installed."""
-    if require_suffix(path, WRITTEN, "a film") in FILMS:
-        require_films(path)
+    """Raise an InputError for a suffix that hdrlab cannot write, and for films without PyAV."""
+    if require_suffix(path, WRITABLE_SUFFIXES, "a film") in FILM_SUFFIXES:
+        require_pyav(path)

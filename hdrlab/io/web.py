@@ -1,4 +1,4 @@
-"""Pictures as bytes, for a page: a notebook's frames, a report's illustrations.
+"""Encode images for web pages and notebooks: WebP, JPEG, runs of one color, half floats.
 
 image   (H, W) gray or (H, W, 3) RGB, uint8
 values  any shape, finite: radiance, for a script to compute with
@@ -16,63 +16,80 @@ from hdrlab.core.arrays import Array, ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 
-# bytes a pixel, at most: runs of a plot take fewer, those of a photograph more than its JPEG
-MAX_RUN_BYTES = 2 / 3
+# A plot takes fewer bytes a pixel as runs of one color; a photo takes more than as JPEG.
+MAX_RUN_BYTES_PER_PIXEL = 2 / 3
+MAX_RUN_PIXELS = 255
+# The efforts take half of the time of the encoder's defaults, or less, for 2 to 8 % more bytes.
+WEBP_LOSSLESS_METHOD = 1
+WEBP_LOSSLESS_EFFORT = 25
+WEBP_LOSSY_METHOD = 2
 
 
 def encode_webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
-    """Return `image` as WebP, small and quick to decode; lossless suits plots, and pixels that are read out.
+    """Return `image` as WebP, which is small and quick to decode.
 
-    The encoder's efforts take half of the time of its defaults, or less, for 2 to 8 % more bytes.
+    `lossless` is for plots, and for pixels whose values a script reads; it ignores `quality`.
     """
-    method, quality = (1, 25) if lossless else (2, quality)
-    return _encode(image, format="WEBP", lossless=lossless, method=method, quality=quality)
+    if lossless:
+        return _encode(
+            image,
+            format="WEBP",
+            lossless=True,
+            method=WEBP_LOSSLESS_METHOD,
+            quality=WEBP_LOSSLESS_EFFORT,
+        )
+    return _encode(image, format="WEBP", lossless=False, method=WEBP_LOSSY_METHOD, quality=quality)
 
 
 def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:
-    """Return `image` as JPEG, the quickest to encode, with full colour resolution so that thin lines stay."""
+    """Return `image` as JPEG, the quickest to encode.
+
+    Color has full resolution, because thin lines would lose their color otherwise.
+    """
     return _encode(image, format="JPEG", quality=quality, subsampling=0)
 
 
 def encode_runs(image: Image) -> bytes:
-    """Return `image` as runs of one colour, row after row, which a script paints at once and without loss.
+    """Return `image` as runs of one color, row after row, which a script paints without a decoder.
 
     These are words of four bytes, little endian: width, height, and then red, green, blue and
-    length of each run, 1 to 255 pixels.
+    length of each run, 1 to 255 pixels. Nothing is lost.
 
     Examples
     --------
-    >>> np.frombuffer(encode_runs(np.full((2, 3), 7, np.uint8)), "<u4").tolist() == [3, 2, 0x06070707]
+    >>> runs = encode_runs(np.full((2, 3), 7, np.uint8))
+    >>> np.frombuffer(runs, "<u4").tolist() == [3, 2, 0x06070707]
     True
     """
     h, w = image.shape[:2]
     pixels = np.zeros((h * w, 4), np.uint8)
     pixels[:, :3] = as_rgb(image).reshape(-1, 3)
-    colours, new = pixels.view("<u4")[:, 0], np.ones(h * w, bool)
-    new[1:] = colours[1:] != colours[:-1]
-    new[::255] = True
-    (starts,) = np.nonzero(new)
+    colors = pixels.view("<u4")[:, 0]
+    is_start = np.ones(h * w, bool)
+    is_start[1:] = colors[1:] != colors[:-1]
+    is_start[::MAX_RUN_PIXELS] = True
+    starts = np.flatnonzero(is_start)
     lengths = np.diff(starts, append=h * w).astype("<u4")
-    return np.concatenate([np.array([w, h], "<u4"), colours[starts] | lengths << 24]).tobytes()
+    size = np.array([w, h], "<u4")
+    return np.concatenate([size, colors[starts] | lengths << 24]).tobytes()
 
 
 def encode_frame(image: Image) -> bytes:
-    """Return `image` as it is soonest on a page: a plot as its runs, what has too many of these as JPEG."""
-    found = encode_runs(image)
-    return (
-        found
-        if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1]
-        else encode_jpeg(image)
-    )
+    """Return `image` in the encoding that a page shows soonest: runs for plots, JPEG for photos."""
+    runs = encode_runs(image)
+    height, width = image.shape[:2]
+    if len(runs) <= MAX_RUN_BYTES_PER_PIXEL * height * width:
+        return runs
+    return encode_jpeg(image)
 
 
 def encode_halves(values: ArrayLike) -> tuple[bytes, float]:
-    """Return values (H, W[, 3]) times a power of two as half floats, deflated, and that power of two.
+    """Return values (H, W[, 3]) as deflated half floats, and the scale that they were multiplied by.
 
-    What is deflated is the step of their bits from one pixel to the next: first all low bytes, then
-    all high ones. The largest comes to lie between 16384 and 32768, so none overflows, and eight
-    decades below it keep eleven bits. A half float ends at 65504, which a photograph of the sun
-    does not.
+    The scale is a power of two, which brings the largest value between 16384 and 32768. So no value overflows, as a
+    photo of the sun would beyond 65504, and eight decades below the largest keep eleven bits.
+    Deflated are the steps of the bits from one pixel to the next: first all low bytes, then all
+    high ones.
 
     Examples
     --------
@@ -84,13 +101,15 @@ def encode_halves(values: ArrayLike) -> tuple[bytes, float]:
     values = np.asarray(values, np.float64)
     _, exponent = np.frexp(np.abs(values).max(initial=0))
     scale = float(2.0 ** (15 - int(exponent)))
-    bits = (values * scale).astype("<f2").view("<u2").reshape(-1, 3 if values.ndim == 3 else 1)
+    channels = 3 if values.ndim == 3 else 1
+    bits = (values * scale).astype("<f2").view("<u2").reshape(-1, channels)
     steps = np.diff(bits, axis=0, prepend=np.zeros_like(bits[:1]))
-    return zlib.compress(steps.reshape(-1, 1).view(np.uint8).T.tobytes()), scale
+    low_and_high_bytes = steps.reshape(-1, 1).view(np.uint8).T
+    return zlib.compress(low_and_high_bytes.tobytes()), scale
 
 
 def decode_picture(encoded: bytes) -> Image:
-    """Return what one of these encoders made of a picture, (H, W, 3).
+    """Return the pixels (H, W, 3) of an encoded PNG, JPEG, WebP or GIF.
 
     Examples
     --------
@@ -102,15 +121,19 @@ def decode_picture(encoded: bytes) -> Image:
 
 
 def data_uri(encoded: bytes, kind: str = "webp") -> str:
-    """Return bytes as the address of a picture that travels inside the page."""
+    """Return an encoded image as a data: URI, which embeds it in a page."""
     return f"data:image/{kind};base64,{base64.b64encode(encoded).decode('ascii')}"
 
 
 def _encode(image: Image, **options: Any) -> bytes:
-    Pillow.fromarray(as_rgb(image)).save(file := io.BytesIO(), **options)
+    """Return `image` as Pillow encodes it."""
+    file = io.BytesIO()
+    Pillow.fromarray(as_rgb(image)).save(file, **options)
     return file.getvalue()
 
 
 def as_rgb(image: Array) -> Array:
-    """Return `image` in three channels."""
-    return image if image.ndim == 3 else np.repeat(image[..., None], 3, axis=-1)
+    """Return `image` with three channels; a gray one is repeated."""
+    if image.ndim == 3:
+        return image
+    return np.repeat(image[..., None], 3, axis=-1)

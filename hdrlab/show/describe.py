@@ -77,7 +77,7 @@ def _pfm(path: str | Path) -> dict[str, Any]:
 def _exr(path: str | Path) -> dict[str, Any]:
     header, *more = exr.read_headers(path)
     names = [one.attributes.get("name", "") for one in (header, *more)] if more else []
-    found = layers.read_layers(path) if names == list(layers.CERTAIN) else None
+    found = layers.read_layers(path) if names == list(layers.UNCERTAINTY_LAYERS) else None
     return {
         "format": "OpenEXR",
         **_size(

@@ -85,7 +85,7 @@ def test_a_folder_is_read_in_the_order_of_its_names_one_at_a_time(folder):
 
 def test_frames_of_two_sizes_are_refused_by_number(folder):
     write_picture(folder / "03.png", np.zeros((10, 10, 3), np.uint8))
-    with pytest.raises(ValueError, match="one size and depth.*number 4"):
+    with pytest.raises(ValueError, match="one size and depth.*frame 4"):
         list(sequence.read(folder))
 
 

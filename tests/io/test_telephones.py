@@ -228,7 +228,7 @@ def test_the_curve_of_a_profile_is_left_to_the_response(tmp_path):
 
 def test_a_damaged_profile_is_named_and_not_ignored(tmp_path):
     save(tmp_path / "x.png", icc_profile=profile(P3)[:200] + bytes(300))
-    with pytest.raises(ValueError, match="x.png: expected a colour profile of RGB"):
+    with pytest.raises(ValueError, match="x.png: .*profile"):
         read_photo(tmp_path / "x.png")
 
 

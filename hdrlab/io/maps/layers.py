@@ -1,4 +1,4 @@
-"""OpenEXR files of several parts: images of one size that belong together, each with a name.
+"""Read and write OpenEXR files of several parts: named images of one size that belong together.
 
 Programs that do not know about parts read the first, as `hdrlab.io.maps.exr` and most viewers do.
 """
@@ -15,9 +15,9 @@ from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.maps import exr
 
 # OpenEXR's name for images with so many channels; a single channel is a depth.
-CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}
+CHANNEL_NAMES = {1: "Z", 3: "RGB", 4: "RGBA"}
 # The layers that `assemble --uncertainty` writes.
-CERTAIN = ("radiance", "standard deviation")
+UNCERTAINTY_LAYERS = ("radiance", "standard deviation")
 
 
 def read_layers(path: str | Path) -> dict[str, F32]:
@@ -29,12 +29,13 @@ def read_layers(path: str | Path) -> dict[str, F32]:
 
     Returns
     -------
-    layers : of each part, under its name, (H, W), (H, W, 3) or (H, W, 4) float32
+    layers : the pixels (H, W), (H, W, 3) or (H, W, 4) float32 of each part, by its name
 
     Raises
     ------
-    ValueError
-        For a file that is not one, is damaged, or has parts of other channels or of different size.
+    FileFormatError
+        For a file that is not OpenEXR or is damaged, and for parts with other channels or of
+        different sizes.
 
     Examples
     --------
@@ -47,7 +48,7 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     for number, (header, planes) in enumerate(exr.read_parts(path)):
         name = header.get("name", f"part {number}")
         channels = next(iter(planes))
-        if len(planes) != 1 or channels not in CHANNELS.values():
+        if len(planes) != 1 or channels not in CHANNEL_NAMES.values():
             raise FileFormatError(
                 f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}"
             )
@@ -61,32 +62,33 @@ def read_layers(path: str | Path) -> dict[str, F32]:
 def write_layers(
     path: str | Path, layers: Mapping[str, ArrayLike], *, comments: Sequence[str] = ()
 ) -> None:
-    """Write pictures of one size as the parts of an OpenEXR file of float32, whole or not at all.
+    """Write images of one size as parts of an OpenEXR file of float32, completely or not at all.
 
     Parameters
     ----------
-    path : the file; what it held is replaced
-    layers : of each part, under its name, (H, W) as Z, (H, W, 3) or (H, W, 4); infinite values are
-        kept
-    comments : sentences for the attribute `comments` of the first
+    path : the file; an existing one is replaced
+    layers : images (H, W), written as Z, (H, W, 3) or (H, W, 4), by the names of their parts;
+        infinite values are kept
+    comments : sentences for the attribute `comments` of the first part
 
     Raises
     ------
-    ValueError
-        For no layers, and for what is no picture or has another size than the first.
+    InputError
+        For no layers, for arrays of other shapes, and for layers of different sizes.
 
     Examples
     --------
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "known.exr"
-    >>> write_layers(file, {"radiance": np.ones((2, 3, 3)), "standard deviation": np.full((2, 3), np.inf)})
+    >>> layers = {"radiance": np.ones((2, 3, 3)), "standard deviation": np.full((2, 3), np.inf)}
+    >>> write_layers(file, layers)
     >>> read_layers(file)["standard deviation"].tolist()
     [[inf, inf, inf], [inf, inf, inf]]
     """
     parts: list[Any] = []
     for name, layer in layers.items():
         pixels = np.ascontiguousarray(layer, np.float32)
-        channels = CHANNELS.get(1 if pixels.ndim == 2 else pixels.shape[-1])
+        channels = CHANNEL_NAMES.get(1 if pixels.ndim == 2 else pixels.shape[-1])
         if pixels.ndim not in (2, 3) or not pixels.size or channels is None:
             raise InputError(
                 f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}"

@@ -1,13 +1,14 @@
-"""Portable float maps, .pfm: a line of text for the kind, the size and the scale, then float32 values.
+"""Portable float maps, .pfm: text lines for the kind, the size and the scale, then float32 values.
 
-PF is RGB and Pf is gray; a negative scale says little endian; rows run from the bottom to the top.
-The scale's magnitude is not applied: the format never settled whether to multiply or to divide by
-it.
+PF is RGB and Pf is gray. A negative scale means little endian. Rows run from the bottom to the top.
+The scale's magnitude is not applied, because the format never settled whether to multiply or to
+divide by it.
 """
 
 import os
 import re
 import sys
+from io import FileIO
 from math import prod
 from pathlib import Path
 from typing import NamedTuple
@@ -18,11 +19,12 @@ from hdrlab.core.arrays import F32, Array, ArrayLike, as_radiance
 from hdrlab.errors import FileFormatError
 from hdrlab.io.files import check_size, replacing, reserve
 
-# one white space, and not more, stands between the scale and the values, whose first byte may look
-# like one
+# Exactly one white space follows the scale, because the first byte of the values may look like one.
 HEADER = re.compile(rb"(PF|Pf)\s+(\d{1,10})\s+(\d{1,10})\s+([-+]?\d*\.?\d*(?:[eE][-+]?\d{1,3})?)\s")
-# rows: a band that stays in the cache, and is written four times as fast as the whole
+# Rows that are written at a time: they stay in the cache, which is four times as fast as one write.
 BAND_ROWS = 16
+# Rows that one system call reads; Linux allows 1024 buffers.
+MAX_ROWS_PER_READ = 512
 
 
 def from_bytes(data: bytes) -> F32:
@@ -50,12 +52,12 @@ def to_bytes(E: ArrayLike) -> bytes:
 
 
 def header_of(E: Array) -> bytes:
-    """Return the three lines before the values: kind, width and height, and the order of the bytes."""
+    """Return the three lines before the values: kind, width and height, and the byte order."""
     return f"{'PF' if E.ndim == 3 else 'Pf'}\n{E.shape[1]} {E.shape[0]}\n-1.0\n".encode()
 
 
 class Header(NamedTuple):
-    """What a PFM file says before its values: size, whether it is RGB, scale, and where the values begin."""
+    """What a PFM file states before its values; `start` is the offset of the values in bytes."""
 
     height: int
     width: int
@@ -65,7 +67,13 @@ class Header(NamedTuple):
 
 
 def read_header(path: str | Path) -> Header:
-    """Return the Header of the PFM file at `path`, or raise a ValueError, also for one that is cut short."""
+    """Return the header of a PFM file.
+
+    Raises
+    ------
+    FileFormatError
+        For a file that is no PFM file, or is shorter than its header claims.
+    """
     with open(path, "rb") as file:
         head = file.read(256)
     match = HEADER.match(head)
@@ -106,28 +114,39 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
     ([[1.0], [2.0]], [[2.0], [1.0]])
     """
     header = read_header(path)
-    E = np.empty((header.height, header.width, 3)[: 3 if header.colour else 2], np.float32)
+    shape = (header.height, header.width, 3) if header.colour else (header.height, header.width)
+    E = np.empty(shape, np.float32)
     rows = list(E[::-1] if flip else E)
+    bytes_read = 0
     with open(path, "rb", buffering=0) as file:
         file.seek(header.start)
-        each = getattr(
-            os, "readv", lambda _, some: sum(map(file.readinto, some))
-        )  # each to its place
-        if sum(each(file.fileno(), rows[y : y + 512]) for y in range(0, len(rows), 512)) < E.nbytes:
-            raise FileFormatError(
-                f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile"
-            )
-    return E if (header.scale < 0) == (sys.byteorder == "little") else E.byteswap(inplace=True)
+        for y in range(0, len(rows), MAX_ROWS_PER_READ):
+            bytes_read += _read_rows(file, rows[y : y + MAX_ROWS_PER_READ])
+    if bytes_read < E.nbytes:
+        raise FileFormatError(
+            f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile"
+        )
+    is_little_endian = header.scale < 0
+    if is_little_endian != (sys.byteorder == "little"):
+        E.byteswap(inplace=True)
+    return E
+
+
+def _read_rows(file: FileIO, rows: list[F32]) -> int:
+    """Read the next bytes of a file into the rows, each in its place, and return their number."""
+    if hasattr(os, "readv"):  # not on Windows
+        return os.readv(file.fileno(), rows)
+    return sum(file.readinto(row) for row in rows)
 
 
 def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:
-    """Write radiance as a little-endian PFM file of scale -1.0, whole or not at all.
+    """Write radiance as a little-endian PFM file of scale -1.0, completely or not at all.
 
     Parameters
     ----------
     path : the file; what it held is replaced
     E : (H, W) or (H, W, 3) radiance, finite and not negative
-    flip : False to write the rows from the top to the bottom, against the format
+    flip : False to write the rows from the top to the bottom, which breaks the format
 
     Raises
     ------
@@ -143,7 +162,8 @@ def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:
     [[0.25, 1000000.0]]
     """
     E = as_radiance(E)
-    header, rows = header_of(E), E[::-1] if flip else E
+    header = header_of(E)
+    rows = E[::-1] if flip else E
     with replacing(path) as name, open(name, "wb") as file:
         reserve(file, len(header) + E.nbytes)
         file.write(header)

@@ -74,7 +74,9 @@ class Header:
 
 
 def read(path: str | Path) -> F32:
-    """Read a Radiance RGBE file: flat, old or new run-length scanlines, in any of the eight orientations.
+    """Read a Radiance RGBE file, in any of the eight orientations.
+
+    Scanlines may be flat, or coded by the old or the new kind of run lengths.
 
     Parameters
     ----------
@@ -87,7 +89,7 @@ def read(path: str | Path) -> F32:
     Raises
     ------
     ValueError
-        For a file that is not one, is cut short or damaged, or holds XYZE colours.
+        For a file that is not one, is cut short or damaged, or holds XYZE colors.
 
     References
     ----------
@@ -213,8 +215,8 @@ def _decode_flat_pixels(
 ) -> NDArray[np.uint8]:
     """Return the pixels (H, W, 4) of flat scanlines, in which (1, 1, 1, n) repeats the pixel before.
 
-    Several such marks in a row are the digits of one count in base 256, the lowest first: the oldest
-    kind of run lengths.
+    Several such marks in a row are the digits of one count in base 256, the lowest first. This is
+    the oldest kind of run lengths.
     """
     count = scanlines * length
     words = np.frombuffer(data, "<u4", min(len(data) // 4, count))

@@ -1,7 +1,7 @@
-"""TIFF files of floating-point samples, .tif and .tiff, through tifffile; JPEG XL of such is read as well.
+"""Read and write TIFF files of floating-point samples (.tif, .tiff), through tifffile.
 
-16, 32 or 64 bits, gray or RGB; an alpha channel is left out. A file of whole numbers holds the
-levels of a photograph, and is read by `io.photos`.
+Samples have 16, 32 or 64 bits; images are gray or RGB; an alpha channel is dropped. JPEG XL files
+of floats are read as well. Files of whole numbers are photos, which `io.photos` reads.
 """
 
 from collections.abc import Sequence
