@@ -84,12 +84,12 @@ def encode_frame(image: Image) -> bytes:
 
 
 def encode_halves(values: ArrayLike) -> tuple[bytes, float]:
-    """Return values (H, W[, 3]) as deflated half floats, and the scale that they were multiplied by.
+    """Return values (H, W[, 3]) as deflated half floats, and the factor that scaled them.
 
-    The scale is a power of two, which brings the largest value between 16384 and 32768. So no value overflows, as a
-    photo of the sun would beyond 65504, and eight decades below the largest keep eleven bits.
-    Deflated are the steps of the bits from one pixel to the next: first all low bytes, then all
-    high ones.
+    The factor is a power of two, which brings the largest value between 16384 and 32768. So no
+    value overflows, as a photo of the sun would beyond 65504, and eight decades below the largest
+    keep eleven bits. The differences between the bits of neighboring pixels are deflated: first all
+    low bytes, then all high bytes.
 
     Examples
     --------
