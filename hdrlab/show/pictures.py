@@ -224,7 +224,9 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
 
 def _is_drawing(image: web.Image) -> bool:
     """Return whether an image is a drawing: its rows are a few runs of one color each."""
-    return len(web.encode_runs(image)) <= web.MAX_RUN_BYTES_PER_PIXEL * image.shape[0] * image.shape[1]
+    return (
+        len(web.encode_runs(image)) <= web.MAX_RUN_BYTES_PER_PIXEL * image.shape[0] * image.shape[1]
+    )
 
 
 def is_ink(image: web.Image) -> bool:
