@@ -36,24 +36,24 @@ class Process:
 
     def __init__(self, *answers, forks=True, ended=0, used=0.0, left=1e9):
         self.answers, self.now, self.asked, self.links = list(answers), 100.0, [], []
-        self.until, self.cleared, self.closed, self.granted = [], [], False, 2
-        self.sandbox, self.ended, self.used, self.left = (
-            SimpleNamespace(forks=forks),
+        self.until, self.cleared, self.closed, self.granted_cpu_seconds = [], [], False, 2
+        self.sandbox, self.ended, self.used, self.cpu_seconds_left = (
+            SimpleNamespace(can_fork=forks),
             ended,
             used,
             left,
         )
         self.spoken, self.begun = None, None
 
-    def __call__(self, sandbox, modules, seconds):
-        self.begun = sandbox, modules, seconds
+    def __call__(self, sandbox, modules, *, check_cpu_seconds, total_cpu_seconds):
+        self.begun = sandbox, modules, check_cpu_seconds, total_cpu_seconds
         return self
 
-    def check(self):
+    def start_check(self):
         self.links.append(Link(self.spoken))
         return self.links[-1]
 
-    def clear(self, seconds):
+    def clear_check(self, seconds):
         self.cleared.append(seconds)
         return self.ended, self.used
 

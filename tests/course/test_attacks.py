@@ -121,7 +121,7 @@ def test_every_attack_of_the_list_is_there():
 @pytest.mark.parametrize(("tier", "name"), CASES)
 def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path, port):
     place, other = siege.furnish(tmp_path), honest(tier)
-    files, processes = siege.listing(place), system.children()
+    files, processes = siege.listing(place), system.list_children()
     timeout = 0.5 if name.startswith(SLOW) else 20.0
     source = {"double": siege.armed(name, place, port)}
     with Subject(source, tiers.choose(tier), timeout) as subject:
@@ -129,7 +129,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path
         assert points(other, "another") == (2, []), "another's submission was harmed"
     assert held == 0
     assert re.search(ENDS[name], said[0]), said
-    assert system.children() == processes, "a process is left"
+    assert system.list_children() == processes, "a process is left"
     assert siege.listing(place) == files, "a file is left"
     assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", "".join(said) + subject.said)
     assert len(subject.said) <= 1 << 16

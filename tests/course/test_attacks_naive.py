@@ -82,9 +82,9 @@ def test_the_naive_grader_knows_right_from_wrong(tmp_path):
 def test_on_a_naive_grader_the_attack_succeeds(name, tmp_path, port):
     place = siege.furnish(tmp_path)
     (place / "submission.py").write_text(siege.armed(name, place, port))
-    files, processes = siege.listing(place), system.children()
+    files, processes = siege.listing(place), system.list_children()
     said, code, ended = graded(place, 2 if name in ENDLESS else 60)
-    left = [pid for pid in system.children() if pid not in processes]
+    left = [pid for pid in system.list_children() if pid not in processes]
     end(left)
     assert ended == (name not in ENDLESS)
     if ended:

@@ -64,7 +64,7 @@ def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
         def __exit__(self, *error):
             begun.append("closed")
 
-    monkeypatch.setattr(plugin.system, "end_with", lambda grader: alive and grader == 1)
+    monkeypatch.setattr(plugin.system, "die_with_parent", lambda grader: alive and grader == 1)
     monkeypatch.setattr(plugin.tiers, "choose", lambda tier: f"{tier} sandbox")
     monkeypatch.setattr(plugin, "Subject", Made)
     if not alive:

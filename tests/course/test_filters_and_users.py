@@ -57,7 +57,7 @@ def seccomp(monkeypatch):
 
 
 def numbers(*rooms):
-    calls = [call for room in rooms for call in filters.CALLS[room] if call != "time"]
+    calls = [call for room in rooms for call in filters.SYSTEM_CALLS[room] if call != "time"]
     return [
         ("allow", n)
         for n in (Rules.LACKING.get(call, 1000 + len(call)) for call in calls)
@@ -80,7 +80,7 @@ NARROW = [
     ("name", "rooms", "more"),
     [
         ("check", ("computing", "reading"), NARROW),
-        ("supervisor", ("computing", "reading", "tending"), []),
+        ("supervisor", ("computing", "reading", "supervising"), []),
     ],
 )
 def test_a_filter_allows_what_is_listed_that_this_processor_has_and_refuses_all_else(
@@ -103,7 +103,7 @@ def test_the_users_that_there_are_stand_in_the_map_of_the_namespace(text, mapped
     monkeypatch.setattr(
         Path, "read_text", lambda self: text if str(self) == "/proc/self/uid_map" else ""
     )
-    assert users._mapped() == mapped
+    assert users._mapped_users() == mapped
 
 
 def test_without_a_map_there_are_no_users(monkeypatch):
@@ -111,7 +111,7 @@ def test_without_a_map_there_are_no_users(monkeypatch):
         raise FileNotFoundError
 
     monkeypatch.setattr(Path, "read_text", missing)
-    assert users._mapped() == []
+    assert users._mapped_users() == []
     with pytest.raises(Unavailable, match="no user number of 60706 to 61183 is free here"):
         users.lease()
 
@@ -140,7 +140,7 @@ def test_a_lease_is_the_first_number_of_the_namespace_that_nobody_holds(monkeypa
     monkeypatch.setattr(users, "socket", SimpleNamespace(socket=Held, AF_UNIX=socket.AF_UNIX))
     monkeypatch.setattr(Held, "taken", {"\0hdrlab-user-60708"})
     monkeypatch.setattr(Held, "made", [])
-    monkeypatch.setattr(users, "_mapped", lambda: [range(10), range(60707, 60710)])
+    monkeypatch.setattr(users, "_mapped_users", lambda: [range(10), range(60707, 60710)])
     leased = [users.lease() for _ in range(2)]
     assert [user for user, _ in leased] == [60707, 60709] and not any(
         held.closed for _, held in leased
@@ -149,7 +149,7 @@ def test_a_lease_is_the_first_number_of_the_namespace_that_nobody_holds(monkeypa
     assert Held.taken == {f"\0hdrlab-user-{user}" for user in (60707, 60708, 60709)}
     with pytest.raises(Unavailable):
         users.lease()
-    monkeypatch.setattr(users, "_mapped", lambda: [range(61183, 70000)])
+    monkeypatch.setattr(users, "_mapped_users", lambda: [range(61183, 70000)])
     assert users.lease()[0] == 61183
     with pytest.raises(Unavailable):
         users.lease()

@@ -64,7 +64,11 @@ def test_a_function_costs_its_call_and_no_more(name, strict):
         except NoAnswer as error:
             kind = error.kind
         subject.fresh()
-        assert subject._running.clear()[1] <= 20 and subject._running.left > 0 or late
+        assert (
+            subject._running.clear_check()[1] <= 20
+            and subject._running.cpu_seconds_left > 0
+            or late
+        )
     assert kind in KINDS.get(name, (False, True))
 
 
@@ -85,7 +89,7 @@ def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict
 
 def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 0.3) as subject:
-        subject._running.left = 0.1
+        subject._running.cpu_seconds_left = 0.1
         said = []
         for _ in range(2):
             subject.fresh()
@@ -93,9 +97,9 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
                 subject.hat(8)
             said.append(str(raised.value))
             subject._drop()
-            subject._running.clear()
-            subject._running.left = min(
-                subject._running.left, 0.0
+            subject._running.clear_check()
+            subject._running.cpu_seconds_left = min(
+                subject._running.cpu_seconds_left, 0.0
             )  # a busy machine may not have used it
     assert said[0] == "hat took longer than 0.3 s"
     assert said[1] == "hat: the 1.2 s of a processor for a whole submission are used up"
@@ -103,7 +107,7 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
 
 def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 20.0) as subject:
-        subject._running.left = 0.5
+        subject._running.cpu_seconds_left = 0.5
         with pytest.raises(NoAnswer, match="hat took longer than 1 s of a processor") as raised:
             subject.hat(8)
         assert raised.value.kind == "late"
@@ -116,10 +120,11 @@ def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_e
         assert raised.value.kind == "died"
     source = "import time\ndef hat(n):\n    time.sleep(30)\n"
     with Subject({"hat": source}, strict, 20.0) as subject:
-        subject._running.wait()
+        subject._running.wait_until_ready()
         subject._running._launched.process.kill()  # as a system that is out of memory does
         subject._running._launched.process.wait()
-        subject._running.check, subject._running._busy = _silent(subject._running), True
+        subject._running.start_check = _silent(subject._running)
+        subject._running._is_busy = True
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
         assert raised.value.kind == "killed"

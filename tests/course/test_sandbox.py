@@ -14,6 +14,7 @@ import sysconfig
 import tempfile
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -251,7 +252,7 @@ def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
         }
         assert set(places[1] or ()) <= {"alternatives", "ld.so.cache"}
         assert places[2:8] == [None] * 6
-        assert places[8:] == [["null"], sorted(contents.OURS)]
+        assert places[8:] == [["null"], sorted(contents.OWN_FILES)]
         assert opened_files == 4  # three that lead nowhere, and the link
     else:
         assert groups == [] and places == [None] * len(places)
@@ -286,10 +287,16 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
     for name in ("python3.11/site-packages/cv2", "python3/dist-packages", "python3.11/json"):
         (tmp_path / name).mkdir(parents=True)
     (tmp_path / "python3.11" / "os.py").touch()
-    hidden = contents._others(places)
+    hidden = contents._find_package_folders(places)
     assert hidden == ["/python/lib/python3.11/site-packages", "/python/lib/python3/dist-packages"]
-    inside = contents.SandboxMounts("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), {})
-    listed, read = inside.readable()
+    inside = contents.SandboxMounts(
+        prefix="/usr",
+        python="",
+        places={"/python/lib": str(tmp_path)},
+        hidden=tuple(hidden),
+        packages={},
+    )
+    listed, read = inside.allowed_paths()
     assert {Path(path).name for path in listed} == {tmp_path.name, "python3.11", "python3"}
     assert {Path(path).name for path in read} == {"json", "os.py"}
 
@@ -304,12 +311,12 @@ def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_ar
     monkeypatch.setattr(os.path, "isdir", there.__contains__)
     monkeypatch.setattr(os.path, "exists", there.__contains__)
     monkeypatch.setattr(sysconfig, "get_config_var", lambda name: "riscv64-linux-gnu")
-    assert set(contents._libraries()) == (own if apart else whole)
+    assert set(contents._system_libraries()) == (own if apart else whole)
 
 
 def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
     """As on Windows, but for the way in which the process is handed its socket."""
-    tier = practice.sandbox()._replace(forks=False)
+    tier = replace(practice.sandbox(), can_fork=False)
     with Subject(dict.fromkeys(NAMES, FUNCTIONS), tier, 30) as subject:
         assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
         subject.fresh()
@@ -394,7 +401,7 @@ def test_a_bubblewrap_that_does_not_work_is_an_error_that_says_why(without, scri
     with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:  # where another user can read it
         os.chmod(folder, 0o755)
         fake = Path(folder) / "bwrap"
-        fake.write_text("#!/bin/sh\n" + script.format(options=" ".join(strict.NEEDED)))
+        fake.write_text("#!/bin/sh\n" + script.format(options=" ".join(strict.REQUIRED_OPTIONS)))
         fake.chmod(0o755)
         strict.bubblewrap.cache_clear()
         without.setattr(shutil, "which", lambda name: str(fake))
@@ -412,7 +419,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
         pytest.skip("only root can become another user")
     (first, one), (second, two) = users.lease(), users.lease()
     with one, two:
-        assert first != second and {first, second} <= set(users.SPARE)
+        assert first != second and {first, second} <= set(users.SPARE_USERS)
     again, held = users.lease()
     held.close()
     assert again <= first
@@ -428,9 +435,9 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
             "from hdrlab.course.sandbox import tiers\n"
             f"tier, source = tiers.choose({tier!r}), 'def f():\\n while True: pass'\n"
             "with Subject({'f': source}, tier, 60) as subject:\n"
-            "    subject._running.check(); print('begun', flush=True); subject.f()\n"
+            "    subject._running.start_check(); print('begun', flush=True); subject.f()\n"
         )
-        before = system.children()
+        before = system.list_children()
         folder = tmp_path / tier
         folder.mkdir()
         environment = os.environ | {"TMPDIR": str(folder)}
@@ -443,11 +450,11 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
         grader.wait()
         grader.stdout.close()
         deadline = time.monotonic() + 300
-        while set(system.children()) - set(before) and time.monotonic() < deadline:
-            for pid in set(system.children()) - set(before):
+        while set(system.list_children()) - set(before) and time.monotonic() < deadline:
+            for pid in set(system.list_children()) - set(before):
                 os.waitpid(pid, os.WNOHANG)
             time.sleep(0.02)
-        assert not set(system.children()) - set(before)
+        assert not set(system.list_children()) - set(before)
         assert not list(folder.iterdir())
 
 
@@ -476,7 +483,7 @@ def as_user(user, code):
     """Return what the system's Python prints as another user, or its error."""
     paths = [
         Path(channel.__file__).parents[4],
-        *{os.path.dirname(one) for one in running.packages().values()},
+        *{os.path.dirname(one) for one in running.package_folders().values()},
     ]
     told = subprocess.run(
         ["/usr/bin/env", "python3", "-B", "-c", code],
@@ -518,7 +525,7 @@ def test_the_practice_tier_says_what_it_does_not_stop_and_that_is_true(tmp_path)
 
 def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
     """A full memory, a file without end, and processes that are left behind."""
-    before, name = system.children(), str(tmp_path / "written")
+    before, name = system.list_children(), str(tmp_path / "written")
     with pytest.raises(NoAnswer, match="MemoryError"):
         alone("import numpy as np\ndef f(): return np.ones(1 << 34).sum()", "practice")
     with pytest.raises(NoAnswer, match="File too large"):
@@ -532,7 +539,7 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
         assert alone(IMPOLITE + daemon, "practice") == 1
         time.sleep(0.7)
         assert Path(name).exists()
-        assert system.children() == before
+        assert system.list_children() == before
 
 
 def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):
@@ -568,9 +575,11 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
         if next(starts) >= ended:
             return practice.launch(control)
         words = [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]
-        return running.SandboxProcess(running.start(words, {}), lambda: None)
+        return running.SandboxProcess(
+            process=running.start_process(words, {}), clean_up=lambda: None
+        )
 
-    monkeypatch.setitem(tiers.TIERS, "practice", lambda: practice.sandbox()._replace(launch=launch))
+    monkeypatch.setitem(tiers.TIERS, "practice", lambda: replace(practice.sandbox(), launch=launch))
     finding = doctor.examine("practice")
     assert finding.works == works and next(starts) == doctor.MAX_ATTEMPTS
     assert works or finding[3:] == (
@@ -583,12 +592,14 @@ def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
     cleared = []
 
     def launch(control):
-        process = running.start([sys.executable, "-c", "raise SystemExit('no')"], {})
-        return running.SandboxProcess(process, lambda: cleared.append(process.returncode))
+        process = running.start_process([sys.executable, "-c", "raise SystemExit('no')"], {})
+        return running.SandboxProcess(
+            process=process, clean_up=lambda: cleared.append(process.returncode)
+        )
 
-    started = running.SandboxSession(practice.sandbox()._replace(launch=launch))
+    started = running.SandboxSession(replace(practice.sandbox(), launch=launch))
     with pytest.raises(tiers.Unavailable, match="did not start: no"):
-        started.wait()
+        started.wait_until_ready()
     assert cleared == [1]
 
 
@@ -596,12 +607,12 @@ def test_a_check_is_cleared_away_once(monkeypatch):
     with opened("practice") as subject:
         assert subject.scaled(1.0) == 2.0
         inside = subject._running
-        ended, seconds = inside.clear()
+        ended, seconds = inside.clear_check()
         assert seconds > 0
-        left = inside.left
+        left = inside.cpu_seconds_left
         with monkeypatch.context() as changed:
             changed.setattr(running.channel, "send", None)  # nothing more is asked of it
-            assert inside.clear() == (0, 0.0) and inside.left == left
+            assert inside.clear_check() == (0, 0.0) and inside.cpu_seconds_left == left
 
 
 def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():
@@ -627,7 +638,7 @@ def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_contai
 
 
 def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
-    weak = practice.sandbox()._replace(tier="strict", credit=True)
+    weak = replace(practice.sandbox(), tier="strict", credit=True)
     monkeypatch.setitem(tiers.TIERS, "strict", lambda: weak)
     finding = doctor.examine("strict")
     assert (
@@ -674,7 +685,7 @@ def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks()
 def test_a_submission_that_has_used_up_its_processor_is_told_so():
     with opened("practice") as subject:
         assert subject.scaled(1.0) is not None
-        subject._running.left = 0.0
+        subject._running.cpu_seconds_left = 0.0
         with pytest.raises(NoAnswer, match="s of a processor for a whole submission are used up"):
             subject.scaled(1.0)
 
@@ -730,11 +741,11 @@ def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
     """Yield a Subject whose links come from a function, and whose processes ended so."""
     subject = Subject({"f": "def f(): return 1"}, practice.sandbox(), timeout)
     subject._running = SimpleNamespace(
-        left=9.0,
-        granted=2,
-        sandbox=SimpleNamespace(forks=forks),
-        check=check,
-        clear=lambda seconds: (ended, used),
+        cpu_seconds_left=9.0,
+        granted_cpu_seconds=2,
+        sandbox=SimpleNamespace(can_fork=forks),
+        start_check=check,
+        clear_check=lambda seconds: (ended, used),
     )
     yield subject
     subject._drop()

@@ -23,8 +23,8 @@ def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, o
     subject, process = opened(timeout=timeout)
     assert subject.left == 20 * timeout
     with subject:
-        assert process.begun == ("a sandbox", ["numpy"], (3 * timeout, 4 * timeout))
-        process.left = 0.5
+        assert process.begun == ("a sandbox", ["numpy"], 3 * timeout, 4 * timeout)
+        process.cpu_seconds_left = 0.5
         assert subject.left == 0.5
     assert process.closed and subject.left == 20 * timeout
     with pytest.raises(RuntimeError, match="with statement"):

@@ -50,10 +50,10 @@ def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened)
 def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened):
     subject, process = opened(right(1), (1, TimeoutError()))
     with subject:
-        process.left = left
+        process.cpu_seconds_left = left
         if answered:
             subject.f()
-            process.left = 0.0001
+            process.cpu_seconds_left = 0.0001
             assert silence(subject) == ("late", "f took longer than 10 s")
         else:
             said = "f: the 40 s of a processor for a whole submission are used up"
@@ -104,6 +104,6 @@ def test_where_the_supervisor_is_gone_too_the_process_was_killed(opened):
     def gone(seconds):
         raise OSError
 
-    process.clear = gone
+    process.clear_check = gone
     with subject:
         assert silence(subject)[0] == "killed"

@@ -170,7 +170,9 @@ def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
 
 def test_who_was_started_by_one_that_has_died_does_nothing(monkeypatch):
     asked = []
-    monkeypatch.setattr(subprocess_runner.system, "end_with", lambda parent: asked.append(parent))
+    monkeypatch.setattr(
+        subprocess_runner.system, "die_with_parent", lambda parent: asked.append(parent)
+    )
     monkeypatch.setattr(subprocess_runner.os, "dup", lambda descriptor: pytest.fail("it begins"))
     subprocess_runner.main("17")
     assert asked == [17]

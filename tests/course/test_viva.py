@@ -397,7 +397,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     except tiers.Unavailable as reason:
         pytest.skip(str(reason))
     place = siege.furnish(tmp_path)
-    files, processes = siege.listing(place), system.children()
+    files, processes = siege.listing(place), system.list_children()
     begin = "\n\ntry:\n    double(1.0)\nexcept BaseException:\n    pass\n"
     sources = {task: SOLUTIONS["hw1"][task] for task in ("ev", "equivalent_time")}
     sources["ev"] = siege.armed(name, place, 9) + begin + sources["ev"]
@@ -411,7 +411,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     assert any(one["task"] == "equivalent_time" for one in asked)
     for text in written(asked).values():
         assert "<script>alert" not in text
-    assert system.children() == processes, "a process is left"
+    assert system.list_children() == processes, "a process is left"
     assert siege.listing(place) == files, "a file is left"
 
 

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -21,18 +22,18 @@ from hdrlab.course.sandbox.contents import SandboxMounts
 from hdrlab.course.sandbox.running import Unavailable
 
 INSIDE = SandboxMounts(
-    "/usr",
-    "/python/bin/python3",
-    {"/b": "/out/b", "/a": "/out/a"},
-    ("/a/x",),
-    {"numpy": "/packages/numpy"},
+    prefix="/usr",
+    python="/python/bin/python3",
+    places={"/b": "/out/b", "/a": "/out/a"},
+    hidden=("/a/x",),
+    packages={"numpy": "/packages/numpy"},
 )
 
 
 def test_bubblewrap_is_told_walls_environment_places_and_what_is_hidden_in_this_order(monkeypatch):
-    monkeypatch.setattr(strict, "WALLS", ["--walls"])
+    monkeypatch.setattr(strict, "BUBBLEWRAP_OPTIONS", ["--walls"])
     monkeypatch.setattr(strict, "ENVIRONMENT", {"A": "1"})
-    assert strict.walls(INSIDE, INSIDE.places, 7) == [
+    assert strict.bubblewrap_options(INSIDE, INSIDE.places, 7) == [
         "--walls",
         *("--setenv", "A", "1", "--setenv", "LD_LIBRARY_PATH", "/python/lib"),
         *("--ro-bind", "/out/a", "/a", "--ro-bind", "/out/b", "/b"),
@@ -60,10 +61,10 @@ def launched(monkeypatch):
     """What a launch hands to a process, and to a descent; a lease that ends is in `ended`."""
     made = SimpleNamespace(started=[], orders=[], ended=[], rules=[])
 
-    def start(words, environment, *inherited):
-        if len(inherited) > 1:
-            made.rules.append(os.read(inherited[1], 99))
-        made.started.append((words, environment, inherited[0]))
+    def start(words, environment, *, pass_fds):
+        if len(pass_fds) > 1:
+            made.rules.append(os.read(pass_fds[1], 99))
+        made.started.append((words, environment, pass_fds[0]))
         return "process"
 
     def descend(**order):
@@ -71,7 +72,7 @@ def launched(monkeypatch):
         return ["descend"]
 
     for room in (strict, running):
-        monkeypatch.setattr(room, "start", start)
+        monkeypatch.setattr(room, "start_process", start)
     for room in (strict, container):
         monkeypatch.setattr(room, "contents", lambda: INSIDE)
     monkeypatch.setattr(filters, "program", lambda name: f"rules of a {name}".encode())
@@ -92,7 +93,9 @@ def test_the_strict_tier_is_launched_by_bubblewrap_and_root_becomes_a_spare_user
     ((words, environment, control),) = launched.started
     assert (environment, control, launched.rules) == ({}, 5, [b"rules of a supervisor"])
     assert made.process == "process" and made.scratch == ""
-    supervisor = running.command("/python/bin/python3", INSIDE.program, 5, INSIDE.packages)
+    supervisor = running.supervisor_command(
+        "/python/bin/python3", INSIDE.program, 5, INSIDE.packages
+    )
     if root:
         (order,) = launched.orders
         assert words == ["descend"] and order["user"] == 60706 and order["environment"] == {}
@@ -109,7 +112,7 @@ def test_the_strict_tier_is_launched_by_bubblewrap_and_root_becomes_a_spare_user
         words = order["command"]
     assert words[0] == "/bin/bwrap" and words[-len(supervisor) :] == supervisor
     assert not launched.ended
-    made.after()
+    made.clean_up()
     assert launched.ended == (["lease"] if root else [])
 
 
@@ -118,31 +121,31 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
 ):
     (tmp_path / "scipy.libs").mkdir()
     found = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
-    monkeypatch.setattr(running, "packages", lambda: found)
-    inside = INSIDE._replace(places={"/python/bin/python3": "/usr/local/bin/python3.11"}, hidden=())
+    monkeypatch.setattr(running, "package_folders", lambda: found)
+    inside = replace(INSIDE, places={"/python/bin/python3": "/usr/local/bin/python3.11"}, hidden=())
     monkeypatch.setattr(container, "contents", lambda: inside)
     made = container.launch(CONTROL)
     (order,) = launched.orders
-    program = running.PROGRAM
+    program = running.SUPERVISOR_PATH
     assert order["homes"] == [
         "/usr",
         str(program.parent),
         *found.values(),
         f"{tmp_path}/scipy.libs",
     ]
-    walk, read = inside.readable()
+    listable, readable = inside.allowed_paths()
     assert (
-        order["fence"] == {"read": read, "walk": walk, "write": [os.devnull]}
+        order["fence"] == {"readable": readable, "listable": listable, "writable": [os.devnull]}
         and order["user"] == 60706
     )
     told = {"numpy": "{2}", "scipy": "{3}"}
-    assert order["command"] == running.command(
+    assert order["command"] == running.supervisor_command(
         "{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told
     )
     more = {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib:{4}"}
     assert order["environment"] == running.ENVIRONMENT | more
     assert launched.started == [(["descend"], {}, 5)] and not launched.ended
-    made.after()
+    made.clean_up()
     assert launched.ended == ["lease"]
 
 
@@ -150,17 +153,10 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     here = {"platform": "linux", "user": 0, "landlock": 1}
     monkeypatch.setattr(container, "sys", SimpleNamespace(platform="linux"))
     monkeypatch.setattr(os, "geteuid", lambda: here["user"])
-    monkeypatch.setattr(descent, "landlock", lambda: here["landlock"])
+    monkeypatch.setattr(descent, "landlock_version", lambda: here["landlock"])
     made = container.sandbox()
-    assert made == (
-        "container",
-        True,
-        container.launch,
-        b"rules of a check",
-        False,
-        True,
-        running.LIMITS,
-    )
+    assert made.credit and made.seccomp_program == b"rules of a check"
+    assert made.limits == running.LIMITS
     for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
         here[name] = value
         with pytest.raises(Unavailable, match=f"the container tier {said}"):
@@ -176,44 +172,48 @@ def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
 ):
     began = []
     monkeypatch.setattr(
-        running, "start", lambda *words, **knobs: began.append((words, knobs)) or "process"
+        running, "start_process", lambda *words, **knobs: began.append((words, knobs)) or "process"
     )
     monkeypatch.delenv("SYSTEMROOT", raising=False)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     made = practice.launch(CONTROL)
-    (((words, environment, control), knobs),) = began
+    (((words, environment), knobs),) = began
     python = getattr(sys, "_base_executable", sys.executable)
-    assert (
-        words == running.command(python, str(running.PROGRAM), 5, running.packages())
-        and control == 5
+    assert words == running.supervisor_command(
+        python, str(running.SUPERVISOR_PATH), 5, running.package_folders()
     )
     own = {"HOME": made.scratch, "TMPDIR": made.scratch}
     assert environment == running.ENVIRONMENT | own | variables and knobs == {
-        "folder": made.scratch
+        "pass_fds": [5],
+        "folder": made.scratch,
     }
     assert os.listdir(made.scratch) == []
     Path(made.scratch, "left").touch()
-    made.after()
+    made.clean_up()
     assert not os.path.exists(made.scratch)
-    made.after()
+    made.clean_up()
 
 
 def test_the_practice_tier_counts_no_processes_and_no_credit():
-    assert practice.sandbox()[:3] == ("practice", False, practice.launch)
+    assert practice.sandbox().credit is False
     assert set(practice.sandbox().limits) == {"CPU", "AS", "FSIZE", "NOFILE", "CORE"}
     assert practice.sandbox().limits.items() <= running.LIMITS.items()
+
+
+def mounts(places, *hidden):
+    return SandboxMounts(prefix="", python="", places=places, hidden=hidden, packages={})
 
 
 def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_path):
     for folder in ("lib/a", "lib/packages/x", "lib/b/packages", "other"):
         (tmp_path / folder).mkdir(parents=True)
     places = {"/in": f"{tmp_path}/lib", "/o": f"{tmp_path}/other", "/none": f"{tmp_path}/none"}
-    inside = SandboxMounts("", "", places, ("/in/packages", "/in/b/packages"), {})
-    listed, read = inside.readable()
+    inside = mounts(places, "/in/packages", "/in/b/packages")
+    listed, read = inside.allowed_paths()
     assert sorted(listed) == [f"{tmp_path}/lib", f"{tmp_path}/lib/b"]
     assert read == [f"{tmp_path}/lib/a", f"{tmp_path}/other"]
-    assert SandboxMounts("", "", places, (), {}).readable() == (
+    assert mounts(places).allowed_paths() == (
         [],
         [f"{tmp_path}/lib", f"{tmp_path}/other"],
     )
@@ -232,5 +232,5 @@ def test_folders_of_packages_are_found_in_what_is_placed(tmp_path):
         "/packages/p": f"{tmp_path}/p",
         "/f": f"{tmp_path}/none",
     }
-    found = contents._others(places)
+    found = contents._find_package_folders(places)
     assert found == ["/python/lib/python3.11/dist-packages", "/python/lib/site-packages"]

@@ -133,7 +133,7 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom):
             yield node.module or ""
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(
-            ("import_module", "_optional")
+            ("import_module", "_import_if_available")
         ):
             yield from (one.value for one in node.args if isinstance(one, ast.Constant))
 

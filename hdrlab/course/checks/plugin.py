@@ -78,7 +78,7 @@ class GradingPlugin:
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox, which gets ready while pytest collects the checks."""
-        if not system.end_with(self.job["grader"]):  # if it is killed, this is to end, too
+        if not system.die_with_parent(self.job["grader"]):  # if it is killed, this is to end, too
             pytest.exit("the grader has ended")
         sandbox = tiers.choose(self.job["tier"])
         subject = Subject(self.job["sources"], sandbox, self.job["timeout"], self.job["modules"])

@@ -104,8 +104,12 @@ class Subject:
         self.said, self._kept = "", 0
 
     def __enter__(self) -> Self:
-        seconds = CHECK_TIMEOUT_FACTOR * self._timeout, PROCESSOR_TIMEOUT_FACTOR * self._timeout
-        self._running = SandboxSession(self._sandbox, self._modules, seconds)
+        self._running = SandboxSession(
+            self._sandbox,
+            self._modules,
+            check_cpu_seconds=CHECK_TIMEOUT_FACTOR * self._timeout,
+            total_cpu_seconds=PROCESSOR_TIMEOUT_FACTOR * self._timeout,
+        )
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -124,7 +128,7 @@ class Subject:
     @property
     def left(self) -> float:
         """The seconds that are left for all calls, of a processor's time or of the clock's."""
-        return min(self._left_of_all, self._running.left if self._running else math.inf)
+        return min(self._left_of_all, self._running.cpu_seconds_left if self._running else math.inf)
 
     def _drop(self) -> None:
         """Let go of the check's process; it is ended before the next one begins, and with the sandbox."""
@@ -161,10 +165,10 @@ class Subject:
         """Send an order and return the kind and value of its answer; without one, the process is dropped."""
         if self._running is None:
             raise RuntimeError("a Subject is used in a with statement")
-        if self._running.left <= 0:
+        if self._running.cpu_seconds_left <= 0:
             raise NoAnswer(f"{task}: {self._used_up()}", "late")
         if self._link is None:
-            self._link = self._running.check()
+            self._link = self._running.start_check()
         begun, call = time.monotonic(), secrets.randbits(60)
         patience = min(self._timeout, self._left_of_check, self._left_of_all)
         try:
@@ -192,7 +196,7 @@ class Subject:
 
     def _used_up(self) -> str:
         """Return which time is used up, in words; "" where there is some."""
-        if self._running is not None and self._running.left <= 0:
+        if self._running is not None and self._running.cpu_seconds_left <= 0:
             limit = PROCESSOR_TIMEOUT_FACTOR * self._timeout
             return f"the {limit:g} s of a processor for a whole submission are used up"
         if self._left_of_all <= 0:
@@ -211,10 +215,14 @@ class Subject:
             says = f": {over}" if over else f" took longer than {self._timeout:g} s"
             raise NoAnswer(f"{task}{says}", "late") from None
         ended, used, granted = KILLED, 0.0, math.inf  # where the supervisor is gone, too
-        with contextlib.suppress(OSError, EOFError, ValueError):
+        with contextlib.suppress(OSError, EOFError, channel.ProtocolError):
             if self._running is not None:
-                ended, used = self._running.clear(EXIT_TIMEOUT_SECONDS)
-                granted = self._running.granted if self._running.sandbox.forks else math.inf
+                ended, used = self._running.clear_check(EXIT_TIMEOUT_SECONDS)
+                granted = (
+                    self._running.granted_cpu_seconds
+                    if self._running.sandbox.can_fork
+                    else math.inf
+                )
         if used >= granted - 0.5 and ended == KILLED:
             raise NoAnswer(f"{task} took longer than {granted} s of a processor", "late") from None
         if isinstance(error, channel.ProtocolError):

@@ -1,8 +1,9 @@
-"""The container tier, for machines where namespaces cannot nest: a user of its own, a fence, limits, filters.
+"""The container tier, for machines where namespaces cannot nest: Landlock, a spare user, limits, filters.
 
-The container around it keeps the machine and the network away: its owner says so. Here a spare
-user, Landlock, the limits and the filter of system calls keep submissions from the grader and from
-each other. What a file holds is kept from them; that there is a file of a certain name is not.
+The container that hdrlab runs in has to keep submissions from the machine and the network; its
+owner is responsible for that. Inside it, a spare user, Landlock, limits and a filter of system
+calls keep submissions from the grader and from each other. They protect the content of files;
+a submission can still find out that a file of a certain name exists.
 """
 
 import os
@@ -13,6 +14,8 @@ from socket import socket
 from hdrlab.course.sandbox import descent, filters, running, users
 from hdrlab.course.sandbox.contents import contents
 
+ROOT_USER = 0
+
 
 def sandbox() -> running.Sandbox:
     """Return the container tier.
@@ -20,42 +23,68 @@ def sandbox() -> running.Sandbox:
     Raises
     ------
     Unavailable
-        Where the system is not Linux with Landlock, this is not root, or libseccomp is missing.
+        If the system is not Linux with Landlock, this is not root, or libseccomp is missing.
     """
     if sys.platform != "linux":
         raise running.Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
-    if os.geteuid() != 0:
+    if os.geteuid() != ROOT_USER:
         raise running.Unavailable(
             "the container tier needs root, which alone can become another user"
         )
-    if descent.landlock() == 0:
+    if descent.landlock_version() == 0:
         raise running.Unavailable(
             "the container tier needs Landlock, which this kernel or container lacks"
         )
-    return running.Sandbox("container", True, launch, program=filters.program("check"))
+    return running.Sandbox(
+        tier="container",
+        credit=True,
+        launch=launch,
+        seccomp_program=filters.program("check"),
+    )
 
 
 def launch(control: socket) -> running.SandboxProcess:
-    """Start the supervisor behind the fence, as a spare user who reads what root has opened."""
-    inside, found = contents(), running.packages()
-    libraries = [folder for one in found.values() if os.path.isdir(folder := f"{one}.libs")]
-    homes = [inside.prefix, str(running.PROGRAM.parent), *found.values(), *libraries]
-    folders = {name: f"{{{j}}}" for j, name in enumerate(found, 2)}
-    python = "{0}/" + os.path.relpath(inside.places[inside.python], inside.prefix)
-    loaded = ":".join(["{0}/lib", *(f"{{{j}}}" for j in range(2 + len(found), len(homes)))])
-    walk, read = inside.readable()
-    with ExitStack() as held:
+    """Start the supervisor as a spare user, behind Landlock.
+
+    The user may not walk to the interpreter and the packages if they lie in somebody's home folder.
+    So root opens their folders, and the command refers to them by numbers: {0}, {1} and so on (see
+    `descent.main`).
+    """
+    mounts = contents()
+    packages = running.package_folders()
+    homes = [mounts.prefix, str(running.SUPERVISOR_PATH.parent)]
+    package_numbers = {}
+    for name, folder in packages.items():
+        package_numbers[name] = f"{{{len(homes)}}}"
+        homes.append(folder)
+    library_path = ["{0}/lib"]
+    for folder in packages.values():
+        libraries = f"{folder}.libs"
+        if os.path.isdir(libraries):
+            library_path.append(f"{{{len(homes)}}}")
+            homes.append(libraries)
+    python = os.path.relpath(mounts.places[mounts.python], mounts.prefix)
+    supervisor = running.supervisor_command(
+        f"{{0}}/{python}",
+        f"{{1}}/{running.SUPERVISOR_PATH.name}",
+        control.fileno(),
+        package_numbers,
+    )
+    environment = running.ENVIRONMENT | {
+        "PYTHONHOME": "{0}",
+        "LD_LIBRARY_PATH": ":".join(library_path),
+    }
+    listable, readable = mounts.allowed_paths()
+    with ExitStack() as stack:
         user, lease = users.lease()
-        held.enter_context(lease)
-        words = users.descend(
+        stack.enter_context(lease)
+        command = users.descend(
             user=user,
             homes=homes,
-            fence={"read": read, "walk": walk, "write": [os.devnull]},
-            command=running.command(
-                python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders
-            ),
-            environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
+            fence={"readable": readable, "listable": listable, "writable": [os.devnull]},
+            command=supervisor,
+            environment=environment,
         )
-        return running.SandboxProcess(
-            running.start(words, {}, control.fileno()), held.pop_all().close
-        )
+        process = running.start_process(command, {}, pass_fds=[control.fileno()])
+        # the lease is held until the process has ended
+        return running.SandboxProcess(process=process, clean_up=stack.pop_all().close)

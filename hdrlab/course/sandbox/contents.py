@@ -1,33 +1,40 @@
-"""What a sandbox holds: the interpreter, the libraries it needs, numpy, scipy, and four files of ours.
+"""What a sandbox contains: the interpreter, its libraries, numpy, scipy, and four files of hdrlab.
 
-An interpreter keeps other packages beside its own modules. They are left out: `SandboxMounts.hidden`
-names those folders.
+An interpreter keeps other packages in folders beside its own modules. `SandboxMounts.hidden` lists
+those folders, and the sandbox shows them empty.
 """
 
 import os
 import platform
 import sys
 import sysconfig
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
-from hdrlab.course.sandbox.running import PROGRAM, packages
+from hdrlab.course.sandbox.running import SUPERVISOR_PATH, package_folders
 
-PYTHON, PACKAGES, COURSE = "/python", "/packages", "/course"  # where they are inside
-OURS = ("supervisor.py", "worker.py", "channel.py", "system.py")
+# folders inside the sandbox
+PYTHON = "/python"
+PACKAGES = "/packages"
+COURSE = "/course"
+OWN_FILES = ("supervisor.py", "worker.py", "channel.py", "system.py")
+# patterns of the folders that hold other packages, relative to a folder of the interpreter
+PACKAGE_FOLDER_PATTERNS = ("*-packages", "python*/*-packages")
 
 
-class SandboxMounts(NamedTuple):
-    """Files and folders, by where they are inside: {"/python/lib": "/usr/local/lib", ...}.
+@dataclass(frozen=True, kw_only=True)
+class SandboxMounts:
+    """The files and folders of a sandbox, by their paths inside.
 
     Attributes
     ----------
-    prefix : the interpreter's home outside
-    python : the interpreter inside
-    places : what is to be read there
-    hidden : folders inside of those, of which nothing is to be seen
-    packages : the folders of the packages, inside
+    prefix : the interpreter's home, outside
+    python : the interpreter, inside
+    places : what can be read: the path outside by the path inside, as in
+        {"/python/lib": "/usr/local/lib"}
+    hidden : folders inside of those places whose content is not shown
+    packages : the folders of the packages, inside, by name
     """
 
     prefix: str
@@ -38,66 +45,97 @@ class SandboxMounts(NamedTuple):
 
     @property
     def program(self) -> str:
-        """Where the supervisor is, inside."""
-        return f"{COURSE}/{PROGRAM.name}"
+        """The path of supervisor.py, inside."""
+        return f"{COURSE}/{SUPERVISOR_PATH.name}"
 
-    def readable(self) -> tuple[list[str], list[str]]:
-        """Return folders to list and paths to read, outside, that hold all places and nothing hidden."""
-        listed: list[str] = []
-        read: list[str] = []
-        waiting = [(place, source) for place, source in self.places.items()]
+    def allowed_paths(self) -> tuple[list[str], list[str]]:
+        """Return paths outside that together hold all places and nothing that is hidden.
+
+        Returns
+        -------
+        listable : list of str
+            Folders to list only, because a folder somewhere in them is hidden.
+        readable : list of str
+            Files to read, and folders to read with all that they contain.
+        """
+        listable = []
+        readable = set()
+        waiting = list(self.places.items())
         while waiting:
             place, source = waiting.pop()
             if place in self.hidden:
                 continue
-            if any(folder.startswith(f"{place}/") for folder in self.hidden):
-                listed.append(source)
-                waiting += [(f"{place}/{name}", f"{source}/{name}") for name in os.listdir(source)]
-            else:
-                read.append(os.path.realpath(source))
-        return listed, sorted(set(filter(os.path.exists, read)))
+            contains_hidden = any(folder.startswith(f"{place}/") for folder in self.hidden)
+            if contains_hidden:
+                listable.append(source)
+                names = os.listdir(source)
+                waiting += [(f"{place}/{name}", f"{source}/{name}") for name in names]
+                continue
+            path = os.path.realpath(source)
+            if os.path.exists(path):
+                readable.add(path)
+        return listable, sorted(readable)
 
 
 @cache
 def contents() -> SandboxMounts:
-    """Return what this interpreter and its numpy and scipy need."""
+    """Return what a sandbox needs to run this interpreter with its numpy and scipy."""
     prefix = os.path.realpath(sys.base_prefix)
     binary = os.path.realpath(getattr(sys, "_base_executable", sys.executable))
     python = f"{PYTHON}/bin/python3"
     stdlib = os.path.relpath(os.path.realpath(sysconfig.get_path("stdlib")), prefix)
-    places = _libraries() | {python: binary, f"{PYTHON}/{stdlib}": f"{prefix}/{stdlib}"}
-    if os.path.isdir(f"{prefix}/conda-meta"):  # it keeps all libraries beside its modules
-        places[f"{PYTHON}/{os.path.dirname(stdlib)}"] = f"{prefix}/{os.path.dirname(stdlib)}"
+    places = _system_libraries()
+    places[python] = binary
+    places[f"{PYTHON}/{stdlib}"] = f"{prefix}/{stdlib}"
+    # conda keeps all shared libraries in the folder that contains the standard library
+    if os.path.isdir(f"{prefix}/conda-meta"):
+        libraries = os.path.dirname(stdlib)
+        places[f"{PYTHON}/{libraries}"] = f"{prefix}/{libraries}"
     for library in Path(prefix, "lib").glob("libpython*.so*"):
         places[f"{PYTHON}/lib/{library.name}"] = os.path.realpath(library)
-    for folder in packages().values():
+    packages = {}
+    for name, folder in package_folders().items():
+        packages[name] = _place_of_package(folder)
+        # a wheel keeps its shared libraries in a second folder
         for path in (folder, f"{folder}.libs"):
             if os.path.isdir(path):
-                places[f"{PACKAGES}/{os.path.basename(path)}"] = path
-    places |= {f"{COURSE}/{name}": str(PROGRAM.with_name(name)) for name in OURS}
-    inside = {name: f"{PACKAGES}/{os.path.basename(folder)}" for name, folder in packages().items()}
-    return SandboxMounts(prefix, python, places, tuple(_others(places)), inside)
+                places[_place_of_package(path)] = path
+    for name in OWN_FILES:
+        places[f"{COURSE}/{name}"] = str(SUPERVISOR_PATH.with_name(name))
+    return SandboxMounts(
+        prefix=prefix,
+        python=python,
+        places=places,
+        hidden=tuple(_find_package_folders(places)),
+        packages=packages,
+    )
 
 
-def _libraries() -> dict[str, str]:
-    """Return the folders in which the loader finds shared libraries, under the names it knows."""
+def _place_of_package(folder: str) -> str:
+    """Return the path inside of a package's folder."""
+    return f"{PACKAGES}/{os.path.basename(folder)}"
+
+
+def _system_libraries() -> dict[str, str]:
+    """Return the folders of the system's shared libraries, under the names that the loader uses."""
     triplet = sysconfig.get_config_var("MULTIARCH") or f"{platform.machine()}-linux-gnu"
-    many = [f"{root}/{triplet}" for root in ("/lib", "/usr/lib")]
-    few = ["/lib64", "/usr/lib64", *([] if any(map(os.path.isdir, many)) else ["/lib", "/usr/lib"])]
-    links = [
-        "/etc/ld.so.cache",
-        "/etc/alternatives",
-    ]  # a system's own numpy finds its BLAS through them
-    return {name: os.path.realpath(name) for name in many + few + links if os.path.exists(name)}
+    names = [f"/lib/{triplet}", f"/usr/lib/{triplet}"]
+    has_folders_by_processor = any(os.path.isdir(folder) for folder in names)
+    names += ["/lib64", "/usr/lib64"]
+    if not has_folders_by_processor:
+        names += ["/lib", "/usr/lib"]
+    # a numpy that belongs to the system finds its BLAS by these
+    names += ["/etc/ld.so.cache", "/etc/alternatives"]
+    return {name: os.path.realpath(name) for name in names if os.path.exists(name)}
 
 
-def _others(places: dict[str, str]) -> list[str]:
-    """Return the folders of packages that lie in what is to be read."""
-    found = {
-        f"{inside}/{folder.relative_to(outside)}"
-        for inside, outside in places.items()
-        if os.path.isdir(outside) and not inside.startswith(PACKAGES)
-        for pattern in ("*-packages", "python*/*-packages")
-        for folder in Path(outside).glob(pattern)
-    }
-    return sorted(found)
+def _find_package_folders(places: dict[str, str]) -> list[str]:
+    """Return the folders inside that hold other packages than numpy and scipy."""
+    folders = set()
+    for inside, outside in places.items():
+        if inside.startswith(PACKAGES) or not os.path.isdir(outside):
+            continue
+        for pattern in PACKAGE_FOLDER_PATTERNS:
+            for folder in Path(outside).glob(pattern):
+                folders.add(f"{inside}/{folder.relative_to(outside)}")
+    return sorted(folders)

@@ -1,15 +1,18 @@
-"""Run as root: arrange what another user is to see, become that user for good, and start a program.
+"""Run as root: prepare what another user may see, become that user for good, and start a program.
 
-An interpreter under a home folder cannot be read by that user, whom its owner keeps out. Two ways
-lead there all the same.
+Another user cannot read an interpreter that lies in somebody's home folder. There are two ways
+around that:
 
-stage  for the strict tier: a file system of this process's own is put over STAGE, and the paths are bound to
-       STAGE/0, STAGE/1, ... for bubblewrap to take; nobody else sees it, and it ends with the
-       process
-homes  for the container tier: root opens the folders, and the user reaches them as /proc/self/fd/3, 4, ...
-fence  for the container tier: Landlock lets what comes of this process read what is listed, and write nothing
+stage  for the strict tier: this process mounts a file system over STAGE that no other process sees,
+       and binds the paths to STAGE/0, STAGE/1 and so on, from where bubblewrap takes them. The
+       mounts end with the process.
+homes  for the container tier: root opens the folders, and the user reaches them as
+       /proc/self/fd/3, /proc/self/fd/4 and so on
 
-It stands alone, on the standard library: it is run as a file.
+In the container tier, Landlock also restricts the files that this process and its children may
+read, and lets them write only what is listed (`restrict_files`).
+
+This file is run as a script, and imports the standard library alone.
 """
 
 import ctypes
@@ -19,38 +22,64 @@ import stat
 import struct
 import sys
 
-# it is everywhere, and what lies in it is reached by descriptors that were opened before
+# It exists on every system. What was in it is reached by descriptors that were opened before.
 STAGE = "/tmp"
-NEW_MOUNTS, BIND, RECURSIVE, PRIVATE = 0x20000, 4096, 16384, 1 << 18  # of unshare and mount
-CREATE, ADD, RESTRICT = 444, 445, 446  # Landlock's system calls, the same on every processor
-EXECUTE, WRITE_FILE, READ_FILE, READ_DIR = 1, 2, 4, 8  # its rights
-RIGHTS = (
-    (1, 13),
-    (2, 14),
-    (3, 15),
-    (5, 16),
-)  # since which of its versions there are how many of them
-DIE_WITH_PARENT, NO_NEW_PRIVILEGES, KILL = 1, 38, 9  # of prctl
+
+# of unshare and mount, from <sched.h> and <sys/mount.h>
+CLONE_NEWNS = 0x20000
+MS_BIND = 0x1000
+MS_REC = 0x4000
+MS_PRIVATE = 0x40000
+
+# of prctl, from <linux/prctl.h>
+PR_SET_PDEATHSIG = 1
+PR_SET_NO_NEW_PRIVS = 38
+SIGKILL = 9
+
+# Landlock's system calls, which have the same numbers on every processor
+LANDLOCK_CREATE_RULESET = 444
+LANDLOCK_ADD_RULE = 445
+LANDLOCK_RESTRICT_SELF = 446
+LANDLOCK_CREATE_RULESET_VERSION = 1
+LANDLOCK_RULE_PATH_BENEATH = 1
+
+# rights in Landlock's rules, from <linux/landlock.h>
+ACCESS_FS_EXECUTE = 1
+ACCESS_FS_WRITE_FILE = 2
+ACCESS_FS_READ_FILE = 4
+ACCESS_FS_READ_DIR = 8
+# how many rights over files Landlock has, by the version that added the last of them
+FILE_RIGHT_COUNTS = {1: 13, 2: 14, 3: 15, 5: 16}
+# binding and connecting TCP ports
+NETWORK_RIGHTS = 0b11
+FIRST_VERSION_WITH_NETWORK = 4
+# signals and abstract sockets of processes outside
+SCOPES = 0b11
+FIRST_VERSION_WITH_SCOPES = 6
+
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
-def check_answer(answer: int, what: str) -> int:
-    """Return the system's answer, or raise an OSError that says what was asked for."""
-    if answer < 0:
-        raise OSError(ctypes.get_errno(), f"{what} was refused")
-    return answer
+def check_result(result: int, action: str) -> int:
+    """Return the result of a system call, or raise an OSError that names the action if it failed."""
+    if result < 0:
+        raise OSError(ctypes.get_errno(), f"{action} was refused")
+    return result
 
 
 def mount(source: str, target: str, kind: str = "", flags: int = 0, options: str = "") -> None:
-    """Mount, or raise an OSError that names the target."""
-    words = (word.encode() for word in (source, target, kind))
-    check_answer(_libc.mount(*words, ctypes.c_ulong(flags), options.encode()), f"mounting {target}")
+    """Mount a file system, or raise an OSError that names the target."""
+    result = _libc.mount(
+        source.encode(), target.encode(), kind.encode(), ctypes.c_ulong(flags), options.encode()
+    )
+    check_result(result, f"mounting {target}")
 
 
 def stage(paths: list[str]) -> None:
-    """Bind the paths to STAGE/0, STAGE/1 and so on, in a namespace of mounts of this process's own."""
-    check_answer(_libc.unshare(NEW_MOUNTS), "a namespace of mounts")
-    mount("none", "/", flags=RECURSIVE | PRIVATE)
+    """Bind the paths to STAGE/0, STAGE/1 and so on, in a mount namespace of this process's own."""
+    check_result(_libc.unshare(CLONE_NEWNS), "a namespace of mounts")
+    mount("none", "/", flags=MS_REC | MS_PRIVATE)
+    # opened before the mount over STAGE, which may hide some of them
     descriptors = [os.open(path, os.O_PATH) for path in paths]
     mount("tmpfs", STAGE, "tmpfs", options="size=64k,mode=755")
     for j, descriptor in enumerate(descriptors):
@@ -59,54 +88,93 @@ def stage(paths: list[str]) -> None:
             os.mkdir(target)
         else:
             os.close(os.open(target, os.O_CREAT | os.O_WRONLY))
-        mount(f"/proc/self/fd/{descriptor}", target, flags=BIND | RECURSIVE)
+        mount(f"/proc/self/fd/{descriptor}", target, flags=MS_BIND | MS_REC)
         os.close(descriptor)
 
 
-def landlock() -> int:
-    """Return the version of Landlock that the kernel has, 0 where it has none."""
-    return max(0, _libc.syscall(CREATE, None, 0, 1))
+def landlock_version() -> int:
+    """Return the version of Landlock that the kernel has, or 0 if it has none."""
+    version = _libc.syscall(LANDLOCK_CREATE_RULESET, None, 0, LANDLOCK_CREATE_RULESET_VERSION)
+    return max(0, version)
 
 
-def fence(read: list[str], walk: list[str], write: list[str]) -> None:
-    """Let this process read what is in `read`, list the folders of `walk`, write to `write`, and no more."""
-    known = landlock()
-    rights = (1 << max(count for since, count in RIGHTS if since <= known)) - 1
-    nets, scopes = (
-        (3 if known >= 4 else 0),
-        (3 if known >= 6 else 0),
-    )  # ports; signals and names of sockets
-    size = 24 if known >= 6 else 16 if known >= 4 else 8
-    rules = check_answer(
-        _libc.syscall(CREATE, struct.pack("=QQQ", rights, nets, scopes), size, 0), "a fence"
-    )
-    wanted = [(path, READ_FILE | READ_DIR | EXECUTE) for path in read]
-    wanted += [(path, READ_DIR) for path in walk] + [
-        (path, READ_FILE | WRITE_FILE) for path in write
+def restrict_files(readable: list[str], listable: list[str], writable: list[str]) -> None:
+    """Restrict this process and its children to the listed files and folders, by Landlock.
+
+    They also lose TCP ports, and signals and abstract sockets of processes outside, as far as the
+    kernel's version of Landlock knows them.
+
+    Parameters
+    ----------
+    readable : list of str
+        Files and folders that may be read and executed, with all that the folders contain.
+    listable : list of str
+        Folders whose names of files may be listed.
+    writable : list of str
+        Files that may be read and written.
+    """
+    ruleset = _create_ruleset()
+    rights_of_paths = [
+        (readable, ACCESS_FS_READ_FILE | ACCESS_FS_READ_DIR | ACCESS_FS_EXECUTE),
+        (listable, ACCESS_FS_READ_DIR),
+        (writable, ACCESS_FS_READ_FILE | ACCESS_FS_WRITE_FILE),
     ]
-    for path, right in wanted:
-        place = os.open(path, os.O_PATH)
-        if not stat.S_ISDIR(os.fstat(place).st_mode):
-            right &= ~READ_DIR
-        check_answer(
-            _libc.syscall(ADD, rules, 1, struct.pack("=Qi", right, place), 0), f"a rule for {path}"
-        )
-        os.close(place)
-    check_answer(_libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0), "giving up privileges")
-    check_answer(_libc.syscall(RESTRICT, rules, 0), "the fence")
-    os.close(rules)
+    for paths, rights in rights_of_paths:
+        for path in paths:
+            _add_rule(ruleset, path, rights)
+    check_result(_libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "giving up privileges")
+    check_result(_libc.syscall(LANDLOCK_RESTRICT_SELF, ruleset, 0), "restricting files by Landlock")
+    os.close(ruleset)
 
 
-def become(user: int) -> None:
-    """Be this user and group, and no other, for good; and end when the parent ends."""
+def _create_ruleset() -> int:
+    """Return the descriptor of a ruleset that denies everything the kernel's Landlock can deny."""
+    version = landlock_version()
+    file_right_count = max(count for since, count in FILE_RIGHT_COUNTS.items() if since <= version)
+    # struct landlock_ruleset_attr: one field of 64 bits in the first version, and three by now
+    fields = [(1 << file_right_count) - 1]
+    if version >= FIRST_VERSION_WITH_NETWORK:
+        fields.append(NETWORK_RIGHTS)
+    if version >= FIRST_VERSION_WITH_SCOPES:
+        fields.append(SCOPES)
+    attributes = struct.pack(f"={len(fields)}Q", *fields)
+    ruleset = _libc.syscall(LANDLOCK_CREATE_RULESET, attributes, len(attributes), 0)
+    return check_result(ruleset, "a ruleset of Landlock")
+
+
+def _add_rule(ruleset: int, path: str, rights: int) -> None:
+    """Allow some rights over a file, or over a folder with all that it contains."""
+    descriptor = os.open(path, os.O_PATH)
+    if not stat.S_ISDIR(os.fstat(descriptor).st_mode):
+        # Landlock refuses rights over folders for a file
+        rights &= ~ACCESS_FS_READ_DIR
+    # struct landlock_path_beneath_attr
+    attributes = struct.pack("=Qi", rights, descriptor)
+    result = _libc.syscall(LANDLOCK_ADD_RULE, ruleset, LANDLOCK_RULE_PATH_BENEATH, attributes, 0)
+    check_result(result, f"a rule for {path}")
+    os.close(descriptor)
+
+
+def become_user(user: int) -> None:
+    """Become this user and group for good, and die with the parent process."""
     os.setgroups([])
     os.setresgid(user, user, user)
     os.setresuid(user, user, user)
-    check_answer(_libc.prctl(DIE_WITH_PARENT, KILL, 0, 0, 0), "an end with the parent")
+    # last, because a change of the user resets it
+    check_result(_libc.prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0), "an end with the parent")
 
 
 def main(text: str) -> None:
-    """Do what an order in JSON says; in its "command" and "environment", {0} is the first of its "homes"."""
+    """Carry out an order.
+
+    Parameters
+    ----------
+    text : str
+        A JSON object. "user", "command" and "environment" say which program to start, and as whom.
+        Optional are "stage", the paths for `stage`; "fence", the arguments of `restrict_files`; and
+        "homes", folders to open first. {0} in the command and in the environment stands for the
+        first of the homes, {1} for the second, and so on.
+    """
     order = json.loads(text)
     homes = [os.open(path, os.O_PATH) for path in order.get("homes", ())]
     for home in homes:
@@ -114,18 +182,20 @@ def main(text: str) -> None:
     if "stage" in order:
         stage(order["stage"])
     if "fence" in order:
-        fence(**order["fence"])
-    become(order["user"])
-    command = [_placed(word, homes) for word in order["command"]]
-    environment = {name: _placed(word, homes) for name, word in order["environment"].items()}
+        restrict_files(**order["fence"])
+    become_user(order["user"])
+    command = [_insert_homes(word, homes) for word in order["command"]]
+    environment = {}
+    for name, value in order["environment"].items():
+        environment[name] = _insert_homes(value, homes)
     os.execve(command[0], command, environment)
 
 
-def _placed(word: str, homes: list[int]) -> str:
-    """Return a word with the places of the homes in it."""
+def _insert_homes(text: str, homes: list[int]) -> str:
+    """Replace {0}, {1} and so on in a text with the paths of the opened folders."""
     for j, home in enumerate(homes):
-        word = word.replace(f"{{{j}}}", f"/proc/self/fd/{home}")
-    return word
+        text = text.replace(f"{{{j}}}", f"/proc/self/fd/{home}")
+    return text
 
 
 if __name__ == "__main__":

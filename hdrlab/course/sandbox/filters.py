@@ -1,8 +1,8 @@
-"""Which calls of the kernel a submission may make: those that reading, computing and answering need.
+"""The system calls that a sandbox may make: those that reading files and computing need.
 
-All others are answered by "not permitted": no process can be started, no signal sent, no socket
-made, no file moved or removed. A thread can be started. That no file can be opened for writing is
-for the walls to say, all of which are read-only but /dev/null.
+All others fail with "not permitted", so a check cannot start a process, send a signal, make a
+socket, or move or remove a file. It can start threads. The filter does not keep it from opening a
+file for writing; for that, everything in the sandbox is mounted read-only except /dev/null.
 """
 
 import errno
@@ -14,22 +14,41 @@ from typing import Any
 
 from hdrlab.course.sandbox.running import Unavailable
 
-CALLS: dict[str, list[str]] = tomllib.loads(
+# names of system calls, by purpose: "computing", "reading" and "supervising"
+SYSTEM_CALLS: dict[str, list[str]] = tomllib.loads(
     Path(__file__).with_name("syscalls.toml").read_text("utf8")
 )
-NEW_THREAD = 0x10000
-GET_TERMINAL, NONBLOCKING, CLOSE_ON_EXEC, KEEP_ON_EXEC = 0x5401, 0x5421, 0x5451, 0x5450
-FLAGS = (0, 1, 2, 3, 4, 1030)  # fcntl's: to duplicate, and to get and set flags
+# flag of clone for a thread, from <sched.h>
+CLONE_THREAD = 0x10000
+# requests of ioctl, from <asm-generic/ioctls.h>
+TCGETS = 0x5401
+FIONBIO = 0x5421
+FIONCLEX = 0x5450
+FIOCLEX = 0x5451
+ALLOWED_IOCTL_REQUESTS = (TCGETS, FIONBIO, FIOCLEX, FIONCLEX)
+# commands of fcntl, from <linux/fcntl.h>
+F_DUPFD = 0
+F_GETFD = 1
+F_SETFD = 2
+F_GETFL = 3
+F_SETFL = 4
+F_DUPFD_CLOEXEC = 1030
+ALLOWED_FCNTL_COMMANDS = (F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_DUPFD_CLOEXEC)
 
 
 @cache
 def program(name: str) -> bytes:
-    """Return the filter of the "supervisor" or of a "check" as a program for the kernel.
+    """Return a filter of system calls as a seccomp program.
+
+    Parameters
+    ----------
+    name : str
+        "supervisor", or "check" for the narrower filter of a check's process.
 
     Raises
     ------
     Unavailable
-        Where libseccomp or its binding is not installed.
+        If libseccomp or its Python binding is not installed.
     """
     try:
         import pyseccomp
@@ -38,32 +57,39 @@ def program(name: str) -> bytes:
             f"the filter of system calls needs pyseccomp and libseccomp: {error}"
         ) from None
     rules = pyseccomp.SyscallFilter(pyseccomp.ERRNO(errno.EPERM))
-    more = CALLS["tending"] if name == "supervisor" else []
-    for call in [*CALLS["computing"], *CALLS["reading"], *more]:
+    system_calls = SYSTEM_CALLS["computing"] + SYSTEM_CALLS["reading"]
+    if name == "supervisor":
+        system_calls += SYSTEM_CALLS["supervising"]
+    for system_call in system_calls:
         try:
-            number = pyseccomp.resolve_syscall(pyseccomp.Arch.NATIVE, call)
-        except OSError:  # this processor lacks it
+            number = pyseccomp.resolve_syscall(pyseccomp.Arch.NATIVE, system_call)
+        except OSError:
+            # this processor lacks it
             continue
+        # a call that this processor lacks may also have a number below zero
         if number >= 0:
             rules.add_rule(pyseccomp.ALLOW, number)
     if name == "check":
-        _narrow(rules)
+        _allow_some_arguments(rules)
     with tempfile.TemporaryFile() as file:
         rules.export_bpf(file)
         file.seek(0)
         return file.read()
 
 
-def _narrow(rules: Any) -> None:
-    """Allow some calls with some arguments: to start a thread, to ask for one's limits."""
+def _allow_some_arguments(rules: Any) -> None:
+    """Allow some system calls with harmless arguments, for example clone for a thread."""
     from pyseccomp import ALLOW, EQ, ERRNO, MASKED_EQ, Arg
 
-    rules.add_rule(ALLOW, "clone", Arg(0, MASKED_EQ, NEW_THREAD, NEW_THREAD))
-    rules.add_rule(
-        ERRNO(errno.ENOSYS), "clone3"
-    )  # its flags lie in memory: the C library asks clone then
-    rules.add_rule(ALLOW, "prlimit64", Arg(0, EQ, 0), Arg(2, EQ, 0))
-    for order in FLAGS:
-        rules.add_rule(ALLOW, "fcntl", Arg(1, EQ, order))
-    for order in (GET_TERMINAL, NONBLOCKING, CLOSE_ON_EXEC, KEEP_ON_EXEC):
-        rules.add_rule(ALLOW, "ioctl", Arg(1, EQ, order))
+    is_thread = Arg(0, MASKED_EQ, CLONE_THREAD, CLONE_THREAD)
+    rules.add_rule(ALLOW, "clone", is_thread)
+    # a filter cannot see the flags of clone3, which lie in memory; without clone3 the C library
+    # uses clone
+    rules.add_rule(ERRNO(errno.ENOSYS), "clone3")
+    is_own_process = Arg(0, EQ, 0)
+    sets_no_limit = Arg(2, EQ, 0)
+    rules.add_rule(ALLOW, "prlimit64", is_own_process, sets_no_limit)
+    for fcntl_command in ALLOWED_FCNTL_COMMANDS:
+        rules.add_rule(ALLOW, "fcntl", Arg(1, EQ, fcntl_command))
+    for ioctl_request in ALLOWED_IOCTL_REQUESTS:
+        rules.add_rule(ALLOW, "ioctl", Arg(1, EQ, ioctl_request))

@@ -1,8 +1,8 @@
-"""The practice tier: a process of its own and limits. It keeps mistakes apart from the grader, and no attack.
+"""The practice tier: a process with limits. It protects the grader from mistakes, not from attacks.
 
-It serves a student's own computer, where a function that loops, crashes or fills the memory must
-not take the notebook with it. What it finds is never for credit, for it does not stop what
-DOES_NOT_STOP tells.
+It is for a student's own computer, where a function that loops, crashes or fills the memory must
+not end the notebook with it. Scores from this tier never count, because it does not stop what
+DOES_NOT_STOP lists.
 """
 
 import os
@@ -10,47 +10,62 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from contextlib import ExitStack
 from socket import socket
 
 from hdrlab.course.sandbox import running
 
 DOES_NOT_STOP: list[str] = running.RULES["practice"]["does_not_stop"]
-# processes are not counted, for all of yours would be
-OWN_LIMITS = {name: most for name, most in running.LIMITS.items() if name != "NPROC"}
+# without NPROC, which would count all processes of the student, also those outside of the sandbox
+LIMITS = {name: limit for name, limit in running.LIMITS.items() if name != "NPROC"}
+# Python does not start on Windows without it
+WINDOWS_VARIABLE = "SYSTEMROOT"
 
 
 def sandbox() -> running.Sandbox:
-    """Return the practice tier; where processes cannot fork, each check starts a process of its own."""
-    return running.Sandbox("practice", False, launch, forks=hasattr(os, "fork"), limits=OWN_LIMITS)
+    """Return the practice tier. Where processes cannot fork, each check starts a new interpreter."""
+    return running.Sandbox(
+        tier="practice",
+        credit=False,
+        launch=launch,
+        can_fork=hasattr(os, "fork"),
+        limits=LIMITS,
+    )
 
 
 def launch(control: socket) -> running.SandboxProcess:
-    """Start the supervisor with this interpreter, in an empty folder, without this process's environment."""
+    """Start the supervisor with this interpreter, in an empty folder and with few variables."""
+    # the interpreter of a virtual environment would bring all its packages
+    python = getattr(sys, "_base_executable", sys.executable)
+    command = running.supervisor_command(
+        python, str(running.SUPERVISOR_PATH), control.fileno(), running.package_folders()
+    )
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
-    python = getattr(
-        sys, "_base_executable", sys.executable
-    )  # not the environment's, with all its packages
-    words = running.command(python, str(running.PROGRAM), control.fileno(), running.packages())
+
+    def remove_scratch() -> None:
+        shutil.rmtree(scratch, ignore_errors=True)
+
     environment = running.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
-    environment |= {
-        name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ
-    }  # for Windows
-    with ExitStack() as held:
-        held.callback(shutil.rmtree, scratch, ignore_errors=True)
-        if hasattr(control, "share"):  # on Windows
-            return running.SandboxProcess(
-                _shared(words, environment, control, scratch), held.pop_all().close
-            )
-        process = running.start(words, environment, control.fileno(), folder=scratch)
-        return running.SandboxProcess(process, held.pop_all().close, scratch)
+    if WINDOWS_VARIABLE in os.environ:
+        environment[WINDOWS_VARIABLE] = os.environ[WINDOWS_VARIABLE]
+    try:
+        # on Windows alone
+        if hasattr(control, "share"):
+            process = _start_and_share(command, environment, scratch, control)
+            return running.SandboxProcess(process=process, clean_up=remove_scratch)
+        process = running.start_process(
+            command, environment, pass_fds=[control.fileno()], folder=scratch
+        )
+    except BaseException:
+        remove_scratch()
+        raise
+    return running.SandboxProcess(process=process, clean_up=remove_scratch, scratch=scratch)
 
 
-def _shared(
-    words: list[str], environment: dict[str, str], control: socket, folder: str
+def _start_and_share(
+    command: list[str], environment: dict[str, str], folder: str, control: socket
 ) -> subprocess.Popen[bytes]:
-    """Return the process of a command that is told its control on the standard input, as Windows does."""
-    process = running.start(words, environment, folder=folder, stdin=subprocess.PIPE)
+    """Start a command, and describe the control socket to it on its standard input, as on Windows."""
+    process = running.start_process(command, environment, folder=folder, stdin=subprocess.PIPE)
     if process.stdin:
         process.stdin.write(control.share(process.pid))  # type: ignore[attr-defined,unused-ignore]
         process.stdin.close()

@@ -1,15 +1,16 @@
 """The strict tier: bubblewrap, a user of its own, limits, and a filter of system calls.
 
-Inside there is the interpreter, numpy and scipy, all to be read only; no network, no other process,
-no /proc, no place for a file, no environment, no privilege, and no way to get one. The process of a
-check is filtered once more: see filters.py.
+The sandbox contains the interpreter, numpy and scipy, all of them read-only. There is no network,
+no other process, no /proc, no place for a file, no environment variable of the grader, no
+privilege, and no way to get one. The process of a check has a narrower filter: see filters.py.
 """
 
-import contextlib
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Mapping
+from contextlib import ExitStack
 from functools import cache, partial
 from socket import socket
 from typing import BinaryIO
@@ -22,11 +23,14 @@ from hdrlab.course.sandbox.running import (
     Sandbox,
     SandboxProcess,
     Unavailable,
-    command,
-    start,
+    start_process,
+    supervisor_command,
 )
 
-WALLS, NEEDED = RULES["strict"]["walls"], RULES["strict"]["needed"]
+BUBBLEWRAP_OPTIONS: list[str] = RULES["strict"]["options"]
+# options that tell bubblewrap 0.8 and later from earlier versions
+REQUIRED_OPTIONS: list[str] = RULES["strict"]["required_options"]
+ROOT_USER = 0
 
 
 def sandbox() -> Sandbox:
@@ -35,69 +39,104 @@ def sandbox() -> Sandbox:
     Raises
     ------
     Unavailable
-        Where the system is not Linux, or bubblewrap or libseccomp is missing or too old.
+        If the system is not Linux, or bubblewrap or libseccomp is missing or too old.
     """
     if sys.platform != "linux":
         raise Unavailable(f"the strict tier needs Linux, and this is {sys.platform}")
-    program = filters.program("check")
-    return Sandbox("strict", True, partial(launch, bubblewrap()), program=program, alone=True)
+    seccomp_program = filters.program("check")
+    return Sandbox(
+        tier="strict",
+        credit=True,
+        launch=partial(launch, bubblewrap()),
+        seccomp_program=seccomp_program,
+        has_pid_namespace=True,
+    )
 
 
 @cache
 def bubblewrap() -> str:
-    """Return where bubblewrap is, if it is new enough, or raise Unavailable."""
+    """Return the path of bubblewrap; raise Unavailable if it is missing or too old."""
     path = shutil.which("bwrap")
     if path is None:
         raise Unavailable("the strict tier needs bubblewrap, and there is no bwrap on the path")
-    told = subprocess.run(
+    result = subprocess.run(
         [path, "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL
     )
-    missing = [option for option in NEEDED if option not in told.stdout + told.stderr]
-    if missing:
-        raise Unavailable(
-            f"the strict tier needs bubblewrap 0.8 or later; {path} does not know {missing[0]}"
-        )
+    help_text = result.stdout + result.stderr
+    for option in REQUIRED_OPTIONS:
+        if option not in help_text:
+            raise Unavailable(
+                f"the strict tier needs bubblewrap 0.8 or later; {path} does not know {option}"
+            )
     return path
 
 
-def walls(inside: SandboxMounts, sources: dict[str, str], rules: int) -> list[str]:
+def bubblewrap_options(
+    mounts: SandboxMounts, sources: Mapping[str, str], filter_descriptor: int
+) -> list[str]:
     """Return bubblewrap's options.
 
-    `sources` says where the places of the inside are outside, and `rules` is the filter's
-    descriptor.
+    Parameters
+    ----------
+    mounts : SandboxMounts
+        What the sandbox contains.
+    sources : mapping
+        The path outside for each path inside. It differs from `mounts.places` for root, whose
+        places are bound elsewhere first.
+    filter_descriptor : int
+        Descriptor from which bubblewrap reads the supervisor's filter of system calls.
     """
-    options = list(WALLS)
-    for name, value in (ENVIRONMENT | {"LD_LIBRARY_PATH": f"{PYTHON}/lib"}).items():
+    options = list(BUBBLEWRAP_OPTIONS)
+    environment = ENVIRONMENT | {"LD_LIBRARY_PATH": f"{PYTHON}/lib"}
+    for name, value in environment.items():
         options += ["--setenv", name, value]
-    for place in sorted(sources):  # a folder before what lies in it
+    # sorted, so that a folder comes before what lies in it
+    for place in sorted(sources):
         options += ["--ro-bind", sources[place], place]
-    for folder in inside.hidden:
-        options += ["--perms", "0555", "--size", "4096", "--tmpfs", folder, "--remount-ro", folder]
+    for folder in mounts.hidden:
+        options += ["--perms", "0555", "--size", "4096", "--tmpfs", folder]
+        options += ["--remount-ro", folder]
     options += ["--dev-bind", os.devnull, os.devnull]
-    return [*options, "--remount-ro", "/", "--chdir", "/", "--seccomp", str(rules), "--"]
+    options += ["--remount-ro", "/"]
+    options += ["--chdir", "/"]
+    options += ["--seccomp", str(filter_descriptor)]
+    return [*options, "--"]
 
 
 def launch(bwrap: str, control: socket) -> SandboxProcess:
-    """Start the supervisor behind the walls; root becomes a spare user first."""
-    inside = contents()
-    supervisor = command(inside.python, inside.program, control.fileno(), inside.packages)
-    with contextlib.ExitStack() as held, _readable(filters.program("supervisor")) as rules:
-        words = [bwrap, *walls(inside, inside.places, rules.fileno()), *supervisor]
-        if os.geteuid() == 0:  # without a user, bubblewrap leaves nothing to clear up
+    """Start the supervisor in bubblewrap. Root becomes a spare user first.
+
+    Parameters
+    ----------
+    bwrap : str
+        The path of bubblewrap.
+    control : socket
+        The supervisor's end of the control socket.
+    """
+    mounts = contents()
+    supervisor = supervisor_command(
+        mounts.python, mounts.program, control.fileno(), mounts.packages
+    )
+    with ExitStack() as stack, _open_for_reading(filters.program("supervisor")) as rules:
+        sources = mounts.places
+        if os.geteuid() == ROOT_USER:
+            sources = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(mounts.places)}
+        options = bubblewrap_options(mounts, sources, rules.fileno())
+        command = [bwrap, *options, *supervisor]
+        if os.geteuid() == ROOT_USER:
             user, lease = users.lease()
-            held.enter_context(lease)
-            staged = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(inside.places)}
-            words = [bwrap, *walls(inside, staged, rules.fileno()), *supervisor]
-            paths = list(inside.places.values())
-            words = users.descend(user=user, stage=paths, command=words, environment={})
-        return SandboxProcess(
-            start(words, {}, control.fileno(), rules.fileno()), held.pop_all().close
-        )
+            stack.enter_context(lease)
+            paths = list(mounts.places.values())
+            command = users.descend(user=user, stage=paths, command=command, environment={})
+        process = start_process(command, {}, pass_fds=[control.fileno(), rules.fileno()])
+        # the lease is held until the process has ended
+        return SandboxProcess(process=process, clean_up=stack.pop_all().close)
 
 
-def _readable(program: bytes) -> BinaryIO:
-    """Return a file from which a program of a few thousand bytes can be read."""
-    ours, theirs = os.pipe()
-    with open(theirs, "wb") as begin:
-        begin.write(program)
-    return open(ours, "rb")
+def _open_for_reading(program: bytes) -> BinaryIO:
+    """Return an open file from which a program of a few thousand bytes can be read."""
+    read_descriptor, write_descriptor = os.pipe()
+    # a pipe holds that much, so this does not wait for the reader
+    with open(write_descriptor, "wb") as file:
+        file.write(program)
+    return open(read_descriptor, "rb")

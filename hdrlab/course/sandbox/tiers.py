@@ -1,4 +1,4 @@
-"""Which tier a machine can give. It fails closed: a tier that was asked for and cannot be had is an error."""
+"""Choose a sandbox tier. There is no fallback: if this machine cannot run the tier, that is an error."""
 
 from hdrlab.course.sandbox import container, practice, strict
 from hdrlab.course.sandbox.running import Sandbox, Unavailable
@@ -15,9 +15,9 @@ def choose(tier: str) -> Sandbox:
     Raises
     ------
     Unavailable
-        Where this machine cannot give it, with the reason. No other tier is put in its place.
-    ValueError
-        For a tier that there is not.
+        If this machine cannot run the tier. No other tier takes its place.
+    InputError
+        If there is no such tier.
 
     Examples
     --------

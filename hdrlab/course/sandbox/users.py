@@ -1,6 +1,5 @@
-"""Becoming another user, which root alone can: each sandbox gets a spare number for as long as it runs."""
+"""Lease spare user numbers, so that each sandbox that root starts runs as a user of its own."""
 
-import contextlib
 import json
 import socket
 import sys
@@ -9,40 +8,55 @@ from typing import Any
 
 from hdrlab.course.sandbox import descent, running
 
-SPARE = range(60706, 61184)  # no system gives these to anybody [systemd.io/UIDS-GIDS]
+# systems assign these numbers to nobody [systemd.io/UIDS-GIDS]
+SPARE_USERS = range(60706, 61184)
 
 
 def lease() -> tuple[int, socket.socket]:
-    """Return a user number that no other sandbox has, and what holds it until that is closed.
+    """Lease a user number that no other sandbox has.
+
+    Returns
+    -------
+    user : int
+        The user number.
+    lock : socket
+        Holds the number until it is closed.
 
     Raises
     ------
     Unavailable
-        Where none is left, or this container has none.
+        If no number is free, or this container has none of them.
     """
-    mapped = _mapped()
-    for user in SPARE:
-        if any(user in numbers for numbers in mapped):
-            held = socket.socket(socket.AF_UNIX)
-            with contextlib.suppress(OSError):
-                held.bind(
-                    f"\0hdrlab-user-{user}"
-                )  # a name without a file, which nobody else can have
-                return user, held
-            held.close()
-    raise running.Unavailable(f"no user number of {SPARE.start} to {SPARE.stop - 1} is free here")
+    mapped_users = _mapped_users()
+    for user in SPARE_USERS:
+        if any(user in numbers for numbers in mapped_users):
+            lock = socket.socket(socket.AF_UNIX)
+            try:
+                # an abstract socket name, which only one socket of the machine can have
+                lock.bind(f"\0hdrlab-user-{user}")
+            except OSError:
+                lock.close()
+            else:
+                return user, lock
+    first = SPARE_USERS.start
+    last = SPARE_USERS.stop - 1
+    raise running.Unavailable(f"no user number of {first} to {last} is free here")
 
 
-def _mapped() -> list[range]:
-    """Return the user numbers that there are in this namespace."""
-    with contextlib.suppress(OSError):
-        lines = Path("/proc/self/uid_map").read_text().splitlines()
-        rows = [[int(word) for word in line.split()] for line in lines]
-        return [range(first, first + count) for first, _, count in rows]
-    return []
+def _mapped_users() -> list[range]:
+    """Return the user numbers that exist in this user namespace."""
+    try:
+        text = Path("/proc/self/uid_map").read_text()
+    except OSError:
+        return []
+    ranges = []
+    for line in text.splitlines():
+        first, _, count = (int(word) for word in line.split())
+        ranges.append(range(first, first + count))
+    return ranges
 
 
 def descend(**order: Any) -> list[str]:
-    """Return the command by which root does what an order to descent.py says."""
+    """Return the command that root runs to carry out an order; see `descent.main` for the order."""
     python = getattr(sys, "_base_executable", sys.executable)
     return [python, "-I", "-S", "-B", str(descent.__file__), json.dumps(order)]

@@ -121,7 +121,7 @@ def _failure(answer: bytes, errors: bytes, exit_code: int) -> ProcessFailed:
 
 def main(parent: str) -> None:
     """Read the order, do the work, and write the answer: the main function of the child."""
-    parent_lives = system.end_with(int(parent))
+    parent_lives = system.die_with_parent(int(parent))
     if not parent_lives:
         return
     with os.fdopen(os.dup(1), "wb") as out:

@@ -1,11 +1,11 @@
-"""The first process in a sandbox: it imports numpy once, forks a process per check, and clears up behind it.
+"""The first process in a sandbox: it imports numpy once, forks a process per check, and clears up.
 
-control  the socket to the parent, on which orders come and answers go: see `tend`
-link     the socket of one check, which the parent sends over the control
+control  the socket to the grader; see `serve_checks` for the messages
+link     the socket of one check, which the grader sends over the control socket
 
-What a check has left behind ends with it: its memory, its processes, its files. The student's code
-never runs in this process. Like channel.py, system.py and worker.py, which stand beside it in the
-sandbox, it needs the standard library and numpy alone.
+When a check ends, its memory, its processes and its files end with it. The student's code never
+runs in this process. This file goes into the sandbox with channel.py, system.py and worker.py, and
+hdrlab is not there: it needs the standard library and numpy alone.
 """
 
 import contextlib
@@ -20,103 +20,154 @@ import sys
 from functools import partial
 from typing import Any
 
+OWN_MODULES = ("channel", "system", "worker")
+ENDING_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+STDERR = 2
+
 
 class PackageFinder:
-    """Finds the packages that a submission may import, and what stands beside this file, and nothing else.
+    """Find the packages that a submission may import and the modules of this folder, nothing else.
 
-    No folder is put on sys.path: one that holds numpy holds much else.
+    No folder is put on sys.path, because a folder that holds numpy holds much else.
+
+    Parameters
+    ----------
+    files : dict
+        The files of the top-level modules, by name.
     """
 
     def __init__(self, files: dict[str, str]) -> None:
         self.files = files
 
     def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
-        """Return where a top-level module is, or None; what lies inside of it is found as ever."""
+        """Return the spec of a top-level module, or None; submodules are found as usual."""
         if path is not None or name not in self.files:
             return None
         file = self.files[name]
-        inside = [os.path.dirname(file)] if file.endswith("__init__.py") else None
-        return importlib.util.spec_from_file_location(name, file, submodule_search_locations=inside)
+        is_package = file.endswith("__init__.py")
+        return importlib.util.spec_from_file_location(
+            name, file, submodule_search_locations=[os.path.dirname(file)] if is_package else None
+        )
 
 
-def begin(link: socket.socket, order: dict[str, Any]) -> None:
-    """Become the process of a check: limited, filtered, and with nothing but its link."""
-    system, channel = importlib.import_module("system"), importlib.import_module("channel")
-    system.limit(order["limits"], order["credit"])
-    if order["program"]:
-        system.restrict(order["program"])
-    importlib.import_module("worker").serve(link, channel)
+def become_check(link: socket.socket, order: dict[str, Any]) -> None:
+    """Limit and filter this process, and run a student's functions in it until the link closes."""
+    system = importlib.import_module("system")
+    system.set_limits(order["limits"], required=order["credit"])
+    if order["seccomp_program"]:
+        system.install_seccomp_filter(order["seccomp_program"])
+    worker = importlib.import_module("worker")
+    worker.serve(link, importlib.import_module("channel"))
 
 
-def tend(control: socket.socket, order: dict[str, Any]) -> None:
-    """Fork a process for each check that is ordered, until the other end closes.
+def serve_checks(control: socket.socket, order: dict[str, Any]) -> None:
+    """Fork a process for each check that the grader orders, until the grader closes the socket.
 
-    "check" comes with the seconds of a processor that it may use and a descriptor, the new
-    process's link, and is answered by "begun". "end" comes with the seconds in which it is expected
-    to end by itself, and is answered, when nothing of the check is left, by "clean" with the signal
-    that has ended it, or 0, and the seconds it has used.
+    A "check" message brings the seconds of processor time that the check may use, and a descriptor:
+    the link of the new process. The answer is "begun".
+
+    An "end" message brings the seconds that the check has to end by itself. The answer comes when
+    nothing of the check is left: "clean", with the signal that ended it, or 0, and the seconds of
+    processor time that it used.
     """
-    system, channel = importlib.import_module("system"), importlib.import_module("channel")
-    pid, before = 0, 0.0
+    system = importlib.import_module("system")
+    channel = importlib.import_module("channel")
+    pid = 0
+    cpu_seconds_before = 0.0
     try:
         while True:
-            kind, call, seconds = channel.receive(control)
+            kind, check_number, seconds = channel.receive(control)
             if kind == "check":
-                before = system.used()
-                limits = order["limits"] | {"CPU": min(seconds, order["limits"]["CPU"])}
-                pid = system.fork(control, partial(begin, order=order | {"limits": limits}))
-                channel.send(control, "begun", call=call)
+                cpu_seconds_before = system.children_cpu_seconds()
+                check_order = order | {"limits": limit_cpu_seconds(order["limits"], seconds)}
+                pid = system.fork_check(control, partial(become_check, order=check_order))
+                channel.send(control, "begun", call=check_number)
             else:
-                ended = system.signal_of(pid, seconds)
-                system.sweep(pid, order["alone"])
-                channel.send(control, "clean", (ended, system.used() - before), call)
+                ending_signal = system.wait_for_signal(pid, seconds)
+                system.end_check(pid, order["has_pid_namespace"])
+                cpu_seconds = system.children_cpu_seconds() - cpu_seconds_before
+                channel.send(control, "clean", (ending_signal, cpu_seconds), check_number)
                 pid = 0
     except EOFError:
         if pid:
-            system.sweep(pid, order["alone"])
+            system.end_check(pid, order["has_pid_namespace"])
 
 
-def prepare(modules: list[str]) -> None:
-    """Import what the checks will need, once, and begin numpy's old random numbers at one place."""
+def limit_cpu_seconds(limits: dict[str, int], seconds: int) -> dict[str, int]:
+    """Return the limits of a process, with at most this processor time."""
+    return limits | {"CPU": min(seconds, limits["CPU"])}
+
+
+def import_modules(modules: list[str]) -> None:
+    """Import what the checks will need, and seed numpy's global random generator."""
     for name in ("numpy.random", "worker", *modules):
-        with contextlib.suppress(
-            ImportError
-        ):  # the submission will say so itself, where it asks for it
+        # if a module is missing, the submission fails where it imports it
+        with contextlib.suppress(ImportError):
             importlib.import_module(name)
     sys.modules["numpy.random"].seed(0)
     gc.collect()
-    gc.freeze()  # a fork then shares these pages
+    # the collector then leaves these objects alone, and forked processes share their memory
+    gc.freeze()
 
 
-def main(number: str, *packages: str) -> None:
-    """Read the first order from the control, make ready, and tend the checks, or be the only one there is."""
+def install_finder(packages: tuple[str, ...]) -> None:
+    """Make the modules of this folder importable, and packages that are given as "name=folder"."""
     here = os.path.dirname(os.path.abspath(__file__))
-    shelf = {name: f"{here}/{name}.py" for name in ("channel", "system", "worker")}
+    files = {name: f"{here}/{name}.py" for name in OWN_MODULES}
     for package in packages:
         name, _, folder = package.partition("=")
-        shelf[name] = f"{folder}/__init__.py"
-    sys.meta_path.append(PackageFinder(shelf))
-    system, channel = importlib.import_module("system"), importlib.import_module("channel")
-    control = system.inherit_control(number)
-    _, _, order = channel.receive(control)
-    for one in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(
-            signal, one
-        ):  # the first process of a namespace does not feel its default from inside
-            signal.signal(getattr(signal, one), signal.SIG_DFL)
-    system.prctl(system.ADOPT, 1)
-    prepare(order["modules"])
+        files[name] = f"{folder}/__init__.py"
+    sys.meta_path.append(PackageFinder(files))
+
+
+def reset_signals() -> None:
+    """Give the signals that end a process their default action, so that no check can send them.
+
+    Python handles SIGINT. If a signal has its default action instead, Linux does not deliver it
+    from inside a PID namespace to the namespace's first process.
+    """
+    for name in ENDING_SIGNALS:
+        # Windows lacks some of them
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_DFL)
+
+
+def silence_stderr() -> None:
+    """Discard what this process and its libraries write to stderr from now on."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)  # what a library might still write there is for nobody
+    os.dup2(nowhere, STDERR)
     os.close(nowhere)
+
+
+def main(control_number: str, *packages: str) -> None:
+    """Receive the order, get ready, and serve checks; without fork, become the only check.
+
+    Parameters
+    ----------
+    control_number : str
+        The descriptor of the control socket.
+    packages : str
+        Packages that may be imported, each as "name=folder".
+    """
+    install_finder(packages)
+    system = importlib.import_module("system")
+    channel = importlib.import_module("channel")
+    control = system.inherit_control(control_number)
+    _, _, order = channel.receive(control)
+    reset_signals()
+    system.adopt_orphans()
+    import_modules(order["modules"])
+    silence_stderr()
     channel.send(control, "ready")
-    if order["forks"]:
-        tend(control, order)
+    if order["can_fork"]:
+        serve_checks(control, order)
     else:
-        begin(control, order)
-    if order["scratch"]:  # the parent may have been killed, and cannot
+        become_check(control, order)
+    if order["scratch"]:
+        # the grader cannot remove it if it was killed
         shutil.rmtree(order["scratch"], ignore_errors=True)
-    os._exit(0)  # nothing is left that would need an orderly end
+    # at once: nothing is left that needs an orderly end
+    os._exit(0)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
-"""What one operating system has and another lacks: no other module imports what POSIX alone has.
+"""Calls of the operating system, some of which only Linux or POSIX has.
 
-Like channel.py it goes into the sandbox, where hdrlab is not, and needs the standard library alone.
+No other module of hdrlab imports what only POSIX has. This file goes into the sandbox, where hdrlab
+is not: it needs the standard library alone.
 """
 
 import contextlib
@@ -15,148 +16,227 @@ from collections.abc import Callable
 from typing import Any
 
 LINUX = sys.platform == "linux"
-DIE_WITH_PARENT, ADOPT, SECCOMP, NO_NEW_PRIVILEGES = 1, 36, 22, 38  # prctl's numbers
+
+# options of prctl, from <linux/prctl.h>
+PR_SET_PDEATHSIG = 1
+PR_SET_SECCOMP = 22
+PR_SET_CHILD_SUBREAPER = 36
+PR_SET_NO_NEW_PRIVS = 38
+# prctl takes this many arguments after the option
+PRCTL_ARGUMENTS = 4
+SECCOMP_MODE_FILTER = 2
+SECCOMP_INSTRUCTION_BYTES = 8
+
+SIGNAL_POLL_SECONDS = 0.002
+END_POLL_SECONDS = 0.0005
 
 
-def _optional(name: str) -> Any:
-    """Return a module of the standard library, or None where this system has none of that name."""
-    with contextlib.suppress(ImportError):
+def _import_if_available(name: str) -> Any:
+    """Return a module of the standard library, or None if this system lacks it."""
+    try:
         return importlib.import_module(name)
-    return None
+    except ImportError:
+        return None
 
 
-resource = _optional("resource")
+resource = _import_if_available("resource")
 
 
-def prctl(number: int, *values: Any) -> None:
-    """Ask Linux for a property of this process; other systems are left alone."""
-    if LINUX:
-        libc = ctypes.CDLL(None, use_errno=True)
-        if libc.prctl(number, *values, *(0,) * (4 - len(values))):
-            raise OSError(ctypes.get_errno(), f"prctl({number}) was refused")
+def prctl(option: int, *values: Any) -> None:
+    """Set a property of this process on Linux; do nothing on other systems."""
+    if not LINUX:
+        return
+    libc = ctypes.CDLL(None, use_errno=True)
+    padding = [0] * (PRCTL_ARGUMENTS - len(values))
+    if libc.prctl(option, *values, *padding) != 0:
+        raise OSError(ctypes.get_errno(), f"prctl({option}) was refused")
 
 
-def end_with(ancestor: int) -> bool:
-    """Ask Linux to end this process with its parent; return False where `ancestor` has ended already.
+def die_with_parent(ancestor: int) -> bool:
+    """Let Linux kill this process when its parent ends.
 
-    Between the two a launcher may stand, as a virtual environment has one on Windows.
+    Parameters
+    ----------
+    ancestor : int
+        The process that started this one. Launchers may stand between the two, as in a virtual
+        environment on Windows.
+
+    Returns
+    -------
+    bool
+        False if the ancestor has ended already, in which case nothing will kill this process.
     """
-    if not LINUX:  # nothing can be asked for, and so there is no race
+    # other systems have no such request, so there is nothing that could come too late
+    if not LINUX:
         return True
-    prctl(DIE_WITH_PARENT, signal.SIGKILL)
-    one = os.getppid()
-    while one not in (0, 1, ancestor):
-        one = parent_of(one)
-    return one == ancestor
+    prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    process = os.getppid()
+    while process not in (0, 1, ancestor):
+        process = parent_of(process)
+    return process == ancestor
 
 
 def parent_of(process: int) -> int:
-    """Return the parent of a process of Linux, or 0 where it is gone or cannot be seen."""
+    """Return the parent of a process on Linux, or 0 if the process is gone or cannot be seen."""
     try:
         with open(f"/proc/{process}/stat", encoding="utf8", errors="replace") as file:
-            return int(file.read().rpartition(")")[2].split()[1])
+            # the command's name is in parentheses, and may contain spaces and parentheses itself
+            _, _, fields_after_name = file.read().rpartition(")")
+            return int(fields_after_name.split()[1])
     except (OSError, ValueError, IndexError):
         return 0
 
 
-def limit(limits: dict[str, int], needed: bool) -> None:
-    """Set the limits of this process: they are named as in the module resource, and never raised again.
+def adopt_orphans() -> None:
+    """Let Linux make this process the parent of descendants whose own parent has ended."""
+    prctl(PR_SET_CHILD_SUBREAPER, 1)
 
-    Where they are not `needed`, those that the system does not have, or does not grant, are let be.
+
+def set_limits(limits: dict[str, int], *, required: bool) -> None:
+    """Set the limits of this process, which it cannot raise again.
+
+    Parameters
+    ----------
+    limits : dict
+        Limits by their names in the module `resource`, without RLIMIT_.
+    required : bool
+        Whether a limit that the system lacks or refuses is an error. If not, it is left out.
     """
-    lacks = () if needed else (AttributeError, ValueError, OSError)
-    for name, most in limits.items():
-        with contextlib.suppress(*lacks):
-            which = getattr(resource, f"RLIMIT_{name}")
-            _, hard = resource.getrlimit(which)
-            most = most if hard == resource.RLIM_INFINITY else min(most, hard)
-            resource.setrlimit(which, (most, most))
+    tolerated = () if required else (AttributeError, ValueError, OSError)
+    for name, limit in limits.items():
+        with contextlib.suppress(*tolerated):
+            kind = getattr(resource, f"RLIMIT_{name}")
+            _, hard_limit = resource.getrlimit(kind)
+            if hard_limit != resource.RLIM_INFINITY:
+                limit = min(limit, hard_limit)
+            resource.setrlimit(kind, (limit, limit))
 
 
-def restrict(program: bytes) -> None:
-    """Give the kernel a seccomp program, which this process and its threads never lose."""
+def install_seccomp_filter(program: bytes) -> None:
+    """Filter the system calls of this process and its threads, for good."""
 
-    class Program(ctypes.Structure):
+    class SeccompProgram(ctypes.Structure):
+        """struct sock_fprog of the kernel."""
+
         _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
 
-    prctl(NO_NEW_PRIVILEGES, 1)
-    prctl(SECCOMP, 2, ctypes.byref(Program(len(program) // 8, program)))
+    prctl(PR_SET_NO_NEW_PRIVS, 1)
+    instruction_count = len(program) // SECCOMP_INSTRUCTION_BYTES
+    filter_program = SeccompProgram(instruction_count, program)
+    prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, ctypes.byref(filter_program))
 
 
-def used() -> float:
-    """Return the seconds of a processor that children have used so far, as far as the system tells."""
+def children_cpu_seconds() -> float:
+    """Return the processor time of all children that have ended, or 0 if the system does not tell."""
     if resource is None:
         return 0.0
-    told = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return float(told.ru_utime + told.ru_stime)
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return float(usage.ru_utime + usage.ru_stime)
 
 
-def fork(control: socket.socket, begin: Callable[[socket.socket], object]) -> int:
-    """Fork a process that begins with the link that comes over the control, and return its number."""
-    _, descriptors, *_ = socket.recv_fds(control, 1, 1)
+def fork_check(control: socket.socket, begin: Callable[[socket.socket], object]) -> int:
+    """Fork the process of a check, and return its number.
+
+    Parameters
+    ----------
+    control : socket
+        The grader sends the link of the check over this socket.
+    begin : callable
+        Called in the new process with the link. The process ends when it returns.
+    """
+    _, descriptors, _, _ = socket.recv_fds(control, 1, 1)
     pid = os.fork()
     if pid == 0:
         try:
             control.close()
             os.setpgid(0, 0)
-            prctl(DIE_WITH_PARENT, signal.SIGKILL)
+            prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
             begin(socket.socket(fileno=descriptors[0]))
         finally:
-            os._exit(0)  # at once: the end of this program is the supervisor's
+            # at once, so that this process never returns into the supervisor's code
+            os._exit(0)
     os.close(descriptors[0])
     return pid
 
 
-def children() -> list[int]:
-    """Return the processes whose parent is this one, as far as the system tells."""
-    with contextlib.suppress(OSError):  # there may be no /proc, or a fence before it
-        numbers = map(int, filter(str.isdigit, os.listdir("/proc")))
-        return [one for one in numbers if parent_of(one) == os.getpid()]
-    return []
+def list_children() -> list[int]:
+    """Return the child processes of this process, or none if the system does not tell."""
+    try:
+        names = os.listdir("/proc")
+    except OSError:
+        # there is no /proc, or this process may not read it
+        return []
+    processes = [int(name) for name in names if name.isdigit()]
+    return [process for process in processes if parent_of(process) == os.getpid()]
 
 
-def signal_of(pid: int, seconds: float) -> int:
-    """Return the signal that has ended a process, or ends it within some seconds; 0 where none does."""
-    until = time.monotonic() + seconds
-    while hasattr(os, "waitid"):
+def wait_for_signal(pid: int, timeout: float) -> int:
+    """Wait for a child to end, and return the signal that ended it.
+
+    Return 0 if no signal ended it, it did not end within `timeout` seconds, or the system does not
+    tell.
+    """
+    if not hasattr(os, "waitid"):
+        return 0
+    deadline = time.monotonic() + timeout
+    while True:
         with contextlib.suppress(ChildProcessError):
-            found = os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
-            if found is not None:
-                return found.si_status if found.si_code in (os.CLD_KILLED, os.CLD_DUMPED) else 0
-        if time.monotonic() >= until:
-            break
-        time.sleep(0.002)
-    return 0
+            # WNOWAIT leaves the child to be waited for by end_check
+            result = os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            if result is not None:
+                was_signaled = result.si_code in (os.CLD_KILLED, os.CLD_DUMPED)
+                return result.si_status if was_signaled else 0
+        if time.monotonic() >= deadline:
+            return 0
+        time.sleep(SIGNAL_POLL_SECONDS)
 
 
-def sweep(pid: int, alone: bool) -> None:
-    """End a check's process and all that it started, and wait until they are gone.
+def end_check(pid: int, has_pid_namespace: bool) -> None:
+    """Kill the process of a check and everything that it started, and wait until all are gone.
 
-    `alone` says that this is the first process of a namespace of its own, whose every other process
-    is the check's.
+    Parameters
+    ----------
+    pid : int
+        The process of the check.
+    has_pid_namespace : bool
+        Whether this is the first process of a PID namespace of its own. Every other process in
+        there belongs to the check.
     """
     with contextlib.suppress(OSError):
-        if alone and os.getpid() == 1:
+        if has_pid_namespace and os.getpid() == 1:
+            # every other process of the namespace
             os.kill(-1, signal.SIGKILL)
         else:
             os.kill(pid, signal.SIGKILL)
             os.killpg(pid, signal.SIGKILL)
     with contextlib.suppress(ChildProcessError):
         os.waitpid(pid, 0)
+    while _has_children_after_reaping():
+        # a child is still dying, or it is a daemon that left the process group and was adopted
+        if not has_pid_namespace:
+            for child in list_children():
+                with contextlib.suppress(OSError):
+                    os.kill(child, signal.SIGKILL)
+        time.sleep(END_POLL_SECONDS)
+
+
+def _has_children_after_reaping() -> bool:
+    """Remove all children that have ended from the process table; return whether any are left."""
     while True:
         try:
-            gone, _ = os.waitpid(-1, os.WNOHANG)
+            ended_child, _ = os.waitpid(-1, os.WNOHANG)
         except ChildProcessError:
-            return
-        if gone == 0:  # still dying, or a daemon that has left the group and was adopted
-            for one in [] if alone else children():
-                with contextlib.suppress(OSError):
-                    os.kill(one, signal.SIGKILL)
-            time.sleep(0.0005)
+            return False
+        if ended_child == 0:
+            return True
 
 
 def inherit_control(number: str) -> socket.socket:
-    """Return the control: it has this number or, on Windows, is described on the standard input."""
-    if shared := getattr(socket, "fromshare", None):
-        return shared(sys.stdin.buffer.read())
+    """Return the control socket, which has this descriptor.
+
+    On Windows, the grader describes the socket on the standard input instead.
+    """
+    from_share = getattr(socket, "fromshare", None)
+    if from_share is not None:
+        return from_share(sys.stdin.buffer.read())
     return socket.socket(fileno=int(number))
