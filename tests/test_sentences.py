@@ -45,13 +45,13 @@ SENTENCES = {
         "Sky and corners lie about sixteen stops apart": lambda n: round(float(n.stops)) == 16,
     },
     "01": {
-        "The scene has more than a decade more than the sensor": lambda n: (
+        "The scene's range is more than a decade larger than the sensor's": lambda n: (
             n.scenes.decades(n.E, tail=0) > 1 + ranges.sensor_range(n.GOOD)[0]
         ),
-        "In the long exposure luminances of 0.3 to 0.6 cross three levels": lambda n: (
+        "In the long exposure, luminances from 0.3 to 0.6 fall on three levels": lambda n: (
             levels_met(n, 1.0) == 3
         ),
-        "in the short one they are all below the first step": lambda n: levels_met(n, 0.1) == 1,
+        "In the short one they are all below the first step": lambda n: levels_met(n, 0.1) == 1,
         "With 6 bits a level is 340 electrons wide": lambda n: (
             round(20_000 / (2**6 - 1 - 2**2), -1) == 340
         ),
@@ -62,29 +62,29 @@ SENTENCES = {
         "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
     },
     "02": {
-        "With the spot or the partial meter on her face she is about a stop too dark": lambda n: (
+        "With the spot or the partial meter on her face, the face is about a stop too dark": lambda n: (
             all(round(n.place(mode).off) == -1 for mode in ("spot", "partial"))
         ),
-        "More than half of the picture is full then": lambda n: n.place("spot").full.mean() > 0.5,
+        "Even so, more than half of the image is full": lambda n: n.place("spot").full.mean() > 0.5,
         "the face is four to five stops too dark": lambda n: all(
             -5 < n.place(mode).off < -4 for mode in ("centre", "average", "matrix")
         ),
-        "With up to 6 pixels of shake alignment fixes all of it": lambda n: (
+        "With up to 6 pixels of shake, alignment fixes all of it": lambda n: (
             worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
         ),
-        "From the dark two shots do": lambda n: (
+        "From the dark side, two shots are enough": lambda n: (
             {len(n.steps(18, mode)) for mode in n.metering.MODES} == {2, 3}
         ),
     },
     "03": {
         "more than one bit in a hundred differs": lambda n: 0.01 < differ(n, -1) < 0.02,
-        "at width 2 there is hardly one left, and at 4, which is Ward's, none": lambda n: (
+        "At width 2, hardly a bit differs, and at Ward's width of 4, none": lambda n: (
             0 == differ(n, 4) < differ(n, 2) < 1e-4
         ),
         "By up to eight pixels to the side, and by one up or down": lambda n: (
             np.abs(n.mtb.align(n.real)).max(axis=0).tolist() == [1, 8]
         ),
-        "At $(-63, -63)$, as far as it can go": lambda n: n.corner == (-63, -63),
+        "It returns $(-63, -63)$, as far as it can go": lambda n: n.corner == (-63, -63),
         "at half a degree a corner is off by 2.4 pixels": lambda n: (
             round(280 * np.deg2rad(0.5), 1) == 2.4
         ),
