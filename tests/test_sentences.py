@@ -105,7 +105,7 @@ SENTENCES = {
         "Three iterations make the change hundreds of times smaller": lambda n: (
             100 < n.change[1] / n.change[3] < 1000
         ),
-        "`hat` and `flat` err most at the bright end": lambda n: (
+        "`hat` and `flat` have the largest error at the bright end": lambda n: (
             min(off(n.weighted(w), n.truth) for w in ("hat", "flat"))
             > 2 * off(n.weighted("gaussian"), n.truth)
         ),
@@ -114,11 +114,11 @@ SENTENCES = {
         ),
         "At one stop they are small": lambda n: scallops(n, 1) < 0.1,
         "at three stops they reach beyond half a stop": lambda n: scallops(n, 3) > 0.5,
-        "Smoothness of 100 takes nearly all of it away at two stops": lambda n: (
+        "A smoothness of 100 removes nearly all of them at two stops": lambda n: (
             scallops(n, 2, 100) < 0.1 * scallops(n, 2)
         ),
         "At 1000 there is a new error": lambda n: scallops(n, 2, 1000) > 2 * scallops(n, 2, 100),
-        "the cut lies on the line": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
+        "with `cut` the curve is on the line": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
     },
     "06": {
         "For 27 of the 32 the floor of the valley leads the right way": lambda n: gained(n) == 27,
