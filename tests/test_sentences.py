@@ -121,18 +121,20 @@ SENTENCES = {
         "with `cut` the curve is on the line": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
     },
     "06": {
-        "For 27 of the 32 the floor of the valley leads the right way": lambda n: gained(n) == 27,
+        "For 27 of the 32 cameras the bottom of the valley leads toward the truth": lambda n: (
+            gained(n) == 27
+        ),
         "After the tenth iteration the error falls by a fifth": lambda n: (
             round(n.fall.error[299] / n.fall.error[9], 1) == 0.8
         ),
         "more than ten times as far off as after the first": lambda n: (
             n.fall.off[299] > 10 * n.fall.off[0]
         ),
-        "and they are right within 0.002": lambda n: (
+        "they are right within 0.002": lambda n: (
             np.abs(n.R ** (np.log(n.true).sum() / np.log(n.R).sum()) - n.true).max() < 0.0025
         ),
-        "the ratios found are all a little low": lambda n: np.all(n.R < n.true),
-        "the camera called the whole bracket five stops, and it was 4.8": lambda n: np.allclose(
+        "the estimated ratios are all a little low": lambda n: np.all(n.R < n.true),
+        "the camera stated five stops for the whole bracket, and it was 4.8": lambda n: np.allclose(
             -np.log2([n.stated.prod(), n.true.prod()]), [5, 4.8], atol=0.05
         ),
         "fewer than 10 iterations": lambda n: len(n.iterations) < 10,
@@ -142,13 +144,13 @@ SENTENCES = {
             round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
         ),
         "the cut alone does not save it": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
-        "The true order fits, noise or not": lambda n: (
+        "The true order fits with and without noise": lambda n: (
             max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1
         ),
-        "comes out low, for a ratio of 4 by two in a hundred at noise of four levels": lambda n: (
+        "is biased low: for a ratio of 4 by two in a hundred, at noise of four levels": lambda n: (
             round(100 * (1 - n.estimate(4.0, 4.0)[0].k / 4)) == 2
         ),
-        "From level 10 to 250 the table and the polynomial keep within some hundredths of a stop": lambda n: (
+        "the table and the polynomial are within a few hundredths of a stop": lambda n: (
             max(
                 worst(n.three[name], n.responses.true_g("film"), 10, 250)
                 for name in ("table", "polynomial")
@@ -160,7 +162,7 @@ SENTENCES = {
             for level in (10, 250)
         ),
         "$k$ is 4 to a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
-        "and comes out above 4": lambda n: n.last_round("paper")[0].k > 4.005,
+        "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
         "The screen and the many times hardly do worse than the true curve": lambda n: (
