@@ -21,19 +21,18 @@ from typing import Any
 import numpy as np
 
 from benchmarks.experiments import Experiment, Skipped, at_most
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
 from hdrlab.course.checks import inprocess
 from hdrlab.course.checks.subject import Subject
-from hdrlab.course.code import closure, inline
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
+from hdrlab.course.source_code import closure, inline
 
 STARTS, TRIES = 7, 50
 SCALED = "def scaled(x): return 2 * x\n"
 CHANGES = 500
-LOADED = (
-    "numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading"
-)
+LOADED = "numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading.grader"
 
 
 def start(clock: Callable[[], float], loaded: str = "numpy, scipy.ndimage, scipy.linalg") -> float:
@@ -93,7 +92,7 @@ def graded(folder: Path) -> dict[str, Any]:
     spent = []
     for (file, text), homework in zip(files.items(), (alone, both), strict=True):
         file.write_text(text)
-        act = partial(grading.grade, file, homework, GradingOptions(tier="practice"))
+        act = partial(grader.grade, file, homework, GradingOptions(tier="practice"))
         spent.append(
             min(_seconds(act, _of_all) for _ in range(3))
         )  # what is loaded once is not the work's

@@ -230,7 +230,7 @@ CHANGES = (
         "late days: a started day is free",
         True,
         replace(
-            "hdrlab/course/classroom/late.py",
+            "hdrlab/course/students/late_days.py",
             "-((due - received) // ONE_DAY)",
             "(received - due) // ONE_DAY",
         ),

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import nbformat
 
-from hdrlab.course.site import execute
+from hdrlab.course.authoring import execute
 from hdrlab.io.files import replacing
 
 HERE = Path(__file__).parent

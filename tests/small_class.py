@@ -3,9 +3,9 @@
 from datetime import UTC, datetime
 from fractions import Fraction
 
-from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.grading.results import Check, Result
 from hdrlab.course.plan import Homework, Task
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.students.roster import Roster, Student
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))

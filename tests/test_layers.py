@@ -30,6 +30,33 @@ BELOW["cli"] = BELOW["course"] | {"course", "demo"}
 BELOW["__main__"] = {"cli"}
 BELOW["__init__"] = set()
 
+# the parts of the course: each imports only those before it; the extras may be left out
+COURSE_PARTS = (
+    "sanitize",
+    "scratch",
+    "materials",
+    "source_code",
+    "variants",
+    "plan",
+    "students",
+    "sandbox",
+    "checks",
+    "submissions",
+    "grading",
+    "reports",
+    "notebook",
+    "classroom",
+    "authoring",
+)
+COURSE_EXTRAS = {  # extra -> the extras that it may use
+    "projects": set(),
+    "gallery": {"projects"},
+    "similarity": set(),
+    "viva": set(),
+    "site": set(),
+}
+DEPRECATED_NAMES = {"code", "material"}  # they import the new names, and nothing imports them
+
 ONLY_IN = {  # package -> rooms
     **dict.fromkeys(
         [
@@ -130,6 +157,42 @@ def test_a_module_uses_the_layers_below_it_alone():
         if (wrong := wrong_in(path, level, target))
     ]
     assert found == []
+
+
+def wrong_in_course(path, target):
+    """Return what is wrong with an import of one part of the course by another, or nothing."""
+    part = module(path)[2] if len(module(path)) > 2 else "__init__"
+    if target[:2] != ("hdrlab", "course") or len(target) < 3 or part in DEPRECATED_NAMES:
+        return ""
+    used = target[2]
+    if used == part:
+        return ""
+    if part in COURSE_EXTRAS:
+        may_use = {*COURSE_PARTS, *COURSE_EXTRAS[part]}
+    elif part in COURSE_PARTS:
+        may_use = {*COURSE_PARTS[: COURSE_PARTS.index(part)]}
+    else:
+        return f"{part} is no part of the course"
+    return "" if used in may_use else f"{part} comes before {used}"
+
+
+def test_a_part_of_the_course_imports_only_the_parts_before_it():
+    found = [
+        f"{path.relative_to(HOME)}:{line} imports {'.'.join(target)}: {wrong}"
+        for path in FILES
+        if module(path)[1] == "course"
+        for line, _, target in imports(path)
+        if (wrong := wrong_in_course(path, target))
+    ]
+    assert found == []
+
+
+def test_an_import_of_a_later_part_of_the_course_is_found():
+    plan = HOME / "course/plan.py"
+    assert wrong_in_course(plan, ("hdrlab", "course", "classroom", "jobs"))
+    assert wrong_in_course(plan, ("hdrlab", "course", "gallery"))
+    assert wrong_in_course(HOME / "course/viva/pages.py", ("hdrlab", "course", "site", "pages"))
+    assert not wrong_in_course(plan, ("hdrlab", "course", "variants", "rewording"))
 
 
 def test_an_import_of_another_layer_is_found():

@@ -36,7 +36,7 @@ IN = (
     "hdrlab/course/plan.toml",
     "hdrlab/course/checks/specification/test_gsolve.py",
     "hdrlab/course/checks/mistakes/gsolve.py",
-    "hdrlab/course/checks/parameters/shift.toml",
+    "hdrlab/course/variants/parameters/shift.toml",
     "hdrlab/course/gallery/web/templates/base.html",
     "hdrlab/show/widgets/blink.js",
 )
@@ -81,7 +81,7 @@ def test_neither_the_wheel_nor_the_source_distribution_holds_a_model_solution(wh
     subprocess.run(command, check=True, capture_output=True)
     with tarfile.open(next(tmp_path.glob("hdrlab-*.tar.gz"))) as sdist:
         held = sdist.getnames() + zipfile.ZipFile(wheel).namelist()
-    assert any(name.endswith("course/material/solutions.py") for name in held)
+    assert any(name.endswith("course/authoring/solutions.py") for name in held)
     answers = ("/solutions/", "/fairness/right/", "/tests/equivalent/")
     assert not [name for name in held if any(folder in name for folder in answers)]
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hdrlab.course.archives.members import Limits, Refused
-from hdrlab.course.archives.unpack import unpack
+from hdrlab.course.submissions.archives.members import Limits, Refused
+from hdrlab.course.submissions.archives.unpack import unpack
 
 TOLD = "it is damaged, or no .zip or .tar archive"
 

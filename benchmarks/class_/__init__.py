@@ -28,9 +28,11 @@ from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from hdrlab.course import plan
-from hdrlab.course.classroom import handins, jobs, roster as lists, run as classroom
+from hdrlab.course.classroom import jobs, run as classroom
+from hdrlab.course.grading import results
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports import results
+from hdrlab.course.students import roster as lists
+from hdrlab.course.submissions import class_folder
 
 COUNT, SCALE = 300, 24
 PROCESSES, WORKERS = (1, 2), (1, 2, 4)
@@ -186,7 +188,7 @@ def _told(folder: Path, one: handed.Handed, result: results.Result, count: int) 
     place = handed.write(folder / "class", each)
     homework = plan.read().homeworks["hw2"]
     conditions = GradingOptions(secret=handed.SECRET.strip(), timeout=float(TIMEOUT))
-    found = handins.find(place / "submissions", lists.read(place / "roster.csv"))
+    found = class_folder.find(place / "submissions", lists.read(place / "roster.csv"))
     (folder / "out" / "results").mkdir(parents=True)
     for piece in classroom.make_jobs(found.submissions, homework, conditions):
         data = results.to_json(result._replace(student=piece.owner))

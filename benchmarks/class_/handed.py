@@ -23,11 +23,11 @@ from typing import NamedTuple
 
 from benchmarks.measure import ROOT
 from hdrlab.course import plan
-from hdrlab.course.archives.packing import packed
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.students import csv_tables
+from hdrlab.course.submissions.archives.packing import packed
 
 TESTS = ROOT / "tests"
 SHARES = {

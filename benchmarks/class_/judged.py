@@ -7,8 +7,9 @@ from pathlib import Path
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.reports import csv_tables, results
-from hdrlab.course.reports.results import Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Result
+from hdrlab.course.students import csv_tables
 
 LARGE = 50_000  # submissions
 WORKERS = (16, 64, 256)

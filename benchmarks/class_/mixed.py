@@ -19,7 +19,7 @@ from typing import NamedTuple
 from benchmarks.class_ import handed
 from benchmarks.class_.handed import Handed
 from hdrlab.course import plan
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.students import csv_tables
 
 Put = Callable[[Path, str], object]  # into a folder, for a student
 

@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.measure import ROOT
-from hdrlab.course import plan, submission, variants
-from hdrlab.course.checks import rewording
-from hdrlab.course.material import solutions
+from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
+from hdrlab.course.submissions import reader
+from hdrlab.course.variants import rewording
 
 SECRET = "sheets of a class"
 COUNT, MINUTES = 300, 3
@@ -39,9 +40,9 @@ def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
     clock, processor = time.perf_counter() - clock, time.process_time() - processor
     wrong, different = 0, set()
     for file in files:
-        drawn = variants.draw(asked.homeworks[file.stem], file.parent.name, SECRET)
-        said = submission.tasks_of(file, []).variants
-        wrong += bool(variants.others(drawn, said))
+        drawn = plan.draw_variants(asked.homeworks[file.stem], file.parent.name, SECRET)
+        said = reader.tasks_of(file, []).variants
+        wrong += bool(plan.tasks_of_other_variants(drawn, said))
         different.add(file.read_bytes())
     return {
         "sheets": len(files),

@@ -31,14 +31,14 @@ import pytest
 
 from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.subject import DEFAULT_CALL_TIMEOUT_SECONDS, NoAnswer, Subject
-from hdrlab.course.code.names import imported_numpy_modules
-from hdrlab.course.material import solutions
+from hdrlab.course.grading import scoring
+from hdrlab.course.grading.results import Check, Outcome
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import scoring
-from hdrlab.course.reports.results import Check, Outcome
 from hdrlab.course.sandbox import tiers
+from hdrlab.course.source_code.names import imported_numpy_modules
 
 HERE = Path(__file__).parent
 # students, each with inputs of their own

@@ -13,8 +13,9 @@ from benchmarks.fuzz.seeds import RGB
 from hdrlab.course import plan as plans
 from hdrlab.course.classroom.marks import COLUMNS
 from hdrlab.course.gallery import tokens
+from hdrlab.course.grading import results
 from hdrlab.course.projects.project import EXAMPLE, MANIFEST
-from hdrlab.course.reports import csv_tables, results
+from hdrlab.course.students import csv_tables
 from hdrlab.io import web
 
 HAT = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"

@@ -10,12 +10,14 @@ from PIL.Image import DecompressionBombError
 
 from benchmarks.fuzz import course_seeds, seeds
 from benchmarks.measure import ROOT
-from hdrlab.course import plan, submission
-from hdrlab.course.archives import unpack
-from hdrlab.course.classroom import handins, marks, roster
+from hdrlab.course import plan
+from hdrlab.course.classroom import marks
 from hdrlab.course.gallery import collect, pictures, tokens
+from hdrlab.course.grading import results
 from hdrlab.course.projects import project, words
-from hdrlab.course.reports import results
+from hdrlab.course.students import roster
+from hdrlab.course.submissions import class_folder, reader
+from hdrlab.course.submissions.archives import unpack
 from hdrlab.io import metadata, photos, radiance, response_files, sequence, times, web
 from hdrlab.io.maps import exr, layers
 from hdrlab.show.describe import describe_file
@@ -117,7 +119,7 @@ def read_result(path: Path) -> None:
 
 def read_submission(path: Path) -> None:
     """Read what was handed in, whose problems are told and not raised."""
-    found = submission.tasks_of(path, ("hat", "gsolve"))
+    found = reader.tasks_of(path, ("hat", "gsolve"))
     if sum(map(len, found.problems)) > 8000:
         raise ArithmeticError("problems without end")
 
@@ -204,7 +206,7 @@ ALL: Sequence[Reader] = (
     Reader("curve-pfs", ".m", seeds.curves, response_files.read_curve),
     Reader("plan", ".toml", course_seeds.plan, plan.read, damaged="plan"),
     Reader("roster", ".csv", course_seeds.roster, roster.read),
-    Reader("received", ".csv", course_seeds.received, handins.read_times),
+    Reader("received", ".csv", course_seeds.received, class_folder.read_times),
     Reader("gradebook", ".csv", course_seeds.gradebook, lambda path: marks.read([path])),
     Reader("project", ".toml", course_seeds.project, read_project, named=False),
     Reader("result", ".json", course_seeds.result, read_result, named=False, damaged="results"),

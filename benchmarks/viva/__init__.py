@@ -28,12 +28,13 @@ import numpy as np
 from benchmarks.experiments import Experiment, along, at_least, at_most, near
 from benchmarks.fairness import submissions, texts
 from benchmarks.measure import ROOT
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.code.closure import Cell, extract_sources
-from hdrlab.course.code.names import imported_numpy_modules
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions, Homework
-from hdrlab.course.submission import SubmittedCode
+from hdrlab.course.source_code.closure import Cell, extract_sources
+from hdrlab.course.source_code.names import imported_numpy_modules
+from hdrlab.course.submissions.reader import SubmittedCode
 from hdrlab.course.viva import examining, pages
 
 QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
@@ -57,7 +58,7 @@ def works() -> Iterator[tuple[str, Homework, SubmittedCode]]:
         yield f"solutions {name}", homework, as_submission(solutions(homework))
     for path in sorted(ROOT.glob("tests/equivalent/*.py")):
         homework = homeworks[path.stem.partition("_")[0]]
-        yield path.stem, homework, grading.read_tasks(path, homework, CONDITIONS)[0]
+        yield path.stem, homework, grader.read_tasks(path, homework, CONDITIONS)[0]
     for k, (homework, chosen) in enumerate(submissions(texts("right"))):
         yield (
             f"right {k}",
@@ -92,8 +93,8 @@ def examined(
         "photographs": pages.photographs([]),
     }
     made: list[tuple[list[str], list[Question]]] = []
-    with patch.object(grading, "WHOLE", LONGEST):
-        found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, **more))
+    with patch.object(grader, "WHOLE", LONGEST):
+        found = list(grader.heard_steps(read, homework, CONDITIONS, by=by, **more))
     for one in found:
         if "passed" in one:
             made.append((one["passed"], []))

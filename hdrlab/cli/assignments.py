@@ -10,7 +10,7 @@ from hdrlab.course import plan as plans
 from hdrlab.errors import InputError
 
 if TYPE_CHECKING:
-    from hdrlab.course.reports.results import Result
+    from hdrlab.course.grading.results import Result
 
 TIERS = ["strict", "container", "practice"]
 
@@ -71,7 +71,7 @@ def grade_submission(
 ) -> "Result":
     """Return the result of a submission, while a terminal shows how many checks are done."""
     from hdrlab.core.steps import last
-    from hdrlab.course import grading
+    from hdrlab.course.grading import grader
     from hdrlab.course.sandbox.running import Unavailable
     from hdrlab.course.scratch import temporary_folder
 
@@ -79,7 +79,7 @@ def grade_submission(
         raise FileNotFoundError(2, "no such file", str(submission))
     try:
         with temporary_folder():
-            steps: Any = grading.grade_steps(submission, homework, conditions)
+            steps: Any = grader.grade_steps(submission, homework, conditions)
             return last(common.progress(steps, homework.name))
     except Unavailable as error:
         raise common.tier_error(str(error)) from None

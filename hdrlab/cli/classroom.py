@@ -14,9 +14,9 @@ from hdrlab.course import plan as plans
 from hdrlab.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
-    from hdrlab.course.classroom.handins import Submission, SubmissionScan
     from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
     from hdrlab.course.classroom.run import GradingContext
+    from hdrlab.course.submissions.class_folder import Submission, SubmissionScan
 
 # in a class's results: the folder of the submissions and the ClassOptions, for `hdrlab regrade`
 OPTIONS_FILE = "asked.json"
@@ -86,7 +86,9 @@ def load_class(
     conditions: plans.GradingOptions, options: ClassOptions, run_options: RunOptions
 ) -> GradedClass:
     """Read the roster, the plan and the submissions of a class."""
-    from hdrlab.course.classroom import handins, marks, roster, run
+    from hdrlab.course.classroom import marks, run
+    from hdrlab.course.students import roster
+    from hdrlab.course.submissions import class_folder
 
     if options.roster is None:
         raise InputError(
@@ -101,8 +103,8 @@ def load_class(
         late=plans.read(options.plan).late,
         before=marks.read(options.before),
     )
-    times = handins.read_times(options.received) if options.received else {}
-    scan = handins.find(options.submissions, course.roster, times)
+    times = class_folder.read_times(options.received) if options.received else {}
+    scan = class_folder.find(options.submissions, course.roster, times)
     jobs = run.make_jobs(scan.submissions, homework, conditions)
     return GradedClass(course, scan, jobs, options, run_options)
 
@@ -203,7 +205,7 @@ def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
     """Return what runs the grading jobs: processes of this machine, or a Dask cluster."""
     from hdrlab.course.classroom import run
     from hdrlab.course.classroom.executors import processes
-    from hdrlab.course.sandbox import doctor
+    from hdrlab.course.grading import doctor
 
     conditions = course.conditions
     grader = run.Grader(course.homework, conditions, run.read_hidden_checks(conditions.hidden))

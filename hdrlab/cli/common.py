@@ -136,7 +136,7 @@ clean_option = click.option(
 
 def tier_error(reason: str) -> InputError:
     """Return the error for a sandbox tier that this machine cannot run, with what to do."""
-    from hdrlab.course.sandbox import doctor
+    from hdrlab.course.grading import doctor
 
     first_line = reason.strip().partition("\n")[0].rstrip(".")
     advice = "run hdrlab doctor for details"

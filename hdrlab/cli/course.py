@@ -58,9 +58,8 @@ def build(
     With --variants, hdrlab writes a folder with handouts for each team. The plan's parameters in
     them are determined by the secret of --secret-file.
     """
-    from hdrlab.course.classroom import roster
-    from hdrlab.course.material import handouts, solutions as solved
-    from hdrlab.course.site import execute
+    from hdrlab.course.authoring import execute, handouts, solutions as solved
+    from hdrlab.course.students import roster
 
     common.require_modules("course", ["jupytext"])
     course_plan = plans.read(plan)
@@ -109,7 +108,10 @@ def export(
     plan: Path | None,
 ) -> None:
     """Export the course to another system. Its tests call the same checks."""
-    from hdrlab.course.export import gradescope as gradescope_export, nbgrader as nbgrader_export
+    from hdrlab.course.authoring.export import (
+        gradescope as gradescope_export,
+        nbgrader as nbgrader_export,
+    )
 
     if nbgrader is None and gradescope is None:
         raise InputError("nothing to export; pass --nbgrader DIR or --gradescope DIR")
@@ -136,7 +138,7 @@ def export(
 @click.option("--homework", default="extra", help="Homework that the task belongs to.")
 def new_task(*, task: str, folder: Path, homework: str) -> None:
     """Create a task of your own: a complete example that works, to change file by file."""
-    from hdrlab.course.material import own_task
+    from hdrlab.course.authoring import own_task
 
     common.echo_paths(own_task.write(folder, task, homework))
     click.echo(f"to try it: python -m pytest {folder}")
@@ -147,7 +149,7 @@ def new_task(*, task: str, folder: Path, homework: str) -> None:
 @assignments.plan_option
 def pack(*, folder: Path, plan: Path | None) -> None:
     """Write the model solutions into FOLDER: each homework, solved with the library's functions."""
-    from hdrlab.course.material import solutions
+    from hdrlab.course.authoring import solutions
 
     common.echo_paths(solutions.write(plans.read(plan), folder))
 
@@ -156,8 +158,8 @@ def pack(*, folder: Path, plan: Path | None) -> None:
 @click.argument("folder", type=common.INPUT_PATH)
 def toy(*, folder: Path) -> None:
     """Create an example class in FOLDER: a dozen good, late, wrong and hostile submissions."""
-    from hdrlab.course.classroom import toy as toy_class
-    from hdrlab.course.sandbox import doctor
+    from hdrlab.course.authoring import toy_class as toy_class
+    from hdrlab.course.grading import doctor
 
     written = toy_class.write(folder)
     click.echo(

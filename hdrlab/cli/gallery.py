@@ -8,10 +8,9 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
-from hdrlab.course.classroom import roster as rosters
 from hdrlab.course.gallery import store
-from hdrlab.course.reports import csv_tables
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students import csv_tables, roster as rosters
 from hdrlab.errors import HdrlabError, InputError
 
 SERVER_MODULES = ("starlette", "uvicorn")

@@ -312,7 +312,7 @@ def regrade(
 @click.command(cls=common.Command)
 def doctor() -> None:
     """Report which sandbox tiers this machine can run, and what the others need."""
-    from hdrlab.course.sandbox import doctor as sandbox_doctor
+    from hdrlab.course.grading import doctor as sandbox_doctor
 
     for tier, works, credit, says, remedy in sandbox_doctor.report():
         answer = "yes" if works else "no"

@@ -45,7 +45,7 @@ def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     Files that you changed in your copy stay. JupyterLab saves the state of the widgets, unless your
     own settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
     """
-    from hdrlab.course.material import materials
+    from hdrlab.course import materials
 
     new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")
@@ -96,8 +96,9 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
     """
     common.require_modules("site", SITE_MODULES)
     from hdrlab.cli.terminal import elapsed
-    from hdrlab.course.material import materials
-    from hdrlab.course.site import execute, pages
+    from hdrlab.course import materials
+    from hdrlab.course.authoring import execute
+    from hdrlab.course.site import pages
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))

@@ -65,7 +65,8 @@ def viva(
     and oral.html hold the questions, examiner.html the answers, viva.ipynb is for practice. The
     questions show whether students understand the code, not who wrote it.
     """
-    from hdrlab.course import grading, scratch
+    from hdrlab.course import scratch
+    from hdrlab.course.grading import grader
     from hdrlab.course.sandbox.running import Unavailable
     from hdrlab.course.viva import pages
     from hdrlab.io.files import write
@@ -79,10 +80,10 @@ def viva(
     folder = out or Path("viva") / submission.stem
     # a folder that cannot be written is reported before the work starts
     folder.mkdir(parents=True, exist_ok=True)
-    read, assignment = grading.read_tasks(submission, assignment, conditions)
+    read, assignment = grader.read_tasks(submission, assignment, conditions)
     try:
         with scratch.temporary_folder():
-            steps = grading.heard_steps(
+            steps = grader.heard_steps(
                 read,
                 assignment,
                 conditions,

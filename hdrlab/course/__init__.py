@@ -1,16 +1,28 @@
-"""The course around the library: its assignments and their checks, a class, and what comes with them.
+"""The course: assignments with checks, the grading of a class, and what comes with it.
 
-plan                    what is asked, and what it is worth
-notebook, submission    a student's check(), and what stands in a file that is handed in
-grading                 the specification is run on it
-checks                  the specification, the well-known mistakes, and what runs them
-sandbox                 where a student's functions run, in a process of their own
-reports                 what it is worth, for the student and for other systems
-material                notebooks and handouts, made of the prose and of the library's own functions
-code                    Python that is read as text, and never run
-classroom, archives     a whole class is graded, and what it sends is opened
-similarity              compares the code of all submissions of a class
-projects, gallery       the students' own photographs, and the vote
-export, site            other systems' forms of the course, and its pages
-wording                 words of strangers, safe to be shown
+Each part imports only the parts above it in this list (held by `tests/test_layers.py`).
+
+sanitize       text from strangers, made safe for a terminal and a page
+scratch        temporary folders, locks, and files that are written whole or not at all
+materials      where the notebooks and the assignments are
+source_code    Python that is read as text and never run
+variants       the same task with other parameters
+plan           homeworks, tasks, points, dates, and each student's inputs and variants
+students       the list of students, late days, CSV tables
+sandbox        where a student's functions run, in a process of their own
+checks         the specification, the known mistakes, and the code that runs them
+submissions    finds, unpacks and reads what students hand in
+grading        grades one submission
+reports        what one graded submission looks like: feedback, gradebook row, JUnit
+notebook       `check()` in a student's notebook
+classroom      grades a class: jobs, executors, gradebook, Moodle, regrading
+authoring      builds assignments and solutions, new tasks, a toy class, exports to other systems
+
+Nothing above imports the following five, so that each may be left out.
+
+projects       the students' own photos and reports
+gallery        the class vote
+similarity     compares the code of all submissions of a class
+viva           oral exams about a student's own code
+site           the website
 """

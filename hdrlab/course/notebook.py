@@ -8,10 +8,11 @@ points are no grade yet.
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from hdrlab.course import grading, plan as plans, submission, variants as choices
-from hdrlab.course.code import closure, names
-from hdrlab.course.material import handouts
-from hdrlab.course.reports import feedback, results
+from hdrlab.course import plan as plans
+from hdrlab.course.grading import grader, results
+from hdrlab.course.reports import feedback
+from hdrlab.course.source_code import closure, names
+from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
 PRACTICE = plans.GradingOptions(tier="practice")
@@ -62,17 +63,17 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     from IPython.display import HTML, DisplayHandle
 
     homework, tasks = find_tasks(name)
-    sources, _ = closure.extract_sources(_history(), tasks, handouts.given_cells(homework.name))
+    sources, _ = closure.extract_sources(_history(), tasks, reader.given_cells(homework.name))
     absent = [task for task in tasks if task not in sources]
     missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
-    read = submission.SubmittedCode(
+    read = reader.SubmittedCode(
         sources, missing, "", tuple(names.imported_numpy_modules(sources.values()))
     )
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
     steps, shown = (
-        grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE),
+        grader.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE),
         DisplayHandle(),
     )
     shown.display(HTML(feedback.bar(0, 1, f"{name}, checking", "of its promises")))
@@ -105,7 +106,7 @@ def use_plan(
         name=name, title=name
     )
     asked = known._replace(tasks=tasks, at_most=at_most) if tasks else known
-    _plan[name] = choices.draw(asked, "", "", variants)
+    _plan[name] = plans.draw_variants(asked, "", "", variants)
 
 
 def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:

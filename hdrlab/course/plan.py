@@ -13,7 +13,7 @@ import os
 import runpy
 import secrets
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
@@ -21,7 +21,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.checks import rewording
+from hdrlab.course.variants import rewording
 from hdrlab.errors import FileFormatError, InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
@@ -34,7 +34,7 @@ class Task(NamedTuple):
     A function that is not the library's is written as the path of its file, a colon, and its name.
     `minimum` marks what everybody is to write, also those who write little. `parameters` are those
     in which students' sheets differ, and `variant` is what one of them asks; see
-    `checks.rewording`.
+    `variants.rewording`.
     """
 
     id: str
@@ -269,3 +269,56 @@ def seed(secret: str, student: str, task: str) -> int:
     """
     drawn = hmac.digest(secret.encode(), f"{student}\0{task}".encode(), "sha256")
     return int.from_bytes(drawn, "big")
+
+
+def draw_variants(
+    homework: Homework, student: str, secret: str, on_sheet: Mapping[str, str] | None = None
+) -> Homework:
+    """Return a homework with the variants of its tasks that a student is asked.
+
+    Parameters
+    ----------
+    homework : the homework, with the parameters that the plan lets vary
+    student, secret : with both, the course's secret draws the variants
+    on_sheet : without them, the variants by task that the student's sheet names are used, as when a
+        student checks her own work
+
+    Examples
+    --------
+    >>> homework = read().homeworks["hw1"]
+    >>> draw_variants(homework, "", "") == homework
+    True
+    """
+    tasks = []
+    for task in homework.tasks:
+        if student and secret:
+            variant = _drawn_variant(task, student, secret)
+        else:
+            variant = (on_sheet or {}).get(task.id, "")
+            if variant not in rewording.every(task.id):
+                variant = ""
+        tasks.append(task._replace(variant=variant))
+    return homework._replace(tasks=tuple(tasks))
+
+
+def _drawn_variant(task: Task, student: str, secret: str) -> str:
+    """Return the variant of a task that the course's secret draws for a student."""
+    if not task.parameters:
+        return ""
+    values = []
+    for parameter, choices in rewording.parameters(task.id).items():
+        number = 0
+        if parameter in task.parameters:
+            number = seed(secret, student, f"{task.id} {parameter}") % len(choices)
+        values.append(list(choices)[number])
+    return "/".join(values)
+
+
+def tasks_of_other_variants(homework: Homework, on_sheet: Mapping[str, str] | None) -> list[str]:
+    """Return the tasks for which a sheet names another variant than the homework asks.
+
+    A file without a sheet (`on_sheet` is None) names none.
+    """
+    if on_sheet is None:
+        return []
+    return [task.id for task in homework.tasks if on_sheet.get(task.id, "") != task.variant]

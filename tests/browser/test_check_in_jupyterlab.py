@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from hdrlab.course.material import materials
+from hdrlab.course import materials
 
 pytestmark = pytest.mark.browser
 

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import feedback
 
@@ -39,9 +40,7 @@ def report(tmp_path_factory):
     few = hw2._replace(
         tasks=tuple(one for one in hw2.tasks if one.id in ("hat", "irradiance", "update"))
     )
-    found = grading.grade(
-        file, few, GradingOptions(tier="practice", student=PAYLOAD, secret="salt")
-    )
+    found = grader.grade(file, few, GradingOptions(tier="practice", student=PAYLOAD, secret="salt"))
     assert "owned" in found.checks[0].message
     (folder / "feedback.html").write_text(feedback.page(found), encoding="utf8")
     return (folder / "feedback.html").as_uri()

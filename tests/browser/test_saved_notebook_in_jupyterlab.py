@@ -6,7 +6,7 @@ import nbformat
 import pytest
 from laboratory import PATIENCE, Absent, jupyterlab
 
-from hdrlab.course.material import materials
+from hdrlab.course import materials
 
 pytestmark = pytest.mark.browser
 

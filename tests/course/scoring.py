@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.checks import SPECIFICATION, misconceptions, plugin, rewording
-from hdrlab.course.reports import scoring
-from hdrlab.course.reports.results import Check
+from hdrlab.course.checks import SPECIFICATION, misconceptions, plugin
+from hdrlab.course.grading import scoring
+from hdrlab.course.grading.results import Check
+from hdrlab.course.variants import rewording
 
 PLAN = plan.read()
 

@@ -10,8 +10,9 @@ import json
 import pytest
 import siege
 
-from hdrlab.course import grading, plan
-from hdrlab.course.reports import feedback, results
+from hdrlab.course import plan
+from hdrlab.course.grading import grader, results
+from hdrlab.course.reports import feedback
 from hdrlab.course.sandbox import tiers
 
 pytestmark = pytest.mark.grading
@@ -40,7 +41,7 @@ def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
     for student in sources:
         conditions = plan.GradingOptions("strict", student, "a secret", timeout=3.0, draw=False)
         try:
-            told[student] = grading.grade(place / f"{student}.py", homework, conditions)
+            told[student] = grader.grade(place / f"{student}.py", homework, conditions)
         except tiers.Unavailable as reason:
             pytest.skip(str(reason))
     assert siege.listing(place) == files

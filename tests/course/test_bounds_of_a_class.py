@@ -6,13 +6,16 @@ from datetime import timedelta
 import pytest
 from small_class import CLASS, HOMEWORK, NOON, result
 
-from hdrlab.course.classroom import handins, jobs, marks, moodle, overview, run
-from hdrlab.course.classroom.handins import Submission
+from hdrlab.course.classroom import jobs, marks, moodle, overview, run
 from hdrlab.course.classroom.jobs import GradingJob, JobResult
-from hdrlab.course.classroom.late import LateRecord
 from hdrlab.course.classroom.run import GradingContext
+from hdrlab.course.grading import results
 from hdrlab.course.plan import GradingOptions, Late
-from hdrlab.course.reports import csv_tables, gradebook, results
+from hdrlab.course.reports import gradebook
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.late_days import LateRecord
+from hdrlab.course.submissions import class_folder
+from hdrlab.course.submissions.class_folder import Submission
 
 HANDINS = {
     team: Submission(team, (), None, NOON + timedelta(hours=hours), team)
@@ -154,8 +157,8 @@ def test_a_table_is_read_up_to_its_bound(tmp_path):
 
 
 def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):
-    monkeypatch.setattr(handins, "MAX_FILE_MEGABYTES", 1)
-    monkeypatch.setattr(handins, "MAX_FILES_PER_FOLDER", 2)
+    monkeypatch.setattr(class_folder, "MAX_FILE_MEGABYTES", 1)
+    monkeypatch.setattr(class_folder, "MAX_FILES_PER_FOLDER", 2)
     for name, size in (
         ("b1/a.py", 1 << 20),
         ("b1/b.py", 0),
@@ -166,12 +169,12 @@ def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypat
         (tmp_path / name).touch()
         with (tmp_path / name).open("r+b") as file:
             file.truncate(size)
-    found = handins.find(tmp_path, CLASS)
+    found = class_folder.find(tmp_path, CLASS)
     assert set(found.submissions) == {"t"} and found.refused == {
         "b3": "b3/a.py: expected at most 1 MB, got 1"
     }
     (tmp_path / "b1" / "c.py").touch()
-    found = handins.find(tmp_path, CLASS)
+    found = class_folder.find(tmp_path, CLASS)
     assert (
         found.submissions == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"
     )

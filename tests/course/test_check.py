@@ -6,7 +6,7 @@ import pytest
 from IPython.display import DisplayHandle
 
 from hdrlab.course import notebook
-from hdrlab.course.code.closure import Cell
+from hdrlab.course.source_code.closure import Cell
 
 pytestmark = pytest.mark.grading
 

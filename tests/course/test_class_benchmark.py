@@ -21,9 +21,10 @@ from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
 from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.classroom.roster import read
-from hdrlab.course.reports import csv_tables, results
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Check, Result
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import read
 
 pytestmark = pytest.mark.grading
 

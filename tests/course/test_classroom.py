@@ -13,15 +13,16 @@ import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
-from hdrlab.course import grading, submission
 from hdrlab.course.classroom import marks, overview, run as classroom
-from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.classroom.jobs import GradingJob
-from hdrlab.course.classroom.late import LateRecord
-from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.grading import grader
+from hdrlab.course.grading.results import Check, Result, to_json
 from hdrlab.course.plan import GradingOptions, Homework, Late, Task
-from hdrlab.course.reports import csv_tables
-from hdrlab.course.reports.results import Check, Result, to_json
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.late_days import LateRecord
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions import reader
+from hdrlab.course.submissions.class_folder import Submission
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework(
@@ -157,7 +158,7 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
         for name, data in members.items():
             archive.writestr(name, data)
     (tmp_path / "scratch").mkdir()
-    path, refused = submission.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
+    path, refused = reader.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
     assert said in refused and bool(refused) == bool(said) and "\n" not in refused
     assert said or path.read_bytes() == b"x"
 
@@ -168,17 +169,17 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
         for kind in ("killed", "died")
     )
     elsewhere = killed._replace(checks=(*killed.checks, *died.checks))
-    grader = classroom.Grader(HOMEWORK, GradingOptions(tier="practice"))
+    class_grader = classroom.Grader(HOMEWORK, GradingOptions(tier="practice"))
     job = GradingJob("b1", Path("b1.py"), "key")
     for last in (died, killed):
         answers = iter([killed, killed, last])
-        monkeypatch.setattr(grading, "grade", lambda *_, answers=answers: next(answers))
-        assert grader.grade(job) == to_json(last)
+        monkeypatch.setattr(grader, "grade", lambda *_, answers=answers: next(answers))
+        assert class_grader.grade(job) == to_json(last)
         assert next(answers, None) is None
     answers = iter([killed, killed, elsewhere])
-    monkeypatch.setattr(grading, "grade", lambda *_: next(answers))
+    monkeypatch.setattr(grader, "grade", lambda *_: next(answers))
     with pytest.raises(ValueError, match="each time at another check"):
-        grader.grade(job)
+        class_grader.grade(job)
 
 
 @pytest.mark.parametrize("secret", ["", "x"])
@@ -195,9 +196,13 @@ def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secr
         homes.append(home)
         return result(conditions.student, (True,))
 
-    monkeypatch.setattr(grading, "grade", grade)
-    grader = classroom.Grader(HOMEWORK, GradingOptions(tier="practice", secret=secret), hidden)
-    assert grader.grade(GradingJob("b1", Path("b1.py"), "key")) == to_json(result("b1", (True,)))
+    monkeypatch.setattr(grader, "grade", grade)
+    class_grader = classroom.Grader(
+        HOMEWORK, GradingOptions(tier="practice", secret=secret), hidden
+    )
+    assert class_grader.grade(GradingJob("b1", Path("b1.py"), "key")) == to_json(
+        result("b1", (True,))
+    )
     assert not homes[0].exists()
 
 
@@ -209,8 +214,8 @@ def test_a_histogram_counts_every_score_and_all_the_points_among_the_best_tenth(
 
 
 def test_a_grader_can_be_sent_to_another_process():
-    grader = classroom.Grader(HOMEWORK, GradingOptions())
-    assert pickle.loads(pickle.dumps(grader.grade)).__self__ == grader
+    class_grader = classroom.Grader(HOMEWORK, GradingOptions())
+    assert pickle.loads(pickle.dumps(class_grader.grade)).__self__ == class_grader
 
 
 @pytest.fixture

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hdrlab.course.code import closure
-from hdrlab.course.code.closure import Cell, extract_sources
+from hdrlab.course.source_code import closure
+from hdrlab.course.source_code.closure import Cell, extract_sources
 
 F = "def f():\n    return x"
 

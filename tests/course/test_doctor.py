@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from hdrlab.course.checks.subject import NoAnswer
-from hdrlab.course.sandbox import doctor, practice, tiers
+from hdrlab.course.grading import doctor
+from hdrlab.course.sandbox import practice, tiers
 from hdrlab.course.sandbox.running import Unavailable
 
 

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 import scoring
 
-from hdrlab.course import plan, submission
+from hdrlab.course import plan
 from hdrlab.course.checks import compare, inprocess
+from hdrlab.course.submissions import reader
 
 HERE = Path(__file__).parents[1] / "equivalent"
 FILES = sorted(HERE.glob("*.py"))
@@ -100,10 +101,10 @@ WAYS = (reversed_order, helpers_apart, printing, as_one_script)
     "path", [path for path in FILES if path.stem.endswith("_float32")], ids=lambda path: path.stem
 )
 def test_the_same_code_in_another_notebook_keeps_every_promise(path, way, tmp_path, capsys):
-    cells, name = way([cell.text for cell in submission.cells_of(path.read_bytes(), path.name)[0]])
+    cells, name = way([cell.text for cell in reader.cells_of(path.read_bytes(), path.name)[0]])
     handed_in = tmp_path / name
     handed_in.write_text(notebook(cells) if name.endswith(".ipynb") else cells[0], encoding="utf8")
-    found = submission.tasks_of(handed_in, tasks_of(path))
+    found = reader.tasks_of(handed_in, tasks_of(path))
     assert set(found.sources) == set(tasks_of(path)), found.problems
     functions = {}
     for task, source in found.sources.items():

@@ -6,7 +6,7 @@ import tempfile
 import nbformat
 import pytest
 
-from hdrlab.course.site import execute
+from hdrlab.course.authoring import execute
 
 pytestmark = pytest.mark.grading
 

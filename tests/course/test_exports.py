@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.export import autograder, gradescope, nbgrader
+from hdrlab.course.authoring.export import autograder, gradescope, nbgrader
 from hdrlab.course.plan import Plan
 
 SHORT = ("hat", "irradiance")  # tasks whose checks take a moment
@@ -226,7 +226,7 @@ def run(root, tier="practice"):
     """Run the autograder of a root folder as Gradescope does: it finds hdrlab in the zip alone."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["PYTHONPATH"] = str(root / "source")
-    command = [sys.executable, "-m", "hdrlab.course.export.autograder", root, tier]
+    command = [sys.executable, "-m", "hdrlab.course.authoring.export.autograder", root, tier]
     ran = subprocess.run(
         command, cwd=root, env=environment, capture_output=True, text=True, timeout=300
     )

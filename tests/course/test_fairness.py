@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import scoring
 
-from hdrlab.course import grading, plan, submission
+from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import compare, inprocess
-from hdrlab.course.material import solutions
-from hdrlab.course.reports import results
+from hdrlab.course.grading import grader, results
+from hdrlab.course.submissions import reader
 
 FAIRNESS = Path(__file__).parents[2] / "benchmarks" / "fairness"
 pytestmark = [
@@ -71,8 +72,8 @@ def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
     homework = whole_sheet._replace(tasks=(task,))
     source = solutions.texts(homework, [way])["hat"]
     conditions = plan.GradingOptions("practice", "student 1", "fairness", draw=False)
-    read = submission.SubmittedCode({"hat": source}, (), "", ())
-    *_, result = grading.check_steps(read, homework, conditions)
+    read = reader.SubmittedCode({"hat": source}, (), "", ())
+    *_, result = grader.check_steps(read, homework, conditions)
     _, second = fairness.graded((homework, {"hat": (way, source)}, 2))
     earned, whole = results.points(result.of("hat"))
     assert (

@@ -29,11 +29,11 @@ if find_spec("starlette") is None or find_spec("uvicorn") is None:
     pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)
 
 from hdrlab.course import gallery
-from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import ballots, collect, pictures, store, tokens
 from hdrlab.course.gallery.web import app, guard, serve
 from hdrlab.course.gallery.web.writer import Writer
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import Roster, Student
 
 pytestmark = pytest.mark.grading
 

@@ -7,10 +7,11 @@ import pytest
 import scoring
 
 from hdrlab.capture import responses
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
 from hdrlab.course.checks import inprocess
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.submission import SubmittedCode
+from hdrlab.course.submissions.reader import SubmittedCode
 
 PLAN = plan.read()
 NOTHING = SubmittedCode({}, (), "")
@@ -139,10 +140,10 @@ def test_the_library_finds_the_curve_of_any_students_camera(task):
 def test_a_table_of_public_inputs_is_not_for_credit():
     homework = PLAN.homeworks["hw2"]._replace(tasks=(PLAN.task("hat"),))
     for student, secret in (("", ""), ("ada", ""), ("", "salt")):
-        assert grading._seed_id(homework, GradingOptions("strict", student, secret)) == ""
-    assert grading._seed_id(homework, GradingOptions("strict", "ada", "salt"))
+        assert grader._seed_id(homework, GradingOptions("strict", student, secret)) == ""
+    assert grader._seed_id(homework, GradingOptions("strict", "ada", "salt"))
     heard = [{"specification": ""}]
-    drawn, public = (grading._result(heard, NOTHING, homework, one) for one in (WITH, WITHOUT))
+    drawn, public = (grader._result(heard, NOTHING, homework, one) for one in (WITH, WITHOUT))
     assert drawn.for_credit and not public.for_credit and "without a secret" in public.why_practice
 
 
@@ -151,7 +152,7 @@ def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):
     (tmp_path / "hw4.py").write_text(
         "def scale(L, headroom=8.0, sigma=1.0):\n    return 1 / (headroom * L)\n"
     )
-    result = grading.grade(
+    result = grader.grade(
         tmp_path / "hw4.py", homework, GradingOptions("practice", "ada", "salt", draw=False)
     )
     of = {one.name: one for one in result.checks}

@@ -8,8 +8,8 @@ from small_class import HOMEWORK, result
 from hdrlab.course.classroom import run
 from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.run import Grader
+from hdrlab.course.grading import results
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports import results
 from hdrlab.course.sandbox.running import Unavailable
 
 
@@ -30,7 +30,7 @@ def grader(monkeypatch, *each, **knobs):
         asked.append((path, conditions.student, files))
         return left.pop(0)
 
-    monkeypatch.setattr(run.grading, "grade", grade)
+    monkeypatch.setattr(run.grader, "grade", grade)
     return Grader(HOMEWORK, GradingOptions(**knobs.pop("conditions", {})), **knobs), asked
 
 

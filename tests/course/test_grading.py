@@ -12,13 +12,15 @@ import numpy as np
 import processes
 import pytest
 
-from hdrlab.course import grading, plan
-from hdrlab.course.code import inline
-from hdrlab.course.material import handouts, materials, solutions
+from hdrlab.course import materials, plan
+from hdrlab.course.authoring import solutions
+from hdrlab.course.grading import grader, results
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports import feedback, gradebook, results
+from hdrlab.course.reports import feedback, gradebook
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.source_code import inline
+from hdrlab.course.submissions import reader
 
 pytestmark = pytest.mark.grading
 
@@ -49,7 +51,7 @@ def graded(tmp_path):
     def graded(text, homework=HAT, conditions=PRACTICE):
         file = tmp_path / "hw2.py"
         file.write_text(text)
-        return grading.grade(file, homework, conditions)
+        return grader.grade(file, homework, conditions)
 
     return graded
 
@@ -63,7 +65,7 @@ def test_the_library_has_all_points_and_the_blank_handout_none(tmp_path, graded)
     )
     assert whole.score == whole.max_score == 20 and not whole.problems and not whole.misconceptions
     blank = shutil.copy(materials.folder("assignments") / "hw2.ipynb", tmp_path)
-    found = grading.grade(blank, of("hw2", "hat", "irradiance"), PRACTICE)
+    found = grader.grade(blank, of("hw2", "hat", "irradiance"), PRACTICE)
     assert found.score == 0 and {one.outcome for one in found.checks} == {"no answer"}
     assert "hat is yours to write" in found.checks[0].message
 
@@ -209,7 +211,7 @@ def test_grading_again_gives_the_same_bytes_and_another_student_other_inputs(gra
 def test_results_grow_check_by_check(tmp_path):
     file = tmp_path / "hw2.py"
     file.write_text(RIGHT)
-    steps = list(grading.grade_steps(file, of("hw2", "hat"), PRACTICE))
+    steps = list(grader.grade_steps(file, of("hw2", "hat"), PRACTICE))
     assert [one.score for one in steps] == sorted(one.score for one in steps)
     assert len({one.max_score for one in steps}) == 1 and steps[-1].score == 10
 
@@ -224,7 +226,7 @@ def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(scratch))
     file = tmp_path / "hw2.py"
     file.write_text(RIGHT + "def irradiance(*given):\n    while True: pass\n")
-    steps = grading.grade_steps(file, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=60))
+    steps = grader.grade_steps(file, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=60))
     next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
     time.sleep(2)
     assert processes.of(scratch) and list(scratch.iterdir())
@@ -263,7 +265,7 @@ def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(g
 
 
 def test_what_a_sheet_gives_is_known_to_the_grader():
-    given = handouts.given_cells("hw2")
+    given = reader.given_cells("hw2")
     assert any("class Solution" in cell.text for cell in given) and all(
         cell.given for cell in given
     )
@@ -292,10 +294,10 @@ def test_in_a_sandbox_the_library_has_all_points_and_a_blank_none(name, tmp_path
     blocks = inline.inlined({task.id: task.function for task in homework.tasks})
     file.write_text("\n\n".join(block.text for block in blocks.values()))
     strict = GradingOptions(student="ada", secret="salt")
-    right = grading.grade(file, homework, strict)
+    right = grader.grade(file, homework, strict)
     assert right.score == right.max_score == homework.points, [
         one for one in right.checks if one.message
     ]
     assert right.for_credit and right.tier == "strict"
-    blank = grading.grade(materials.folder("assignments") / f"{name}.ipynb", homework, strict)
+    blank = grader.grade(materials.folder("assignments") / f"{name}.ipynb", homework, strict)
     assert blank.score == 0 and blank.max_score == homework.points and not blank.problems

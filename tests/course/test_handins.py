@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.classroom import handins
-from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions import class_folder
 
 ROSTER = Roster(
     tuple(
@@ -30,14 +30,14 @@ def find(tmp_path):
             path.write_text(text)
             os.utime(path, (LATE.timestamp(),) * 2)
         if rows is None:
-            return handins.find(tmp_path / "in", roster)
+            return class_folder.find(tmp_path / "in", roster)
         table = tmp_path / "times.csv"
         table.write_text(
             "\n".join(
                 ["file,received", *(f"{name},{when.isoformat()}" for name, when in rows.items())]
             )
         )
-        return handins.find(tmp_path / "in", roster, handins.read_times(table))
+        return class_folder.find(tmp_path / "in", roster, class_folder.read_times(table))
 
     return found
 
@@ -142,7 +142,7 @@ def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, ki
 
 def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
-    for k in range(handins.MAX_FILES_PER_FOLDER + 1):
+    for k in range(class_folder.MAX_FILES_PER_FOLDER + 1):
         (tmp_path / "in" / "b05" / f"{k}.py").touch()
     found = find({"b06.py": "y"})
     assert found.notes == ("b05: expected at most 1000 files in a folder",)
@@ -162,7 +162,7 @@ def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
 
 def test_of_many_files_the_one_that_counts_is_read_alone(find, monkeypatch):
     read = []
-    monkeypatch.setattr(handins, "_digest", lambda path: read.append(path.name) or "digest")
+    monkeypatch.setattr(class_folder, "_digest", lambda path: read.append(path.name) or "digest")
     find({f"b05/{k}.py": "x" for k in range(9)} | {"b06.py": "y"})
     assert read == ["8.py", "b06.py"]
 
@@ -172,7 +172,7 @@ def test_a_time_that_no_calendar_has_is_noted(seconds, monkeypatch):
     status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
     monkeypatch.setattr(os, "access", lambda *asked: True)
     odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
-    assert "before the year 10000" in handins.find_problem(odd)
+    assert "before the year 10000" in class_folder.find_problem(odd)
 
 
 def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import notebook, plan
-from hdrlab.course.code import names
-from hdrlab.course.material import handouts, materials
+from hdrlab.course import materials, notebook, plan
+from hdrlab.course.authoring import handouts
 from hdrlab.course.plan import Task
+from hdrlab.course.source_code import names
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "solutions"

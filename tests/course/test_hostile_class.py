@@ -7,8 +7,8 @@ import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
-from hdrlab.course.reports import csv_tables
-from hdrlab.course.sandbox import doctor
+from hdrlab.course.grading import doctor
+from hdrlab.course.students import csv_tables
 
 pytestmark = pytest.mark.grading
 

@@ -10,12 +10,13 @@ from xml.etree import ElementTree
 import hostile
 import pytest
 
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.jobs import GradingJob, JobResult
-from hdrlab.course.reports import feedback, gradebook, results
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.grading import grader, results
+from hdrlab.course.grading.results import Check, Result
+from hdrlab.course.reports import feedback, gradebook
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sanitize import sanitize_line, sanitize_text
@@ -149,9 +150,9 @@ def test_the_words_of_the_grader_in_an_exception_buy_no_second_try(tmp_path, mon
         message = f"hat raised ValueError: hat ended its process, and gave no answer {len(tries)}"
         return result(message=message, kind="raised" if len(tries) < 9 else "")
 
-    monkeypatch.setattr(grading, "grade", graded)
-    grader = classroom.Grader(None, plan.GradingOptions("practice"))
-    grader.grade(GradingJob("b1", tmp_path / "b1.py", "key"))
+    monkeypatch.setattr(grader, "grade", graded)
+    class_grader = classroom.Grader(None, plan.GradingOptions("practice"))
+    class_grader.grade(GradingJob("b1", tmp_path / "b1.py", "key"))
     assert len(tries) == 1
 
 

@@ -12,9 +12,8 @@ import pytest
 from hats import GOOD
 from traps import TRAPS
 
-from hdrlab.course import submission
-from hdrlab.course.classroom import handins
-from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions import class_folder, reader
 
 pytestmark = pytest.mark.grading
 
@@ -51,10 +50,10 @@ def test_a_file_that_is_hard_to_read_costs_three_seconds_at_most_and_is_told(nam
     file = tmp_path / f"hat{ending}"
     file.write_bytes(made())
     before = spent()
-    found = submission.read(file, "hw2", ["hat"])
-    assert spent() - before < submission.SECONDS + 1.5
+    found = reader.read(file, "hw2", ["hat"])
+    assert spent() - before < reader.SECONDS + 1.5
     assert all(one.isprintable() and len(one) <= 300 for one in found.problems)
-    assert len(found.problems) <= submission.TOLD + 1
+    assert len(found.problems) <= reader.TOLD + 1
     assert found.sources or found.problems
     assert not (name in LOST and found.sources)
     if found.sources:  # the right function at the end, whatever stands before it
@@ -92,7 +91,7 @@ RIGHT = {  # an honest file, as its author's editor has saved it
 def test_an_honest_file_is_read_as_its_author_meant_it(name, tmp_path):
     ending, data = RIGHT[name]
     (tmp_path / f"hw2{ending}").write_bytes(data)
-    found = submission.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
+    found = reader.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
     scope = {}
     exec(found.sources["hat"], scope)
     assert scope["hat"](3).tolist() == [0, 2, 0] and not found.problems
@@ -102,8 +101,8 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
     ending, made = hostile.FILES["blank lines"]
     with zipfile.ZipFile(tmp_path / "b1.zip", "w") as archive:
         archive.writestr("hw2.py", made())
-    assert set(submission.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
-    (problem,) = submission.read(
+    assert set(reader.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
+    (problem,) = reader.read(
         TRAPS["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]
     ).problems
     assert problem.startswith("The archive is refused: ")
@@ -111,10 +110,10 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
 
 @pytest.mark.quick
 def test_a_reader_that_is_killed_from_outside_says_nothing_of_the_file(tmp_path, monkeypatch):
-    monkeypatch.setattr(submission, "_read", _killed)
+    monkeypatch.setattr(reader, "_read", _killed)
     (tmp_path / "hw2.py").write_text(GOOD)
     with pytest.raises(ValueError, match="could not be read: its process was ended"):
-        submission.read(tmp_path / "hw2.py", "hw2", ["hat"])
+        reader.read(tmp_path / "hw2.py", "hw2", ["hat"])
 
 
 def _killed(order):
@@ -124,12 +123,12 @@ def _killed(order):
 @pytest.mark.quick
 def test_a_reader_that_is_killed_from_outside_is_started_again(tmp_path, monkeypatch):
     (tmp_path / "hw2.py").write_text(GOOD)
-    monkeypatch.setattr(submission, "_read", _killed_twice)
-    assert set(submission.read(tmp_path / "hw2.py", "hw2", ["hat"]).sources) == {"hat"}
+    monkeypatch.setattr(reader, "_read", _killed_twice)
+    assert set(reader.read(tmp_path / "hw2.py", "hw2", ["hat"]).sources) == {"hat"}
     assert len(list(tmp_path.glob("killed*"))) == 2
 
 
-READ = submission._read
+READ = reader._read
 
 
 def _killed_twice(order):
@@ -149,13 +148,13 @@ def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_pa
     made(tmp_path / f"b1_hw2{ending}")
     (tmp_path / "b2_hw2.py").write_text(GOOD)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
-    found = handins.find(tmp_path, ROSTER)
+    found = class_folder.find(tmp_path, ROSTER)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
     assert "b2" in found.submissions and all(
         note.isprintable() and len(note) < 250 for note in found.notes
     )
     if name in ("an empty file", "a notebook of 60 MB"):
-        read = submission.tasks_of(found.submissions["b1"].path, ["hat"])
+        read = reader.tasks_of(found.submissions["b1"].path, ["hat"])
         assert "is empty" in read.problems[0] or "has more than 50 MB" in read.problems[0]
     else:
         assert "b1" not in found.submissions and found.refused["b1"] in found.notes
@@ -165,7 +164,7 @@ def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
     (tmp_path / "b1_hw2.py").write_text(GOOD)
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
     hostile.sparse(tmp_path / "b1_later.ipynb")
-    found = handins.find(tmp_path, ROSTER)
+    found = class_folder.find(tmp_path, ROSTER)
     assert found.submissions["b1"].path.name == "b1_hw2.py"
     assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
 
@@ -174,4 +173,4 @@ def test_a_time_beyond_the_year_9999_is_told(tmp_path, monkeypatch):
     (tmp_path / "b1_hw2.py").write_text(GOOD)
     real = Path.lstat(tmp_path / "b1_hw2.py")
     monkeypatch.setattr(Path, "lstat", lambda path: os.stat_result(real[:7] + (0, 1 << 38, 0)))
-    assert "before the year 10000" in handins.find(tmp_path, ROSTER).refused["b1"]
+    assert "before the year 10000" in class_folder.find(tmp_path, ROSTER).refused["b1"]

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import scoring
 
-from hdrlab.course import plan, submission
+from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import inprocess, misconceptions
-from hdrlab.course.material import solutions
+from hdrlab.course.submissions import reader
 
 pytestmark = pytest.mark.grading
 
@@ -27,7 +28,7 @@ def function(name, task, cells, folder):
     file = folder / f"{name}.ipynb"
     file.write_text(solutions.notebook(homework, cells), encoding="utf8")
     scope = {"__name__": "a student's module"}
-    exec(submission.tasks_of(file, [task]).sources[task], scope)
+    exec(reader.tasks_of(file, [task]).sources[task], scope)
     return scope[task]
 
 
@@ -69,7 +70,7 @@ def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(home
         ("a.py", solutions.script(cells)),
     ):
         (tmp_path / name).write_text(text, encoding="utf8")
-        found = submission.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
+        found = reader.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
         assert set(found.sources) == {task.id for task in homework.tasks}
         assert not any("is yours to write" in source for source in found.sources.values())
     handout = (HERE.parent / "assignments" / f"{homework.name}.ipynb").read_text(encoding="utf8")

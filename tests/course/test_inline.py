@@ -8,8 +8,8 @@ import pytest
 
 from hdrlab.core import weights
 from hdrlab.course import plan
-from hdrlab.course.code import inline, names, source
-from hdrlab.course.material import stubs
+from hdrlab.course.authoring import stubs
+from hdrlab.course.source_code import inline, library_source, names
 from hdrlab.response import debevec
 from hdrlab.response.debevec import gsolve
 
@@ -101,7 +101,7 @@ def test_of_a_function_no_more_is_left_out_than_what_only_raises():
     kept = ["    if x > 9:", "        raise ValueError(x)", "    else:", "        x = 1"]
     kept += ["    if x > 5:", "        x = 2", "    return x"]
     guard = ["    if x < 0:", "        raise ValueError(x)", "    require_finite(x)"]
-    text = source.strip_annotations("\n".join(["def f(x: float) -> float:", *guard, *kept]))
+    text = library_source.strip_annotations("\n".join(["def f(x: float) -> float:", *guard, *kept]))
     assert text.splitlines() == ["def f(x):", *kept]
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hdrlab.course.code import inline, source
+from hdrlab.course.source_code import inline, library_source
 
 OWN = '''\
 """A module."""
@@ -263,7 +263,7 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
     ],
 )
 def test_on_the_board_stand_neither_types_nor_guards(text, board):
-    found = source.strip_annotations(text)
+    found = library_source.strip_annotations(text)
     if text.startswith(f"def f({LONG}"):
         lines = found.splitlines()
         assert lines[0] == "def f(" and lines[-2:] == ["):", "    return 1"]
@@ -276,5 +276,6 @@ def test_a_signature_of_a_hundred_and_ten_letters_stays_on_one_line():
     for letters, lines in ((110, 1), (111, 3)):
         name = "n" * (letters - len("def f():"))
         assert (
-            len(source.strip_annotations(f"def f({name}):\n    return 1").splitlines()) == lines + 1
+            len(library_source.strip_annotations(f"def f({name}):\n    return 1").splitlines())
+            == lines + 1
         )

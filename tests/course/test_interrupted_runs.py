@@ -13,9 +13,10 @@ from pathlib import Path
 import errands
 import pytest
 
-from hdrlab.course.classroom import handins, jobs
+from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.executors import processes
-from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions import class_folder
 
 pytestmark = [
     pytest.mark.grading,
@@ -179,7 +180,7 @@ def test_files_find_their_owners(tmp_path):
     (tmp_path / "b3" / "link.py").symlink_to("/etc/passwd")
     noon = datetime(2026, 3, 1, 12, tzinfo=UTC)
     times = {"B2_hw2.ipynb": noon, "team1-late.ipynb": noon + timedelta(hours=1)}
-    found = handins.find(tmp_path, roster, times)
+    found = class_folder.find(tmp_path, roster, times)
     assert {team: one.path.name for team, one in found.submissions.items()} == {
         "team1": "team1-late.ipynb",
         "b12": "b12.py",

@@ -22,11 +22,9 @@ import pytest
 import test_cluster
 from hats import GOOD, PLAN
 
-from hdrlab.course import grading
 from hdrlab.course.classroom import jobs, run as classroom
+from hdrlab.course.grading import doctor, grader, results
 from hdrlab.course.plan import GradingOptions, Homework, Task
-from hdrlab.course.reports import results
-from hdrlab.course.sandbox import doctor
 
 pytestmark = pytest.mark.grading
 
@@ -236,7 +234,7 @@ def test_checks_that_are_ended_from_outside_are_no_result(tmp_path, killing):
     (tmp_path / "b1.py").write_text(SLOW)
     killing(b"pytest", b"--job")
     with pytest.raises(ValueError, match="ended from outside, by signal 9"):
-        grading.grade(tmp_path / "b1.py", HAT, GradingOptions(tier="practice"))
+        grader.grade(tmp_path / "b1.py", HAT, GradingOptions(tier="practice"))
 
 
 @PROC
@@ -245,7 +243,7 @@ def test_a_function_whose_process_is_ended_from_outside_is_asked_again(tmp_path,
     job = jobs.GradingJob("b1", tmp_path / "b1.py", "key")
     grader = classroom.Grader(HAT, GradingOptions(tier="practice"))
     killing(b"supervisor.py", below=True)
-    once = grading.grade(job.path, HAT, grader.conditions)
+    once = grader.grade(job.path, HAT, grader.conditions)
     assert "no answer" in {one.outcome for one in once.checks}
     killing(b"supervisor.py", below=True)
     result = results.from_json(grader.grade(job))

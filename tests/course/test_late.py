@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 import pytest
 from hypothesis import given, strategies as st
 
-from hdrlab.course.classroom.late import LateRecord, charge_late_days, days_late, what_if
+from hdrlab.course.students.late_days import LateRecord, charge_late_days, days_late, what_if
 
 ANNA, BEN, CY = "anna", "ben", "cy"
 days, points = st.integers(0, 40), st.floats(0, 100)

@@ -8,13 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course.grading import grader
+from hdrlab.course.grading.results import Drawing
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports.results import Drawing
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
-from hdrlab.course.submission import SubmittedCode
+from hdrlab.course.submissions.reader import SubmittedCode
 
 HW2 = plan.read().homeworks["hw2"]
 HOMEWORK = HW2._replace(
@@ -50,7 +51,7 @@ def heard(monkeypatch):
     """heard(lines) -> each Result of a run that writes these lines; `jobs` are the jobs of those runs."""
     jobs, chosen = [], []
 
-    def heard(*lines, conditions=grading.STRICT, homework=HOMEWORK, read=READ):
+    def heard(*lines, conditions=grader.STRICT, homework=HOMEWORK, read=READ):
         def run(folder, job, files, patience):
             told = json.loads(job.read_text("utf8"))
             texts = {file: file.read_text("utf8") for file in files}
@@ -61,7 +62,7 @@ def heard(monkeypatch):
 
         monkeypatch.setattr(running, "run", run)
         monkeypatch.setattr(tiers, "choose", chosen.append)
-        return list(grading.check_steps(read, homework, conditions))
+        return list(grader.check_steps(read, homework, conditions))
 
     heard.jobs, heard.chosen = jobs, chosen
     return heard
@@ -114,7 +115,7 @@ def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is
 
 def test_more_of_a_job_stands_beside_the_rest(heard, monkeypatch):
     heard()
-    list(grading.heard_steps(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
+    list(grader.heard_steps(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
     assert heard.jobs[1][4]["by"] == "other" and heard.jobs[1][4]["asked"] == [1]
 
 

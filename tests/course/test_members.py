@@ -7,9 +7,9 @@ from pathlib import PurePosixPath
 
 import pytest
 
-from hdrlab.course.archives import members
-from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused
-from hdrlab.course.archives.packing import packed
+from hdrlab.course.submissions.archives import members
+from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, Refused
+from hdrlab.course.submissions.archives.packing import packed
 
 
 def test_the_limits_are_those_of_a_submission_with_photographs():

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.checks.misconceptions import MAX_DIFFERENCE, closest, difference, in_gauge
 from hdrlab.course.checks.mistakes import KnownMistake, mistake
-from hdrlab.course.material import solutions
 
 NAN, INF = np.nan, np.inf
 

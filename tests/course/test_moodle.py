@@ -8,10 +8,10 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from hdrlab.course.classroom import marks, moodle, run as classroom
-from hdrlab.course.classroom.handins import Submission
-from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.plan import GradingOptions, Homework, Late, Task
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions.class_folder import Submission
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework("hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 100),))

@@ -4,8 +4,8 @@ import ast
 
 import pytest
 
-from hdrlab.course.code import names, source
-from hdrlab.course.code.source import SymbolRef
+from hdrlab.course.source_code import library_source, names
+from hdrlab.course.source_code.library_source import SymbolRef
 
 
 @pytest.mark.parametrize(
@@ -51,4 +51,7 @@ def test_places_are_written_as_they_are_read():
         ("response.debevec.gsolve", SymbolRef("hdrlab.response.debevec", "gsolve")),
         ("/a/v.py:vignette", SymbolRef("/a/v.py", "vignette")),
     ):
-        assert source.parse_reference(text) == key and source.format_reference(key) == text
+        assert (
+            library_source.parse_reference(text) == key
+            and library_source.format_reference(key) == text
+        )

@@ -6,16 +6,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course import grading
-from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.classroom.executors import cluster, subprocess_runner
+from hdrlab.course.classroom.executors import cluster
 from hdrlab.course.classroom.executors.cluster import RemoteJob
 from hdrlab.course.classroom.jobs import GradingJob
+from hdrlab.course.grading import grader
+from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.sandbox.subprocess_runner import LIBRARY
 
 
 def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_path):
     files = sorted(one for one in LIBRARY.rglob("*.*") if one.suffix in (".py", ".toml"))
-    assert cluster.version().endswith(f"({grading.specification(files)[:8]})")
+    assert cluster.version().endswith(f"({grader.specification(files)[:8]})")
     assert any(one.suffix == ".toml" for one in files)
 
 

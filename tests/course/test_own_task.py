@@ -9,13 +9,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course import grading, notebook, plan
+from hdrlab.course import notebook, plan
+from hdrlab.course.authoring import handouts, own_task, stubs
+from hdrlab.course.authoring.export import gradescope
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.checks.plugin import GradingPlugin
-from hdrlab.course.code import inline
-from hdrlab.course.export import gradescope
-from hdrlab.course.material import handouts, own_task, stubs
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
+from hdrlab.course.source_code import inline
 
 WRONG = "def flat_field(Z, flat):\n    return Z / flat\n"
 FILE = "flat_field.py:flat_field"
@@ -83,7 +84,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
     monkeypatch.chdir(out)
     exec(given[given.index("use_plan(") :], {"use_plan": notebook.use_plan})
     homework, tasks = notebook.find_tasks("flat_field")
-    assert tasks == ["flat_field"] and grading.files_of(homework, None) == [
+    assert tasks == ["flat_field"] and grader.files_of(homework, None) == [
         checks / "test_flat_field.py"
     ]
 
@@ -92,7 +93,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
 def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
     (tmp_path / "extra.py").write_text(WRONG)
     conditions = GradingOptions("practice", hidden=folder / "hidden")
-    found = grading.grade(tmp_path / "extra.py", extra(folder), conditions)
+    found = grader.grade(tmp_path / "extra.py", extra(folder), conditions)
     (task,) = extra(folder).tasks
     says = {one.name: one.sentence for one in misconceptions.of_task(task)}
     assert found.misconceptions == {"flat_field": says["flat_field_mean_forgotten"]}
@@ -117,7 +118,7 @@ def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(fold
     (task,) = extra(folder).tasks
     task.own.unlink()
     (tmp_path / "extra.py").write_text(WRONG)
-    found = grading.grade(tmp_path / "extra.py", extra(folder), GradingOptions("practice"))
+    found = grader.grade(tmp_path / "extra.py", extra(folder), GradingOptions("practice"))
     assert found.misconceptions == {} and found.score < 10
     assert any("the corrected wall: expected" in one.message for one in found.checks)
 
@@ -132,7 +133,7 @@ def test_gradescope_gets_the_task_its_checks_and_its_mistakes(folder, tmp_path):
     assert "mistakes/flat_field_multiplied.py" in held and not any(
         one.startswith("hidden/") for one in held
     )
-    assert grading.files_of(extra(tmp_path / "source"), None)[0].is_file()
+    assert grader.files_of(extra(tmp_path / "source"), None)[0].is_file()
 
 
 def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):

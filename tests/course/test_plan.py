@@ -4,7 +4,8 @@ import stat
 
 import pytest
 
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions, Homework, Late, ManualTask, Task
 from hdrlab.response.debevec import gsolve
 
@@ -182,9 +183,9 @@ def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_n
 ):
     own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))
     with pytest.raises(ValueError, match=f"expected checks for hw2 in {tmp_path}, got none"):
-        grading.files_of(own, None)
+        grader.files_of(own, None)
     (tmp_path / "test_vignette.py").touch()
-    assert grading.files_of(own, None) == [tmp_path / "test_vignette.py"]
+    assert grader.files_of(own, None) == [tmp_path / "test_vignette.py"]
 
 
 def test_a_secret_is_made_once_for_its_owner_and_read_ever_after(tmp_path):

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import submission
-from hdrlab.course.classroom.executors import subprocess_runner
-from hdrlab.course.code.closure import Cell
-from hdrlab.course.submission import SubmittedCode
+from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.source_code.closure import Cell
+from hdrlab.course.submissions import reader
+from hdrlab.course.submissions.reader import SubmittedCode
 
 SAID = [{"f": "text"}, ["a problem"], "digest", ["numpy"], {"f": "a/b"}]
 
@@ -23,7 +23,7 @@ def tried(monkeypatch):
         left, asked = list(endings), []
 
         def run(work, order, *, timeout, limits):
-            assert work is submission._read and Path(order[1]).is_dir()
+            assert work is reader._read and Path(order[1]).is_dir()
             asked.append((order[0], *order[2:], timeout, limits))
             end = left.pop(0)
             if isinstance(end, Exception):
@@ -44,14 +44,14 @@ def failed(own=False, killed=False):
 
 
 def test_the_bounds_of_a_submission_are_those_that_the_pages_name():
-    assert (submission.LARGEST, submission.MOST_CODE, submission.MOST_SOURCE) == (
+    assert (reader.LARGEST, reader.MOST_CODE, reader.MOST_SOURCE) == (
         50_000_000,
         1_000_000,
         900_000,
     )
-    assert submission.UNPACKED == (2000, 256 << 20, 512 << 20, 12, 200, 200)
-    assert (submission.SECONDS, submission.MEMORY, submission.UNPACKING) == (2, 500 << 20, 3)
-    assert (submission.TRIES, submission.PATIENCE, submission.TOLD) == (3, 25, 12)
+    assert reader.UNPACKED == (2000, 256 << 20, 512 << 20, 12, 200, 200)
+    assert (reader.SECONDS, reader.MEMORY, reader.UNPACKING) == (2, 500 << 20, 3)
+    assert (reader.TRIES, reader.PATIENCE, reader.TOLD) == (3, 25, 12)
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_the_bounds_of_a_submission_are_those_that_the_pages_name():
 )
 def test_a_file_is_read_in_two_seconds_and_an_archive_in_five(name, seconds, tried):
     asked = tried(SAID)
-    found = submission.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
+    found = reader.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
     assert found == SubmittedCode({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
     limits = {"CPU": seconds, "AS": 500 << 20}
     assert asked == [(Path(name), "hw2", ("f", "g"), (Cell("x = 1"),), 25.0, limits)]
@@ -70,8 +70,7 @@ def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
     asked = tried(failed(own=True))
     said = "a.zip takes more than 5 s or 500 MB to read, as no homework does"
     assert (
-        submission.read(Path("a.zip"), "hw2", []) == SubmittedCode({}, (said,), "")
-        and len(asked) == 1
+        reader.read(Path("a.zip"), "hw2", []) == SubmittedCode({}, (said,), "") and len(asked) == 1
     )
 
 
@@ -90,10 +89,10 @@ def test_a_process_that_somebody_ends_is_tried_three_times_and_any_other_once(
 ):
     asked = tried(*endings)
     if read:
-        assert submission.read(Path("a.py"), "hw2", []).hash == "digest"
+        assert reader.read(Path("a.py"), "hw2", []).hash == "digest"
     else:
         with pytest.raises(ValueError, match="^it could not be read: it was ended$"):
-            submission.read(Path("a.py"), "hw2", [])
+            reader.read(Path("a.py"), "hw2", [])
     assert len(asked) == tries
 
 
@@ -103,12 +102,12 @@ def test_in_that_process_an_archive_is_opened_and_its_notebook_is_read(tmp_path)
         opened.writestr("in/hw2.py", text)
     (tmp_path / "scratch").mkdir()
     order = (tmp_path / "a.zip", tmp_path / "scratch", "hw2", ("f",), ())
-    sources, problems, digest, modules, variants = json.loads(submission._read(order))
+    sources, problems, digest, modules, variants = json.loads(reader._read(order))
     assert sources["f"].endswith("return np.pi, ndimage\n") and problems == [] and variants is None
     assert modules == ["numpy", "scipy", "scipy.ndimage"] and len(digest) == 64
     (tmp_path / "b.zip").write_bytes(b"none")
     order = (tmp_path / "b.zip", tmp_path, "hw2", ("f",), ())
-    sources, problems, digest, *_ = json.loads(submission._read(order))
+    sources, problems, digest, *_ = json.loads(reader._read(order))
     assert (sources, digest) == ({}, "") and problems[0].startswith("The archive is refused: ")
 
 
@@ -127,7 +126,7 @@ def test_where_an_archive_holds_no_one_notebook_the_first_five_are_named(names, 
         for name in names:
             opened.writestr(name, "1")
     said = f"Expected one notebook or Python file in the archive, got {told}."
-    assert submission.opened(tmp_path / "a.zip", tmp_path, "hw2") == (tmp_path / "a.zip", said)
+    assert reader.opened(tmp_path / "a.zip", tmp_path, "hw2") == (tmp_path / "a.zip", said)
 
 
 # What is in it
@@ -139,22 +138,22 @@ def read(tmp_path):
 
     def read(data, *tasks, name="hw.py"):
         (tmp_path / name).write_bytes(data if isinstance(data, bytes) else data.encode())
-        return submission.tasks_of(tmp_path / name, tasks)
+        return reader.tasks_of(tmp_path / name, tasks)
 
     return read
 
 
 def test_a_file_may_be_as_large_as_fifty_megabytes(read, monkeypatch):
-    monkeypatch.setattr(submission, "LARGEST", 7)
+    monkeypatch.setattr(reader, "LARGEST", 7)
     assert read("x = 123").problems == ()
     assert read("x = 1234").problems == ("hw.py has more than 0 MB; clear its outputs",)
 
 
 def test_a_task_may_need_as_much_code_as_goes_to_the_sandbox(read, monkeypatch):
     text = "def f(): 1\n"
-    monkeypatch.setattr(submission, "MOST_SOURCE", len(json.dumps(text)))
+    monkeypatch.setattr(reader, "MOST_SOURCE", len(json.dumps(text)))
     assert read(text, "f").sources == {"f": text}
-    monkeypatch.setattr(submission, "MOST_SOURCE", len(json.dumps(text)) - 1)
+    monkeypatch.setattr(reader, "MOST_SOURCE", len(json.dumps(text)) - 1)
     found = read(text, "f")
     assert found.sources == {} and found.problems == ("f needs more than 13 characters of code",)
 
@@ -205,14 +204,14 @@ def test_the_variants_that_a_sheet_names_are_those_of_its_call(read):
     ],
 )
 def test_text_is_read_as_its_author_meant_it(data):
-    (cell,), problems = submission.cells_of(data, "hw")
+    (cell,), problems = reader.cells_of(data, "hw")
     assert cell.text.endswith("x = '\u00e9'") and not problems
 
 
 def test_a_python_file_has_a_cell_for_each_fence_and_where_it_begins():
     text = "a = 1\n\n# %%\nb = 2\n# %% [markdown]\n# words\n# %% [raw]\nr\n"
     text += '# %% task="f" given="yes"\n\nc = 3\n# %%\n'
-    assert submission.cells_of(text.encode(), "hw.py") == (
+    assert reader.cells_of(text.encode(), "hw.py") == (
         [
             Cell("a = 1\n\n", "", False, "the file's beginning"),
             Cell("\nb = 2\n", "", False, "line 3"),
@@ -220,7 +219,7 @@ def test_a_python_file_has_a_cell_for_each_fence_and_where_it_begins():
         ],
         [],
     )
-    assert submission.cells_of(b"\n# %%\nb", "hw.ipynb") == (
+    assert reader.cells_of(b"\n# %%\nb", "hw.ipynb") == (
         [Cell("\nb", "", False, "line 2")],
         ["hw.ipynb is not a notebook, and was read as Python text"],
     )
@@ -242,9 +241,9 @@ def test_a_notebooks_cells_are_code_with_marks_of_which_nothing_is_believed():
         Cell("d", "", False, "cell 5"),
     ]
     found.append(Cell("", "", False, "cell 6"))
-    assert submission.cells_of(json.dumps({"cells": cells}).encode(), "a.ipynb") == (found, [])
+    assert reader.cells_of(json.dumps({"cells": cells}).encode(), "a.ipynb") == (found, [])
     old = {"worksheets": [{"cells": cells[:2]}, {"cells": 7}, 8]}
-    assert submission.cells_of(json.dumps(old).encode(), "a.ipynb") == ([found[0]], [])
+    assert reader.cells_of(json.dumps(old).encode(), "a.ipynb") == ([found[0]], [])
     for none in ([], {"cells": {}}, {"worksheets": 1}, {}):
         said = [] if none == [] else ["a.ipynb has no cells; a notebook of version 4 is expected"]
-        assert submission.cells_of(json.dumps(none).encode(), "a.ipynb")[1] == said or none == []
+        assert reader.cells_of(json.dumps(none).encode(), "a.ipynb")[1] == said or none == []

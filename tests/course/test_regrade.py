@@ -16,8 +16,9 @@ from hdrlab import cli
 from hdrlab.cli import classroom as command
 from hdrlab.course.classroom import regrade
 from hdrlab.course.classroom.jobs import JobAttempt
-from hdrlab.course.reports import csv_tables, results
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Check, Result
+from hdrlab.course.students import csv_tables
 
 STUDENTS = {"b1": "t", "b2": "t", "b3": "b3", "b4": "b4", "b5": "b5"}
 TEAMS = sorted({*STUDENTS.values()})

@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from hdrlab.course.reports import feedback, gradebook, results
-from hdrlab.course.reports.results import Check, Drawing, Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Check, Drawing, Result
+from hdrlab.course.reports import feedback, gradebook
 from hdrlab.io import web
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>\x1b[31m\x00 =cmd|"/c calc"!A1 ]]> & \ud7ff'

@@ -5,8 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from hdrlab.course.reports import feedback, gradebook, results
-from hdrlab.course.reports.results import Check, Drawing, Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Check, Drawing, Result
+from hdrlab.course.reports import feedback, gradebook
 
 CHECK = Check("a", "n", "It \u00e9s", Fraction(1, 3), Fraction(2), "fails")
 RESULT = Result("ada", "hw2", "T", "strict", (CHECK,), {}, (), "d", "s", "x", {})

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.checks import inprocess, rewording
+from hdrlab.course.checks import inprocess
+from hdrlab.course.variants import rewording
 
 SIZES = {"small": [], "large": [("five", "nine"), ("few", "many")]}
 PAIRS = {"size": SIZES, "way": {"up": [], "down": [("up", "down")]}}

@@ -3,9 +3,8 @@
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from hdrlab.course.classroom import roster
-from hdrlab.course.reports import csv_tables
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students import csv_tables, roster
 from hdrlab.errors import InputError
 
 

@@ -25,9 +25,10 @@ if sys.platform != "linux":  # test_windows goes the way of other systems
     pytest.skip("the walls of the sandboxes are those of Linux", allow_module_level=True)
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.code.names import imported_numpy_modules
-from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
+from hdrlab.course.grading import doctor
+from hdrlab.course.sandbox import contents, filters, practice, running, strict, tiers, users
 from hdrlab.course.sandbox.inside import channel, system
+from hdrlab.course.source_code.names import imported_numpy_modules
 
 IMPOLITE = "import sys; sys.modules['worker'].REFUSED.clear()\n"
 FUNCTIONS = """
@@ -621,7 +622,7 @@ def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_contai
     if shutil.which("setpriv") is None:
         pytest.skip("there is no setpriv, by which root gives a right up")
     code = (
-        "from hdrlab.course.sandbox import doctor\n"
+        "from hdrlab.course.grading import doctor\n"
         "for finding in doctor.report(): print(finding.tier, finding.works, finding.says)\n"
     )
     less = [

@@ -10,9 +10,9 @@ import pytest
 from hdrlab.course.classroom import jobs, regrade
 from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.regrade import CheckChange, JournalError, ScoreChange
-from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.reports import results
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.grading import results
+from hdrlab.course.grading.results import Check, Result
+from hdrlab.course.students.roster import Roster, Student
 from hdrlab.errors import InputError
 
 JOB = GradingJob("t", "file", "new")

@@ -6,9 +6,9 @@ import pytest
 import scoring
 
 from hdrlab.course import plan
+from hdrlab.course.grading.results import Check, Result
+from hdrlab.course.grading.scoring import attribute_failures, split_points
 from hdrlab.course.reports import feedback
-from hdrlab.course.reports.results import Check, Result
-from hdrlab.course.reports.scoring import attribute_failures, split_points
 
 
 def checks(*outcomes, points=4, **more):

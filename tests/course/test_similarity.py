@@ -15,16 +15,15 @@ import pytest
 from copydetect import compare_files
 
 from hdrlab.cli import classroom as commands
-from hdrlab.course import plan
+from hdrlab.course import materials, plan
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.classroom.handins import Submission
-from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.code import closure, inline
-from hdrlab.course.material import materials
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports import csv_tables
 from hdrlab.course.similarity import comparison, report, student_code
 from hdrlab.course.similarity.student_code import TeamCode
+from hdrlab.course.source_code import closure, inline
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import Roster
+from hdrlab.course.submissions.class_folder import Submission
 
 pytestmark = pytest.mark.grading
 
@@ -317,7 +316,7 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
     program = (
         "import sys; from pathlib import Path; from hdrlab.course import plan\n"
         "from hdrlab.course.similarity import report\n"
-        "from hdrlab.course.classroom.handins import Submission\n"
+        "from hdrlab.course.submissions.class_folder import Submission\n"
         "out, *files = map(Path, sys.argv[1:]); out.mkdir()\n"
         "handins = {f'{k}{n}': Submission('', (), f, None, '') for k in 'ba' for n, f in enumerate(files)}\n"
         "list(report.write_steps(out, plan.read().homeworks['hw2'], handins))\n"

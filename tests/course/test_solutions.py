@@ -4,8 +4,8 @@ import pytest
 import scoring
 
 from hdrlab.course import plan
+from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import inprocess
-from hdrlab.course.material import solutions
 
 PLAN = plan.read()
 

@@ -7,9 +7,9 @@ import zipfile
 import numpy as np
 import pytest
 
-from hdrlab.course import submission
-from hdrlab.course.code import names
-from hdrlab.course.code.closure import Cell, extract_sources
+from hdrlab.course.source_code import names
+from hdrlab.course.source_code.closure import Cell, extract_sources
+from hdrlab.course.submissions import reader
 
 TASKS = ["gsolve", "merge"]
 
@@ -31,7 +31,7 @@ def read(tmp_path):
     def read(text, name="hw.ipynb", given=()):
         file = tmp_path / name
         file.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return submission.tasks_of(file, TASKS, given)
+        return reader.tasks_of(file, TASKS, given)
 
     return read
 
@@ -176,7 +176,7 @@ def test_a_file_that_is_no_notebook_is_told_in_words(read, data, said):
 
 def test_a_folder_and_a_missing_file_are_told_in_words(tmp_path):
     for path in (tmp_path, tmp_path / "missing.ipynb"):
-        found = submission.tasks_of(path, TASKS)
+        found = reader.tasks_of(path, TASKS)
         assert not found.sources and "is not a file" in found.problems[0]
 
 
@@ -265,7 +265,7 @@ def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homew
     with zipfile.ZipFile(archive, "w") as opened:
         for name in names_in_it:
             opened.writestr(name, "1 + 1\n")
-    path, refused = submission.opened(archive, tmp_path, "hw2")
+    path, refused = reader.opened(archive, tmp_path, "hw2")
     if found:
         assert (path, refused) == (tmp_path / "files" / found, "")
     else:
@@ -276,13 +276,13 @@ def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homew
 
 def test_a_file_that_is_no_archive_or_is_missing_is_taken_as_it_is(tmp_path):
     for name in ("hw2.ipynb", "missing.zip"):
-        assert submission.opened(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")
+        assert reader.opened(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")
 
 
 def test_a_million_characters_of_code_are_read_and_one_more_is_refused():
-    most = submission.MOST_CODE
-    assert submission.cells_of(b"#" * most, "hw2.py")[1] == []
-    assert submission.cells_of(b"#" * (most + 1), "hw2.py") == (
+    most = reader.MOST_CODE
+    assert reader.cells_of(b"#" * most, "hw2.py")[1] == []
+    assert reader.cells_of(b"#" * (most + 1), "hw2.py") == (
         [],
         ["hw2.py holds more than 1,000,000 characters of code"],
     )

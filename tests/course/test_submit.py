@@ -13,10 +13,10 @@ from PIL import Image
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.course.archives.unpack import unpack
-from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import collect
 from hdrlab.course.projects import project, report as reports, review, submit as handing, words
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions.archives.unpack import unpack
 from hdrlab.io import radiance, response_files
 from hdrlab.io.decode import read_header
 

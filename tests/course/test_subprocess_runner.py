@@ -12,10 +12,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.checks.running import import_path
-from hdrlab.course.classroom.executors import processes, subprocess_runner
-from hdrlab.course.classroom.executors.subprocess_runner import ProcessFailed
+from hdrlab.course.classroom.executors import processes
 from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
+from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.sandbox.subprocess_runner import ProcessFailed, import_path
 
 
 @pytest.fixture

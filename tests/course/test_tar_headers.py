@@ -12,8 +12,8 @@ import unpacking
 from traps import info
 from unpacking import TOLD, refused
 
-from hdrlab.course.archives import tarball
-from hdrlab.course.archives.members import Limits, Refused
+from hdrlab.course.submissions.archives import tarball
+from hdrlab.course.submissions.archives.members import Limits, Refused
 
 
 @pytest.fixture

@@ -7,10 +7,10 @@ import zipfile
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.archives import unpack
-from hdrlab.course.classroom import roster
+from hdrlab.course.grading import results
 from hdrlab.course.projects import project, report, words
-from hdrlab.course.reports import results
+from hdrlab.course.students import roster
+from hdrlab.course.submissions.archives import unpack
 from hdrlab.io import metadata, tiff_directories
 
 SHEET = """[hw1]

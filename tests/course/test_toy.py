@@ -11,14 +11,15 @@ import pytest
 
 from hdrlab import cli
 from hdrlab.course import plan
+from hdrlab.course.authoring import toy_class
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.classroom import toy
-from hdrlab.course.reports import csv_tables, results
+from hdrlab.course.grading import results
 from hdrlab.course.sandbox import tiers
+from hdrlab.course.students import csv_tables
 
 pytestmark = pytest.mark.grading
 
-HOMEWORK = plan.read().homeworks[toy.HOMEWORK]
+HOMEWORK = plan.read().homeworks[toy_class.HOMEWORK]
 WHOLE = {"s01", "s02", "s03", "s04", "s05", "s11"}  # all right
 NOTHING = {"s10", "s12", "s13", "s14"}  # blank, a hostile archive, attacks, not handed in
 HOSTILE = ("s12_hw2.zip", "s13_hw2.py")
@@ -34,7 +35,9 @@ def run(words):
 
 def grade(folder, out, *words):
     """Grade a toy class by the command that stands in its README."""
-    run([*toy.COMMAND.format(folder=folder).split()[1:-1], str(out), "--tier", tier(), *words])
+    run(
+        [*toy_class.COMMAND.format(folder=folder).split()[1:-1], str(out), "--tier", tier(), *words]
+    )
 
 
 def tier():
@@ -152,13 +155,13 @@ README = Path(__file__).parents[2] / "README.md"
 def test_the_readme_has_the_two_commands():
     text = README.read_text(encoding="utf8")
     assert "env/bin/hdrlab course toy class\n" in text
-    assert f"\nenv/bin/{toy.COMMAND.format(folder='class')}\n" in text
+    assert f"\nenv/bin/{toy_class.COMMAND.format(folder='class')}\n" in text
 
 
 @pytest.mark.quick
 def test_two_toy_classes_are_the_same(tmp_path):
     for name in ("a", "b"):
-        toy.write(tmp_path / name)
+        toy_class.write(tmp_path / name)
     files = [
         file.relative_to(tmp_path / "a") for file in (tmp_path / "a").rglob("*") if file.is_file()
     ]
@@ -170,7 +173,7 @@ def test_two_toy_classes_are_the_same(tmp_path):
 
 @pytest.mark.quick
 def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
-    files = toy.write(tmp_path / "class")
+    files = toy_class.write(tmp_path / "class")
     assert all(json.loads(one.read_bytes())["cells"] for one in files if one.suffix == ".ipynb")
     assert all(ast.parse(one.read_bytes()).body for one in files if one.suffix == ".py")
     assert all(zipfile.is_zipfile(one) for one in files if one.suffix == ".zip")
@@ -197,7 +200,7 @@ def test_without_a_sandbox_both_commands_say_what_to_do(tmp_path, capsys, monkey
         "--tier practice" in said.out and "bubblewrap" in said.err and "hdrlab doctor" in said.err
     )
     with pytest.raises(SystemExit) as ended:
-        cli.run(toy.COMMAND.format(folder=tmp_path / "class").split()[1:])
+        cli.run(toy_class.COMMAND.format(folder=tmp_path / "class").split()[1:])
     said = capsys.readouterr().err
     assert ended.value.code == 2 and "\n" not in said.strip()
     assert "install bubblewrap" in said and "hdrlab doctor" in said and "--tier practice" in said

@@ -6,8 +6,7 @@ from datetime import datetime, timedelta
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.classroom import toy
-from hdrlab.course.material import solutions
+from hdrlab.course.authoring import solutions, toy_class
 
 HOMEWORK = plan.read().homeworks["hw2"]
 
@@ -27,8 +26,12 @@ def short(monkeypatch):
 
 
 def test_there_are_fourteen_students_two_of_them_a_team():
-    assert toy.STUDENTS[0] == "s01" and toy.STUDENTS[-1] == "s14" and len(toy.STUDENTS) == 14
-    assert toy.ATTACKS.is_file()
+    assert (
+        toy_class.STUDENTS[0] == "s01"
+        and toy_class.STUDENTS[-1] == "s14"
+        and len(toy_class.STUDENTS) == 14
+    )
+    assert toy_class.ATTACKS.is_file()
 
 
 def test_each_hands_in_what_the_list_says(short, monkeypatch):
@@ -39,17 +42,17 @@ def test_each_hands_in_what_the_list_says(short, monkeypatch):
         "s03.py": {"hours": 0, "about": "c", "attacks": True},
         "s04.zip": {"hours": 0, "about": "d", "beside": {"other.txt": "x"}},
     }
-    monkeypatch.setattr(toy, "HANDED", listed)
-    each = {one.name: one for one in toy.hand_ins(HOMEWORK)}
+    monkeypatch.setattr(toy_class, "HANDED", listed)
+    each = {one.name: one for one in toy_class.hand_ins(HOMEWORK)}
     assert list(each) == list(listed)
     assert each["s01.py"] == ("s01.py", f"script {{'tasks': {tasks}, 'm': ['m']}}".encode(), 1, "a")
     assert each["s02.ipynb"].data == f"notebook hw2 {{'tasks': {tasks[:1]}, 'm': []}}".encode()
-    assert each["s03.py"].data == toy.ATTACKS.read_bytes()
-    assert each["s04.zip"].data == toy.packed(
+    assert each["s03.py"].data == toy_class.ATTACKS.read_bytes()
+    assert each["s04.zip"].data == toy_class.packed(
         {"hw2.ipynb": f"notebook hw2 {{'tasks': {tasks}, 'm': []}}".encode(), "other.txt": b"x"}
     )
     times = [(HOMEWORK.due + timedelta(hours=hours)).isoformat() for hours in (1, -2)]
-    assert toy.received(list(each.values())[:2], HOMEWORK) == [
+    assert toy_class.received(list(each.values())[:2], HOMEWORK) == [
         ("s01.py", times[0]),
         ("s02.ipynb", times[1]),
     ]
@@ -60,22 +63,26 @@ def test_a_class_is_written_into_a_new_or_empty_folder_alone(made, short, tmp_pa
     folder = tmp_path / "in" / "class"
     if made:
         folder.mkdir(parents=True)
-    files = toy.write(folder)
-    assert files == [folder / "submissions" / name for name in toy.HANDED]
+    files = toy_class.write(folder)
+    assert files == [folder / "submissions" / name for name in toy_class.HANDED]
     assert all(file.is_file() and file.stat().st_size for file in files)
     rows = [*csv.DictReader((folder / "roster.csv").read_text("utf-8-sig").splitlines())]
-    assert [row["student"] for row in rows] == list(toy.STUDENTS) and rows[4][
+    assert [row["student"] for row in rows] == list(toy_class.STUDENTS) and rows[4][
         "name"
     ] == "Student 05"
     assert [row["student"] for row in rows if row["team"] == "t1"] == ["s03", "s04"]
     assert {row["team"] for row in rows} == {"t1", ""}
     came = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
-    assert [row["file"] for row in came] == list(toy.HANDED)
+    assert [row["file"] for row in came] == list(toy_class.HANDED)
     assert all(datetime.fromisoformat(row["received"]).tzinfo for row in came)
     text = (folder / "README.md").read_text("utf8")
-    assert text.endswith("\n") and str(folder) in text and all(name in text for name in toy.HANDED)
+    assert (
+        text.endswith("\n")
+        and str(folder) in text
+        and all(name in text for name in toy_class.HANDED)
+    )
     for taken in (folder, folder / "README.md"):
         with pytest.raises(
             ValueError, match="expected a new folder for the toy class, something is there"
         ):
-            toy.write(taken)
+            toy_class.write(taken)

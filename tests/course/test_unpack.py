@@ -7,8 +7,8 @@ from pathlib import PurePosixPath
 import pytest
 from traps import FILES, TRAPS, info, tarred, zipped
 
-from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, check_sizes
-from hdrlab.course.archives.unpack import unpack
+from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, Refused, check_sizes
+from hdrlab.course.submissions.archives.unpack import unpack
 
 SMALL = Limits(members=20, total=200_000, one=100_000, depth=4, name=60, ratio=50)
 

@@ -12,15 +12,17 @@ import pytest
 import scoring
 
 from hdrlab import cli
-from hdrlab.course import grading, notebook, plan, submission, variants
-from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions, rewording
-from hdrlab.course.classroom import roster
-from hdrlab.course.classroom.handins import Submission
-from hdrlab.course.export import autograder
-from hdrlab.course.material import handouts, materials, solutions
+from hdrlab.course import materials, notebook, plan
+from hdrlab.course.authoring import handouts, solutions
+from hdrlab.course.authoring.export import autograder
+from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.reports import csv_tables
 from hdrlab.course.similarity import comparison, report, student_code
+from hdrlab.course.students import csv_tables, roster
+from hdrlab.course.submissions import reader
+from hdrlab.course.submissions.class_folder import Submission
+from hdrlab.course.variants import rewording
 
 pytestmark = pytest.mark.grading
 
@@ -137,8 +139,8 @@ def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(ta
     digests = set()
     for variant in rewording.every(task):
         homework = homework_of(task, variant)
-        heard = grading.heard_steps(
-            submission.SubmittedCode({}, (), ""), homework, GradingOptions(tier="practice")
+        heard = grader.heard_steps(
+            reader.SubmittedCode({}, (), ""), homework, GradingOptions(tier="practice")
         )
         digests.add(next(heard)["specification"])
         heard.close()
@@ -313,7 +315,7 @@ def test_alignment_takes_whatever_exclusion_bitmap_its_student_was_asked():
 
 def test_a_plan_without_parameters_asks_everybody_the_same():
     for homework in PLAN.homeworks.values():
-        assert variants.draw(homework, "b1", SECRET) == homework
+        assert plan.draw_variants(homework, "b1", SECRET) == homework
 
 
 def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_says_nothing_stay(
@@ -321,7 +323,7 @@ def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_say
 ):
     some = course.homeworks["hw1"].tasks[0]._replace(parameters=("margin", "tie"))
     each = [
-        variants.draw(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET)
+        plan.draw_variants(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET)
         .tasks[0]
         .variant
         for n in range(600)
@@ -341,8 +343,8 @@ def test_the_same_roster_and_secret_make_the_same_sheets_and_a_team_has_one(cour
         (Path("one") / path).read_bytes() == (Path("two") / path).read_bytes() for path in files
     )
     for team in ("b1", "pair"):
-        drawn = variants.draw(course.homeworks["hw1"], team, SECRET)
-        sheet = submission.tasks_of(f"one/{team}/hw1.ipynb", ["exclusion", "shift"])
+        drawn = plan.draw_variants(course.homeworks["hw1"], team, SECRET)
+        sheet = reader.tasks_of(f"one/{team}/hw1.ipynb", ["exclusion", "shift"])
         assert sheet.variants == {task.id: task.variant for task in drawn.tasks}
         assert "NotImplementedError" not in Path(f"worked/{team}/hw1.ipynb").read_text()
     Path("secret.txt").write_text("another\n")
@@ -400,13 +402,13 @@ def test_parameters_that_a_task_does_not_have_are_refused_in_words(was, now, sai
 
 
 def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, monkeypatch):
-    own = variants.draw(course.homeworks["hw1"], "b7", SECRET)
+    own = plan.draw_variants(course.homeworks["hw1"], "b7", SECRET)
     assert all(task.variant not in ("", rewording.every(task.id)[0]) for task in own.tasks)
     path = filled(own, tmp_path / "hw1.ipynb")
     plain = course.homeworks["hw1"]._replace(
         tasks=tuple(one._replace(parameters=()) for one in course.homeworks["hw1"].tasks)
     )
-    result = grading.grade(path, plain, GradingOptions("practice"))
+    result = grader.grade(path, plain, GradingOptions("practice"))
     assert result.score == 25 and not result.problems
     (cell,) = (
         one
@@ -422,10 +424,10 @@ def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, mon
 
 def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(course, tmp_path):
     homework = course.homeworks["hw1"]
-    theirs = variants.draw(homework, "b7", SECRET)
+    theirs = plan.draw_variants(homework, "b7", SECRET)
     path = filled(theirs, tmp_path / "hw1.ipynb")
-    own = grading.grade(path, homework, GradingOptions("practice", "b7", SECRET))
-    other = grading.grade(path, homework, GradingOptions("practice", "pair", SECRET))
+    own = grader.grade(path, homework, GradingOptions("practice", "b7", SECRET))
+    other = grader.grade(path, homework, GradingOptions("practice", "pair", SECRET))
     assert own.score == 25 and not own.problems
     assert other.score <= 0.75 * 25 and other.specification != own.specification
     assert other.problems == (
@@ -444,11 +446,11 @@ def test_a_sheet_that_names_no_variant_that_there_is_is_checked_as_the_library_i
         f'use_plan("hw1", variants={{"exclusion": "{named}"}})\n\n# %%\nimport numpy as np\n\n\n'
         "def exclusion(Y, t):\n    return np.abs(Y.astype(int) - t) > 4\n"
     )
-    read = submission.tasks_of(path, ["exclusion"])
-    believed = variants.draw(course.homeworks["hw1"], "", "", read.variants)
+    read = reader.tasks_of(path, ["exclusion"])
+    believed = plan.draw_variants(course.homeworks["hw1"], "", "", read.variants)
     assert [one.variant for one in believed.tasks] == ["", ""]
     path.write_text("def exclusion(Y, t):\n    return abs(Y.astype(int) - t) > 4\n")
-    assert submission.tasks_of(path, ["exclusion"]).variants is None
+    assert reader.tasks_of(path, ["exclusion"]).variants is None
 
 
 def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
@@ -521,7 +523,7 @@ def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sh
     assert copied != text
     homework = course.homeworks["hw1"]
     names = {
-        team: {one.id: one.variant for one in variants.draw(homework, team, SECRET).tasks}
+        team: {one.id: one.variant for one in plan.draw_variants(homework, team, SECRET).tasks}
         for team in "ab"
     }
     head = {team: f'use_plan("hw1", variants={json.dumps(names[team])})\n\n# %%\n' for team in "ab"}

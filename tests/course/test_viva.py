@@ -15,7 +15,8 @@ from click.testing import CliRunner
 
 from benchmarks import viva as bench
 from hdrlab.cli import main
-from hdrlab.course import grading, plan
+from hdrlab.course import plan
+from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
@@ -406,7 +407,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     conditions = GradingOptions("strict", timeout=5.0, draw=False)
     more = {"seed": "3", "photographs": pages.photographs([])}
     more["by"] = THERE
-    found = [*grading.heard_steps(bench.as_submission(sources), homework, conditions, **more)]
+    found = [*grader.heard_steps(bench.as_submission(sources), homework, conditions, **more)]
     asked = [one["question"] for one in found if "question" in one]
     assert any(one["task"] == "equivalent_time" for one in asked)
     for text in written(asked).values():

@@ -20,9 +20,10 @@ import numpy as np
 
 from hdrlab.core.arrays import F64
 from hdrlab.course import plan
-from hdrlab.course.checks import compare, rewording
+from hdrlab.course.checks import compare
 from hdrlab.course.checks.mistakes import KnownMistake, mistakes_of, tasks_with_mistakes
-from hdrlab.course.code import inline
+from hdrlab.course.source_code import inline
+from hdrlab.course.variants import rewording
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 

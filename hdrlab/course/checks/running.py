@@ -9,11 +9,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import hdrlab
 from hdrlab.course.checks import SPECIFICATION
+from hdrlab.course.sandbox.subprocess_runner import import_path
 from hdrlab.errors import InputError
 
-LIBRARY = Path(hdrlab.__file__).parent
 TICK = 0.02  # seconds between two looks at what has come
 UNWANTED = ("PYTEST_ADDOPTS", "PYTEST_PLUGINS", "PYTHONSTARTUP", "PYTHONINSPECT")
 
@@ -73,11 +72,6 @@ def _command(job: Path, empty: Path, files: Sequence[Path]) -> list[str]:
         *("-o", f"pythonpath={SPECIFICATION}", "--tb=native", f"--job={job}"),
     ]
     return [sys.executable, "-P", "-m", "pytest", *options, *map(str, files)]
-
-
-def import_path() -> str:
-    """Return the PYTHONPATH of a process that is to import this very hdrlab."""
-    return os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
 
 
 def _environment(folder: Path) -> dict[str, str]:

@@ -9,8 +9,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
 
-from hdrlab.course.classroom.handins import Submission
-from hdrlab.course.classroom.late import (
+from hdrlab.course.classroom.run import GradingContext
+from hdrlab.course.plan import Homework
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.late_days import (
     WHAT_IF_DAYS,
     LateDayCharge,
     LateRecord,
@@ -18,9 +20,7 @@ from hdrlab.course.classroom.late import (
     days_late,
     what_if as late_days_what_if,
 )
-from hdrlab.course.classroom.run import GradingContext
-from hdrlab.course.plan import Homework
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.submissions.class_folder import Submission
 from hdrlab.errors import InputError
 
 NOT_GRADED = "not graded"

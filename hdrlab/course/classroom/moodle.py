@@ -11,12 +11,12 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from hdrlab.course.archives.packing import packed
 from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.marks import MAX_GRADEBOOK_BYTES, NOT_GRADED, GradebookRow
-from hdrlab.course.classroom.roster import Roster, fold
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import csv_tables
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import Roster, fold
+from hdrlab.course.submissions.archives.packing import packed
 from hdrlab.errors import InputError
 
 # Columns of a worksheet that may identify a student.

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hdrlab.course.classroom import jobs, marks, moodle
-from hdrlab.course.classroom.handins import SubmissionScan
 from hdrlab.course.classroom.marks import GradebookRow
 from hdrlab.course.classroom.run import GradingContext
+from hdrlab.course.grading import results
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import csv_tables, results
+from hdrlab.course.students import csv_tables
+from hdrlab.course.submissions.class_folder import SubmissionScan
 from hdrlab.show.pages.templates import render_page
 
 PAGE_TEMPLATE = "class_page.html"

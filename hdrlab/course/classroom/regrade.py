@@ -22,9 +22,10 @@ from typing import Any
 from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.overview import histogram
-from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.reports import csv_tables, results
+from hdrlab.course.grading import results
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students import csv_tables
+from hdrlab.course.students.roster import Roster
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.show.pages.templates import render_page
 

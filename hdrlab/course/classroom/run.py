@@ -14,17 +14,17 @@ from datetime import datetime
 from functools import cache
 from pathlib import Path
 
-from hdrlab.course import grading
-from hdrlab.course.checks import rewording
 from hdrlab.course.classroom import jobs
-from hdrlab.course.classroom.handins import Submission
 from hdrlab.course.classroom.jobs import GradingJob, JobResult
-from hdrlab.course.classroom.late import LateRecord
-from hdrlab.course.classroom.roster import Roster
+from hdrlab.course.grading import doctor, grader, results
 from hdrlab.course.plan import GradingOptions, Homework, Late
-from hdrlab.course.reports import gradebook, results
-from hdrlab.course.sandbox import doctor, running
+from hdrlab.course.reports import gradebook
+from hdrlab.course.sandbox import running
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students.late_days import LateRecord
+from hdrlab.course.students.roster import Roster
+from hdrlab.course.submissions.class_folder import Submission
+from hdrlab.course.variants import rewording
 from hdrlab.errors import InputError
 
 # They are copied into each grading job.
@@ -101,7 +101,7 @@ class Grader:
                 hidden_folder = Path(scratch) / "hidden"
                 write_files(hidden_folder, self.hidden)
             conditions = replace(self.conditions, student=student, hidden=hidden_folder)
-            result = grading.grade(job.path, self.homework, conditions)
+            result = grader.grade(job.path, self.homework, conditions)
         return result._replace(student=job.owner)
 
 
@@ -156,8 +156,8 @@ def make_jobs(
     submission is graded again.
     """
     variants = [rewording.FOLDER / f"{task.id}.toml" for task in homework.tasks if task.parameters]
-    checks = [*grading.files_of(homework, conditions.hidden), *variants]
-    checks_digest = grading.specification(checks)
+    checks = [*grader.files_of(homework, conditions.hidden), *variants]
+    checks_digest = grader.specification(checks)
     settings = repr(
         [homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout]
     )

@@ -44,7 +44,7 @@ header injection       one host's name, redirects to constants, strict parsing  
 forged client address  a proxy is believed where one is stated                     a_forged_client_address
 flood by a voter       so many requests and ballots of each session                a_flood
 formulas in a table    cells are text                                              formulas_in_a_table
-archive with traps     see hdrlab.course.archives.unpack                           an_archive_with_traps
+archive with traps     see submissions/archives/unpack.py               an_archive_with_traps
 another's artifact     the file's name says whose it is, not what stands in it     anothers_artifact
 votes erased           a picture that is replaced keeps its votes, uncounted       votes_erased
 =====================  ==========================================================  ======================

@@ -15,11 +15,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.archives import unpack
-from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.gallery import pictures, store
 from hdrlab.course.projects.project import MANIFEST
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students.roster import Roster
+from hdrlab.course.submissions.archives import unpack
 from hdrlab.errors import InputError
 
 # characters

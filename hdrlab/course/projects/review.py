@@ -17,10 +17,17 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, check_names, check_sizes
-from hdrlab.course.code import names
 from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
 from hdrlab.course.projects.words import ASKED
+from hdrlab.course.source_code import names
+from hdrlab.course.submissions.archives.members import (
+    LIMITS,
+    Limits,
+    Member,
+    Refused,
+    check_names,
+    check_sizes,
+)
 from hdrlab.errors import InputError
 from hdrlab.io import decode, radiance
 

@@ -9,8 +9,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import hdrlab
-from hdrlab.course.archives.packing import packed
 from hdrlab.course.projects.project import MANIFEST, Project
+from hdrlab.course.submissions.archives.packing import packed
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, metadata
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import jinja2
 
-from hdrlab.course.reports import results
+from hdrlab.course.grading import results
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 

@@ -7,7 +7,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course.reports import csv_tables, feedback, results
+from hdrlab.course.grading import results
+from hdrlab.course.reports import feedback
+from hdrlab.course.students import csv_tables
 from hdrlab.io.files import write
 
 COLUMNS = ("student", "homework", "tier", "score", "max_score")

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from copydetect import CodeFingerprint, compare_files
 
-from hdrlab.course import plan, variants
-from hdrlab.course.checks import rewording
-from hdrlab.course.classroom.handins import Submission
-from hdrlab.course.code import inline
-from hdrlab.course.reports import csv_tables
+from hdrlab.course import plan
 from hdrlab.course.similarity import comparison, student_code
+from hdrlab.course.source_code import inline
+from hdrlab.course.students import csv_tables
+from hdrlab.course.submissions.class_folder import Submission
+from hdrlab.course.variants import rewording
 from hdrlab.io.files import write
 from hdrlab.show.pages.templates import templates
 
@@ -86,7 +86,7 @@ def asked_variants(
     homework: plan.Homework, code: student_code.TeamCode, secret: str
 ) -> AskedVariants:
     """Return the variants that a team is asked, and those on its sheet that differ."""
-    tasks = variants.draw(homework, code.team, secret, code.variants).tasks
+    tasks = plan.draw_variants(homework, code.team, secret, code.variants).tasks
     asked = {task.id: task.variant for task in tasks}
     if code.variants is None:
         return AskedVariants(asked, {})

@@ -12,9 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import submission
-from hdrlab.course.code import names
-from hdrlab.course.material import handouts
+from hdrlab.course.source_code import names
+from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
 MAX_TASK_CHARACTERS = 30_000
@@ -60,7 +59,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> TeamCode
         return tent(n)
     """
     try:
-        work = submission.read(path, homework, tasks, handouts.given_cells(homework))
+        work = reader.read(path, homework, tasks, reader.given_cells(homework))
     except InputError as error:
         return TeamCode(team, {}, (str(error),))
     texts: dict[str, str] = {}
@@ -121,10 +120,10 @@ def _statements(text: str) -> Iterator[tuple[ast.stmt, str]]:
 def _given(homework: str) -> frozenset[str]:
     """Return the statements of an assignment's handout."""
     return frozenset(
-        part for cell in handouts.given_cells(homework) for _, part in _statements(cell.text)
+        part for cell in reader.given_cells(homework) for _, part in _statements(cell.text)
     )
 
 
 def handout_code(homework: str) -> tuple[str, ...]:
     """Return the code cells of an assignment's handout, stubs included."""
-    return tuple(cell.text for cell in handouts.cells(homework))
+    return tuple(cell.text for cell in reader.assignment_cells(homework))

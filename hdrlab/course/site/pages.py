@@ -18,8 +18,8 @@ import nbformat
 import numpy as np
 from markupsafe import Markup
 
+from hdrlab.course.authoring.execute import ExecutedNotebook, library_key
 from hdrlab.course.site import live, reference
-from hdrlab.course.site.execute import ExecutedNotebook, library_key
 from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page

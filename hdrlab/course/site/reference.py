@@ -13,7 +13,7 @@ from itertools import groupby, takewhile
 from pathlib import Path
 
 import hdrlab
-from hdrlab.course.code import names
+from hdrlab.course.source_code import names
 from hdrlab.show.pages.templates import templates
 
 NOT_LIBRARY = ("hdrlab.cli", "hdrlab.course", "hdrlab.__main__", "hdrlab.demo", "hdrlab.scenes.")

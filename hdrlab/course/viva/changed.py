@@ -19,7 +19,7 @@ from functools import cache
 from itertools import accumulate
 from pathlib import Path
 
-from hdrlab.course.code import names
+from hdrlab.course.source_code import names
 
 # token -> what may replace it
 REPLACEMENTS: dict[str, list[str]] = tomllib.loads(

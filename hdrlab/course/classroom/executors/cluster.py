@@ -22,12 +22,12 @@ from distributed import Client, Future, KilledWorker
 from distributed.comm import resolve_address
 
 import hdrlab
-from hdrlab.course import grading, scratch
-from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.classroom.executors import subprocess_runner
+from hdrlab.course import scratch
 from hdrlab.course.classroom.executors.processes import JOB_TIMEOUT_SECONDS, WAIT_SECONDS
-from hdrlab.course.classroom.executors.subprocess_runner import ProcessFailed
 from hdrlab.course.classroom.jobs import GradingJob, JobAttempt, Work
+from hdrlab.course.grading import grader
+from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.sandbox.subprocess_runner import LIBRARY, ProcessFailed
 from hdrlab.errors import InputError
 
 CONNECT_SECONDS = 5.0  # to find the cluster, and to fetch a result
@@ -78,7 +78,7 @@ def version() -> str:
 @cache
 def _source_digest() -> str:
     paths = sorted(path for path in LIBRARY.rglob("*.*") if path.suffix in SOURCE_SUFFIXES)
-    return grading.specification(paths)[:8]
+    return grader.specification(paths)[:8]
 
 
 def run_remote_job(remote_job: RemoteJob) -> bytes:

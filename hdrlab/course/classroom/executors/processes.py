@@ -5,9 +5,9 @@ import threading
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Self
 
-from hdrlab.course.classroom.executors import subprocess_runner
-from hdrlab.course.classroom.executors.subprocess_runner import ProcessFailed
 from hdrlab.course.classroom.jobs import GradingJob, JobAttempt, Work
+from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.sandbox.subprocess_runner import ProcessFailed
 
 JOB_TIMEOUT_SECONDS = 1800.0
 WAIT_SECONDS = 0.5

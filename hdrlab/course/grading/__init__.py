@@ -1,0 +1,1 @@
+"""Grade one submission: read it, run the checks, and divide the points among them."""

@@ -1,0 +1,1 @@
+"""Variants of a task: the same question with other parameters."""
