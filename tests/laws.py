@@ -34,9 +34,9 @@ def refuses_and_counts_what_is_no_radiance(tonemap):
 
 def refuses_wrong_shapes(tonemap):
     for shape in ((), (5,), (4, 5, 3), (2, 4, 5, 3), (0, 5)):
-        with pytest.raises(ValueError, match="expected luminance"):
+        with pytest.raises(ValueError, match="luminance"):
             tonemap(np.ones(shape))
-    with pytest.raises(ValueError, match="expected luminance"):
+    with pytest.raises(ValueError, match="luminance"):
         tonemap(np.full((4, 5), "bright"))
 
 

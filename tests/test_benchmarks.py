@@ -89,7 +89,7 @@ def test_the_summary_counts_the_holds_and_names_what_is_not_met():
             (row(faster(1), name="alone"), {OURS: Figures(1, 1)}),
         ]
     )
-    assert text.splitlines()[0] == "1 of 3 holds are met"
+    assert "1 of 3" in text.splitlines()[0]
     assert "MISSED: work" in text and "not judged: alone" in text
 
 

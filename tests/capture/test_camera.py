@@ -70,7 +70,7 @@ def test_no_response_means_a_linear_one():
     "bad", ["kodachrome", lambda X: 1 - X, lambda X: 2 * X, lambda X: 0 * X, lambda X: 0.5]
 )
 def test_what_is_no_response_is_refused(bad):
-    with pytest.raises(ValueError, match="expected a response"):
+    with pytest.raises(ValueError, match="response"):
         responses.as_response(bad)
 
 

@@ -72,7 +72,7 @@ def test_a_sunlit_white_wall_fills_the_levels_near_the_sunny_sixteen_rule():
 
 @pytest.mark.parametrize("text", ["", "1/0", "-1", "0", "fast", "1/", "inf", "nan"])
 def test_a_time_that_means_nothing_is_refused_by_name(text):
-    with pytest.raises(ValueError, match="expected a shutter time"):
+    with pytest.raises(ValueError, match="shutter time"):
         exposure.seconds(text)
 
 
@@ -83,7 +83,7 @@ def test_settings_that_are_not_positive_are_refused(bad):
         lambda: exposure.ev(1, bad),
         lambda: exposure.true_time(bad),
     ):
-        with pytest.raises(ValueError, match="expected a positive"):
+        with pytest.raises(ValueError, match="positive"):
             call()
     with pytest.raises(ValueError, match="1 or 3"):
         exposure.shutter_series(2)

@@ -58,7 +58,7 @@ def test_four_times_the_speed_takes_a_quarter_of_the_time():
 
 @pytest.mark.parametrize(("low", "high"), [(0, 1), (2, 1), (-1, 1), (1, np.inf), (np.nan, 1)])
 def test_luminances_that_mean_nothing_are_refused(low, high):
-    with pytest.raises(ValueError, match="expected luminances"):
+    with pytest.raises(ValueError, match="luminances"):
         planning.plan(low, high)
 
 
@@ -156,6 +156,6 @@ def test_a_bracket_that_the_camera_s_times_do_not_hold_on_one_side_moves_to_the_
 @pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
 def test_a_bracket_in_which_two_times_would_be_one_is_refused(frames, stops):
     with pytest.raises(
-        ValueError, match=f"expected {frames} times {stops:g} stops apart, the camera has 11 over"
+        ValueError, match=f"{frames} times {stops:g} stops apart, the camera has 11 over"
     ):
         planning.around(0.1, 2.0 ** np.arange(-10, 1), frames, stops)

@@ -87,7 +87,7 @@ def test_other_capitals_are_the_same_name_where_the_disk_says_so(tmp_path):
     """As on Windows and macOS: there both names lead to one file, which a link shows here."""
     (tmp_path / "IMG.JPG").write_bytes(b"original")
     os.link(tmp_path / "IMG.JPG", tmp_path / "img.jpg")
-    with pytest.raises(ValueError, match="img.jpg: expected another name to write to"):
+    with pytest.raises(ValueError, match="img.jpg: .*another name to write to"):
         files.require_other([tmp_path / "img.jpg"], [tmp_path / "IMG.JPG"])
 
 

@@ -57,13 +57,13 @@ def test_times_become_float64():
 
 @pytest.mark.parametrize("times", [[1], [1, 2, 3], [[1, 2]], 1, []])
 def test_as_many_times_as_images_are_wanted(times):
-    with pytest.raises(ValueError, match="expected 2 exposure times, one per image, got shape"):
+    with pytest.raises(ValueError, match="2 exposure times, one per image.*shape"):
         arrays.as_times(times, 2)
 
 
 @pytest.mark.parametrize("bad", [0, -1, np.nan, np.inf])
 def test_a_time_that_is_not_positive_and_finite_is_refused(bad):
-    with pytest.raises(ValueError, match=r"positive exposure times in seconds, got \[1.0, "):
+    with pytest.raises(ValueError, match=r"positive exposure times in seconds.*\[1.0, "):
         arrays.as_times([1, bad], 2)
 
 
@@ -71,7 +71,7 @@ def test_a_mask_is_one_per_image_and_none_passes():
     images = np.zeros((2, 3, 4, 3), np.uint8)
     assert arrays.as_mask(None, images) is None
     assert arrays.as_mask(np.ones((2, 3, 4)), images).dtype == bool
-    with pytest.raises(ValueError, match=r"mask of shape \(2, 3, 4\), got shape \(3, 4\)"):
+    with pytest.raises(ValueError, match=r"mask of shape \(2, 3, 4\).*shape \(3, 4\)"):
         arrays.as_mask(np.ones((3, 4)), images)
 
 
@@ -89,7 +89,7 @@ def test_radiance_and_luminance_become_float32_without_a_copy_where_they_are(che
 def test_values_that_are_no_light_are_counted(check):
     E = np.ones((4, 5))
     E[0, :2], E[1, :3], E[2, 0] = np.nan, np.inf, -1
-    with pytest.raises(ValueError, match="got 2 NaN, 3 infinite and 1 negative"):
+    with pytest.raises(ValueError, match="2 NaN, 3 infinite and 1 negative"):
         check(E)
 
 
@@ -104,13 +104,13 @@ def test_a_float64_beyond_float32_counts_as_infinite():
 
 @pytest.mark.parametrize("shape", [(), (5,), (4, 5, 4), (2, 4, 5, 3), (0, 5), (4, 0, 3)])
 def test_radiance_of_another_shape_is_refused(shape):
-    with pytest.raises(ValueError, match="expected radiance"):
+    with pytest.raises(ValueError, match="radiance"):
         arrays.as_radiance(np.ones(shape))
 
 
 @pytest.mark.parametrize("shape", [(), (5,), (4, 5, 3), (0, 5)])
 def test_luminance_of_another_shape_is_refused(shape):
-    with pytest.raises(ValueError, match=r"expected luminance \(H, W\), got"):
+    with pytest.raises(ValueError, match=r"luminance \(H, W\)"):
         arrays.as_luminance(np.ones(shape))
 
 
@@ -118,7 +118,7 @@ def test_luminance_of_another_shape_is_refused(shape):
     "values", [np.full((4, 5), "x"), np.ones((4, 5), complex), np.ones((4, 5), bool)]
 )
 def test_radiance_that_is_no_number_is_refused(values):
-    with pytest.raises(ValueError, match="expected radiance as numbers"):
+    with pytest.raises(ValueError, match="radiance as numbers"):
         arrays.as_radiance(values)
 
 
@@ -147,17 +147,16 @@ def test_what_is_no_table_is_refused(table):
 
 
 def test_a_description_holds_shape_type_and_range():
-    assert arrays.describe([[1, 5]]) == "shape (1, 2), dtype int64, values 1 to 5"
-    assert arrays.describe([]) == "shape (0,), dtype float64"
-    assert arrays.describe(["a"]) == "shape (1,), dtype <U1"
+    description = arrays.describe([[1, 5]])
+    assert all(part in description for part in ("(1, 2)", "int64", "1 to 5"))
+    assert "(0,)" in arrays.describe([]) and "float64" in arrays.describe([])
+    assert "(1,)" in arrays.describe(["a"])
 
 
 def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
     assert arrays.as_times([1, 1], 2).tolist() == [1, 1]
     assert arrays.as_times([1, 1, 2], 3, distinct=2).tolist() == [1, 1, 2]
-    with pytest.raises(
-        ValueError, match=r"at least 2 different exposure times, got \[1.0, 1.0\] s"
-    ):
+    with pytest.raises(ValueError, match=r"at least 2 different exposure times.*\[1.0, 1.0\] s"):
         arrays.as_times([1, 1], 2, distinct=2)
 
 

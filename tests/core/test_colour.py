@@ -113,7 +113,7 @@ def test_no_light_and_any_light_stay_in_the_display(recolour, level, saturation)
 
 @pytest.mark.parametrize("verb", [colour.recolour, colour.render])
 def test_what_does_not_fit_together_is_refused(verb):
-    with pytest.raises(ValueError, match=r"expected L and Ld of shape \(40, 50\)"):
+    with pytest.raises(ValueError, match=r"L and Ld of shape \(40, 50\)"):
         verb(E, L[:-1], Ld)
     with pytest.raises(ValueError, match="1 NaN"):
         verb(E, L, np.where(np.arange(2000).reshape(L.shape) == 5, np.nan, Ld))
@@ -182,7 +182,7 @@ def test_render_takes_either_way_of_colour_by_its_name():
                 np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
             )
         assert np.array_equal(colour.render(L, L, Ld, way=way), colour.to_8bit(Ld))
-    with pytest.raises(ValueError, match="ratio, hue, got 'lab'"):
+    with pytest.raises(ValueError, match="ratio, hue.*'lab'"):
         colour.render(E, L, Ld, way="lab")
 
 

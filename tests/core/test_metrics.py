@@ -46,7 +46,7 @@ def test_a_response_of_65536_levels_compares_with_one_of_256():
 
 
 def test_responses_whose_channels_do_not_fit_are_refused():
-    with pytest.raises(ValueError, match=r"response \(n,\) or \(n, 3\), got shape"):
+    with pytest.raises(ValueError, match=r"response \(n,\) or \(n, 3\).*shape"):
         metrics.response_rmse(np.stack([LINEAR] * 3, axis=-1), np.stack([LINEAR] * 2, axis=-1))
 
 
@@ -95,7 +95,7 @@ def test_maps_that_cannot_be_compared_are_refused():
     E = truth((4, 5))
     with pytest.raises(ValueError, match="one shape"):
         metrics.radiance_errors(E, E[1:], E > 0)
-    with pytest.raises(ValueError, match="well exposed pixel with light, got none"):
+    with pytest.raises(ValueError, match="well exposed pixel with light.*none"):
         metrics.radiance_errors(E, E, E < 0)
 
 
@@ -107,5 +107,5 @@ def test_offsets_are_compared_up_to_the_shift_that_most_frames_share():
 
 
 def test_offsets_that_do_not_pair_are_refused():
-    with pytest.raises(ValueError, match="expected offsets"):
+    with pytest.raises(ValueError, match="offsets"):
         metrics.offset_errors([[0, 0]], [[0, 0], [1, 1]])

@@ -31,7 +31,7 @@ def test_gray_weighs_the_channels_as_luminance_does():
 
 @pytest.mark.parametrize("shape", [(4,), (4, 5, 2), (0, 5), (1, 4, 5, 3)])
 def test_what_is_no_picture_is_refused(shape):
-    with pytest.raises(ValueError, match="expected a picture"):
+    with pytest.raises(ValueError, match="picture"):
         statistics(np.zeros(shape, np.uint8))
     with pytest.raises(ValueError, match="uint8"):
         statistics(np.zeros((4, 5)))

@@ -152,7 +152,7 @@ def test_a_table_is_read_up_to_its_bound(tmp_path):
         {"a": "1", "b": ""},
         {"a": "2", "b": "3"},
     ]
-    with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
+    with pytest.raises(ValueError, match=f"at most {size - 1} bytes.*{size}"):
         csv_tables.read_csv(tmp_path / "a.csv", max_bytes=size - 1)
 
 

@@ -191,7 +191,7 @@ def test_a_submission_that_never_ends_is_ended(address, tmp_path):
 @pytest.mark.parametrize("nowhere", ["tcp://127.0.0.1:1", "nowhere", "http://a:1"])
 def test_where_there_is_no_cluster_it_says_so(nowhere, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)  # it is not asked again and again
-    with pytest.raises(ValueError, match="expected a Dask cluster at"):
+    with pytest.raises(ValueError, match="Dask cluster at"):
         graded(nowhere, tmp_path)
 
 
@@ -224,9 +224,7 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
             client.run(rename, hdrlab.__version__)
     job = errands.make_jobs(tmp_path / "class", 1)[0]
     task = cluster.RemoteJob(errands.grade, cluster.version, job, b"", 1.0, "0.0.7 (of another)")
-    with pytest.raises(
-        ValueError, match=r"expected 0\.0\.7 \(of another\)"
-    ):  # of a worker that joins later
+    with pytest.raises(ValueError, match=r"0\.0\.7 \(of another\)"):  # of a worker that joins later
         cluster.run_remote_job(task)
 
 

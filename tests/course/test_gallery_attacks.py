@@ -289,7 +289,7 @@ def test_svg_as_an_artifact(tmp_path):
     svg = b'<svg xmlns="http://www.w3.org/2000/svg"><script>alert(1)</script></svg>'
     for name in ("team1.svg", "team1.png", "team1.jpg"):
         (tmp_path / name).write_bytes(svg)
-        with pytest.raises(ValueError, match="expected a photograph"):
+        with pytest.raises(ValueError, match="photograph"):
             pictures.prepare(tmp_path / name)
 
 
@@ -344,7 +344,7 @@ def test_a_link_as_an_artifact(tmp_path):
 def test_what_is_no_plain_file_is_refused_before_it_is_opened(tmp_path, kind, ending):
     odd = tmp_path / f"ann{ending}"
     os.mkfifo(odd) if kind == "pipe" else odd.symlink_to(handed_in(tmp_path / "other.zip"))
-    with pytest.raises(ValueError, match="expected a plain file"), collect.entry(odd, ROSTER):
+    with pytest.raises(ValueError, match="plain file"), collect.entry(odd, ROSTER):
         pass
 
 

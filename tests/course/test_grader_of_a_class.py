@@ -102,7 +102,7 @@ def test_hidden_checks_travel_by_name_up_to_their_bound(tmp_path, monkeypatch):
     monkeypatch.setattr(run, "MAX_HIDDEN_CHECKS_BYTES", 11)
     assert run.read_hidden_checks(tmp_path / "h") == whole
     monkeypatch.setattr(run, "MAX_HIDDEN_CHECKS_BYTES", 10)
-    with pytest.raises(ValueError, match="expected hidden checks of at most 10 bytes, got 11"):
+    with pytest.raises(ValueError, match="hidden checks of at most 10 bytes.*11"):
         run.read_hidden_checks(tmp_path / "h")
-    with pytest.raises(ValueError, match="expected a folder with hidden checks, got"):
+    with pytest.raises(ValueError, match="folder with hidden checks"):
         run.read_hidden_checks(tmp_path / "h" / "b.py")

@@ -106,7 +106,7 @@ def test_of_a_long_name_sixty_letters_are_shown():
 
 def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
     members.check_count(3, Limits(members=3))
-    with pytest.raises(Refused, match="^it has 4 members, expected at most 3$"):
+    with pytest.raises(Refused, match="^it has 4 members, .*at most 3$"):
         members.check_count(4, Limits(members=3))
     with pytest.raises(Refused, match="it has 2 members"):
         members.check_names(["../a", "b"], Limits(members=1))
@@ -114,18 +114,14 @@ def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
 
 def test_a_ratio_is_said_in_whole_times_also_of_nothing():
     big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
-    with pytest.raises(
-        Refused, match=r"^it unpacks to 262144 times its size, expected at most 200$"
-    ):
+    with pytest.raises(Refused, match=r"^it unpacks to 262144 times its size, .*at most 200$"):
         members.check_sizes(big, 4, LIMITS)
-    with pytest.raises(
-        Refused, match=r"^it unpacks to 1048577 times its size, expected at most 200$"
-    ):
+    with pytest.raises(Refused, match=r"^it unpacks to 1048577 times its size, .*at most 200$"):
         members.check_sizes(big, 0, LIMITS)
     members.check_sizes([Member(PurePosixPath("a"), 1 << 20)], 0, LIMITS)
-    with pytest.raises(Refused, match="^'a' claims 8 bytes, expected at most 7$"):
+    with pytest.raises(Refused, match="^'a' claims 8 bytes, .*at most 7$"):
         members.check_sizes([Member(PurePosixPath("a"), 8)], 8, Limits(one=7))
-    with pytest.raises(Refused, match="^its files claim 14 bytes together, expected at most 13$"):
+    with pytest.raises(Refused, match="^its files claim 14 bytes together, .*at most 13$"):
         members.check_sizes([Member(PurePosixPath("a"), 7)] * 2, 8, Limits(one=7, total=13))
 
 

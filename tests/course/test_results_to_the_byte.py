@@ -72,11 +72,11 @@ def test_a_teams_copy_is_the_same_text_without_what_is_hidden():
 
 @pytest.mark.parametrize("version", [0, 2, "1", None])
 def test_another_version_is_refused(version):
-    with pytest.raises(ValueError, match="expected a result of version 1, written by hdrlab grade"):
+    with pytest.raises(ValueError, match="result of version 1, written by hdrlab grade"):
         results.from_json(
             json.dumps(json.loads(results.to_json(RESULT)) | {"version": version}).encode()
         )
-    with pytest.raises(ValueError, match="expected a result of version 1"):
+    with pytest.raises(ValueError, match="result of version 1"):
         results.from_json(b"[1]")
 
 
@@ -115,7 +115,7 @@ def test_an_early_result_lacks_what_came_later():
     del read["at_most"], read["checks"][0]["kind"], read["checks"][0]["follows"]
     assert results.from_json(json.dumps(read).encode()) == RESULT
     for name in ("student", "checks", "problems"):
-        with pytest.raises(ValueError, match="expected a result written by hdrlab grade"):
+        with pytest.raises(ValueError, match="result written by hdrlab grade"):
             results.from_json(
                 json.dumps({key: one for key, one in read.items() if key != name}).encode()
             )

@@ -44,9 +44,7 @@ def test_of_a_sheet_all_that_a_value_changes_must_be_there(known):
     assert rewording.reword("t", "large/down", "five up", all_of_it=True) == "nine down"
     assert rewording.reword("t", "small/up", "words", all_of_it=True) == "words"
     assert rewording.reword("t", "large/up", "few", all_of_it=True) == "many"
-    with pytest.raises(
-        ValueError, match="expected the sheet of t in hdrlab's words, to put 'down' there"
-    ):
+    with pytest.raises(ValueError, match="sheet of t in hdrlab's words, to put 'down' there"):
         rewording.reword("t", "large/down", "five", all_of_it=True)
 
 

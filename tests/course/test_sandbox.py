@@ -342,9 +342,7 @@ def test_large_answers_are_not_remembered_without_end():
 
 
 def test_an_unknown_tier_is_an_error():
-    with pytest.raises(
-        ValueError, match="expected one of the tiers strict, container, practice, got 'none'"
-    ):
+    with pytest.raises(ValueError, match="strict, container, practice.*'none'"):
         tiers.choose("none")
 
 

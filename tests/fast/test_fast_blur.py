@@ -35,17 +35,19 @@ def test_a_wide_kernel_is_a_gaussian_to_a_five_hundredth_of_its_peak(sigma):
     assert np.abs(blur.gaussian(point, sigma) - plain).max() < 0.002 * plain.max()
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (2, 3), (1, 90), (37, 64), (130, 257)])
-@pytest.mark.parametrize("sigma", [4, 9, 40])
+@pytest.mark.parametrize("shape", [(1, 1), (2, 3), (7, 1), (1, 90), (37, 64), (130, 257)])
+@pytest.mark.parametrize("sigma", [4, 9, 40, 200])
 def test_a_wide_blur_reflects_at_the_edges_like_the_plain_one(shape, sigma):
     image = 1 + np.random.default_rng(2).random(shape)
     assert np.allclose(blur.gaussian(image, sigma), gaussian_filter(image, sigma), rtol=3e-3)
 
 
-def test_splines_between_nodes_reproduce_a_straight_line():
-    U = blur._spline(4, 8)
-    assert np.allclose(U.sum(axis=1), 1)
-    assert np.allclose(U @ np.arange(11), 1 + np.arange(32) / 4, atol=1e-5)
+@pytest.mark.parametrize("sigma", [4, 9, 16])
+def test_a_wide_blur_leaves_a_straight_ramp_as_it_is(sigma):
+    ramp = np.add.outer(np.arange(240), 2 * np.arange(230)).astype(np.float32)
+    far_from_the_edges = (slice(90, 150), slice(90, 140))
+    blurred = blur.gaussian(ramp, sigma)
+    assert np.allclose(blurred[far_from_the_edges], ramp[far_from_the_edges], rtol=1e-4)
 
 
 @pytest.mark.parametrize("sigma", [4, 5.9, 11.3, 32.6])
@@ -55,20 +57,8 @@ def test_six_decades_below_a_lamp_a_wide_blur_is_still_the_gaussian_to_a_seventh
     image[80:90, 100:120] = 1e3
     exact = gaussian_filter(image.astype(np.float64), sigma, mode="reflect", truncate=7)
     assert np.abs(blur.gaussian(image, sigma) / exact - 1).max() < 0.15
-    assert np.abs(blur._direct(image, sigma) / exact - 1).max() > 0.75
-
-
-@pytest.mark.parametrize(
-    ("sigma", "h", "shape"), [(9, 4, (70, 90)), (40, 16, (50, 33)), (200, 64, (7, 1))]
-)
-def test_folding_the_band_matrix_is_reflecting_the_picture(sigma, h, shape):
-    """The picture is read where it stands; the plain form continues it first, as often as need be."""
-    image = np.random.default_rng(3).random(shape, dtype=np.float32)
-    k = blur._taps(sigma)
-    few, r = blur._sampled(image, k, h), len(k) // 2
-    K = blur._band(k, len(few), h)
-    around = np.pad(image, [(r + h, K.shape[1] - r - h - len(image)), (0, 0)], mode="symmetric")
-    assert np.allclose(few, K @ around, atol=1e-5)
+    cut_at_four_sigma = gaussian_filter(image.astype(np.float64), sigma, mode="reflect")
+    assert np.abs(cut_at_four_sigma / exact - 1).max() > 0.75
 
 
 @pytest.mark.parametrize("sigma", [0, -1, np.inf, np.nan])

@@ -35,9 +35,7 @@ def two_parts(path):
 @pytest.mark.parametrize("read", [exr.read, exr.read_dtypes])
 def test_the_second_part_of_an_exr_never_stands_for_a_damaged_first(tmp_path, read):
     two_parts(tmp_path / "parts.exr")
-    with pytest.raises(
-        ValueError, match=r"parts\.exr: expected an OpenEXR file, it is cut short or damaged"
-    ):
+    with pytest.raises(ValueError, match=r"parts\.exr: .*OpenEXR file, it is cut short or damaged"):
         read(tmp_path / "parts.exr")
 
 
@@ -93,7 +91,7 @@ def test_damage_at_the_end_of_rgbe_names_the_file(tmp_path):
     file = tmp_path / "end.hdr"
     rgbe.write(file, np.random.default_rng(0).random((20, 30, 3)))
     file.write_bytes(file.read_bytes() + bytes(50))
-    with pytest.raises(ValueError, match=r"end\.hdr: expected 20 scanlines"):
+    with pytest.raises(ValueError, match=r"end\.hdr: .*20 scanlines"):
         rgbe.read(file)
 
 
@@ -187,7 +185,7 @@ def test_an_exposure_beyond_float32_is_refused_and_divides_nothing(tmp_path, exp
     path.write_bytes(
         f"#?RADIANCE\nEXPOSURE={exposure}\n\n-Y 1 +X 1\n".encode() + bytes([9, 9, 9, 128])
     )
-    with pytest.raises(ValueError, match=r"a\.hdr: expected positive exposures"):
+    with pytest.raises(ValueError, match=r"a\.hdr: .*positive exposures"):
         rgbe.read(path)
 
 

@@ -36,13 +36,13 @@ def test_a_missing_folder_is_named_before_anything_is_written(tmp_path):
 
 
 def test_a_folder_is_not_replaced(tmp_path):
-    with pytest.raises(ValueError, match="expected the name of a file"), files.replacing(tmp_path):
+    with pytest.raises(ValueError, match="name of a file"), files.replacing(tmp_path):
         pytest.fail("the block ran")
 
 
 def test_a_device_is_not_replaced():
     with (
-        pytest.raises(ValueError, match="expected the name of a file"),
+        pytest.raises(ValueError, match="name of a file"),
         files.replacing(os.devnull),
     ):
         pytest.fail("the block ran")
@@ -70,9 +70,9 @@ def test_a_claim_beyond_the_limit_or_beyond_the_file_is_refused(tmp_path):
     files.check_size(path, 10, 10, 100)
     with pytest.raises(ValueError, match="small.bin.*at least one"):
         files.check_size(path, 0, 10)
-    with pytest.raises(ValueError, match=r"claims 65536 x 32768 pixels, expected at most"):
+    with pytest.raises(ValueError, match=r"claims 65536 x 32768 pixels, .*at most"):
         files.check_size(path, 32768, 65536)
-    with pytest.raises(ValueError, match="take 101 bytes or more, got 100"):
+    with pytest.raises(ValueError, match="take 101 bytes or more.*100"):
         files.check_size(path, 10, 10, 101)
 
 

@@ -394,17 +394,15 @@ def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_r
     came = radiance.read_radiance(tmp_path / "a.jxl")
     assert np.array_equal(came, E) if not distance else np.abs(came - E).mean() < 0.05 * E.mean()
     program(tmp_path, "cjxl", "a.pfm", "curved.jxl", *where[0].split())
-    with pytest.raises(ValueError, match=r"curved\.jxl: expected linear floats"):
+    with pytest.raises(ValueError, match=r"curved\.jxl: .*linear floats"):
         radiance.read_radiance(tmp_path / "curved.jxl")
     program(tmp_path, "cjxl", "a.pfm", "dc.jxl", "-d", "1", *where[1].split(), where[2])
-    with pytest.raises(ValueError, match=r"dc\.jxl: expected one frame of the picture's size"):
+    with pytest.raises(ValueError, match=r"dc\.jxl: .*one frame of the picture's size"):
         radiance.read_radiance(tmp_path / "dc.jxl")
 
 
 @pytest.mark.parametrize("suffix", [".webp", ".heic", ".jfif"])
 def test_a_picture_of_a_kind_that_is_not_written_is_refused_in_one_line(suffix, tmp_path):
-    with pytest.raises(
-        ValueError, match=rf"a\{suffix}: expected a picture file \(.*\), got \{suffix}"
-    ):
+    with pytest.raises(ValueError, match=rf"a\{suffix}: .*picture file \(.*\).*\{suffix}"):
         photos.write_picture(tmp_path / f"a{suffix}", RGB)
     assert not list(tmp_path.iterdir())

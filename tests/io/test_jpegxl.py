@@ -217,7 +217,7 @@ def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_
 ):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
     (tmp_path / "odd.jxl").write_bytes(header(*USUAL, frame=frame))
-    with pytest.raises(ValueError, match=r"odd\.jxl: expected one frame of the picture's size"):
+    with pytest.raises(ValueError, match=r"odd\.jxl: .*one frame of the picture's size"):
         photos.read_photo(tmp_path / "odd.jxl")
 
 
@@ -266,7 +266,7 @@ def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
 def test_codes_of_pq_and_hlg_are_named(curve, tmp_path):
     fields = [*SIZE, *AS_USUAL, *U8, *SRGB, (1, 2), (0, 1), *curve, (1, 2), (0, 2), (1, 1)]
     (tmp_path / "x.jxl").write_bytes(header(*fields))
-    assert read_header(tmp_path / "x.jxl").processing == "is coded for an HDR screen, by PQ or HLG"
+    assert "PQ or HLG" in read_header(tmp_path / "x.jxl").processing
 
 
 def test_one_that_is_cut_short_is_refused_by_name(tmp_path):

@@ -31,14 +31,14 @@ def test_the_suffix_may_be_in_capitals(tmp_path):
 @pytest.mark.parametrize("name", ["x.png", "x", "x.hdr.gz"])
 def test_another_suffix_is_refused_by_name(tmp_path, name):
     for act in read_radiance, lambda path: write_radiance(path, E):
-        with pytest.raises(ValueError, match=f"{name}: expected a radiance file .*.hdr"):
+        with pytest.raises(ValueError, match=f"{name}: .*radiance file .*.hdr"):
             act(tmp_path / name)
 
 
 def test_half_floats_are_for_exr_alone(tmp_path):
     write_radiance(tmp_path / "x.exr", np.ones((2, 2)), half=True)
     assert exr.read_dtypes(tmp_path / "x.exr") == ("float16",)
-    with pytest.raises(ValueError, match="x.hdr: expected an .exr file for half floats"):
+    with pytest.raises(ValueError, match="x.hdr: .*.exr file for half floats"):
         write_radiance(tmp_path / "x.hdr", E, half=True)
 
 

@@ -154,7 +154,7 @@ def test_raw_and_other_photographs_are_not_mixed(tmp_path):
 @pytest.mark.parametrize("data", [b"", b"not a photograph", b"II*\0" + bytes(100)])
 def test_what_is_no_raw_file_is_refused_by_name(tmp_path, data):
     (tmp_path / "x.nef").write_bytes(data)
-    with pytest.raises(ValueError, match="x.nef: expected a RAW photograph"):
+    with pytest.raises(ValueError, match="x.nef: .*RAW photograph"):
         read_photo(tmp_path / "x.nef")
 
 

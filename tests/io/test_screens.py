@@ -184,11 +184,9 @@ def test_codes_of_pq_are_told_of_where_a_file_is_described_and_where_it_stands_i
         (folder / f"{k}{path.suffix}").write_bytes(path.read_bytes())
     said = []
     read_bracket(folder, [1, 2], note=said.append)
-    assert (
-        len(said) == 1
-        and "is coded for an HDR screen, by PQ or HLG, so no one curve describes it" in said[0]
-    )
-    assert describe_file(path)["processing"] == "is coded for an HDR screen, by PQ or HLG"
+    (warning,) = said
+    assert "HDR screen" in warning
+    assert "PQ or HLG" in describe_file(path)["processing"]
 
 
 def test_a_gain_map_is_named_where_its_file_is_described_and_a_plain_picture_says_nothing(tmp_path):
@@ -209,6 +207,6 @@ def test_a_gain_map_that_does_not_say_its_meaning_is_refused_with_what_to_do(tmp
         parts.append(file.getvalue())
     (tmp_path / "apple.jpg").write_bytes(b"".join(parts))
     with pytest.raises(
-        ValueError, match="apple.jpg: expected a JPEG with a gain map.*take a bracket, or RAW"
+        ValueError, match="apple.jpg: .*JPEG with a gain map.*take a bracket, or RAW"
     ):
         radiance.read_radiance(tmp_path / "apple.jpg")

@@ -238,20 +238,18 @@ def test_explicit_times_beat_exif(tmp_path):
 
 
 def test_a_photograph_that_the_list_does_not_name_is_named(tmp_path):
-    with pytest.raises(
-        ValueError, match="times.txt: expected a time for each photograph.*none for b.jpg"
-    ):
+    with pytest.raises(ValueError, match="times.txt: .*time for each photograph.*none for b.jpg"):
         bracket_times(NAMES, [], wrote(tmp_path, "a.jpg 2\n"))
 
 
 @pytest.mark.parametrize("wrong", [0, -1, math.nan, math.inf])
 def test_times_that_are_not_positive_are_refused_by_name(wrong):
-    with pytest.raises(ValueError, match="b.jpg: expected a positive exposure time.*--times FILE"):
+    with pytest.raises(ValueError, match="b.jpg: .*positive exposure time.*--times FILE"):
         bracket_times(NAMES, [], [1, wrong])
 
 
 def test_as_many_times_as_photographs_are_expected():
-    with pytest.raises(ValueError, match="expected 2 exposure times, one per photograph, got 3"):
+    with pytest.raises(ValueError, match="2 exposure times, one per photograph.*3"):
         bracket_times(NAMES, [], [1, 2, 3])
 
 

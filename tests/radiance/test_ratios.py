@@ -132,7 +132,7 @@ def test_what_the_mask_hides_does_not_count():
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("truth", [200, 5000])
 def test_frames_that_do_not_overlap_in_brightness_are_refused(scheme, truth):
-    with pytest.raises(ValueError, match="expected frames that overlap in brightness"):
+    with pytest.raises(ValueError, match="frames that overlap in brightness"):
         ratios.estimate_ratio(*pair(log_normal(), truth, gray_noise=0.0), scheme=scheme)
 
 

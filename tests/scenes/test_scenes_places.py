@@ -87,12 +87,12 @@ def test_a_place_at_any_shape_keeps_its_pixels_square(shape):
 
 @pytest.mark.parametrize("shape", [(0, 5), (513, 768), (5,), (512, 769)])
 def test_a_shape_that_a_place_does_not_have_is_refused(shape):
-    with pytest.raises(ValueError, match="expected a shape"):
+    with pytest.raises(ValueError, match="shape"):
         scenes.chapel(shape)
 
 
 def test_a_place_that_does_not_exist_is_refused():
-    with pytest.raises(ValueError, match="expected one of chapel, workshop, street, got 'beach'"):
+    with pytest.raises(ValueError, match="chapel, workshop, street.*'beach'"):
         scenes.layers("beach")
 
 
@@ -134,7 +134,7 @@ def test_a_visitor_is_lit_by_the_place(name):
 
 @pytest.mark.parametrize("offset", [3, (1, 2, 3), (0.5, 0)])
 def test_an_offset_that_is_not_two_whole_numbers_is_refused(offset):
-    with pytest.raises(ValueError, match="expected an offset"):
+    with pytest.raises(ValueError, match="offset"):
         scenes.compose(scenes.layers("street", (16, 24)), offset)
 
 
@@ -366,7 +366,7 @@ def test_the_visitors_layer_makes_the_place_with_the_visitor_again():
 
 @pytest.mark.parametrize("height", [50, 16, 0])
 def test_a_height_that_cannot_be_halved_twice_is_refused(height):
-    with pytest.raises(ValueError, match="expected a height"):
+    with pytest.raises(ValueError, match="height"):
         render.rendered("chapel", height=height)
 
 
@@ -380,7 +380,7 @@ def test_rounds_are_averaged_and_what_a_half_float_cannot_hold_is_brought_into_i
 
 
 def test_no_round_at_all_is_refused():
-    with pytest.raises(ValueError, match="expected at least one round, got 0"):
+    with pytest.raises(ValueError, match="one round.*0"):
         render.rendered("chapel", rounds=0)
 
 
@@ -448,5 +448,5 @@ def test_without_mitsuba_the_command_says_what_to_install(tmp_path):
 
 def test_each_model_is_named_after_its_place():
     assert all(import_module(f"scenes.models.{name}").place for name in scenes.PLACES)
-    with pytest.raises(ValueError, match="expected one of"):
+    with pytest.raises(ValueError, match="beach"):
         render.model("beach")

@@ -82,7 +82,7 @@ def test_the_channels_colours_stay_apart_for_a_colour_blind_reader():
 
 @pytest.mark.parametrize("shape", [(256, 2), (4, 4, 4), ()])
 def test_a_response_of_another_shape_is_refused(shape):
-    with pytest.raises(ValueError, match=r"expected a response \(n,\) or \(n, 3\), got shape"):
+    with pytest.raises(ValueError, match=r"response \(n,\) or \(n, 3\).*shape"):
         plots.response(np.zeros(shape))
 
 
@@ -101,14 +101,15 @@ def test_many_samples_are_drawn_alike_and_counted():
 
 
 def test_samples_that_do_not_fit_their_irradiances_are_refused():
-    with pytest.raises(ValueError, match=r"expected Z \(N, P\), lE \(N,\) and B \(P,\), got"):
+    with pytest.raises(ValueError, match=r"Z \(N, P\), lE \(N,\) and B \(P,\)"):
         plots.samples(np.zeros((5, 3), int), np.zeros(4), np.zeros(3))
 
 
 def test_a_radiance_map_stands_above_one_legend_in_stops_and_decades():
     E = 2.0 ** np.linspace(-10, 10, 30 * 40).reshape(30, 40)
     shown = pictures.radiance(E, alt="A wedge")
-    assert shown.alts == ("A wedge, 20.0 stops from the darkest to the brightest",)
+    (alt,) = shown.alts
+    assert alt.startswith("A wedge") and "20.0 stops" in alt
     frame = iio.imread(io.BytesIO(shown.frames[0])).astype(int)
     ends = [
         np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
@@ -187,7 +188,7 @@ def test_a_picture_carries_its_alt_text_into_the_page():
 
 @pytest.mark.parametrize("alt", ["", "  ", None])
 def test_a_picture_without_alt_text_is_refused(alt):
-    with pytest.raises(ValueError, match="expected an alt text that says what the picture shows"):
+    with pytest.raises(ValueError, match="alt text that says what the picture shows"):
         pictures.picture(np.zeros((4, 5), np.uint8), alt=alt)
 
 

@@ -126,7 +126,7 @@ def test_how_sure_each_pixel_is_stands_there_where_it_was_asked(room, tmp_path):
 def test_where_no_pixel_is_sure_the_page_says_so_without_a_picture(tmp_path):
     state = flat()
     page = report(tmp_path, replace(state, s=np.full_like(state.E, np.inf)))
-    assert "how sure each pixel is, is not known" in page.text
+    assert "not known" in page.text
     assert not any("How sure" in one["alt"] for one in page.images)
 
 
@@ -134,7 +134,7 @@ def test_what_the_deviation_of_a_pixel_is_in_stops():
     E, s = np.full((1, 2, 3), 2.0, np.float32), np.full((1, 2, 3), 0.2, np.float32)
     s[0, 1, 2] = np.inf
     assert wording.deviation(E, s)[0] == pytest.approx([0.1 / np.log(2), np.inf], rel=1e-5)
-    assert wording.certainty(E, s) == "half of the pixels are sure to ± 0.14 stops, 95 % to ± 0.14"
+    assert wording.certainty(E, s).count("± 0.14") == 2  # of half of the pixels, and of 95 %
 
 
 def test_every_picture_has_alt_text_and_a_size_and_is_inside_the_page(page):
@@ -316,9 +316,7 @@ def test_a_report_that_fails_leaves_the_older_one(room, tmp_path):
 
 
 def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
-    with pytest.raises(
-        ValueError, match="expected a finished assembly, got one after the stage 'merge'"
-    ):
+    with pytest.raises(ValueError, match="finished assembly.*one after the stage 'merge'"):
         write_report(
             tmp_path, replace(flat(), stage="merge", medians=None), np.zeros((40, 60), np.uint8)
         )
@@ -328,7 +326,7 @@ def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
     "picture", [np.zeros((40, 59), np.uint8), np.zeros((40, 60)), np.zeros((40, 60, 4), np.uint8)]
 )
 def test_a_picture_that_does_not_fit_is_refused(picture, tmp_path):
-    with pytest.raises(ValueError, match=r"expected a uint8 picture of \(40, 60\) pixels, got"):
+    with pytest.raises(ValueError, match=r"uint8 picture of \(40, 60\) pixels"):
         write_report(tmp_path, flat(), picture)
 
 

@@ -45,7 +45,7 @@ def test_the_four_colours_part_in_gray_too():
     ("b", "compared"), [(np.zeros((2, 3)), None), (np.zeros((2, 2)), np.ones((2, 3)))]
 )
 def test_bitmaps_of_two_sizes_are_refused(b, compared):
-    with pytest.raises(ValueError, match="expected two bitmaps"):
+    with pytest.raises(ValueError, match="bitmaps"):
         drawn.overlay(np.zeros((2, 2)), b, compared)
 
 
@@ -115,7 +115,7 @@ def test_the_surface_has_dy_down_and_dx_across_and_marks_lie_where_they_belong()
 
 @pytest.mark.parametrize("errors", [np.ones((4, 4)), np.ones((3, 5)), np.ones(5)])
 def test_a_surface_without_a_middle_is_refused(errors):
-    with pytest.raises(ValueError, match="expected errors"):
+    with pytest.raises(ValueError, match="errors"):
         drawn.surface(errors)
 
 

@@ -38,7 +38,7 @@ def test_what_stands_beside_a_mantissa_is_what_the_file_says(pixel):
 
 @pytest.mark.parametrize("pixel", [np.zeros(3, np.uint8), np.zeros(4), [1, 2, 3, 4]])
 def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
-    with pytest.raises(ValueError, match="expected a pixel"):
+    with pytest.raises(ValueError, match="pixel"):
         bits.rgbe(pixel)
 
 
@@ -62,11 +62,11 @@ def test_power_times_mantissa_is_the_number(value):
 def test_beyond_the_largest_half_stands_infinity():
     said = texts(bits.number(1e5))
     assert any("infinity" in text for text in said) and not any("times" in text for text in said)
-    assert said[-1] == "100000 is stored as inf"
+    assert "100000" in said[-1] and "inf" in said[-1]
 
 
 def test_other_sizes_are_refused():
-    with pytest.raises(ValueError, match="expected 16 or 32 bits, got 64"):
+    with pytest.raises(ValueError, match="16 or 32 bits.*64"):
         bits.number(1.0, bits=64)
 
 
@@ -81,7 +81,7 @@ def test_a_scanline_shows_as_many_bytes_as_are_known():
     ("planes", "done"), [(np.zeros((3, 5)), 0), (np.zeros((4, 5)), 21), (np.zeros(20), 0)]
 )
 def test_what_is_no_scanline_is_refused(planes, done):
-    with pytest.raises(ValueError, match="expected planes"):
+    with pytest.raises(ValueError, match="planes"):
         bits.scanline(planes, done)
 
 

@@ -46,9 +46,9 @@ def test_a_logarithmic_axis_has_ticks_with_plain_numbers():
 
 
 def test_more_curves_than_colours_or_curves_of_another_length_are_refused():
-    with pytest.raises(ValueError, match="expected at most 6 curves in one picture, got 7"):
+    with pytest.raises(ValueError, match="6 curves in one picture.*7"):
         curves.lines(PLACES, {str(k): PLACES for k in range(7)}, **NAMES)
-    with pytest.raises(ValueError, match=r"expected a at the \(10,\) places, got"):
+    with pytest.raises(ValueError, match=r"at the \(10,\) places"):
         curves.lines(PLACES, {"a": PLACES[1:]}, **NAMES)
 
 
@@ -89,5 +89,5 @@ def test_samples_that_a_frame_clips_have_no_quotient():
 
 
 def test_quotients_that_do_not_fit_together_are_refused():
-    with pytest.raises(ValueError, match=r"expected M and f\(M\) \(N, P\) and R \(P - 1,\), got"):
+    with pytest.raises(ValueError, match=r"M and f\(M\) \(N, P\) and R \(P - 1,\)"):
         curves.quotients(np.ones((4, 3)), np.ones((4, 3)), [0.5])

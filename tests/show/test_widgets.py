@@ -103,18 +103,18 @@ def test_the_page_gets_frames_and_scripts_and_nothing_from_elsewhere():
 
 
 def test_no_states_are_refused():
-    with pytest.raises(ValueError, match="expected 1 to 200 states to play, got none"):
+    with pytest.raises(ValueError, match="1 to 200 states to play.*none"):
         widgets.play([], square, alt="Nothing")
 
 
 def test_a_generator_that_never_ends_is_refused():
-    with pytest.raises(ValueError, match="expected 1 to 200 states to play, got more"):
+    with pytest.raises(ValueError, match="1 to 200 states to play.*more"):
         widgets.play(itertools.count(), lambda _: square(), alt="For ever")
 
 
 @pytest.mark.parametrize("alt", ["", lambda state: " "])
 def test_play_refuses_pictures_without_alt_text(alt):
-    with pytest.raises(ValueError, match="expected an alt text"):
+    with pytest.raises(ValueError, match="alt text"):
         widgets.play(range(2), square, alt=alt)
 
 
@@ -244,7 +244,8 @@ def test_heavy_photographs_are_stored_at_fewer_positions():
     noise = np.random.default_rng(1).integers(0, 256, (300, 350, 3), dtype=np.uint8)
     tuner = widgets.tune(lambda level: noise, same, alt="Noise", stored=400, level=(0, 15))
     size = len(tuner.stored[0])
-    assert 1 < len(tuner.stored) == widgets.HEAVIEST // size < 16
+    assert 1 < len(tuner.stored) < 16
+    assert len(tuner.stored) * size <= widgets.HEAVIEST < (len(tuner.stored) + 1) * size
 
 
 def test_a_position_at_which_the_function_fails_has_no_picture():
@@ -296,16 +297,14 @@ def test_tune_stores_the_start_where_nothing_else_is_asked_for():
     ],
 )
 def test_a_range_that_is_none_is_refused(given):
-    with pytest.raises(ValueError, match="expected level as"):
+    with pytest.raises(ValueError, match="level as"):
         widgets.tune(square, same, alt="A square", level=given)
 
 
 def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
-    with pytest.raises(ValueError, match="expected at least one range"):
+    with pytest.raises(ValueError, match="one range"):
         widgets.tune(square, same, alt="A square")
-    with pytest.raises(
-        ValueError, match="expected parameters of the function, level, side; got hue"
-    ):
+    with pytest.raises(ValueError, match="parameters of the function, level, side; got hue"):
         widgets.tune(square, same, alt="A square", hue=(0, 9))
 
 
@@ -327,12 +326,12 @@ def test_a_press_means_a_place_of_the_picture_and_not_of_the_title_above_it():
 
 @pytest.mark.parametrize("point", [("level",), ("level", "level", "level"), ("level", "none")])
 def test_a_point_that_is_not_two_parameters_is_refused(point):
-    with pytest.raises(ValueError, match="expected a point of two parameters out of level, got"):
+    with pytest.raises(ValueError, match="point of two parameters out of level"):
         widgets.tune(lambda level=1: level, square, alt="A square", point=point, level=(0, 9))
 
 
 def test_tune_refuses_pictures_without_alt_text():
-    with pytest.raises(ValueError, match="expected an alt text"):
+    with pytest.raises(ValueError, match="alt text"):
         widgets.tune(square, same, alt="", level=(0, 9))
 
 

@@ -113,7 +113,7 @@ def test_a_lens_that_makes_no_sense_is_refused():
     for knobs in ({"size": 0}, {"magnification": 0}, {"size": 4, "magnification": 5}):
         with pytest.raises(ValueError, match="magnification"):
             brush.lens(np.ones((9, 9)), (4, 4), **knobs)
-    with pytest.raises(ValueError, match="expected luminance"):
+    with pytest.raises(ValueError, match="luminance"):
         brush.lens(np.ones((9, 9, 3)), (4, 4), size=4)
 
 

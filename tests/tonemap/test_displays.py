@@ -80,5 +80,5 @@ def test_all_are_those_of_colour_science():
 )
 @pytest.mark.parametrize("value", [-0.01, 10_001, np.nan, np.inf])
 def test_light_and_signals_that_cannot_be_coded_are_refused(function, value):
-    with pytest.raises(ValueError, match=r"expected values in 0 \.\.\. "):
+    with pytest.raises(ValueError, match=r"values in 0 \.\.\. "):
         function([0.5, value])

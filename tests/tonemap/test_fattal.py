@@ -229,7 +229,7 @@ def test_the_picture_is_close_to_that_of_pfstools():
     ],
 )
 def test_knobs_that_make_no_sense_are_refused(knobs):
-    with pytest.raises(ValueError, match=f"expected .*{next(iter(knobs))}"):
+    with pytest.raises(ValueError, match=f".*{next(iter(knobs))}"):
         fattal.tonemap(np.ones((3, 3)), **knobs)
 
 

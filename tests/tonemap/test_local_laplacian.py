@@ -97,5 +97,5 @@ def test_an_even_scene_is_white_and_a_black_one_black():
     [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}],
 )
 def test_knobs_out_of_range_are_refused(knobs):
-    with pytest.raises(ValueError, match="expected sigma"):
+    with pytest.raises(ValueError, match="sigma"):
         local_laplacian.tonemap(np.ones((3, 3)), **knobs)

@@ -33,7 +33,7 @@ def test_a_blur_does_not_care_which_way_up_the_picture_is(gaussian, sigma):
     ("image", "sigma"), [(np.ones(5), 1), (np.ones((2, 2, 3)), 1), (np.ones((0, 4)), 1)]
 )
 def test_an_image_of_another_shape_is_refused(gaussian, image, sigma):
-    with pytest.raises(ValueError, match="expected an image"):
+    with pytest.raises(ValueError, match="image"):
         gaussian(image, sigma)
 
 

@@ -111,7 +111,7 @@ def test_the_mirror_image_has_the_mirrored_solution():
 
 def test_what_is_no_picture_is_refused():
     for wrong in (np.ones(4), np.ones((2, 3, 4)), np.ones((0, 3))):
-        with pytest.raises(ValueError, match="expected a picture"):
+        with pytest.raises(ValueError, match="picture"):
             poisson.solve(wrong)
-    with pytest.raises(ValueError, match="expected a gradient field"):
+    with pytest.raises(ValueError, match="gradient field"):
         poisson.divergence(np.ones((3, 4)))

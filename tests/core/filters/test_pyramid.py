@@ -96,9 +96,9 @@ def test_the_depth_is_the_last_level_that_is_large_enough(shape, smallest, level
 
 
 def test_what_does_not_fit_is_refused():
-    with pytest.raises(ValueError, match="expected an image"):
+    with pytest.raises(ValueError, match="image"):
         pyramid.reduce(np.ones(5))
-    with pytest.raises(ValueError, match=r"expected sides \(5, 6\)"):
+    with pytest.raises(ValueError, match=r"sides \(5, 6\)"):
         pyramid.expand(np.ones((5, 5)), (10, 11))
 
 

@@ -84,7 +84,7 @@ def test_a_data_window_beyond_the_display_window_is_cut(tmp_path):
 
 def test_a_data_window_outside_the_display_window_is_refused(tmp_path):
     header = {"dataWindow": window(50, 0, 70, 36), "displayWindow": window(0, 0, 9, 9)}
-    with pytest.raises(ValueError, match="x.exr: expected pixels in its display window"):
+    with pytest.raises(ValueError, match="x.exr: .*pixels in its display window"):
         exr.read(wrote(tmp_path / "x.exr", {"RGB": RGB}, **header))
 
 
@@ -93,9 +93,7 @@ def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
     exr.write(path, RGB, half=True)
     assert np.array_equal(exr.read(path), RGB.astype(np.float16))
     exr.write(path, [[65504.0]], half=True)
-    with pytest.raises(
-        ValueError, match="expected radiance up to 65504 for half floats, got 65505"
-    ):
+    with pytest.raises(ValueError, match="radiance up to 65504 for half floats.*65505"):
         exr.write(path, [[1.0, 65505.0]], half=True)
     assert exr.read(path) == 65504
 
@@ -109,7 +107,7 @@ def test_what_is_no_radiance_is_not_written(tmp_path):
 
 def test_other_channels_are_refused_by_name(tmp_path):
     path = wrote(tmp_path / "x.exr", {"U": GRAY, "V": GRAY})
-    with pytest.raises(ValueError, match="x.exr: expected the channels R, G, B or Y, got U, V"):
+    with pytest.raises(ValueError, match="x.exr: .*the channels R, G, B or Y.*U, V"):
         exr.read(path)
 
 
@@ -120,14 +118,14 @@ def test_subsampled_channels_are_refused_by_name(tmp_path):
     assert data[at : at + 8] == np.array([1, 1], "<i4").tobytes()
     data[at : at + 8] = np.array([2, 2], "<i4").tobytes()
     path.write_bytes(data)
-    with pytest.raises(ValueError, match="x.exr: expected channels of full size, got subsampled"):
+    with pytest.raises(ValueError, match="x.exr: .*channels of full size.*subsampled"):
         exr.read(path)
 
 
 @pytest.mark.parametrize("data", [b"", b"v/1\x01", b"\x89PNG\r\n\x1a\n", b"v/1\x01" + bytes(100)])
 def test_what_is_no_openexr_file_is_refused_by_name(tmp_path, data):
     (tmp_path / "x.exr").write_bytes(data)
-    with pytest.raises(ValueError, match="x.exr: expected an OpenEXR file"):
+    with pytest.raises(ValueError, match="x.exr: .*OpenEXR file"):
         exr.read(tmp_path / "x.exr")
 
 
@@ -141,9 +139,7 @@ def test_a_file_that_is_cut_short_is_refused_and_nothing_is_printed(tmp_path, ca
     data = (tmp_path / "x.exr").read_bytes()
     for length in range(len(data) - 1, 8, -397):
         (tmp_path / "x.exr").write_bytes(data[:length])
-        with pytest.raises(
-            ValueError, match="x.exr: expected an OpenEXR file, it is cut short or damaged"
-        ):
+        with pytest.raises(ValueError, match="x.exr: .*OpenEXR file, it is cut short or damaged"):
             exr.read(tmp_path / "x.exr")
     assert capsys.readouterr().out == ""
 
@@ -156,7 +152,7 @@ def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, name):
     data[at : at + 16] = np.array([0, 0, 65535, 32767], "<i4").tobytes()
     (tmp_path / "x.exr").write_bytes(data)
     with pytest.raises(
-        ValueError, match="x.exr: (its header claims 65536 x 32768 pixels|expected an OpenEXR file)"
+        ValueError, match="x.exr: (its header claims 65536 x 32768 pixels| .*OpenEXR file)"
     ):
         exr.read(tmp_path / "x.exr")
 

@@ -76,7 +76,7 @@ def test_what_is_no_radiance_is_not_written(tmp_path):
 )
 def test_what_is_no_pfm_file_is_refused_by_name(tmp_path, head):
     (tmp_path / "x.pfm").write_bytes(head + b"x" * 48 * bool(head))
-    with pytest.raises(ValueError, match="x.pfm: expected a PFM file"):
+    with pytest.raises(ValueError, match="x.pfm: .*PFM file"):
         pfm.read(tmp_path / "x.pfm")
 
 
@@ -93,7 +93,7 @@ def test_a_file_that_is_cut_while_it_is_read_is_refused(tmp_path, monkeypatch):
     os.truncate(tmp_path / "x.pfm", header.start + RGB.nbytes - 1)
     monkeypatch.setattr(pfm, "read_header", lambda path: header)
     with pytest.raises(
-        ValueError, match=r"x\.pfm: expected 9324 bytes of values, it was cut short meanwhile"
+        ValueError, match=r"x\.pfm: .*9324 bytes of values, it was cut short meanwhile"
     ):
         pfm.read(tmp_path / "x.pfm")
 

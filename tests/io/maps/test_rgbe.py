@@ -182,7 +182,7 @@ def test_the_oldest_run_lengths_repeat_the_pixel_before_them(tmp_path):
 )
 def test_the_oldest_run_lengths_must_fill_the_picture_and_not_more(tmp_path, coded):
     path = file(tmp_path / "x.hdr", np.array([coded]), resolution="-Y 1 +X 6")
-    with pytest.raises(ValueError, match=r"x.hdr: expected 1 scanlines of 6 pixels"):
+    with pytest.raises(ValueError, match=r"x.hdr: .*1 scanlines of 6 pixels"):
         rgbe.read(path)
 
 
@@ -198,7 +198,7 @@ def test_exposures_of_the_header_multiply_and_are_divided_out(tmp_path):
     "line", ["EXPOSURE=0", "EXPOSURE=-1", "EXPOSURE=nan", "EXPOSURE=bright", "COLORCORR=1 2"]
 )
 def test_exposures_that_are_none_are_refused(tmp_path, line):
-    with pytest.raises(ValueError, match="x.hdr: expected .* in its header"):
+    with pytest.raises(ValueError, match="x.hdr: .* in its header"):
         rgbe.read(file(tmp_path / "x.hdr", rgbe.to_pixels(scene(4, 5)), header=line + "\n"))
 
 
@@ -214,9 +214,7 @@ def test_the_mark_may_differ_and_need_not_come_first(tmp_path, first):
 
 def test_xyze_colours_are_refused_by_name(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)), header="FORMAT=32-bit_rle_xyze\n")
-    with pytest.raises(
-        ValueError, match="x.hdr: expected FORMAT=32-bit_rle_rgbe, got .32-bit_rle_xyze"
-    ):
+    with pytest.raises(ValueError, match="x.hdr: .*FORMAT=32-bit_rle_rgbe.*.32-bit_rle_xyze"):
         rgbe.read(path)
 
 
@@ -267,7 +265,7 @@ def test_scanlines_of_another_length_than_the_header_says_are_refused(tmp_path):
     rgbe.write(tmp_path / "x.hdr", scene(4, 20))
     data = (tmp_path / "x.hdr").read_bytes()
     (tmp_path / "x.hdr").write_bytes(data.replace(b"+X 20", b"+X 19"))
-    with pytest.raises(ValueError, match="x.hdr: expected scanlines of 19 pixels, got one of 20"):
+    with pytest.raises(ValueError, match="x.hdr: .*scanlines of 19 pixels.*one of 20"):
         rgbe.read(tmp_path / "x.hdr")
 
 

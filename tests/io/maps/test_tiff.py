@@ -63,9 +63,7 @@ def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
 def test_levels_of_a_photograph_are_no_radiance_and_info_knows_both(tmp_path):
     photo, radiance = tmp_path / "photo.tif", tmp_path / "map.tif"
     write_picture(photo, np.zeros((4, 5, 3), np.uint8))
-    with pytest.raises(
-        ValueError, match=r"photo.tif: expected .*floating-point samples, got 3 x uint8"
-    ):
+    with pytest.raises(ValueError, match=r"photo.tif: .*floating-point samples.*3 x uint8"):
         read_radiance(photo)
     write_radiance(radiance, RGB, comments=["two frames of seven", "unit: cd/m²"])
     assert describe_file(photo)["values"] == "uint8"

@@ -266,7 +266,7 @@ def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
     start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
     said = ultrahdr.ADOBE + b'<rdf:Description hdrgm:GainMapMax="' + b"9" * 5000 + b'x"/>'
     path.write_bytes(data[:start] + segment(b"\xe1", said) + data[start:])
-    with pytest.raises(ValueError, match=r"lamp\.jpg: expected a JPEG with a gain map") as refused:
+    with pytest.raises(ValueError, match=r"lamp\.jpg: .*JPEG with a gain map") as refused:
         ultrahdr.read(path)
     assert 200 < len(str(refused.value)) < 400 + len(str(path))
 
