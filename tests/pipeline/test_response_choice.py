@@ -22,16 +22,20 @@ def bend(X):
     return M + 0.9 * (M**2 * (3 - 2 * M) - M)
 
 
-@pytest.fixture(scope="module")
-def three():
-    """Three JPEGs of a chapel, two stops apart."""
-    E = scenes.chapel((180, 270))
+def shoot_chapel(shape):
+    """Return a bracket of three JPEGs of a chapel, two stops apart."""
+    E = scenes.chapel(shape)
     sensor = camera.Camera(response=bend, full_well=20_000, read_noise=5)
     taken = camera.shoot(E, camera.times_around(E, 3), sensor, rng=1)
     files = [io.BytesIO() for _ in taken.images]
     for file, image in zip(files, taken.images, strict=True):
         Image.fromarray(image).save(file, "jpeg", quality=90)
     return taken._replace(images=np.stack([np.asarray(Image.open(file)) for file in files]))
+
+
+@pytest.fixture(scope="module")
+def three():
+    return shoot_chapel((180, 270))
 
 
 def part(g):
@@ -70,7 +74,7 @@ def test_channels_with_responses_of_their_own_keep_them():
 def test_one_channel_of_another_response_is_enough_for_three_curves():
     E = scenes.room((180, 270))
     times = camera.times_around(E, 5)
-    film = ["srgb", "srgb", lambda X: X**0.5]
+    film = ["srgb", "srgb", lambda X: X**0.3]
     taken = [camera.shoot(E[..., c], times, camera.Camera(response=f)) for c, f in enumerate(film)]
     mixed = bracket(np.stack([one.images for one in taken], axis=-1), times)
     assert (
@@ -79,7 +83,8 @@ def test_one_channel_of_another_response_is_enough_for_three_curves():
     )
 
 
-def test_levels_that_no_two_frames_share_are_settled_by_the_prior(three):
+def test_debevec_is_no_candidate_where_no_two_photos_share_the_middle_values():
+    three = shoot_chapel((360, 540))
     far = bracket(three.images[[0, 2]], three.times[[0, 2]])
     images = np.where(
         (far.images > 60) & (far.images < 190), 0, far.images
@@ -100,7 +105,7 @@ def test_held_out_stripes_share_no_pixel_with_those_that_make_a_response(three):
     rows = np.broadcast_to(np.arange(180, dtype=np.uint8)[:, None], (3, 180, 270))
     fit, held = recovery.split_stripes(bracket(rows, three.times))
     assert not set(fit.images.ravel()) & set(held.images.ravel())
-    assert fit.images.shape == held.images.shape == (3, 90, 270)
+    assert 0.4 < len(fit.images[0]) / (len(fit.images[0]) + len(held.images[0])) < 0.6
 
 
 @pytest.mark.parametrize("level", [0, 255])
