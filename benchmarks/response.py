@@ -12,6 +12,7 @@ the curve's number.
 
 import io
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ def photographs(exposure: Float, brightness: Float, frames: int, k: int) -> Brac
         file = io.BytesIO()
         Image.fromarray(image).save(file, "jpeg", quality=92)
         images.append(np.asarray(Image.open(file)))
-    return taken._replace(images=np.stack(images))
+    return replace(taken, images=np.stack(images))
 
 
 def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float, float]]:

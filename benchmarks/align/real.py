@@ -13,6 +13,7 @@ on it.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -38,7 +39,7 @@ HALF = 2  # the photographs are halved: the light of each 2 x 2 pixels
 def arch(folder: Path) -> Bracket:
     """Return the St. Louis arch: 4 photographs, shifts of up to 8 pixels, and water that moves."""
     taken = read_bracket(real(folder, "stlouis_arch"))
-    return taken._replace(images=smaller(taken.images))
+    return replace(taken, images=smaller(taken.images))
 
 
 def crusader(folder: Path) -> Bracket:

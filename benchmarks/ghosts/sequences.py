@@ -73,7 +73,7 @@ def shaken(place: str, seed: int) -> Iterator[tuple[str, Bracket]]:
         fine.append(photograph(np.stack(moved, axis=-1), t, 100 * seed + 50 + j))
     for size, images in (("half size", coarse), ("full size", fine)):
         names = tuple(f"frame {j + 1}" for j in range(FRAMES))
-        yield size, Bracket(np.stack(images), times, names)
+        yield size, Bracket(images=np.stack(images), times=times, names=names)
 
 
 def photograph(E: Array, t: float, rng: int) -> Array:

@@ -10,6 +10,7 @@ those of the others.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -53,7 +54,7 @@ def photographs(exposure: Float, brightness: Float, *, off: float, k: int) -> Br
         rng=k,
     )
     factors = 1 + off * np.random.default_rng([1, k]).uniform(-1, 1, FRAMES)
-    return taken._replace(times=taken.times * factors)
+    return replace(taken, times=taken.times * factors)
 
 
 def named(name: str, bracket: Bracket) -> Float:

@@ -1,7 +1,9 @@
 """A bracket: one scene, photographed several times with different exposures."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 from zlib import crc32
 
 import numpy as np
@@ -10,8 +12,11 @@ from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as
 from hdrlab.errors import InputError
 
 
-class Bracket(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bracket:
     """Photographs of one scene, sorted from the shortest exposure to the longest.
+
+    Make one with `bracket`, which checks and sorts; change one with `dataclasses.replace`.
 
     Attributes
     ----------
@@ -30,6 +35,28 @@ class Bracket(NamedTuple):
     names: tuple[str, ...]
     valid: Mask | None = None
     linear: bool = False
+
+    # A Bracket was a named tuple of these five fields up to version 0.2: old code may still use it
+    # as one, with a warning. New fields do not become part of the tuple.
+
+    def __iter__(self) -> Iterator[Any]:
+        """Unpack the five fields of version 0.2. Deprecated: use the attributes."""
+        return iter(self._as_tuple("unpacking a Bracket is deprecated; use its attributes"))
+
+    def __getitem__(self, index: int | slice) -> Any:
+        """Return the fields of version 0.2 by their place. Deprecated: use the attributes."""
+        return self._as_tuple("indexing a Bracket is deprecated; use its attributes")[index]
+
+    def _replace(self, **changes: Any) -> "Bracket":
+        """Return a copy with some fields changed. Deprecated: use `dataclasses.replace`."""
+        message = "Bracket._replace is deprecated; use dataclasses.replace(bracket, ...)"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return replace(self, **changes)
+
+    def _as_tuple(self, message: str) -> tuple[Any, ...]:
+        """Return the fields of version 0.2 as a tuple, with a warning where the caller stands."""
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
+        return self.images, self.times, self.names, self.valid, self.linear
 
 
 def bracket(
@@ -69,7 +96,7 @@ def bracket(
         names = tuple(names[j] for j in order)
         if mask is not None:
             mask = mask[order]
-    return Bracket(images, times, names, mask, linear)
+    return Bracket(images=images, times=times, names=names, valid=mask, linear=linear)
 
 
 def short_to_long(images: Array, times: F64) -> Indices:

@@ -88,7 +88,7 @@ def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLi
     >>> wall = np.geomspace(0.02, 1, 256 * 256).reshape(256, 256).astype(np.float32)
     >>> maker = camera.Camera(response="linear", bits=16, full_well=5000, read_noise=4)
     >>> taken = camera.shoot(wall, [0.25, 0.5, 1], maker, rng=1)
-    >>> found = estimate_noise(*taken[:2], responses.true_g("linear", 65536), 2 * wall)
+    >>> found = estimate_noise(taken.images, taken.times, responses.true_g("linear", 65536), 2 * wall)
     >>> bool(abs(found.N[0] / 2500 - 1) < 0.1), bool(abs(found.R[0] / 4 - 1) < 0.2)  # half a well is X = 1
     (True, True)
     """

@@ -42,7 +42,7 @@ def find_outlying_frames(
     >>> from hdrlab import scenes
     >>> room = scenes.room((140, 210))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
-    >>> find_outlying_frames(*taken[:2])
+    >>> find_outlying_frames(taken.images, taken.times)
     ((), ())
     >>> find_outlying_frames(taken.images, taken.times * [1, 1, 1, 6, 6])  # which two are right?
     ((), ())

@@ -89,7 +89,8 @@ def select_photos(state: Assembly, order: NDArray[np.intp]) -> Assembly:
     if np.array_equal(order, np.arange(len(state.offsets))):
         return state
     bracket = state.bracket
-    selected = bracket._replace(
+    selected = replace(
+        bracket,
         images=bracket.images[order],
         times=bracket.times[order],
         names=tuple(bracket.names[j] for j in order),

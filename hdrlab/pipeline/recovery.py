@@ -13,7 +13,7 @@ prior makes most likely takes its place, with a warning: that of `response.space
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -160,7 +160,7 @@ def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
     def take_rows(chosen: Indices) -> Bracket:
         images = bracket.images[:, chosen, ::step]
         valid = None if bracket.valid is None else bracket.valid[:, chosen, ::step]
-        return bracket._replace(images=images, valid=valid)
+        return replace(bracket, images=images, valid=valid)
 
     return take_rows(rows[~is_held_out]), take_rows(rows[is_held_out])
 

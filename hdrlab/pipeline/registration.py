@@ -1,7 +1,7 @@
 """Align the photos of a bracket, by a method of `align` or by your own function."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -151,11 +151,11 @@ def apply_alignment(
     valid = bracket.valid
     if transforms.ndim == 3:
         images, valid = photographs(images, transforms, g, valid=valid)
-        return bracket._replace(images=images, valid=valid)
+        return replace(bracket, images=images, valid=valid)
     if valid is not None:
         valid = shift(valid, transforms)
     images = shift_in_place(images, transforms) if in_place else shift(images, transforms)
-    return bracket._replace(images=images, valid=valid)
+    return replace(bracket, images=images, valid=valid)
 
 
 def shift_in_place(images: Array, offsets: Array) -> Array:

@@ -239,7 +239,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     )
     is_usable = not state.fallback and not checks.is_worthless(medians)
     if options.release and is_usable and not removes_ghosts:
-        state = replace(state, bracket=state.bracket._replace(images=images[:0].copy()))
+        state = replace(state, bracket=replace(state.bracket, images=images[:0].copy()))
         images = images.view(Expendable)
     merged = merge(images, times, response.g, pixel_weights, valid=valid)
     state = replace(state, stage="merge", E=merged.E, quality=merged.quality)

@@ -150,7 +150,7 @@ def refine_times(state: Assembly, response: Method, stated_spread: float) -> Ass
     if corrected.spread > MIN_WORTHLESS_STOPS:
         rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
         relative_times = estimate_relative_times(state.bracket).times
-        relative = correct_times(rising.bracket._replace(times=relative_times), response)
+        relative = correct_times(replace(rising.bracket, times=relative_times), response)
         if relative.spread < MIN_WORTHLESS_STOPS / 2:
             state = rising
             corrected = relative
@@ -158,7 +158,7 @@ def refine_times(state: Assembly, response: Method, stated_spread: float) -> Ass
     estimate = corrected.estimate
     state = replace(
         state,
-        bracket=state.bracket._replace(times=estimate.times),
+        bracket=replace(state.bracket, times=estimate.times),
         notes=(*state.notes, exposure_times.note(estimate, state.bracket.names)),
         doubts=(*state.doubts, *doubts),
     )
@@ -182,7 +182,7 @@ def correct_times(
     """
 
     def measure_spread(times: arrays.F64) -> float:
-        return recovery.choose_response(response, bracket._replace(times=times)).spread
+        return recovery.choose_response(response, replace(bracket, times=times)).spread
 
     images = bracket.images
     times = bracket.times

@@ -4,6 +4,8 @@ The first are Fran Murcia's, under the MIT licence: `tripod/README.md`. The stud
 `probe/README.md`.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from hdrlab.core.arrays import F32
@@ -43,7 +45,7 @@ def photographs(shape: Shape | None = None) -> Bracket:
     if shape is None:
         return taken
     levels = [np.rint(resample(image, shape)).astype(np.uint8) for image in taken.images]
-    return taken._replace(images=np.stack(levels))
+    return replace(taken, images=np.stack(levels))
 
 
 def probe() -> F32:

@@ -1,5 +1,7 @@
 """Registration beyond a shift, and what it does to photographs: homographies, resampling, and the choice."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -275,7 +277,7 @@ def test_photographs_of_two_scenes_are_a_doubt(room):
 def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(photographs):
     taken = photographs("stlouis_arch")
     small = taken.images[:, ::4, ::4]  # shifts of 1, 7.5 and 2 pixels at full size
-    g = registration.find_provisional_response(taken._replace(images=small), "auto")
+    g = registration.find_provisional_response(replace(taken, images=small), "auto")
     found = alignment.register(small, "cerman", times=taken.times, g=g).pairs
     across = np.abs([one.offset[1] for one in found])
     assert np.all(np.abs(across - np.array([1, 7.5, 2]) / 4) < 0.35)

@@ -1,11 +1,12 @@
 """A bracket is checked, and sorted from the shortest exposure to the longest."""
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
 import pytest
 
-from hdrlab.core.bracket import bracket, short_to_long
+from hdrlab.core.bracket import Bracket, bracket, short_to_long
 from hdrlab.core.steps import last
 
 IMAGES = np.random.default_rng(0).integers(0, 256, (3, 4, 5), np.uint8)
@@ -56,6 +57,28 @@ def test_the_lists_that_were_given_stay_as_they_are():
 def test_what_does_not_fit_together_is_refused(given, said):
     with pytest.raises(ValueError, match=said):
         bracket(**({"images": IMAGES, "times": [1, 2, 3]} | given))
+
+
+def test_a_bracket_is_made_by_keywords_and_cannot_be_changed():
+    made = bracket(IMAGES, [1, 2, 4])
+    with pytest.raises(AttributeError):
+        made.times = np.ones(3)
+    with pytest.raises(TypeError):
+        Bracket(IMAGES, np.ones(3), ("a", "b", "c"))
+    assert replace(made, linear=True).linear and not made.linear
+
+
+def test_old_code_may_still_unpack_a_bracket_but_is_warned():
+    made = bracket(IMAGES, [1, 2, 4])
+    with pytest.warns(DeprecationWarning, match="unpacking a Bracket"):
+        images, times, names, valid, linear = made
+    assert images is made.images and times is made.times and names is made.names
+    assert valid is None and not linear
+    with pytest.warns(DeprecationWarning, match="indexing a Bracket"):
+        images, times = made[:2]
+    assert images is made.images and times is made.times
+    with pytest.warns(DeprecationWarning, match="dataclasses.replace"):
+        assert made._replace(linear=True).linear
 
 
 def test_the_last_state_is_the_answer_and_none_is_an_error():

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from html.parser import HTMLParser
 from importlib.util import find_spec
 from pathlib import Path
@@ -586,7 +587,7 @@ def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_pat
 
 
 def test_the_page_quotes_what_is_said_of_the_stated_times_of_the_photographs_that_travel():
-    taken = scenes.photographs((320, 240))._replace(times=1 / np.array([1000, 120, 60, 15, 8, 4]))
+    taken = replace(scenes.photographs((320, 240)), times=1 / np.array([1000, 120, 60, 15, 8, 4]))
     said = pipeline.assemble(taken).doubts[0].partition(", but")[0]
     (quote,) = (
         one for one in quotes_of_the_page_on_warnings() if one.startswith("the stated times")

@@ -1,6 +1,7 @@
 """Motion that a median over levels does not see."""
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -125,7 +126,7 @@ def test_the_verdict_on_flicker_is_the_same_for_noise_of_a_level_in_a_few_pixels
     images = taken.images.copy()
     chosen = (rng.random(images.shape) < 1e-4) & (images > 0) & (images < 255)
     images[chosen] += rng.choice([1, 255], size=chosen.sum()).astype(np.uint8)
-    assert verdict(taken._replace(images=images)) == verdict(taken)
+    assert verdict(replace(taken, images=images)) == verdict(taken)
 
 
 @pytest.mark.papers
@@ -134,15 +135,15 @@ def test_the_verdict_on_flicker_is_the_same_for_other_memory_layouts(flickering)
     padded = np.zeros((len(taken.images), *(2 * n for n in taken.images.shape[1:3]), 3), np.uint8)
     padded[:, ::2, ::2] = taken.images
     expected = verdict(taken)
-    assert verdict(taken._replace(images=np.asfortranarray(taken.images))) == expected
-    assert verdict(taken._replace(images=padded[:, ::2, ::2])) == expected
+    assert verdict(replace(taken, images=np.asfortranarray(taken.images))) == expected
+    assert verdict(replace(taken, images=padded[:, ::2, ::2])) == expected
 
 
 @pytest.mark.papers
 def test_the_verdict_on_flicker_is_the_same_for_other_exposure_times_within_a_millionth(flickering):
     taken = flickering(3)
     noise = 1 + 1e-6 * np.random.default_rng(2).standard_normal(len(taken.times))
-    assert verdict(taken._replace(times=taken.times * noise)) == verdict(taken)
+    assert verdict(replace(taken, times=taken.times * noise)) == verdict(taken)
 
 
 @pytest.mark.papers

@@ -1,5 +1,6 @@
 """Times from the pixels: rough ones are corrected, true ones stay, and what is wrong is named."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -154,7 +155,9 @@ def test_a_large_picture_is_read_on_an_even_grid_of_patches(monkeypatch):
 
 @pytest.mark.parametrize(("count", "seed"), [(4, 1), (5, 2), (7, 3)])
 def test_times_off_by_up_to_a_tenth_are_recovered(taken, count, seed):
-    images, true = taken(count, seed=seed)[:2]
+    bracket = taken(count, seed=seed)
+    images = bracket.images
+    true = bracket.times
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, count)
     found = estimate_times(images, true * factors, lambda times: spread(images, times))
     assert found.accepted and np.abs(off_by(factors, found, true * factors)).max() < 0.02
@@ -167,7 +170,9 @@ def test_times_off_by_up_to_a_tenth_are_recovered(taken, count, seed):
 
 @pytest.mark.parametrize("frame", [0, 4])
 def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken, frame):
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     factors = np.where(np.arange(5) == frame, 2.0 if frame else 0.5, 1.0)
     found = estimate_times(images, true * factors, lambda times: spread(images, times))
     assert found.accepted and np.abs(np.delete(found.stops, frame)).max() < 0.02
@@ -176,7 +181,7 @@ def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken,
 
 def test_of_three_photographs_a_correction_is_doubted_for_it_may_be_another_time(taken):
     three = taken(3)
-    found = pipeline.assemble(three._replace(times=three.times * [1, 1, 1.3]))
+    found = pipeline.assemble(replace(three, times=three.times * [1, 1, 1.3]))
     assert any("exposure times" in doubt for doubt in found.doubts)
     assert pipeline.assemble(three).doubts == ()
     rounded = exposure_times.Estimate(three.times, np.array([-0.03, 0.06, -0.03]), True, "")
@@ -190,7 +195,9 @@ def test_a_wrong_time_is_told_also_where_the_frames_that_share_levels_agree_well
 
 
 def test_of_a_linear_camera_the_span_is_recovered_as_well(taken):
-    images, true = taken(5, "linear")[:2]
+    bracket = taken(5, "linear")
+    images = bracket.images
+    true = bracket.times
     factors = 0.97 ** np.arange(-2, 3)
     g = linear.recover(images, true)
     found = estimate_times(images, true * factors, g=g)
@@ -202,7 +209,9 @@ def test_of_a_linear_camera_the_span_is_recovered_as_well(taken):
 
 
 def test_the_gauge_keeps_the_mean_and_the_span_of_the_stated_times(taken):
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     stated = true * [1, 1.1, 0.9, 1, 1.05]
     found = estimate_times(images, stated)
     B = np.log(stated)
@@ -215,14 +224,18 @@ def test_the_gauge_keeps_the_mean_and_the_span_of_the_stated_times(taken):
 
 @pytest.mark.parametrize("count", [3, 5, 7])
 def test_exact_times_are_left_as_they_are(taken, count):
-    images, true = taken(count)[:2]
+    bracket = taken(count)
+    images = bracket.images
+    true = bracket.times
     found = estimate_times(images, true)
     assert not found.accepted and np.array_equal(found.times, true)
     assert np.abs(found.stops).max() < 0.005 and found.reason.startswith("the stated times agree")
 
 
 def test_an_estimate_is_shrunk_to_the_stated_times(taken):
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     stated = true * [1, 1, 1.1, 1, 1]
     sizes = [np.linalg.norm(estimate_times(images, stated, sd=sd).stops) for sd in (1e-3, 1e-2, 1)]
     assert sizes[0] < 0.01 < 0.1 < sizes[-1] and np.all(np.diff(sizes) > 0)
@@ -230,7 +243,9 @@ def test_an_estimate_is_shrunk_to_the_stated_times(taken):
 
 @pytest.mark.parametrize("verdict", [0.02, np.nan])
 def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     stated = true * [1, 1, 1.1, 1, 1]
     found = estimate_times(
         images, stated, lambda times: 0.01 if np.array_equal(times, stated) else verdict
@@ -244,7 +259,9 @@ def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
 
 
 def test_times_are_not_estimated_from_two_photographs_or_without_flat_patches(taken):
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     assert "two photos" in estimate_times(images[:2], true[:2]).reason
     noise = np.random.default_rng(0).integers(0, 256, (3, 60, 80, 3), dtype=np.uint8)
     assert "too few patches" in estimate_times(noise, [1, 2, 4]).reason
@@ -265,7 +282,10 @@ def test_what_does_not_fit_together_is_refused(verb, times, said):
 @pytest.mark.parametrize("frame", range(5))
 @pytest.mark.parametrize("stops", [-0.7, 0.7])
 def test_the_frame_whose_time_is_wrong_is_named_with_its_factor(taken, frame, stops):
-    images, times, names = taken(5)[:3]
+    bracket = taken(5)
+    images = bracket.images
+    times = bracket.times
+    names = bracket.names
     wrong = times.copy()
     wrong[frame] *= 2**stops
     found = find_contradictions(images, wrong)
@@ -286,14 +306,20 @@ def test_true_times_are_not_contradicted(taken, count):
 
 
 def test_of_three_frames_the_doubt_names_one_and_says_that_it_may_be_another(taken):
-    images, times, names = taken(3)[:3]
+    bracket = taken(3)
+    images = bracket.images
+    times = bracket.times
+    names = bracket.names
     said = warn_of_contradictions(find_contradictions(images, times * [1, 2, 1]), names)
     assert "frame 2 by -" in said and "first or the last" in said
 
 
 @pytest.mark.parametrize("count", [3, 5])
 def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
-    images, times, names = taken(count)[:3]
+    bracket = taken(count)
+    images = bracket.images
+    times = bracket.times
+    names = bracket.names
     found = find_contradictions(tone_mapped(images), times)
     assert found.local and "shoot RAW" in warn_of_contradictions(found, names)
     curve = np.round(255 * (np.arange(256) / 255) ** 0.7).astype(np.uint8)
@@ -308,7 +334,9 @@ def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(
     photographs, strength, local
 ):
     """frobisher has 426 x 640 pixels, and true times; at 0.3 its parts disagree by 0.08 stops."""
-    images, times = photographs("frobisher")[:2]
+    bracket = photographs("frobisher")
+    images = bracket.images
+    times = bracket.times
     assert find_contradictions(tone_mapped(images, strength, 32), times).local == local
 
 
@@ -316,7 +344,9 @@ def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(
 def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(
     taken, count
 ):
-    images, times = taken(count)[:2]
+    bracket = taken(count)
+    images = bracket.images
+    times = bracket.times
     assert find_contradictions(tone_mapped(images, 0.2), times).local
 
 
@@ -349,7 +379,10 @@ def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping(
 
 @pytest.mark.parametrize(("count", "frame"), [(3, 1), (4, 0), (5, 2)])
 def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
-    images, times, names, *_ = taken(count)
+    bracket = taken(count)
+    images = bracket.images
+    times = bracket.times
+    names = bracket.names
     warm = camera.shoot(scenes.room((280, 420)) * np.float32([1.35, 1, 0.72]), times, rng=2)
     shifted = images.copy()
     shifted[frame] = warm.images[frame]
@@ -363,12 +396,16 @@ def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
 
 
 def test_a_gray_bracket_has_no_white_balance(taken):
-    images, times, *_ = taken(5)
+    bracket = taken(5)
+    images = bracket.images
+    times = bracket.times
     assert find_contradictions(images[..., 1], times * [1, 1, 2, 1, 1]).tints.max() == 0
 
 
 def test_an_error_counts_by_what_it_costs_in_the_map(taken):
-    images, times = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    times = bracket.times
     dark = np.where(np.arange(5)[:, None, None, None] == 0, np.minimum(images, 3), images)
     dark[0, :21, :21] = images[0, :21, :21]  # all that is left of the shortest
     assert find_contradictions(images, times * [1.6, 1, 1, 1, 1]).wrong == (0,)
@@ -377,7 +414,9 @@ def test_an_error_counts_by_what_it_costs_in_the_map(taken):
 
 def test_a_bracket_without_flat_patches_is_asked_by_its_histograms():
     E = np.exp(np.random.default_rng(0).normal(0, 1.2, (120, 160))).astype(np.float32)
-    images, times = camera.shoot(E, camera.times_around(E, 5, stops=1.5))[:2]
+    bracket = camera.shoot(E, camera.times_around(E, 5, stops=1.5))
+    images = bracket.images
+    times = bracket.times
     assert not flat_patches.find_flat_patches(images).best.any()
     assert find_contradictions(images, times).wrong == ()
     assert find_contradictions(images, times * [1, 1, 1, 2, 1]).wrong == (3,)
@@ -388,7 +427,9 @@ def test_a_bracket_without_flat_patches_is_asked_by_its_histograms():
 
 @pytest.mark.parametrize("frame", range(5))
 def test_a_frame_of_another_scene_is_named_as_the_one_to_leave_out(taken, frame):
-    images, times = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    times = bracket.times
     other = images.copy()
     other[frame] = np.flip(images[frame], axis=(0, 1))
     assert find_outlying_frames(other, times) == ((frame,), ())
@@ -396,18 +437,24 @@ def test_a_frame_of_another_scene_is_named_as_the_one_to_leave_out(taken, frame)
 
 @pytest.mark.parametrize("count", [3, 5, 7])
 def test_no_frame_of_a_sound_bracket_is_to_be_left_out(taken, count):
-    images, times = taken(count)[:2]
+    bracket = taken(count)
+    images = bracket.images
+    times = bracket.times
     assert find_outlying_frames(images, times) == ((), ())
 
 
 def test_of_a_bracket_in_which_two_halves_contradict_each_other_none_is_left_out(taken):
-    images, times = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    times = bracket.times
     assert find_outlying_frames(images, times * [1, 1, 5, 5, 5]) == ((), ())
 
 
 def test_where_either_of_two_frames_may_be_the_wrong_one_both_are_named():
     chapel = scenes.chapel((280, 420))
-    images, times = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)[:2]
+    bracket = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)
+    images = bracket.images
+    times = bracket.times
     frames, rivals = find_outlying_frames(images, times * [1, 1, 1, 2])
     assert {*frames, *rivals} == {1, 3}
 
@@ -434,7 +481,9 @@ def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
 
 
 def test_an_estimate_must_better_the_held_out_pixels_by_the_share_that_is_asked_for(taken):
-    images, true = taken(4)[:2]
+    bracket = taken(4)
+    images = bracket.images
+    true = bracket.times
     rough = true * [1, 1.1, 0.95, 1]
     found = estimate_times(images, rough)
     left = found.bias_after / found.bias_before
@@ -447,7 +496,7 @@ def test_an_estimate_must_better_the_held_out_pixels_by_the_share_that_is_asked_
 
 
 def test_the_pipeline_estimates_times_between_alignment_and_response(taken):
-    rough = taken(5)._replace(times=taken(5).times * [1, 1, 1.1, 0.95, 1])
+    rough = replace(taken(5), times=taken(5).times * [1, 1, 1.1, 0.95, 1])
     states = list(pipeline.assemble_steps(rough, align="none", times="estimate"))
     assert tuple(state.stage for state in states) == pipeline.STAGES
     assert states[-1].spread < 0.3 * pipeline.assemble(rough, align="none", times="stated").spread
@@ -456,7 +505,7 @@ def test_the_pipeline_estimates_times_between_alignment_and_response(taken):
 
 
 def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
-    wrong = taken(5)._replace(times=taken(5).times * [1, 1, 2, 1, 1])
+    wrong = replace(taken(5), times=taken(5).times * [1, 1, 2, 1, 1])
     stated = pipeline.assemble(wrong, times="stated")
     assert any("left out" in one and wrong.names[2] in one for one in stated.notes)
     found = pipeline.assemble(wrong)
@@ -473,7 +522,9 @@ def test_other_words_than_correct_stated_and_estimate_are_refused(taken):
 @pytest.fixture
 def rough(taken, tmp_path, monkeypatch):
     """The names of five photographs in the working folder; their EXIF, and times.csv, are off by a tenth."""
-    images, true = taken(5)[:2]
+    bracket = taken(5)
+    images = bracket.images
+    true = bracket.times
     times = true * [1, 1, 1.1, 0.95, 1]
     for j, (image, seconds) in enumerate(zip(images, times, strict=True)):
         exif = Image.Exif()
@@ -523,7 +574,7 @@ def test_real_photographs_agree_better_with_estimated_times_or_keep_those_stated
 ):
     taken = photographs(name)
     if name == "stlouis_arch":
-        taken = taken._replace(images=taken.images[:, ::2, ::2])
+        taken = replace(taken, images=taken.images[:, ::2, ::2])
     align = "mtb" if name == "stlouis_arch" else "none"
     found = pipeline.assemble(taken, times="estimate", align=align)
     assert found.spread <= stops and found.doubts == ()

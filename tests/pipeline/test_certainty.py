@@ -8,7 +8,6 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.cli.brackets import read_bracket
-from hdrlab.core.bracket import Bracket
 from hdrlab.pipeline import certainty
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import wording
@@ -63,13 +62,13 @@ def test_strips_do_not_show(assembly, monkeypatch):
 
 def test_a_photograph_is_not_asked_where_it_holds_no_picture(assembly):
     _, state = assembly
-    images, times, names, _, linear = state.bracket
+    images = state.bracket.images
     valid = np.ones(images.shape[:3], bool)
     valid[-1, :, :60] = False
     hidden = np.where(valid[..., None], images, np.uint8(77))
     kept = [hidden.copy(), valid.copy()]
     found = pipeline.measure_deviation(
-        replace(state, bracket=Bracket(hidden, times, names, valid, linear))
+        replace(state, bracket=replace(state.bracket, images=hidden, valid=valid))
     )
     plain = pipeline.measure_deviation(state)
     assert np.array_equal(kept[0], hidden) and np.array_equal(kept[1], valid)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib.util
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def worthless():
     room = scenes.room((96, 144))
     seconds = camera.times_around(room, 2, stops=2)
     pair = camera.shoot(room, seconds, rng=1)
-    return pair._replace(times=seconds * [1, 250])
+    return replace(pair, times=seconds * [1, 250])
 
 
 def test_a_map_from_a_response_that_no_camera_has_is_not_worth_a_picture(worthless):
@@ -39,7 +40,7 @@ def test_a_map_from_a_response_that_no_camera_has_is_not_worth_a_picture(worthle
 
 
 def test_the_photos_of_a_worthless_map_are_kept_for_the_fusion(worthless):
-    bracket = worthless._replace(images=worthless.images.copy())
+    bracket = replace(worthless, images=worthless.images.copy())
     *_, found = assemble_steps(bracket, align="none", times="stated", in_place=True, release=True)
     assert found.fallback
     assert np.array_equal(found.bracket.images, worthless.images)

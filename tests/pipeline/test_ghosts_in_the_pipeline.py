@@ -1,5 +1,7 @@
 """Ghosts and flare where a reader meets them: in `assemble`, on the command line, in the report."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -93,7 +95,7 @@ def test_flare_is_the_last_stage_before_they_are_compared():
 
 
 def test_wrong_times_are_not_called_motion(moving):
-    wrong = moving._replace(times=moving.times * np.array([1, 1, 8, 9, 10]))
+    wrong = replace(moving, times=moving.times * np.array([1, 1, 8, 9, 10]))
     found = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
     assert len(found.doubts) == 1 and "--times estimate" in found.doubts[0]
 

@@ -2,6 +2,7 @@
 
 import math
 import sys
+from dataclasses import dataclass, replace
 from functools import cache
 
 import cv2
@@ -11,7 +12,7 @@ from PIL import Image
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, responses
-from hdrlab.core.bracket import bracket
+from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
 from hdrlab.diagnostics import consistency
 from hdrlab.fast import merge as quick
@@ -50,10 +51,23 @@ def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BracketWithIso(Bracket):
+    iso: float | None = None
+
+
+def test_assemble_takes_brackets_with_one_more_field(hand_held):
+    taken = hand_held[0]
+    values = {name: getattr(taken, name) for name in ("images", "times", "names")}
+    found = assemble(BracketWithIso(**values, iso=100.0))
+    assert np.array_equal(found.E, assemble(taken).E)
+    assert found.bracket.iso == 100
+
+
 @pytest.mark.papers
 def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held):
     expected = assemble(hand_held[0])
-    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, in_place=True)
     assert np.array_equal(found.E, expected.E) and found.doubts == expected.doubts
     assert np.array_equal(found.bracket.images, expected.bracket.images)
@@ -66,7 +80,7 @@ def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_mem
     monkeypatch.setattr(quick, "PAGE_BYTES", 1 << 12)
     monkeypatch.setattr(quick, "RELEASED_ROWS", quick.BLOCK_ROWS)
     expected = assemble(hand_held[0])
-    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, in_place=True, release=True)
     assert np.array_equal(found.E, expected.E) and np.array_equal(found.quality, expected.quality)
     assert (found.notes, found.doubts, found.spread) == (
@@ -79,7 +93,7 @@ def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_mem
 
 
 def test_photographs_whose_ghosts_are_removed_are_kept_to_the_end(hand_held):
-    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, ghosts="regions", in_place=True, release=True)
     assert found.bracket.images.any()
 
@@ -218,8 +232,8 @@ def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
 @pytest.mark.papers
 def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames(room):
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1))
-    wrong = taken._replace(
-        times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
+    wrong = replace(
+        taken, times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
     )
     found = assemble(wrong, align="none", times="stated")
     assert len(found.doubts) == 1 and found.spread > pipeline.CONTRADICTION
@@ -338,7 +352,7 @@ def radiance_of(path, tmp_path):
 def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, tmp_path):
     taken = photographs("memorial")
     valid = ~(taken.images == (0, 0, 255)).all(axis=-1)  # the border of the registered scans
-    found = assemble(taken._replace(valid=valid))
+    found = assemble(replace(taken, valid=valid))
     published = luminance(radiance_of(shared("memorial") / "memorial.hdr", tmp_path))
     assert not found.offsets.any() and found.doubts == ()
     seen = valid.all(axis=0) & (found.quality == Quality.MEASURED) & (published > 0)
@@ -373,7 +387,7 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     images = taken.images.copy()
     images[2] = images[2, ::-1, ::-1]  # another scene, of the same brightness
     found = assemble(
-        taken._replace(images=images, names=tuple("abcdef")), align="none", times="stated"
+        replace(taken, images=images, names=tuple("abcdef")), align="none", times="stated"
     )
     assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
     assert any(" c;" in note for note in found.notes)
@@ -384,6 +398,6 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
 def test_of_two_photographs_that_may_both_be_the_wrong_one_neither_is_left_out_without_a_warning():
     chapel = scenes.chapel((280, 420))
     taken = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)
-    wrong = taken._replace(times=taken.times * [1, 1, 1, 2])
+    wrong = replace(taken, times=taken.times * [1, 1, 1, 2])
     (doubt,) = assemble(wrong, align="none", times="stated").doubts
     assert "frame 2" in doubt and "frame 4" in doubt

@@ -1,5 +1,7 @@
 """Every real bracket becomes a map by the steps of the plain command, with the right warnings alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,7 @@ def assembled(shared):
         valid = taken.valid if taken.valid is None else taken.valid[:, ::every, ::every]
         images = np.ascontiguousarray(taken.images[:, ::every, ::every])
         way = "estimate" if times == "estimate" else "correct"
-        return pipeline.assemble(taken._replace(images=images, valid=valid), times=way)
+        return pipeline.assemble(replace(taken, images=images, valid=valid), times=way)
 
     return assemble
 

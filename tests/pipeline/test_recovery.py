@@ -36,7 +36,7 @@ def taken(decades):
 
 @pytest.mark.parametrize("method", ["auto", *METHODS])
 def test_a_usual_response_serves_where_the_photographs_contradict_their_times(taken, method):
-    wrong = taken._replace(times=taken.times * [1, 1, 1, 10_000])
+    wrong = replace(taken, times=taken.times * [1, 1, 1, 10_000])
     found = pipeline.assemble(wrong, align="none", response=method)
     assert any("check the exposure times" in doubt for doubt in found.doubts)
     assert found.fallback and np.all(np.isfinite(found.E)) and found.E.any()

@@ -1,6 +1,7 @@
 """The default response: one curve where held-out pixels allow it, and none that photographs leave open."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ def shoot_chapel(shape):
     files = [io.BytesIO() for _ in taken.images]
     for file, image in zip(files, taken.images, strict=True):
         Image.fromarray(image).save(file, "jpeg", quality=90)
-    return taken._replace(images=np.stack([np.asarray(Image.open(file)) for file in files]))
+    return replace(taken, images=np.stack([np.asarray(Image.open(file)) for file in files]))
 
 
 @pytest.fixture(scope="module")
@@ -89,14 +90,14 @@ def test_debevec_is_no_candidate_where_no_two_photos_share_the_middle_values():
     images = np.where(
         (far.images > 60) & (far.images < 190), 0, far.images
     )  # nothing connects the middle
-    assert "debevec" not in recovery.choose_response("auto", far._replace(images=images)).notes[0]
+    assert "debevec" not in recovery.choose_response("auto", replace(far, images=images)).notes[0]
 
 
 @pytest.mark.parametrize("gray", [False, True])
 def test_a_linear_bracket_has_no_response_to_choose(three, gray):
     images = three.images[..., 1] if gray else three.images
     taken = bracket(images, three.times)
-    assert recovery.choose_response("auto", taken._replace(linear=True)).notes == ()
+    assert recovery.choose_response("auto", replace(taken, linear=True)).notes == ()
     g = recovery.choose_response("auto", taken).method(images, three.times, valid=None)
     assert g.shape == (256, *images.shape[3:])
 

@@ -1,5 +1,7 @@
 """What the stages make of frames that contradict the others, of times that do, and of what moved."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -73,7 +75,7 @@ def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_t
         left = other if stated_spread is None else spread
         return timing.CorrectedTimes(estimate=estimate, spread=left)
 
-    relative = TAKEN._replace(times=2.0 ** np.arange(5))
+    relative = replace(TAKEN, times=2.0 ** np.arange(5))
     monkeypatch.setattr(timing, "correct_times", correct)
     monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
     found = timing.refine_times(STATE, "auto", 0.7)
@@ -85,4 +87,4 @@ def test_photographs_that_get_darker_while_the_times_rise_are_named():
     ramp = np.linspace(20, 240, 400).reshape(20, 20)
     images = np.stack([ramp * share for share in (0.5, 0.7, 1, 0.6, 0.8)]).astype(np.uint8)
     with pytest.raises(ValueError, match=r"c \(3 s\) and d \(4 s\)"):
-        timing.complete_times(TAKEN._replace(images=images), "correct")
+        timing.complete_times(replace(TAKEN, images=images), "correct")

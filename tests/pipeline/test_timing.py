@@ -58,16 +58,16 @@ def test_relative_times_have_the_right_order_and_roughly_the_right_steps(room, r
 def test_relative_times_of_a_linear_camera_are_right(room):
     linear = camera.Camera(response="linear", bits=16)
     taken = camera.shoot(room, camera.times_around(room, 4, stops=2), linear, rng=1)
-    steps = np.diff(np.log2(estimate_relative_times(taken._replace(times=np.ones(4))).times))
+    steps = np.diff(np.log2(estimate_relative_times(replace(taken, times=np.ones(4))).times))
     assert np.allclose(steps, 2, atol=0.1)
 
 
 def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
-    found = pipeline.assemble(taken._replace(times=np.full(5, 0.01)))
+    found = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
     assert "relative" in found.notes[0] and "--stops" in found.notes[0]
     assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
     with pytest.raises(ValueError, match="at least two different exposures"):
-        pipeline.assemble(taken._replace(times=np.full(5, 0.01)), times="stated")
+        pipeline.assemble(replace(taken, times=np.full(5, 0.01)), times="stated")
 
 
 def test_one_exposure_many_times_is_refused(room):
@@ -94,7 +94,7 @@ def test_true_times_stay_byte_for_byte_and_say_nothing(taken):
 def test_rough_times_are_corrected_unless_they_are_to_stay():
     room = scenes.room((280, 420))
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
-    rough = taken._replace(times=taken.times * [1, 1, 1.1, 1, 1])
+    rough = replace(taken, times=taken.times * [1, 1, 1.1, 1, 1])
     found, stated = (
         pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated")
     )
@@ -106,7 +106,7 @@ def test_rough_times_are_corrected_unless_they_are_to_stay():
 def test_a_rough_time_is_corrected_before_the_response_is_found():
     room = scenes.room((200, 300))
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
-    rough = taken._replace(times=taken.times * [1, 1, 1.1, 1])
+    rough = replace(taken, times=taken.times * [1, 1, 1.1, 1])
     found = next(one for one in stages.assemble_steps(rough, align="none") if one.stage == "times")
     assert np.abs(np.log2(found.bracket.times / taken.times)).max() < 0.03
     assert found.g is None and "most frame 3 -0.1" in found.notes[0]  # of log2(1.1) stops
@@ -136,7 +136,7 @@ def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions
 
 def test_times_that_leave_no_two_photographs_to_compare_contradict_them_beyond_measure(mistaken):
     (state, *_) = pipeline.assemble_steps(
-        mistaken._replace(times=2.0 ** np.arange(5) / 64), align="none"
+        replace(mistaken, times=2.0 ** np.arange(5) / 64), align="none"
     )
     (said,) = refine_times(state, "auto", np.inf).doubts
     assert "inf" not in said and "relative exposure times" in said

@@ -127,7 +127,7 @@ def test_a_full_well_that_reads_a_little_less_than_the_top_measures_nothing():
     )  # the longer two are full
     assert (taken.images[1:] < 0.98 * 65535).any()
     g = responses.true_g("linear", 65536)
-    found = merge_with_deviation(*taken[:2], g, 2_500 / np.exp(g[-1]), 20)
+    found = merge_with_deviation(taken.images, taken.times, g, 2_500 / np.exp(g[-1]), 20)
     alone = merge_with_deviation(taken.images[:1], taken.times[:1], g, 2_500 / np.exp(g[-1]), 20)
     assert np.array_equal(found.E, alone.E) and np.array_equal(found.s, alone.s)
 

@@ -20,11 +20,11 @@ from hdrlab.show.plots import figures
 
 def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
     """Return a thumbnail, the name, the exposure time and the offset of each photo."""
-    images, times, names, *_ = photographs
     frames = []
-    for image, time, name, moved in zip(
-        images, map(plots.seconds, times), names, offsets, strict=True
+    for image, seconds, name, moved in zip(
+        photographs.images, photographs.times, photographs.names, offsets, strict=True
     ):
+        time = plots.seconds(seconds)
         small = to_256(figures.fit(image, 400))
         if photographs.linear:  # its numbers are light, and a screen wants them encoded
             small = colour.to_8bit(small / np.float32(255))
