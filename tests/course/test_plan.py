@@ -64,11 +64,9 @@ def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
     for some in ([], names[:1], names):
         task = read(tasks=f"{{ {shift}, parameters = {some} }}").homeworks["hw9"].tasks[0]
         assert task.parameters == tuple(some)
-    with pytest.raises(
-        ValueError, match=rf"expected parameters of shift out of {', '.join(names)}, got"
-    ):
+    with pytest.raises(ValueError, match=rf"parameters of shift out of {', '.join(names)}"):
         read(tasks=f"{{ {shift}, parameters = ['other'] }}")
-    with pytest.raises(ValueError, match="expected parameters of gsolve out of none"):
+    with pytest.raises(ValueError, match="parameters of gsolve out of none"):
         read(tasks=f"{{ {TASK}, points = 1, parameters = ['other'] }}")
 
 
@@ -89,9 +87,7 @@ def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, re
         with pytest.raises(ValueError, match="out of none"):
             read(tasks=tasks.replace("points", "parameters = ['cut'], points"))
     else:
-        with pytest.raises(
-            ValueError, match="expected a function of hdrlab, or FILE.py:NAME beside the plan"
-        ):
+        with pytest.raises(ValueError, match="function of hdrlab, or FILE.py:NAME beside the plan"):
             read(tasks=tasks)
 
 
@@ -130,7 +126,7 @@ def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_
     if taken:
         assert read(lines).homeworks["hw9"].at_most == at_most
     else:
-        with pytest.raises(ValueError, match=f"above 0 and at most 10.5, got {at_most:g}"):
+        with pytest.raises(ValueError, match=f"above 0 and at most 10.5.*{at_most:g}"):
             read(lines)
     assert read().homeworks["hw9"].at_most is None
 
@@ -153,7 +149,7 @@ def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
         assert read(before=late).late == (free, a_day)
     else:
         with pytest.raises(
-            ValueError, match=r"expected free_days and points_a_day, at least 0, in \[late\]"
+            ValueError, match=r"free_days and points_a_day, at least 0, in \[late\]"
         ):
             read(before=late)
 
@@ -161,20 +157,18 @@ def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
 @pytest.mark.parametrize("due", ["2026-10-01T12:00:00", "2026-10-01", "7", "12:00:00"])
 def test_a_due_date_has_a_time_and_a_zone(due, read):
     assert read().homeworks["hw9"].due.isoformat() == "2026-10-01T12:00:00+00:00"
-    with pytest.raises(
-        ValueError, match=r"expected due of \[hw9\] as a date with time and zone, got"
-    ):
+    with pytest.raises(ValueError, match=r"due of \[hw9\] as a date with time and zone"):
         read(due=due)
 
 
 def test_a_task_stands_once_in_all_homeworks_and_is_found_by_its_id(read):
     found = read()
     assert found.task("gsolve").points == 7.5
-    with pytest.raises(KeyError, match="expected a task out of gsolve, got 'merge'"):
+    with pytest.raises(KeyError, match="task out of gsolve.*'merge'"):
         found.task("merge")
-    with pytest.raises(ValueError, match="expected tasks, each once, got gsolve$"):
+    with pytest.raises(ValueError, match="tasks, each once.*gsolve$"):
         read(tasks=f"{{ {TASK}, points = 1 }}, {{ {TASK}, points = 2 }}")
-    with pytest.raises(ValueError, match="expected tasks, each once, got none"):
+    with pytest.raises(ValueError, match="tasks, each once.*none"):
         read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
 
 
@@ -182,7 +176,7 @@ def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_n
     tmp_path,
 ):
     own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))
-    with pytest.raises(ValueError, match=f"expected checks for hw2 in {tmp_path}, got none"):
+    with pytest.raises(ValueError, match=f"checks for hw2 in {tmp_path}.*none"):
         grader.files_of(own, None)
     (tmp_path / "test_vignette.py").touch()
     assert grader.files_of(own, None) == [tmp_path / "test_vignette.py"]
@@ -195,7 +189,7 @@ def test_a_secret_is_made_once_for_its_owner_and_read_ever_after(tmp_path):
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
     assert plan.read_secret(file) == (secret, False)
     file.write_text(" \n", encoding="utf8")
-    with pytest.raises(ValueError, match="expected a line that nobody else knows, it is empty"):
+    with pytest.raises(ValueError, match="line that nobody else knows, it is empty"):
         plan.read_secret(file)
     file.unlink()
     assert plan.read_secret(file)[0] != secret
