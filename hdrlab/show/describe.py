@@ -1,5 +1,6 @@
-"""What a file is, as its header says: for `hdrlab info`."""
+"""Describe an image file from its header, for `hdrlab info`."""
 
+from collections.abc import Callable
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from hdrlab.show.pages import wording
 
 
 def describe_file(path: str | Path) -> dict[str, Any]:
-    """Return what the header of a photograph or of a radiance file says, in the order to print it.
+    """Return what the header of a photo or of a radiance file states, in the order to print it.
 
     Parameters
     ----------
@@ -20,13 +21,13 @@ def describe_file(path: str | Path) -> dict[str, Any]:
 
     Returns
     -------
-    dict of `file`, `format`, `width`, `height`, `channels`, `values`, and what else the format
-    states
+    dict of `file`, `format`, `width`, `height`, `channels`, `values`, and more that depends on the
+    format
 
     Raises
     ------
-    ValueError
-        For a file that is neither, or whose header is damaged.
+    InputError
+        For a file of another kind, or whose header is damaged.
 
     Examples
     --------
@@ -36,24 +37,37 @@ def describe_file(path: str | Path) -> dict[str, Any]:
     >>> describe_file(file)["width"]
     2
     """
-    form = radiance.READ.get(Path(path).suffix.lower(), radiance)
-    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr}.get(form, _photo)
-    return {"file": str(path), **about(path)}
+    module = radiance.READ.get(Path(path).suffix.lower())
+    describe: Callable[[str | Path], dict[str, Any]]
+    if module is rgbe:
+        describe = _describe_rgbe
+    elif module is pfm:
+        describe = _describe_pfm
+    elif module is exr:
+        describe = _describe_exr
+    else:
+        describe = _describe_photo
+    return {"file": str(path), **describe(path)}
 
 
-def _photo(path: str | Path) -> dict[str, Any]:
+def _describe_photo(path: str | Path) -> dict[str, Any]:
     header = decode.read_header(path, samples="any")
-    height, width, channels = (*header.shape, 1)[:3]
-    return {
+    height, width = header.shape[:2]
+    channels = header.shape[2] if len(header.shape) == 3 else 1
+    description = {
         "format": header.kind,
         **_size(height, width, channels, np.dtype(header.dtype).name),
         "orientation": header.orientation,
-        **{key: value for key in ("processing", "comments") if (value := getattr(header, key))},
-        **{key: value for key, value in header.exposure._asdict().items() if value is not None},
     }
+    if header.processing:
+        description["processing"] = header.processing
+    if header.comments:
+        description["comments"] = header.comments
+    exposure = header.exposure._asdict()
+    return description | {name: value for name, value in exposure.items() if value is not None}
 
 
-def _rgbe(path: str | Path) -> dict[str, Any]:
+def _describe_rgbe(path: str | Path) -> dict[str, Any]:
     header = rgbe.read_header(path)
     return {
         "format": "Radiance RGBE",
@@ -64,7 +78,7 @@ def _rgbe(path: str | Path) -> dict[str, Any]:
     }
 
 
-def _pfm(path: str | Path) -> dict[str, Any]:
+def _describe_pfm(path: str | Path) -> dict[str, Any]:
     header = pfm.read_header(path)
     return {
         "format": "PFM",
@@ -74,24 +88,27 @@ def _pfm(path: str | Path) -> dict[str, Any]:
     }
 
 
-def _exr(path: str | Path) -> dict[str, Any]:
-    header, *more = exr.read_headers(path)
-    names = [one.attributes.get("name", "") for one in (header, *more)] if more else []
-    found = layers.read_layers(path) if names == list(layers.UNCERTAINTY_LAYERS) else None
-    return {
+def _describe_exr(path: str | Path) -> dict[str, Any]:
+    headers = exr.read_headers(path)
+    first = headers[0]
+    channels = ", ".join(first.channels)
+    dtypes = ", ".join(sorted(set(exr.read_dtypes(path))))
+    description = {
         "format": "OpenEXR",
-        **_size(
-            header.display.height,
-            header.display.width,
-            ", ".join(header.channels),
-            ", ".join(sorted({*exr.read_dtypes(path)})),
-        ),
-        "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
-        **({"data window": astuple(header.data)} if header.data != header.display else {}),
-        **({"layers": ", ".join(names)} if names else {}),
-        **({"certainty": wording.certainty(*found.values())} if found else {}),
-        **({"comments": header.attributes["comments"]} if "comments" in header.attributes else {}),
+        **_size(first.display.height, first.display.width, channels, dtypes),
+        "compression": first.attributes["compression"].name.removesuffix("_COMPRESSION"),
     }
+    if first.data != first.display:
+        description["data window"] = astuple(first.data)
+    if len(headers) > 1:
+        names = tuple(header.attributes.get("name", "") for header in headers)
+        description["layers"] = ", ".join(names)
+        if names == layers.UNCERTAINTY_LAYERS:
+            E, s = layers.read_layers(path).values()
+            description["certainty"] = wording.certainty(E, s)
+    if "comments" in first.attributes:
+        description["comments"] = first.attributes["comments"]
+    return description
 
 
 def _size(height: int, width: int, channels: int | str, values: str) -> dict[str, Any]:

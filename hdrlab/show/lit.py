@@ -1,23 +1,24 @@
-"""A picture for HDR screens in a notebook and on its page, beside ordinary ones."""
+"""Show an HDR image file in a notebook, for screens that are brighter than white."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 from hdrlab.show.pictures import require_alt
 
 
-class Lit(NamedTuple):
-    """A file that lights up, .jpg, .png or .avif, with a switch that holds it at white.
+@dataclass(frozen=True)
+class Lit:
+    """An HDR image (.jpg, .png or .avif) with a switch that limits it to white.
 
-    A browser reads such a file itself, so it is shown as it is. Beside the switch stands whether
-    the reader's screen has more light than white.
+    The browser decodes the file itself. A note beside the switch tells whether the reader's screen
+    can show more light than white.
 
     Attributes
     ----------
     path : the file
-    alt : what it shows, in a sentence
+    alt : what the image shows, in one sentence
     """
 
     path: Path
@@ -27,8 +28,7 @@ class Lit(NamedTuple):
         return self.alt
 
     def _repr_html_(self) -> str:
-        src = web.data_uri(
-            self.path.read_bytes(), self.path.suffix[1:].lower().replace("jpg", "jpeg")
-        )
+        image_type = self.path.suffix[1:].lower().replace("jpg", "jpeg")
+        src = web.data_uri(self.path.read_bytes(), image_type)
         page = templates(Path(__file__).parent).get_template("lit.html")
         return page.render(src=src, alt=require_alt(self.alt))

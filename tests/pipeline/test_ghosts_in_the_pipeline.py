@@ -125,9 +125,9 @@ def test_the_command_says_what_moved_and_the_report_shows_it(moving, plain, tmp_
     assert "something moved in" in ran.output and "veiling glare" in ran.output
     assert not np.allclose(read_radiance(out), plain.E)
     text = (page / "report.html").read_text(encoding="utf8")
-    assert "What moved" in text and "in orange with dark outlines" in text
+    assert ">Motion</h2>" in text and "in orange with dark outlines" in text
 
 
-def test_a_report_without_motion_does_not_speak_of_it(plain, tmp_path):
+def test_report_has_no_section_on_motion_if_nothing_moved(plain, tmp_path):
     page = report.write_report(tmp_path, plain, pipeline.develop(plain.E), recipe={})
-    assert "What moved" not in page.read_text(encoding="utf8")
+    assert ">Motion</h2>" not in page.read_text(encoding="utf8")

@@ -1,4 +1,4 @@
-"""The contact sheet: what is on it, that it can be read, and that who cannot see it learns the same."""
+"""The contact sheet: its content, its legibility, and its alt text."""
 
 import re
 
@@ -31,7 +31,7 @@ def texts(figure):
     return [text.get_text() for text in figure.texts]
 
 
-def test_every_operator_stands_on_the_sheet_under_its_name_with_its_figures():
+def test_sheet_shows_every_operator_with_its_name_and_its_statistics():
     sheet = draw(contact.entry_steps(SCENE), title="a scene")
     said = texts(sheet)
     assert said[0] == "a scene" and len(sheet.axes) == len(catalogue.names("tonemap"))
@@ -43,7 +43,7 @@ def test_every_operator_stands_on_the_sheet_under_its_name_with_its_figures():
         assert re.search(r"\d m?s\n", under), "a busy machine may take seconds"
 
 
-def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
+def test_entries_are_the_pictures_of_develop_in_the_requested_order():
     names = ["reinhard", "photograph", "curves"]
     entries = list(contact.entry_steps(SCENE, names))
     assert [one.name for one in entries] == names
@@ -51,29 +51,28 @@ def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
         assert np.array_equal(one.picture, pipeline.develop(SCENE, one.name))
 
 
-def test_colours_that_a_display_does_not_have_go_the_way_asked_for():
+def test_out_of_gamut_colors_are_rendered_as_requested():
     E = SCENE * np.float32([0.02, 0.2, 5.0])  # a blue that no display has
-    hue, ratio = (
-        next(contact.entry_steps(E, ["reinhard"], way=way)).picture for way in ("hue", "ratio")
-    )
+    hue = next(contact.entry_steps(E, ["reinhard"], way="hue")).picture
+    ratio = next(contact.entry_steps(E, ["reinhard"], way="ratio")).picture
     assert np.array_equal(hue, pipeline.develop(E, "reinhard", way="hue"))
     assert not np.array_equal(hue, ratio)
 
 
-def test_the_time_is_that_of_the_operator_alone(monkeypatch):
+def test_measured_time_is_that_of_the_operator_alone(monkeypatch):
     monkeypatch.setattr(contact, "perf_counter", iter([10.0, 10.5, 20.0, 22.0]).__next__)
     entries = contact.entry_steps(SCENE, ["reinhard", "curves"])
     assert [one.seconds for one in entries] == [0.5, 2.0]
 
 
-def test_a_readers_own_operator_stands_beside_the_librarys_under_its_label():
+def test_own_functions_can_be_compared_with_library_operators_under_labels():
     own = {"half": lambda L: np.full_like(L, 0.5), "photographic": "reinhard"}
     half, photographic = contact.entry_steps(SCENE[..., 0], own)
     assert half.name == "half" and np.all(half.picture == 188)
     assert np.array_equal(photographic.picture, pipeline.develop(SCENE[..., 0], "reinhard"))
 
 
-def test_the_sheet_yields_a_picture_when_it_is_done_and_not_all_at_the_end():
+def test_entries_are_yielded_one_by_one_as_operators_finish():
     ran = []
     own = {name: lambda L, name=name: (ran.append(name), L * 0)[1] for name in "ab"}
     next(contact.entry_steps(SCENE, own))
@@ -81,7 +80,7 @@ def test_the_sheet_yields_a_picture_when_it_is_done_and_not_all_at_the_end():
 
 
 @pytest.mark.parametrize("shape", [(480, 360), (480, 360, 3), (300, 480, 3)])
-def test_a_picture_of_the_sheets_size_is_shown_pixel_for_pixel(shape):
+def test_picture_of_the_sheets_size_is_not_resampled(shape):
     one = entry(shape=shape)
     pixels = render(draw([one]))
     top, left = 44, GAP
@@ -92,7 +91,7 @@ def test_a_picture_of_the_sheets_size_is_shown_pixel_for_pixel(shape):
 
 @pytest.mark.parametrize("shape", [(60, 80, 3), (30, 500, 3), (768, 512), (1, 1), (900, 20, 3)])
 @pytest.mark.parametrize("count", [1, 2, 7])
-def test_every_text_stays_on_the_sheet_and_off_the_others(shape, count):
+def test_texts_and_pictures_stay_on_the_sheet_and_do_not_overlap(shape, count):
     figure = draw(
         [entry(f"operator {i}", shape) for i in range(count)],
         title="a_scene_with_a_long_name.hdr, 1024 x 768, 5.2 decades",
@@ -106,12 +105,12 @@ def test_every_text_stays_on_the_sheet_and_off_the_others(shape, count):
         assert not any(box.overlaps(other) for other in boxes[i + 1 :])
 
 
-def test_the_text_is_large_enough_to_read():
+def test_text_has_at_least_8_points():
     sizes = [text.get_fontsize() for text in draw([entry()]).texts]
     assert min(sizes) >= 8, "points: 11 pixels"
 
 
-def test_columns_are_as_asked_and_else_make_a_broad_sheet():
+def test_columns_can_be_chosen_and_default_to_a_sheet_wider_than_tall():
     def columns(figure):
         return len({round(ax.get_position().x0, 3) for ax in figure.axes})
 
@@ -123,14 +122,14 @@ def test_columns_are_as_asked_and_else_make_a_broad_sheet():
     assert 1 < width / height < 3
 
 
-def test_the_alt_text_holds_every_figure_best_first():
+def test_alt_text_lists_all_statistics_best_operator_first():
     alt = draw([entry("worse", Q=0.5), entry("better", Q=0.95)], title="memorial").get_label()
     assert alt.startswith("Contact sheet of memorial: one scene through 2 ")
     assert alt.index("better: Q 0.950 S 0.800") < alt.index("worse: Q 0.500")
     assert "12 ms" in alt and "entropy 7.50 bits" in alt and "  " not in alt and "\n" not in alt
 
 
-def test_the_alt_text_travels_in_the_file(tmp_path):
+def test_alt_text_is_stored_in_the_png(tmp_path):
     sheet = draw([entry("café")], title="Χ, 5 × 5")
     write_sheet(tmp_path / "sheet.png", sheet)
     with Image.open(tmp_path / "sheet.png") as file:
@@ -138,13 +137,13 @@ def test_the_alt_text_travels_in_the_file(tmp_path):
         assert file.size == tuple(round(100 * inches) for inches in sheet.get_size_inches())
 
 
-def test_the_same_entries_give_the_same_bytes(tmp_path):
+def test_same_entries_give_the_same_file(tmp_path):
     for name in ("a.png", "b.png"):
         write_sheet(tmp_path / name, draw([entry(), entry("other", seed=1)]))
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
-def test_a_sheet_that_cannot_be_drawn_or_written_is_refused(tmp_path):
+def test_bad_entries_columns_suffix_or_alt_text_are_rejected(tmp_path):
     with pytest.raises(ValueError, match="at least one"):
         draw([])
     with pytest.raises(ValueError, match="columns"):
@@ -162,9 +161,7 @@ def test_a_sheet_that_cannot_be_drawn_or_written_is_refused(tmp_path):
     ("operators", "said"),
     [(["reinhard", "magic"], "magic"), ([], "none"), ("reinhard", "list of operators")],
 )
-def test_operators_that_there_are_not_are_refused_before_the_first_has_run(
-    operators, said, monkeypatch
-):
+def test_unknown_operators_are_rejected_before_the_first_one_runs(operators, said, monkeypatch):
     monkeypatch.setattr(
         "hdrlab.tonemap.reinhard.tonemap", lambda L: pytest.fail("the first operator was run")
     )
@@ -172,6 +169,6 @@ def test_operators_that_there_are_not_are_refused_before_the_first_has_run(
         next(contact.entry_steps(SCENE, operators))
 
 
-def test_what_is_no_radiance_is_refused():
+def test_negative_radiance_is_rejected():
     with pytest.raises(ValueError, match="negative"):
         next(contact.entry_steps(-SCENE, ["reinhard"]))

@@ -14,22 +14,22 @@ def file(tmp_path):
     return path
 
 
-def test_the_file_stands_in_the_page_byte_for_byte_with_its_alt_text(file):
+def test_html_embeds_the_unchanged_file_with_its_alt_text(file):
     html = Lit(file, "A wall at dusk")._repr_html_()
     assert f'alt="A wall at dusk" src="{web.data_uri(file.read_bytes(), "png")}"' in html
     assert "data:image/png;base64," in html
 
 
-def test_as_text_it_is_its_alt_text(file):
+def test_repr_is_the_alt_text(file):
     assert repr(Lit(file, "A wall at dusk")) == "A wall at dusk"
 
 
-def test_a_picture_that_says_nothing_is_refused(file):
-    with pytest.raises(ValueError, match="alt text"):
+def test_empty_alt_text_is_rejected(file):
+    with pytest.raises(ValueError, match="expected an alt text"):
         Lit(file, " ")._repr_html_()
 
 
-def test_a_switch_holds_it_at_white_and_words_say_whether_the_screen_has_more(file):
+def test_html_has_a_switch_that_limits_the_image_to_white(file):
     html = Lit(file, "A wall at dusk")._repr_html_()
     assert '<label><input type="checkbox" checked> All the light' in html
     assert ":has(input:checked) img { dynamic-range-limit: no-limit; }" in html

@@ -1,4 +1,4 @@
-"""The report: one page that travels alone, says what was found, and how far to trust it."""
+"""The report on a radiance map: one HTML page without outside parts."""
 
 import base64
 import re
@@ -23,18 +23,16 @@ VOID = {"meta", "link", "img", "br", "wbr"}
 
 
 class Page(HTMLParser):
-    """A page's pictures, headings and text, and every tag that is not closed where it should be."""
+    """A page's images, headings and text, and the tags that are closed at the wrong place."""
 
     def __init__(self, path):
         super().__init__()
-        self.images, self.text, self.tags, self.headings, self.open, self.wrong = (
-            [],
-            "",
-            [],
-            [],
-            [],
-            [],
-        )
+        self.images = []
+        self.text = ""
+        self.tags = []
+        self.headings = []
+        self.open = []
+        self.wrong = []
         self.source = path.read_text(encoding="utf8")
         self.feed(self.source)
 
@@ -58,26 +56,24 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def room():
-    """An assembly of hand-held noisy photographs of the room, and the truth."""
+    """An assembly of hand-held noisy photos of the room, and the truth."""
     E = scenes.room((160, 240))
-    times, moves = (
-        camera.times_around(E, 6, stops=2.5),
-        np.array([[0, 0], [2, -1], [-3, 2], [0, 0], [1, 4], [0, -2]]),
-    )
-    photographs = camera.shoot(
-        E, times, camera.Camera(full_well=60_000, read_noise=6, hot=1e-4), offsets=moves, rng=4
-    )
-    found = pipeline.assemble(photographs)
-    seen = camera.views(E, moves)[3][crop(found.offsets, photographs.images.shape[1:3])]
-    return found, Truth(seen, responses.true_g("film"), moves)
+    times = camera.times_around(E, 6, stops=2.5)
+    offsets = np.array([[0, 0], [2, -1], [-3, 2], [0, 0], [1, 4], [0, -2]])
+    noisy = camera.Camera(full_well=60_000, read_noise=6, hot=1e-4)
+    bracket = camera.shoot(E, times, noisy, offsets=offsets, rng=4)
+    assembly = pipeline.assemble(bracket)
+    E_true = camera.views(E, offsets)[3][crop(assembly.offsets, bracket.images.shape[1:3])]
+    return assembly, Truth(E_true, responses.true_g("film"), offsets)
 
 
 @pytest.fixture(scope="module")
 def page(room, tmp_path_factory):
-    found, truth = room
+    assembly, truth = room
     recipe = {"tonemap": "reinhard", "seed": 4}
     folder = tmp_path_factory.mktemp("report")
-    return Page(write_report(folder, found, pipeline.develop(found.E), recipe=recipe, truth=truth))
+    picture = pipeline.develop(assembly.E)
+    return Page(write_report(folder, assembly, picture, recipe=recipe, truth=truth))
 
 
 def flat(channels=(3,), dtype=np.uint8, names=None, linear=False):
@@ -96,14 +92,14 @@ def report(folder, assembly, **knobs):
     return Page(write_report(folder, assembly, pipeline.develop(assembly.E), **knobs))
 
 
-def test_the_page_is_well_formed_and_says_its_language_and_title(page):
+def test_report_is_well_formed_html_with_a_language_and_a_title(page):
     assert page.source.startswith("<!DOCTYPE html>")
     assert page.wrong == [] and page.open == []
     assert ("html", {"lang": "en"}) in page.tags
-    assert re.search(r"<title>6 photographs, one radiance map", page.source)
+    assert re.search(r"<title>6 photos, ", page.source)
 
 
-def test_the_page_fetches_nothing_and_runs_nothing(page):
+def test_report_fetches_nothing_and_runs_no_script(page):
     addresses = re.findall(
         r"""(?:src|href|action|data|poster)=["']?([^"'\s>]{0,20})""", page.source
     )
@@ -111,42 +107,40 @@ def test_the_page_fetches_nothing_and_runs_nothing(page):
     assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", page.source)
 
 
-def test_how_sure_each_pixel_is_stands_there_where_it_was_asked(room, tmp_path):
-    found = pipeline.measure_deviation(room[0])
-    page = report(tmp_path, found)
-    assert (
-        "How sure each pixel is" in page.headings
-        and wording.certainty(found.E, found.s) in page.text
-    )
-    (picture,) = (one for one in page.images if one["alt"].startswith("How sure each pixel is"))
-    assert re.search(r"from ± 0\.\d+ to ± 0\.\d+ stops", picture["alt"])
-    assert "How sure each pixel is" not in report(tmp_path, room[0]).headings
+def test_report_shows_the_uncertainty_of_the_pixels_if_it_was_estimated(room, tmp_path):
+    assembly = pipeline.measure_deviation(room[0])
+    page = report(tmp_path, assembly)
+    assert "Uncertainty" in page.headings
+    assert wording.certainty(assembly.E, assembly.s) in page.text
+    (figure,) = (image for image in page.images if image["alt"].startswith("Uncertainty"))
+    assert re.search(r"from ± 0\.\d+ to ± 0\.\d+ stops", figure["alt"])
+    assert "Uncertainty" not in report(tmp_path, room[0]).headings
 
 
-def test_where_no_pixel_is_sure_the_page_says_so_without_a_picture(tmp_path):
+def test_report_has_no_figure_of_the_uncertainty_if_it_is_unknown_everywhere(tmp_path):
     state = flat()
     page = report(tmp_path, replace(state, s=np.full_like(state.E, np.inf)))
-    assert "not known" in page.text
-    assert not any("How sure" in one["alt"] for one in page.images)
+    assert "is not known" in page.text
+    assert not any("Uncertainty" in image["alt"] for image in page.images)
 
 
-def test_what_the_deviation_of_a_pixel_is_in_stops():
-    E, s = np.full((1, 2, 3), 2.0, np.float32), np.full((1, 2, 3), 0.2, np.float32)
+def test_deviation_in_stops_is_the_relative_deviation_over_ln_2():
+    E = np.full((1, 2, 3), 2.0, np.float32)
+    s = np.full((1, 2, 3), 0.2, np.float32)
     s[0, 1, 2] = np.inf
     assert wording.deviation(E, s)[0] == pytest.approx([0.1 / np.log(2), np.inf], rel=1e-5)
-    assert wording.certainty(E, s).count("± 0.14") == 2  # of half of the pixels, and of 95 %
+    assert wording.certainty(E, s).count("± 0.14") == 2
 
 
-def test_every_picture_has_alt_text_and_a_size_and_is_inside_the_page(page):
-    assert (
-        len(page.images) == 1 + 6 + 1 + 1 + 1 + 1
-    )  # picture, frames, response, radiance, known, errors
+def test_every_image_of_the_report_is_embedded_and_has_alt_text_and_a_size(page):
+    # The picture, six frames, response, radiance, pixel quality and errors.
+    assert len(page.images) == 1 + 6 + 1 + 1 + 1 + 1
     for image in page.images:
         assert len(image["alt"]) > 10 and int(image["width"]) > 0 and int(image["height"]) > 0
         assert len(base64.b64decode(image["src"].partition("base64,")[2], validate=True)) > 100
 
 
-def test_the_pictures_decode_to_the_size_that_the_page_says(page):
+def test_images_of_the_report_have_the_size_that_the_page_states(page):
     for image in page.images:
         kind, _, data = image["src"].partition(";base64,")
         if kind == "data:image/webp":
@@ -156,67 +150,50 @@ def test_the_pictures_decode_to_the_size_that_the_page_says(page):
             assert decoded.shape[:2] == (int(image["height"]), int(image["width"]))
 
 
-def test_the_sections_stand_in_order(page):
-    assert [heading for heading in page.headings if heading] == [
-        "6 photographs, one radiance map",
-        "Good to know",
-        "The bracket",
-        "The response",
-        "The radiance map",
-        "How each pixel is known",
-        "Does the map explain its photographs?",
-        "Against the truth",
-        "The recipe",
-    ]
-
-
-def test_the_frames_stand_with_names_times_and_offsets(page, room):
+def test_report_lists_each_frame_with_name_time_and_offset(page, room):
     for name, offset in zip(room[0].bracket.names, room[0].offsets, strict=True):
         assert name in page.text and f"moved by {wording.offset(offset)}" in page.text
     assert re.search(r"1/\d+ s", page.text)
 
 
-def test_the_spread_stands_in_the_report(page, room):
+def test_report_states_the_spread_between_the_frames(page, room):
     assert f"{room[0].spread:.3f} stops" in page.text and "they agree" in page.text
 
 
-def test_the_errors_in_the_report_are_those_of_the_map(page, room):
-    found, truth = room
+def test_report_states_the_errors_of_the_map_and_the_response(page, room):
+    assembly, truth = room
     rows = dict(
         re.findall(
             r'<th scope="row">(red|green|blue)</th><td class="right">([\d.]+) %', page.source
         )
     )
-    assert list(rows) == ["red", "green", "blue"] and all(
-        0 < float(one) < 1 for one in rows.values()
-    )
+    assert list(rows) == ["red", "green", "blue"]
+    assert all(0 < float(percent) < 1 for percent in rows.values())
     median = float(re.search(r"<dt>([\d.]+) %</dt><dd>median error of radiance", page.source)[1])
-    ratio = found.E / truth.E
+    ratio = assembly.E / truth.E
     assert median == pytest.approx(100 * np.median(np.abs(ratio / np.median(ratio) - 1)), abs=0.1)
-    assert "all found" in page.text
+    assert "all correct" in page.text
 
 
-def test_the_recipe_names_knobs_times_and_versions(page):
+def test_report_lists_parameters_times_and_versions(page):
     for word in ("tonemap", "reinhard", "seed", "hdrlab", np.__version__, "times, s"):
         assert word in page.text
 
 
-def test_without_a_truth_no_errors_are_claimed(tmp_path):
+def test_report_without_a_truth_states_no_errors(tmp_path):
     shown = report(tmp_path, flat())
-    assert "Against the truth" not in shown.text and "median error" not in shown.text
+    assert "Errors" not in shown.headings and "median error" not in shown.text
 
 
-def test_pixels_that_were_not_measured_are_counted_and_shown(tmp_path):
-    found = flat()
-    quality = found.quality.copy()
-    quality[0, :7], quality[5, 5], quality[9, :3], quality[10, 1] = (
-        Quality.CLIPPED,
-        Quality.STUCK,
-        Quality.DARK,
-        Quality.UNSEEN,
-    )
+def test_report_counts_and_shows_pixels_that_were_not_measured(tmp_path):
+    assembly = flat()
+    quality = assembly.quality.copy()
+    quality[0, :7] = Quality.CLIPPED
+    quality[5, 5] = Quality.STUCK
+    quality[9, :3] = Quality.DARK
+    quality[10, 1] = Quality.UNSEEN
     quality[20, 20] = Quality.CLIPPED | Quality.DARK
-    shown = report(tmp_path, replace(found, quality=quality))
+    shown = report(tmp_path, replace(assembly, quality=quality))
     counts = dict(
         re.findall(
             r"<b>([\w ]+)</b> <span.{0,120}?</th><td class=\"right\">([\d,]+)</td>", shown.source
@@ -228,46 +205,46 @@ def test_pixels_that_were_not_measured_are_counted_and_shown(tmp_path):
         "dark in every frame": "3",
         "clipped or dark in every frame": "1",
         "stuck": "1",
-        "shown by no frame": "1",
+        "outside every frame": "1",
     }
     assert any("dots" in image["alt"] for image in shown.images)
 
 
-def test_a_map_that_is_measured_everywhere_needs_no_picture_of_it(tmp_path):
+def test_report_has_no_figure_of_pixel_quality_if_all_pixels_were_measured(tmp_path):
     shown = report(tmp_path, flat())
     assert "100 %" in shown.text and not any("dots" in image["alt"] for image in shown.images)
 
 
-def test_doubts_stand_before_the_picture_and_notes_are_told(tmp_path):
+def test_report_shows_warnings_above_the_first_image_and_notes(tmp_path):
     shown = report(
         tmp_path, replace(flat(), doubts=("the times are wrong",), notes=("a frame is dark",))
     )
     assert shown.source.index("the times are wrong") < shown.source.index("<img")
-    assert "What is doubtful about this map" in shown.text and "a frame is dark" in shown.text
+    assert "Warnings" in shown.headings and "a frame is dark" in shown.text
 
 
-def test_without_doubts_and_notes_none_are_raised(tmp_path):
+def test_report_has_no_empty_sections_for_warnings_and_notes(tmp_path):
     shown = report(tmp_path, replace(flat(), doubts=(), notes=()))
-    assert "doubtful" not in shown.text and "Good to know" not in shown.text
+    assert not {"Warnings", "Notes"} & set(shown.headings)
 
 
-def test_names_and_notes_cannot_write_into_the_page(tmp_path):
+def test_file_names_and_notes_cannot_inject_html(tmp_path):
     evil = ['<script>alert("x")</script>.jpg', "\" onerror='alert(1)'&amp;.jpg"]
-    found = replace(flat(names=evil), doubts=("<b>bold</b>",), notes=("<img src=x>",))
-    shown = report(tmp_path, found, recipe={"<i>": "</style>"})
+    assembly = replace(flat(names=evil), doubts=("<b>bold</b>",), notes=("<img src=x>",))
+    shown = report(tmp_path, assembly, recipe={"<i>": "</style>"})
     assert shown.wrong == [] and shown.open == []
     assert not {"script", "i"} & {tag for tag, attrs in shown.tags if "style" not in attrs}
     assert all(
         image["src"].startswith("data:") and "onerror" not in image for image in shown.images
     )
     for name in evil:
-        assert f"Photograph {name}, exposed for" in shown.images[1 + evil.index(name)]["alt"]
+        assert name in shown.images[1 + evil.index(name)]["alt"]
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("linear", [True, False])
-def test_gray_and_colour_of_8_and_16_bits_linear_or_not_are_reported(
+def test_report_works_for_gray_and_color_brackets_of_8_and_16_bits_linear_or_not(
     channels, dtype, linear, tmp_path
 ):
     shown = report(tmp_path, flat(channels, dtype, linear=linear))
@@ -276,7 +253,7 @@ def test_gray_and_colour_of_8_and_16_bits_linear_or_not_are_reported(
     assert ("linear" in shown.text) == linear
 
 
-def test_the_thumbnails_of_linear_photographs_are_encoded_for_a_screen(tmp_path):
+def test_thumbnails_of_linear_photos_are_gamma_encoded(tmp_path):
     def brightness(linear):
         shown = report(tmp_path, flat(linear=linear)).images[1]["src"].partition("base64,")[2]
         return cv2.imdecode(
@@ -286,14 +263,14 @@ def test_the_thumbnails_of_linear_photographs_are_encoded_for_a_screen(tmp_path)
     assert brightness(True) > 1.5 * brightness(False)
 
 
-def test_the_same_assembly_gives_the_same_page_byte_for_byte(room, page, tmp_path):
+def test_same_assembly_gives_the_same_report_byte_for_byte(room, page, tmp_path):
     found, truth = room
     recipe = {"tonemap": "reinhard", "seed": 4}
     again = write_report(tmp_path, found, pipeline.develop(found.E), recipe=recipe, truth=truth)
     assert again.read_text(encoding="utf8") == page.source
 
 
-def test_the_folder_is_made_and_the_page_replaces_an_older_one(tmp_path):
+def test_write_report_creates_the_folder_and_replaces_an_older_report(tmp_path):
     folder = tmp_path / "a" / "b"
     report(folder, flat())
     first = (folder / "report.html").read_text(encoding="utf8")
@@ -304,7 +281,7 @@ def test_the_folder_is_made_and_the_page_replaces_an_older_one(tmp_path):
     )
 
 
-def test_a_report_that_fails_leaves_the_older_one(room, tmp_path):
+def test_failing_write_report_keeps_the_older_report(room, tmp_path):
     found, truth = room
     (tmp_path / "report.html").write_text("older")
     picture = pipeline.develop(found.E)
@@ -315,8 +292,8 @@ def test_a_report_that_fails_leaves_the_older_one(room, tmp_path):
     ]
 
 
-def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="finished assembly.*one after the stage 'merge'"):
+def test_write_report_rejects_an_unfinished_assembly(tmp_path):
+    with pytest.raises(ValueError, match="stage 'merge'"):
         write_report(
             tmp_path, replace(flat(), stage="merge", medians=None), np.zeros((40, 60), np.uint8)
         )
@@ -325,12 +302,12 @@ def test_an_assembly_that_is_not_finished_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "picture", [np.zeros((40, 59), np.uint8), np.zeros((40, 60)), np.zeros((40, 60, 4), np.uint8)]
 )
-def test_a_picture_that_does_not_fit_is_refused(picture, tmp_path):
-    with pytest.raises(ValueError, match=r"uint8 picture of \(40, 60\) pixels"):
+def test_write_report_rejects_a_picture_of_another_size_or_type(picture, tmp_path):
+    with pytest.raises(ValueError, match=r"\(40, 60\) pixels"):
         write_report(tmp_path, flat(), picture)
 
 
-def test_a_large_picture_is_brought_down_by_whole_pixels_to_their_means():
+def test_fit_reduces_a_large_image_to_the_means_of_pixel_blocks():
     ramp = np.arange(40 * 60, dtype=np.float64).reshape(40, 60)
     small = figures.fit(ramp, 30)
     assert small.shape == (20, 30) and small[0, 0] == ramp[:2, :2].mean()
@@ -338,7 +315,7 @@ def test_a_large_picture_is_brought_down_by_whole_pixels_to_their_means():
     assert figures.fit(np.ones((1, 100, 3), np.uint8), 10).shape == (1, 10, 3)
 
 
-def test_false_colour_runs_from_end_to_end_and_what_is_not_known_is_gray():
+def test_false_color_runs_from_the_low_to_the_high_end_and_nan_is_gray():
     below, low, high, above, missing = figures.false_colour(
         np.array([[-9.0, -2, 2, 9, np.nan]]), -2, 2
     )[0].astype(int)
@@ -350,7 +327,7 @@ def test_false_colour_runs_from_end_to_end_and_what_is_not_known_is_gray():
 
 
 @pytest.mark.parametrize(("low", "high"), [(-10, 9), (-4, 6), (0, 1), (-0.05, 0.05)])
-def test_the_ticks_of_a_scale_stand_where_their_numbers_say(low, high):
+def test_ticks_of_a_scale_are_at_the_place_of_their_numbers(low, high):
     ticks = figures.scale(low, high, digits=3).ticks
     assert 2 <= len(ticks) <= 8
     for place, label in ticks:
@@ -362,11 +339,11 @@ def test_the_ticks_of_a_scale_stand_where_their_numbers_say(low, high):
 @pytest.mark.parametrize(
     ("value", "up"), [(0.003, 0.01), (0.02, 0.02), (0.034, 0.05), (0.7, 1), (1.2, 2)]
 )
-def test_the_error_scale_ends_on_a_round_number(value, up):
+def test_error_scale_ends_on_a_round_number(value, up):
     assert figures.round_up(value) == pytest.approx(up)
 
 
-def test_a_map_without_light_is_refused():
+def test_stops_rejects_a_map_without_light():
     with pytest.raises(ValueError, match="some light"):
         figures.stops(np.zeros((4, 4)))
 
@@ -374,11 +351,11 @@ def test_a_map_without_light_is_refused():
 @pytest.mark.parametrize(
     ("spread", "says"), [(0.03, "they agree"), (0.1, "they agree roughly"), (0.3, "contradict")]
 )
-def test_a_spread_is_judged_in_words(spread, says):
+def test_verdict_says_whether_frames_with_a_spread_agree(spread, says):
     assert says in wording.verdict(spread)
 
 
-def test_frames_that_share_no_level_are_not_said_to_agree(tmp_path):
+def test_report_does_not_claim_agreement_of_frames_without_common_pixel_values(tmp_path):
     found = flat()
     shown = report(tmp_path, replace(found, medians=np.full_like(found.medians, np.nan)))
     assert (
@@ -396,6 +373,6 @@ def luminance_of(colour):
     ]
 
 
-def test_the_kinds_of_unmeasured_pixels_differ_in_lightness_too():
+def test_colors_of_pixel_quality_flags_differ_in_lightness():
     light = sorted(luminance_of(colour) for colour in figures.KNOWN.values())
     assert min((b + 0.05) / (a + 0.05) for a, b in zip(light, light[1:], strict=False)) > 1.1

@@ -1,1 +1,1 @@
-"""Pages that stand by themselves: the report, the contact sheet, the display."""
+"""Pages without outside parts: the report and the contact sheet."""

@@ -1,10 +1,10 @@
-"""The contact sheet: one scene through every operator, with time, quality and statistics under each picture.
+"""Run tone-mapping operators on one scene for the contact sheet, with time, TMQI and statistics.
 
 E        radiance            (H, W[, 3]), any linear unit
 L, Ld    luminance, display luminance     (H, W)
 
-The time is that of the operator alone: its choice of settings, and luminance in, display luminance
-out. `sheet` draws what is found here.
+The time of an operator includes its choice of settings, but neither luminance nor the rendering of
+colors. `sheet` draws the entries.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -24,22 +24,23 @@ from hdrlab.tonemap import quality
 def entry_steps(
     E: ArrayLike, operators: Sequence[str] | Mapping[str, Method] | None = None, *, way: str = "hue"
 ) -> Iterator[Entry]:
-    """Yield the Entry of each operator: its picture, time, TMQI and statistics.
+    """Yield the contact sheet's entry of each operator: its picture, time, TMQI and statistics.
 
     Parameters
     ----------
     E : (H, W) or (H, W, 3)
         Radiance, any linear unit.
-    operators : names, or labels with an operator each; optional
-        Which, and in which order: those of `tonemap`, sorted, unless told; "photograph" is another.
-        A label's operator is a name or your own function `tonemap(L) -> Ld` in [0, 1].
+    operators : list of names, or mapping of labels to operators; optional
+        The operators, in the order of the sheet; by default all of `hdrlab.tonemap`, sorted.
+        "photograph" is another one. In a mapping, an operator is a name or your own function
+        `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio"}
-        What becomes of colours that a display does not have: see `core.colour.render`.
+        How colors that a display cannot show are rendered: see `core.colour.render`.
 
     Raises
     ------
-    ValueError
-        For radiance that is not finite or negative, and for names that no operator has.
+    InputError
+        For radiance that is not finite or negative, and for names of unknown operators.
 
     References
     ----------
@@ -55,28 +56,34 @@ def entry_steps(
     """
     E = as_radiance(E)
     L = colour.luminance(E)
-    for name, tonemap in _methods(
-        operators
-    ).items():  # imported by now: that is no part of the time
-        begun = perf_counter()
+    # This imports all operators, so that the measured times do not include an import.
+    functions = _find_operators(operators)
+    for name, tonemap in functions.items():
+        start = perf_counter()
         settings, saturation = pipeline.resolve_settings(tonemap, E)
         Ld = tonemap(L, **settings)
-        seconds = perf_counter() - begun
+        seconds = perf_counter() - start
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)
-        yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
+        yield Entry(
+            name=name,
+            picture=picture,
+            seconds=seconds,
+            quality=quality.tmqi(L, picture),
+            statistics=statistics(picture),
+        )
 
 
-def _methods(
+def _find_operators(
     operators: Sequence[str] | Mapping[str, Method] | None,
 ) -> dict[str, Callable[..., ArrayLike]]:
-    """Return label -> function, or raise a ValueError, before the first operator has run."""
+    """Return the operators' functions by label, or raise an InputError before any of them runs."""
     if operators is None:
         operators = catalogue.names("tonemap")
     if isinstance(operators, str):
         raise InputError(f"expected a list of operators, got the text {operators!r}")
-    named = operators if isinstance(operators, Mapping) else {name: name for name in operators}
-    if not named:
+    methods = operators if isinstance(operators, Mapping) else {name: name for name in operators}
+    if not methods:
         raise InputError(
             f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none"
         )
-    return {label: pipeline.find_operator(method) for label, method in named.items()}
+    return {label: pipeline.find_operator(method) for label, method in methods.items()}

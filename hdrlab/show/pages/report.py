@@ -1,7 +1,7 @@
-"""The report on a radiance map: one page that travels alone, with what was found and how far to trust it.
+"""Write the report on a radiance map: one HTML page with figures, errors and warnings.
 
-The template `report.html` asks `sections` for what it says; its pictures travel in it.
-Nothing on the page is fetched, and nothing on it runs.
+The template `report.html` calls the functions of `sections`. All images are embedded. The page
+fetches nothing and runs no script.
 """
 
 import platform
@@ -22,7 +22,9 @@ from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import sections, templates, wording
 from hdrlab.show.plots import figures
 
-PAGE = "report.html"
+# The name of the template, and of the page.
+REPORT_FILE_NAME = "report.html"
+MAX_PICTURE_SIDE = 1600
 
 
 def write_report(
@@ -33,26 +35,26 @@ def write_report(
     recipe: str | Mapping[str, Any] = "",
     truth: Truth | None = None,
 ) -> Path:
-    """Write `report.html` into a folder, which is made where it is missing, and return the page's path.
+    """Write `report.html` into a folder, which is created if needed, and return the page's path.
 
     Parameters
     ----------
     folder : path
-        A page that stands there is replaced when the new one is complete.
+        An existing report in it is replaced when the new one is complete.
     assembly : Assembly
-        All that `pipeline.assemble` found.
+        The result of `pipeline.assemble`.
     picture : (h, w) or (h, w, 3) uint8
         The tone-mapped map, as `pipeline.develop` returns it.
     recipe : str or mapping
-        How it was made, beyond what the assembly knows: methods and knobs, by name.
+        How the map was made: a sentence, or the methods and parameters by name.
     truth : Truth, optional
-        Adds the errors of radiance, response and offsets.
+        With it, the report has a section on the errors of radiance, response and offsets.
 
     Raises
     ------
-    ValueError
-        For an assembly that is not finished or without light, a picture or a truth that does not
-        fit it.
+    InputError
+        For an assembly that is unfinished or has no light, and for a picture or a truth of another
+        size than the map.
 
     Examples
     --------
@@ -70,28 +72,31 @@ def write_report(
         raise InputError(
             f"expected a finished assembly, got one after the stage {assembly.stage!r}"
         )
-    if (
-        picture.dtype != np.uint8
-        or picture.shape[:2] != quality.shape
-        or picture.shape[2:] not in ((), (3,))
-    ):
+    fits = picture.shape[:2] == quality.shape and picture.shape[2:] in ((), (3,))
+    if picture.dtype != np.uint8 or not fits:
         raise InputError(
             f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}"
         )
-    seen = "fused without a map" if assembly.fallback else "tone-mapped for a display"
-    seen = f"The picture: the {'photographs' if assembly.fallback else 'radiance map'}, {seen}"
-    words: dict[str, Any] = {"assembly": assembly, "picture": picture, "truth": truth}
-    words |= {
-        "shown": figures.photograph(picture, 1600, seen),
-        "sections": sections,
-        "wording": wording,
-    }
-    words |= {"recipe": {"how": recipe} if recipe and isinstance(recipe, str) else recipe}
-    words |= {
-        "modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)},
-        "Quality": Quality,
-    }
-    text = templates.render_page(Path(__file__).parent, PAGE, **words)
-    page = Path(folder) / PAGE
+    if assembly.fallback:
+        alt = "The picture: the photos, fused without a map"
+    else:
+        alt = "The picture: the radiance map, tone-mapped for a display"
+    if recipe and isinstance(recipe, str):
+        recipe = {"how": recipe}
+    modules = {module.__name__: module for module in (hdrlab, np, scipy, platform)}
+    text = templates.render_page(
+        Path(__file__).parent,
+        REPORT_FILE_NAME,
+        assembly=assembly,
+        picture=picture,
+        truth=truth,
+        picture_illustration=figures.photograph(picture, MAX_PICTURE_SIDE, alt),
+        sections=sections,
+        wording=wording,
+        recipe=recipe,
+        modules=modules,
+        Quality=Quality,
+    )
+    page = Path(folder) / REPORT_FILE_NAME
     page.parent.mkdir(parents=True, exist_ok=True)
     return write(page, text)

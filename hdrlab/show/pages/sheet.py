@@ -1,14 +1,15 @@
-"""A sheet of pictures with their figures: drawn from its entries and from nothing else.
+"""Draw the contact sheet: tone-mapped pictures of one scene, with their statistics.
 
 Q, S, N  TMQI: overall, structural fidelity, naturalness, see `tonemap.quality`
 
-Pictures are placed by the pixel: one of the sheet's size stands on it as it is.
+Pictures are placed at whole pixels, so a picture that already has the sheet's size is not resampled.
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -20,24 +21,35 @@ from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
 
-Size = tuple[int, int]  # pixels, width and height
-DPI = 100  # dots per inch: a matplotlib inch is a hundred pixels of the sheet
-SIDE = 480  # pixels, the longer side of a picture on the sheet
-# pixels: least width and height of the text under a picture, and margins
-TEXT = 320
-CAPTION = 86
+# Lengths are in pixels of the sheet.
+PIXELS_PER_INCH = 100
+PICTURE_SIDE = 480
+MIN_TEXT_WIDTH = 320
+CAPTION_HEIGHT = 86
 GAP = 14
-LEGEND = Path(__file__).with_name("sheet_legend.txt")
+TITLE_TOP = 12
+TITLE_MARGIN = 24
+TITLE_LINE_HEIGHT = 20
+TITLE_LETTER_WIDTH = 12
+LEGEND_MARGIN = 16
+LEGEND_LINE_HEIGHT = 14
+LEGEND_LETTER_WIDTH = 7
+# The width of a sheet divided by its height, if `columns` is not given.
+ASPECT_RATIO = 1.6
+LEGEND_FILE = Path(__file__).with_name("sheet_legend.txt")
+MIN_SECONDS_UNIT = 0.9995
+MIN_WHOLE_MILLISECONDS = 0.00095
 
 
-class Entry(NamedTuple):
+@dataclass(frozen=True)
+class Entry:
     """One picture of the sheet.
 
     Attributes
     ----------
-    name : of the operator
+    name : the operator's name
     picture : (H, W) or (H, W, 3) uint8, sRGB
-    seconds : what the operator took
+    seconds : the operator's running time
     quality : Q, S, N
     statistics : black, white, mean, contrast, entropy
     """
@@ -54,109 +66,148 @@ def caption(entry: Entry) -> str:
 
     Examples
     --------
-    >>> found = Quality(0.934, 0.87, 0.81), Statistics(0.001, 0.0464, 128.6, 40.4, 7.36)
-    >>> print(caption(Entry("reinhard", np.zeros((1, 1), np.uint8), 0.0342, *found)))
+    >>> quality = Quality(0.934, 0.87, 0.81)
+    >>> statistics = Statistics(0.001, 0.0464, 128.6, 40.4, 7.36)
+    >>> print(caption(Entry("reinhard", np.zeros((1, 1), np.uint8), 0.0342, quality, statistics)))
     Q 0.934   S 0.870   N 0.810   34 ms
     black 0.10 %   clipped 4.64 %
     mean 129   contrast 40   entropy 7.36 bits
     """
-    Q, S, N = entry.quality
-    black, white, mean, contrast, entropy = entry.statistics
+    tmqi = entry.quality
+    statistics = entry.statistics
+    black = 100 * statistics.black
+    clipped = 100 * statistics.white
+    mean = statistics.mean
+    contrast = statistics.contrast
+    entropy = statistics.entropy
     return (
-        f"Q {Q:.3f}   S {S:.3f}   N {N:.3f}   {took(entry.seconds)}\n"
-        f"black {100 * black:.2f} %   clipped {100 * white:.2f} %\n"
+        f"Q {tmqi.Q:.3f}   S {tmqi.S:.3f}   N {tmqi.N:.3f}   {format_time(entry.seconds)}\n"
+        f"black {black:.2f} %   clipped {clipped:.2f} %\n"
         f"mean {mean:.0f}   contrast {contrast:.0f}   entropy {entropy:.2f} bits"
     )
 
 
-def took(seconds: float) -> str:
-    """Return a time as '34 ms' or '1.2 s'.
+def format_time(seconds: float) -> str:
+    """Return a running time as '34 ms' or '1.2 s'.
 
     Examples
     --------
-    >>> took(0.0342), took(1.234), took(0.0002)
+    >>> format_time(0.0342), format_time(1.234), format_time(0.0002)
     ('34 ms', '1.2 s', '0.2 ms')
     """
-    if seconds >= 0.9995:
+    if seconds >= MIN_SECONDS_UNIT:
         return f"{seconds:.1f} s"
-    return f"{1000 * seconds:.0f} ms" if seconds >= 0.00095 else f"{1000 * seconds:.1g} ms"
+    if seconds >= MIN_WHOLE_MILLISECONDS:
+        return f"{1000 * seconds:.0f} ms"
+    return f"{1000 * seconds:.1g} ms"
 
 
 def alt_text(entries: Sequence[Entry], title: str = "") -> str:
-    """Return what the sheet shows, for a reader who cannot see it: every figure on it, best picture first."""
+    """Return the alt text of the sheet: the name and all numbers of each picture, best TMQI first."""
     ranked = sorted(entries, key=lambda entry: -entry.quality.Q)
-    lines = [f"{entry.name}: {', '.join(caption(entry).splitlines())}" for entry in ranked]
-    of = f" of {title}" if title else ""
-    head = f"Contact sheet{of}: one scene through {len(ranked)} tone-mapping operators, best TMQI first. "
-    return head + "; ".join(" ".join(line.split()) for line in lines) + "."
+    descriptions = []
+    for entry in ranked:
+        numbers = ", ".join(caption(entry).splitlines())
+        descriptions.append(" ".join(f"{entry.name}: {numbers}".split()))
+    subject = f" of {title}" if title else ""
+    return (
+        f"Contact sheet{subject}: one scene through {len(ranked)} tone-mapping operators, "
+        f"best TMQI first. {'; '.join(descriptions)}."
+    )
 
 
-def _grid(shape: tuple[int, ...], count: int, columns: int | None) -> tuple[int, Size, Size]:
-    """Return pictures in a row, and the pixels of a picture and its cell; a sheet is broad."""
+@dataclass(frozen=True)
+class _Layout:
+    """The grid of a sheet: pictures in a row, and the sizes of a picture and of its cell."""
+
+    columns: int
+    picture_width: int
+    picture_height: int
+    cell_width: int
+    cell_height: int
+
+
+def _make_layout(shape: tuple[int, ...], count: int, columns: int | None) -> _Layout:
+    """Return the grid for `count` pictures of a shape, by default of a sheet wider than tall."""
     h, w = shape[:2]
-    width, height = (max(1, round(SIDE * length / max(h, w))) for length in (w, h))
-    cell = max(width, TEXT) + GAP, height + CAPTION
+    picture_width = max(1, round(PICTURE_SIDE * w / max(h, w)))
+    picture_height = max(1, round(PICTURE_SIDE * h / max(h, w)))
+    cell_width = max(picture_width, MIN_TEXT_WIDTH) + GAP
+    cell_height = picture_height + CAPTION_HEIGHT
     if columns is None:
-        columns = max(1, round((1.6 * count * cell[1] / cell[0]) ** 0.5))
-        columns = -(-count // -(-count // columns))  # as many rows with fewer places left empty
-    return min(columns, count), (width, height), cell
+        columns = max(1, round((ASPECT_RATIO * count * cell_height / cell_width) ** 0.5))
+        rows = -(-count // columns)
+        # The same number of rows often needs fewer columns, which leaves fewer cells empty.
+        columns = -(-count // rows)
+    return _Layout(
+        columns=min(columns, count),
+        picture_width=picture_width,
+        picture_height=picture_height,
+        cell_width=cell_width,
+        cell_height=cell_height,
+    )
 
 
 def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = None) -> Figure:
-    """Return the sheet of these entries, in their order; its alt text is the label, `figure.get_label()`.
+    """Draw the sheet of the entries, in their order; the figure's label is its alt text.
 
     Parameters
     ----------
-    entries : pictures of one size, with their figures
+    entries : pictures of one size, with their statistics
     title : above the sheet, and in its alt text
-    columns : pictures in a row; so many that the sheet is broad rather than tall, unless told
+    columns : pictures in a row; by default so many that the sheet is wider than tall
     """
     entries = list(entries)
     if not entries:
         raise InputError("expected at least one picture for the sheet, got none")
     if columns is not None and columns < 1:
         raise InputError(f"expected columns >= 1, got {columns}")
-    columns, picture, cell = _grid(entries[0].picture.shape, len(entries), columns)
-    width = columns * cell[0] + GAP
-    head = _broken(title or "Tone mapping", width, 12)
-    foot = _broken(LEGEND.read_text("utf8"), width, 7)
-    top = 24 + 20 * len(head)
-    below = top + -(-len(entries) // columns) * cell[1]
-    size = (width / DPI, (below + 16 + 14 * len(foot)) / DPI)
-    figure = Figure(figsize=size, dpi=DPI, facecolor="white")
+    layout = _make_layout(entries[0].picture.shape, len(entries), columns)
+    rows = -(-len(entries) // layout.columns)
+    width = layout.columns * layout.cell_width + GAP
+    title_lines = _wrap(title or "Tone mapping", width, TITLE_LETTER_WIDTH)
+    legend_lines = _wrap(LEGEND_FILE.read_text("utf8"), width, LEGEND_LETTER_WIDTH)
+    pictures_top = TITLE_MARGIN + TITLE_LINE_HEIGHT * len(title_lines)
+    legend_top = pictures_top + rows * layout.cell_height
+    height = legend_top + LEGEND_MARGIN + LEGEND_LINE_HEIGHT * len(legend_lines)
+    size = (width / PIXELS_PER_INCH, height / PIXELS_PER_INCH)
+    figure = Figure(figsize=size, dpi=PIXELS_PER_INCH, facecolor="white")
     figure.set_label(alt_text(entries, title))
-    _write(figure, GAP, 12, "\n".join(head), fontsize=13, fontweight="bold")
+    _write(figure, GAP, TITLE_TOP, "\n".join(title_lines), fontsize=13, fontweight="bold")
     for i, entry in enumerate(entries):
-        _place(figure, entry, GAP + i % columns * cell[0], top + i // columns * cell[1], picture)
-    _write(figure, GAP, below, "\n".join(foot), fontsize=8, color="#404040")
+        row, column = divmod(i, layout.columns)
+        left = GAP + column * layout.cell_width
+        top = pictures_top + row * layout.cell_height
+        _draw_entry(figure, entry, left, top, layout)
+    _write(figure, GAP, legend_top, "\n".join(legend_lines), fontsize=8, color="#404040")
     return figure
 
 
 def write_sheet(path: str | Path, sheet: Figure) -> None:
-    """Write a sheet as PNG, whole or not at all, with its alt text inside: the text chunk "Description".
+    """Write a sheet as PNG, completely or not at all, with its alt text in the chunk "Description".
 
     Raises
     ------
-    ValueError
+    InputError
         For another suffix than .png, or a figure without alt text.
     """
     check_suffix(path)
     alt = require_alt(str(sheet.get_label()))
+    metadata = {"Title": "Contact sheet", "Description": alt}
     with replacing(path) as name:
-        sheet.savefig(
-            name, format="png", dpi=DPI, metadata={"Title": "Contact sheet", "Description": alt}
-        )
+        sheet.savefig(name, format="png", dpi=PIXELS_PER_INCH, metadata=metadata)
 
 
 def check_suffix(path: str | Path) -> None:
-    """Raise a ValueError where a sheet cannot be written under this name."""
-    require_suffix(path, (".png",), "a sheet, whose alt text travels in it")
+    """Raise an InputError if the suffix is not .png, the format that can store the alt text."""
+    require_suffix(path, (".png",), "a contact sheet")
 
 
-def _place(figure: Figure, entry: Entry, left: int, top: int, picture: Size) -> None:
+def _draw_entry(figure: Figure, entry: Entry, left: int, top: int, layout: _Layout) -> None:
     """Draw an entry with its picture's top left corner at (left, top) pixels, and the text below."""
-    width, height = figure.get_size_inches() * DPI
-    w, h = picture
+    width, height = figure.get_size_inches() * PIXELS_PER_INCH
+    w = layout.picture_width
+    h = layout.picture_height
     ax = figure.add_axes((left / width, 1 - (top + h) / height, w / width, h / height))
     ax.imshow(entry.picture, cmap="gray", vmin=0, vmax=255, aspect="auto")
     ax.set_axis_off()
@@ -164,12 +215,16 @@ def _place(figure: Figure, entry: Entry, left: int, top: int, picture: Size) -> 
     _write(figure, left, top + h + 25, caption(entry), fontsize=9, linespacing=1.35)
 
 
-def _write(figure: Figure, x: float, y: float, text: str, **look: Any) -> None:
-    """Write with the text's top left corner at (x, y) pixels from the sheet's."""
-    width, height = figure.get_size_inches() * DPI
-    figure.text(x / width, 1 - y / height, text, va="top", ha="left", **look)
+def _write(figure: Figure, x: float, y: float, text: str, **options: Any) -> None:
+    """Write a text whose top left corner is (x, y) pixels from the sheet's."""
+    width, height = figure.get_size_inches() * PIXELS_PER_INCH
+    figure.text(x / width, 1 - y / height, text, va="top", ha="left", **options)
 
 
-def _broken(text: str, width: int, letter: int) -> list[str]:
+def _wrap(text: str, width: int, letter_width: int) -> list[str]:
     """Return a text in lines that fit a sheet, for letters of this mean width in pixels."""
-    return [line for part in text.split("\n") for line in wrap(part, (width - 2 * GAP) // letter)]
+    letters = (width - 2 * GAP) // letter_width
+    lines = []
+    for paragraph in text.split("\n"):
+        lines += wrap(paragraph, letters)
+    return lines

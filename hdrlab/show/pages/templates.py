@@ -1,7 +1,7 @@
-"""Templates of pages. What they show comes from file names and from readers, so all of it is escaped.
+"""Render HTML pages from Jinja templates, with all values escaped.
 
-A page that stands by itself, with all it needs, extends `page.html`: it fetches nothing and runs
-nothing.
+The values come from file names and from readers, so they may contain HTML. A page that embeds all
+that it shows extends `page.html`, which fetches nothing and runs no script.
 """
 
 from pathlib import Path
@@ -9,13 +9,13 @@ from typing import Any
 
 import jinja2
 
-HERE = Path(__file__).parent
+SHARED_TEMPLATES = Path(__file__).parent
 
 
 def templates(folder: Path) -> jinja2.Environment:
-    """Return the templates of a folder: all is escaped, and a name that is not known is an error."""
+    """Return the templates of a folder; they escape all values, and refuse unknown names."""
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader([folder, HERE]),
+        loader=jinja2.FileSystemLoader([folder, SHARED_TEMPLATES]),
         autoescape=jinja2.select_autoescape(default=True, disabled_extensions=("rst", "plain")),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -24,5 +24,5 @@ def templates(folder: Path) -> jinja2.Environment:
 
 
 def render_page(folder: Path, name: str, **words: Any) -> str:
-    """Return the page that a template of a folder makes of some words."""
+    """Return the page that a template of a folder makes of the values `words`."""
     return templates(folder).get_template(name).render(words)

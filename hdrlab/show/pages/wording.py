@@ -1,15 +1,18 @@
-"""Numbers in a reader's words: stops, shares and offsets, with true minus signs and no false rounding."""
+"""Format numbers for reports: stops, percentages and offsets, with true minus signs."""
 
 import numpy as np
 
 from hdrlab.core import arrays, colour
 from hdrlab.pipeline.stages import CONTRADICTION
 
-CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach
+# Correct exposure times and a camera on a tripod reach this spread, in stops.
+AGREEMENT_STOPS = 0.03
+MIN_SHOWN_PERCENT = 0.01
+MIN_LUMINANCE = 1e-30
 
 
 def share(mask: arrays.ArrayLike) -> str:
-    """Return how much of a mask is True, in percent; rounding makes neither nothing nor everything of it.
+    """Return how much of a mask is True, in percent; only "0 %" and "100 %" mean none and all.
 
     Examples
     --------
@@ -21,11 +24,15 @@ def share(mask: arrays.ArrayLike) -> str:
     percent = 100 * part / whole
     if part in (0, whole):
         return f"{percent:.0f} %"
-    return "< 0.01 %" if percent < 0.01 else "> 99.99 %" if percent > 99.99 else f"{percent:.2f} %"
+    if percent < MIN_SHOWN_PERCENT:
+        return f"< {MIN_SHOWN_PERCENT} %"
+    if percent > 100 - MIN_SHOWN_PERCENT:
+        return f"> {100 - MIN_SHOWN_PERCENT} %"
+    return f"{percent:.2f} %"
 
 
 def signed(value: float, digits: int = 0) -> str:
-    """Return a number with its sign, a true minus; zero has none.
+    """Return a number with its sign, for which − is a true minus; zero has no sign.
 
     Examples
     --------
@@ -37,7 +44,7 @@ def signed(value: float, digits: int = 0) -> str:
 
 
 def stops(value: float) -> str:
-    """Return a number of stops, or that it is not known."""
+    """Return a number of stops, or "not known" for NaN."""
     return "not known" if np.isnan(value) else f"{value:.3f} stops"
 
 
@@ -48,33 +55,36 @@ def offset(pixels: arrays.ArrayLike) -> str:
 
 
 def verdict(spread: float) -> str:
-    """Return what a spread in stops says of the map."""
+    """Return in words how well frames agree whose spread is this, in stops."""
     if np.isnan(spread):
-        return "no level stands in two frames"
-    if spread <= CLOSE:
+        return "no pixel value occurs in two frames"
+    if spread <= AGREEMENT_STOPS:
         return "they agree"
-    return "they agree roughly" if spread <= CONTRADICTION else "they contradict each other"
+    if spread <= CONTRADICTION:
+        return "they agree roughly"
+    return "they contradict each other"
 
 
 def deviation(E: arrays.F32, s: arrays.F32) -> arrays.F32:
-    """Return one standard deviation of each pixel's luminance in stops, (H, W); infinite where unknown.
+    """Return the standard deviation of each pixel's luminance in stops, (H, W), infinite if unknown.
 
-    The channels are taken to err together, as they do in a JPEG: it is not more than this.
+    This is an upper limit. It assumes that the errors of the channels add up, as they do in a JPEG.
 
     Examples
     --------
     >>> deviation(np.float32([[1.0, 2.0]]), np.float32([[0.1, np.inf]])).round(3)
     array([[0.144,   inf]], dtype=float32)
     """
-    of_L = s if s.ndim == 2 else s @ colour.LUMINANCE
-    return np.asarray(of_L / np.maximum(colour.luminance(E), 1e-30) / np.log(2), np.float32)
+    luminance_deviation = s if s.ndim == 2 else s @ colour.LUMINANCE
+    L = np.maximum(colour.luminance(E), MIN_LUMINANCE)
+    return np.asarray(luminance_deviation / L / np.log(2), np.float32)
 
 
 def certainty(E: arrays.F32, s: arrays.F32) -> str:
-    """Return how sure half and most of the pixels are, in words: E and its standard deviation."""
-    known = deviation(E, s)
-    known = known[np.isfinite(known)]
+    """Return in words the standard deviation of half and of 95 % of the pixels."""
+    deviations = deviation(E, s)
+    known = deviations[np.isfinite(deviations)]
     if not known.size:
-        return "how sure each pixel is, is not known"
-    half, most = np.quantile(known, [0.5, 0.95])
-    return f"half of the pixels are sure to ± {half:.2g} stops, 95 % to ± {most:.2g}"
+        return "the uncertainty of the pixels is not known"
+    median, quantile95 = np.quantile(known, [0.5, 0.95])
+    return f"half of the pixels are known to ± {median:.2g} stops, 95 % to ± {quantile95:.2g}"

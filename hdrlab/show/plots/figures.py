@@ -1,14 +1,15 @@
-"""Maps and plots for a page that writes its own scales, in colours that colour-blind readers tell apart.
+"""Images and plots for HTML pages, with color scales as text, in colors for color-blind readers.
 
 ev    radiance in stops   (H, W), log2 of luminance over its median; NaN without light
-quality  (H, W) uint8     how each pixel is known, flags of `radiance.merge.Quality`
+quality  (H, W) uint8     flags of `radiance.merge.Quality`
 
-The plots of `show.plots` carry their scale inside the picture. On a page the scale is text beside
-it, which stays legible on a telephone and which a screen reader can read.
+The plots of `show.plots` have their scale inside the image. On a page the scale is text below it,
+which stays legible on a phone and which a screen reader can read.
 """
 
 import io
-from typing import NamedTuple, cast
+from dataclasses import dataclass
+from typing import cast
 
 import matplotlib
 import numpy as np
@@ -26,11 +27,14 @@ from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed
 
 Image = NDArray[np.uint8]
-MISSING = "#808080"
-# of a region, and its edge
-ORANGE = (230, 126, 0)
-OUTLINE = (60, 20, 0)
-# What was not measured, from dark to light, so that the kinds part in gray too.
+MISSING_COLOR = "#808080"
+REGION_COLOR = (230, 126, 0)
+REGION_OUTLINE_COLOR = (60, 20, 0)
+CSS_PIXELS_PER_INCH = 96
+# The range of a map leaves out the outermost 0.1 % of the pixels at both ends.
+RANGE_PERCENTILES = (0.1, 99.9)
+COLORS_PER_SCALE = 17
+# Colors of pixels that were not measured, from dark to light, so that they differ in gray too.
 KNOWN = {
     Quality.DARK: "#14148C",
     Quality.UNSEEN: "#404040",
@@ -41,65 +45,77 @@ KNOWN = {
 
 
 def fit(array: Array, side: int) -> Array:
-    """Return the means of k x k pixels, with the least k that brings both sides to `side` or below."""
-    k = -(-max(array.shape[:2]) // side)
+    """Return the means of k x k pixels, with the smallest k for which no side is above `side`."""
+    height, width = array.shape[:2]
+    k = -(-max(height, width) // side)
     if k == 1:
         return array
-    down, across = (min(k, length) for length in array.shape[:2])
-    h = array.shape[0] // down
-    w = array.shape[1] // across
-    blocks = array[: h * down, : w * across].reshape(h, down, w, across, *array.shape[2:])
+    block_height = min(k, height)
+    block_width = min(k, width)
+    rows = height // block_height
+    columns = width // block_width
+    whole = array[: rows * block_height, : columns * block_width]
+    blocks = whole.reshape(rows, block_height, columns, block_width, *array.shape[2:])
     return blocks.mean(axis=(1, 3)).astype(array.dtype)
 
 
 def stops(E: ArrayLike) -> Array:
-    """Return ev = log2(L / median L)."""
+    """Return ev = log2(L / median L), NaN where L is 0."""
     L = luminance(E)
-    if not np.any(L > 0):
+    has_light = L > 0
+    if not np.any(has_light):
         raise InputError("expected radiance with some light in it, got zeros")
-    return np.log2(np.where(L > 0, L, np.nan) / np.median(L[L > 0]))
+    return np.log2(np.where(has_light, L, np.nan) / np.median(L[has_light]))
 
 
 def limits(ev: Array) -> tuple[int, int]:
-    """Return the whole stops between which all but the outermost 0.1 % of the pixels lie."""
-    low, high = np.nanpercentile(ev, [0.1, 99.9])
-    return int(np.floor(low)), max(int(np.ceil(high)), int(np.floor(low)) + 1)
+    """Return whole stops as the ends of a scale for all but the outermost pixels."""
+    low, high = np.nanpercentile(ev, RANGE_PERCENTILES)
+    lower = int(np.floor(low))
+    upper = int(np.ceil(high))
+    return lower, max(upper, lower + 1)
 
 
 def false_colour(values: Array, low: float, high: float, *, colours: str = "viridis") -> Image:
-    """Return values (H, W) as a picture (H, W, 3) whose colours run from `low` to `high`; NaN is gray."""
-    table = matplotlib.colormaps[colours].with_extremes(bad=MISSING)
+    """Return values (H, W) as an image (H, W, 3) in false color from `low` to `high`; NaN is gray."""
+    table = matplotlib.colormaps[colours].with_extremes(bad=MISSING_COLOR)
     position = np.ma.masked_invalid((values - low) / (high - low))
     return table(np.clip(position, 0, 1), bytes=True)[..., :3]
 
 
 def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
-    """Return the picture in pale gray, with a dot of its kind's colour where a pixel was not measured."""
-    gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
-    shown = np.repeat((120 + gray * 0.4).astype(np.uint8)[..., None], 3, axis=-1)
-    for flag, colour in KNOWN.items():
+    """Return the picture in pale gray, with a dot in its flag's color for each unmeasured pixel."""
+    image = _pale_gray(picture).astype(np.uint8)
+    for flag, color in KNOWN.items():
         spots = maximum_filter(quality == flag, size=dot(quality.shape))
-        shown[spots] = tuple(bytes.fromhex(colour[1:]))
-    return shown
+        image[spots] = tuple(bytes.fromhex(color[1:]))
+    return image
 
 
 def regions(picture: Image, labels: NDArray[np.int32]) -> Image:
     """Return the picture in pale gray, regions (labels > 0) in orange, each with a dark outline."""
+    image = _pale_gray(picture)
+    is_inside = labels > 0
+    image[is_inside] = 0.5 * image[is_inside] + 0.5 * np.array(REGION_COLOR)
+    is_outline = maximum_filter(labels, size=dot(labels.shape)) != labels
+    image[is_outline] = REGION_OUTLINE_COLOR
+    return image.astype(np.uint8)
+
+
+def _pale_gray(picture: Image) -> Array:
+    """Return a picture as an image (H, W, 3) of pale grays, on which marks stand out."""
     gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
-    shown = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1)
-    inside = labels > 0
-    shown[inside] = 0.5 * shown[inside] + 0.5 * np.array(ORANGE)
-    shown[maximum_filter(labels, size=dot(labels.shape)) != labels] = OUTLINE
-    return shown.astype(np.uint8)
+    return np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1)
 
 
 def dot(shape: tuple[int, ...]) -> int:
-    """Return how wide a dot must be to be found in a picture of this shape on a page, pixels: odd."""
+    """Return the odd width in pixels of a dot that is visible in a picture of this shape on a page."""
     return 2 * (max(shape) // 500) + 3
 
 
-class Illustration(NamedTuple):
-    """A picture inside the page: its address, what it shows in words, and its size in pixels of the page."""
+@dataclass(frozen=True)
+class Illustration:
+    """An embedded image of a page: its data URI, alt text, and size in CSS pixels."""
 
     src: str
     alt: str
@@ -108,35 +124,46 @@ class Illustration(NamedTuple):
 
 
 def photograph(image: Image, side: int, alt: str) -> Illustration:
-    """Return a picture (H, W[, 3]), brought to at most `side` pixels."""
+    """Return an image (H, W[, 3]), reduced to at most `side` pixels on its longer side."""
     small = fit(image, side)
-    return Illustration(web.data_uri(web.encode_webp(small)), alt, small.shape[1], small.shape[0])
+    height, width = small.shape[:2]
+    src = web.data_uri(web.encode_webp(small))
+    return Illustration(src=src, alt=alt, width=width, height=height)
 
 
 def plot(ax: Axes, alt: str) -> Illustration:
-    """Return the figure of these Axes as SVG: sharp at every size; the same lines give the same bytes."""
+    """Return the figure of the Axes as SVG. The same drawing gives the same bytes."""
     figure = cast(Figure, ax.get_figure(root=True))
     file = io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(file, format="svg", metadata={"Date": None})
-    width, height = (round(96 * inches) for inches in figure.get_size_inches())
-    return Illustration(web.data_uri(file.getvalue(), "svg+xml"), alt, width, height)
+    width, height = figure.get_size_inches()
+    return Illustration(
+        src=web.data_uri(file.getvalue(), "svg+xml"),
+        alt=alt,
+        width=round(CSS_PIXELS_PER_INCH * width),
+        height=round(CSS_PIXELS_PER_INCH * height),
+    )
 
 
-class Scale(NamedTuple):
-    """The colours from the low end to the high one, #RRGGBB, and ticks as (percent of the way, label)."""
+@dataclass(frozen=True)
+class Scale:
+    """A color scale: colors #RRGGBB from low to high, and ticks (percent of its length, label)."""
 
     colours: list[str]
     ticks: list[tuple[float, str]]
 
 
 def scale(low: float, high: float, colours: str = "viridis", *, digits: int = 0) -> Scale:
-    """Return the Scale of `false_colour`, with up to seven round ticks."""
-    at = np.array(MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high))
-    at = at[(at >= low - 1e-9) & (at <= high + 1e-9)]
-    table = matplotlib.colormaps[colours](np.linspace(0, 1, 17))
-    ticks = [(100 * (one - low) / (high - low), signed(one, digits)) for one in at.tolist()]
-    return Scale([to_hex(one) for one in table], ticks)
+    """Return the scale of `false_colour`, with up to seven round ticks."""
+    values = np.array(MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high))
+    is_on_scale = (values >= low - 1e-9) & (values <= high + 1e-9)
+    ticks = [
+        (100 * (value - low) / (high - low), signed(value, digits))
+        for value in values[is_on_scale].tolist()
+    ]
+    table = matplotlib.colormaps[colours](np.linspace(0, 1, COLORS_PER_SCALE))
+    return Scale(colours=[to_hex(color) for color in table], ticks=ticks)
 
 
 def round_up(value: float) -> float:

@@ -150,7 +150,9 @@ def _arrays(each: Mapping[str, ArrayLike]) -> list[F64]:
 
 
 def _scale(arrays: list[F64], span: Ends, signed: bool, classes: int) -> tuple[Normalize, Any]:
-    colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(bad=figures.MISSING)
+    colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(
+        bad=figures.MISSING_COLOR
+    )
     if classes:
         return BoundaryNorm(np.arange(classes + 1) - 0.5, colours.N), colours
     if span is None:
