@@ -81,7 +81,7 @@ bracket = camera.shoot(
 )
 grays = bracket.images[..., 1]
 pictures.picture(
-    plots.thumbnails(bracket), alt="Five photographs of a room, from dark to bright, each shifted"
+    plots.thumbnails(bracket), alt="Five photos of a room, from dark to bright, each shifted"
 )
 
 # %% [markdown] about="threshold"
@@ -97,9 +97,9 @@ pictures.picture(
 # %% [markdown] about="exclusion"
 # ## 5 · The exclusion bitmap ({points})
 #
-# Close to the threshold $t$ the noise decides whether a pixel is above it. Such pixels must not vote: the
-# exclusion bitmap is True where $|Y - t| > 4$, and False where a pixel is *excluded*. $Y$ holds bytes; mind
-# what bytes do below zero.
+# Close to the threshold $t$, noise decides whether a pixel is above it. Such pixels must not vote.
+# The exclusion bitmap is True where $|Y - t| > 4$, and False where a pixel is *excluded*. $Y$
+# contains bytes, and bytes have no negative values: a difference below zero wraps around.
 
 # %% task="exclusion"
 
@@ -109,7 +109,7 @@ t = threshold(np.bincount(Y.ravel(), minlength=256), 0.5)
 seen = np.where(exclusion(Y, t), 255 * (t < Y), 128).astype(np.uint8)
 pictures.picture(
     seen,
-    alt="The bitmap of the middle photograph: above the median white, below black, excluded gray",
+    alt="The bitmap of the middle photo: white above the median, black below it, gray where excluded",
 )
 
 # %% [markdown] about="shrink"
@@ -123,12 +123,12 @@ pictures.picture(
 # %% task="shrink"
 
 # %% [markdown] about="shift"
-# ## 7 · Moving photographs ({points})
+# ## 7 · Moving photos ({points})
 #
-# An offset $(dy, dx)$ says where an image must move, down and to the right. Move the images `(P, H, W[,
-# 3])` by their offsets `(P, 2)`, and cut them to the rectangle that all of them cover: a pixel that comes
-# from nowhere is no photograph. An image that stays where it is, $(0, 0)$, counts among them even if there
-# is none, so one image that moves 3 rows down loses 3 rows.
+# An offset $(dy, dx)$ says where an image must move, down and to the right. Move the images
+# `(P, H, W[, 3])` by their offsets `(P, 2)`, and crop them to the rectangle that all of them cover,
+# so that every pixel comes from a photo. The rectangle must also lie inside the original frame, as
+# if one more image had the offset $(0, 0)$: a single image that moves 3 rows down loses 3 rows.
 
 # %% task="shift"
 
@@ -151,14 +151,14 @@ pictures.picture(
 # `bits=6` finds offsets up to 63 pixels.
 
 # %% task="align"
-# Return the offsets that lay every image on the one in the middle of their brightness.
+# Return the offsets that align every image with the image of middle brightness.
 
 # %% about="align shift"
 offsets = align(grays)
 before, after = (stack.mean(axis=0).astype(np.uint8) for stack in (grays, shift(grays, offsets)))
 print(f"found {offsets.tolist()}, true {moved.tolist()}")
 pictures.picture(
-    after, alt="The mean of the five photographs after they were moved: edges are single and sharp"
+    after, alt="The mean of the five photos after the alignment: edges are single and sharp"
 )
 
 # %% [markdown]

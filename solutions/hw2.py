@@ -51,7 +51,7 @@ grays = bracket.images[..., 1]
 Z, B = sampling.by_grid(grays, 60), np.log(bracket.times)
 pictures.picture(
     plots.samples(Z, np.zeros(60), B),
-    alt="Levels of sixty pixels over ln time: seven columns of dots",
+    alt="The values of sixty pixels over ln time: seven columns of dots",
 )
 
 # %% [markdown] about="hat"
@@ -79,13 +79,13 @@ pictures.picture(
 # and `iter_lim=50_000`. The argument for $\lambda$ is `smoothness`, and $n$ is `len(w)`.
 
 # %% task="gsolve"
-# Return g and lE that minimise the sum of squares: the curve, and each sample's ln irradiance.
+# Return g and lE that minimize the sum of squares: the curve, and the ln irradiance of each sample.
 
 # %% about="gsolve hat"
 found = gsolve(Z, B, 30, hat())
 ax = plots.samples(Z, found[1], B, g=found[0])
 pictures.picture(
-    ax, alt="The sixty pixels' points, moved sideways by their ln E, lie on one rising curve, g"
+    ax, alt="The dots of the sixty pixels, shifted by their ln E, lie on one increasing curve, g"
 )
 
 # %% [markdown] about="irradiance"
@@ -131,7 +131,7 @@ pictures.picture(
 # return a list of states.
 
 # %% task="recover_steps"
-# Yield the state of one channel, before the first iteration and after each.
+# Yield the state of one channel before the first iteration and after each iteration.
 
 # %% [markdown] about="recover_steps"
 # **Predict.** Photos that are two stops apart leave something undetermined: any pattern in $\ln E$
@@ -144,7 +144,8 @@ plots.response(np.log(states[-1][0]), label=f"after {len(states) - 1} iterations
 ax.lines[-1].set(color="#0072B2", linestyle="--")
 ax.legend()
 pictures.picture(
-    ax, alt="The curve after the last iteration winds about the true one, once in two stops"
+    ax,
+    alt="The curve after the last iteration oscillates around the true one, with a period of two stops",
 )
 
 # %% [markdown] about="recover"

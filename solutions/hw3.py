@@ -42,7 +42,7 @@ bracket = camera.shoot(
 )
 g = responses.true_g("gamma")
 pictures.picture(
-    plots.thumbnails(bracket), alt="Five photographs of a room, from nearly black to nearly white"
+    plots.thumbnails(bracket), alt="Five photos of a room, from nearly black to nearly white"
 )
 
 # %% [markdown] about="merge"
@@ -63,11 +63,11 @@ pictures.picture(
 # for all channels of a pixel if one channel is clipped. No check asks for that.)
 
 # %% task="merge"
-# Return the radiance map E: the mean of the logarithms, weighted, over the photographs.
+# Return the radiance map E: the weighted mean of the logarithms over the photos.
 
 # %% about="merge"
 E = merge(bracket.images, bracket.times, g)
-pictures.radiance(E, alt="The radiance map of the room in false colour")
+pictures.radiance(E, alt="The radiance map of the room in false color")
 
 # %% [markdown] about="bound"
 # ## 2 · Pixels that no photo measures ({points})
@@ -90,7 +90,7 @@ pictures.radiance(E, alt="The radiance map of the room in false colour")
 # clipped there, 2 if one is dark there, and 8 if there is no bound.
 
 # %% task="bound"
-# Return E (M,) and flags (M,) of pixels that no frame measures, from the frames' tightest bounds.
+# Return E (M,) and flags (M,) of pixels that no photo measures, from the tightest bounds.
 
 # %% [markdown] about="to_bytes"
 # ## 3 · Write a portable float map ({points})
@@ -145,7 +145,7 @@ print(f"unchanged when read again: {np.array_equal(from_bytes(data), np.float32(
 # %% about="to_radiance to_pixels merge"
 apart = np.abs(to_radiance(to_pixels(E)) / np.maximum(E, 1e-12) - 1)[E > 1e-6]
 print(
-    f"RGBE keeps the channels within {np.median(apart):.2%} in the middle, and {apart.max():.0%} at worst"
+    f"RGBE changes a channel by {np.median(apart):.2%} (median), and by {apart.max():.0%} at most"
 )
 
 # %% [markdown] about="decode_half"
@@ -182,19 +182,19 @@ for word in (0x3C00, 0xC100, 0x7BFF, 0x0001, 0x7C00):
 # Return $v$ `(H, W)`. Where all weights are 0, no photos contradict each other: $v = 0$.
 
 # %% task="weighted_variance"
-# Return v (H, W), the weighted variance of x (P, H, W) over the photographs; 0 where no w is above 0.
+# Return v (H, W), the weighted variance of x (P, H, W) over the photos; 0 where all weights are 0.
 
 # %% about="weighted_variance"
 levels = bracket.images[..., 1].copy()
 levels[2, 100:190, 60:95] = levels[
     2, 20:110, 200:235
-]  # as if something had stood there for a while
+]  # simulate an object that is in one photo only
 z = np.arange(256)
 x, w = g[levels] - np.log(bracket.times)[:, None, None], np.minimum(z, 255 - z)[levels] / 127
 score = np.sqrt(weighted_variance(x, w)) / 0.2
 pictures.picture(
     colour.to_8bit(np.clip(score / 3, 0, 1)),
-    alt="The contradiction: an upright white block where something was put; gray noise but in the window",
+    alt="The score: a white block where the object is, and gray noise elsewhere except in the window",
 )
 
 # %% [markdown] about="find_seeds"
@@ -212,7 +212,7 @@ pictures.picture(
 # %% about="find_seeds weighted_variance"
 pictures.picture(
     colour.to_8bit(0.5 * (score > 1) + 0.5 * find_seeds(score)),
-    alt="White in the block; most of the specks are gray, above 1 and not marked",
+    alt="The block is marked white; most specks are gray: above 1, but not marked",
 )
 
 # %% [markdown] about="dilate"
@@ -230,14 +230,14 @@ pictures.picture(
 # result is of bool, or 0 and 1.)
 
 # %% task="dilate"
-# Return the mask (H, W), all within margin pixels of it, and what that encloses.
+# Return the mask (H, W), widened by margin pixels, with its holes filled.
 
 # %% about="dilate"
 down, right = np.indices((180, 240)) - np.reshape((90, 120), (2, 1, 1))
 outline = (abs(np.hypot(down, right) - 55) < 1) & (np.arctan2(down, right) % 0.5 > 0.15)
 pictures.picture(
     colour.to_8bit(0.5 * outline + 0.5 * dilate(outline, 12)),
-    alt="An outline with gaps, white, on a gray disc that it and its margin enclose",
+    alt="A white outline with gaps, and the gray disc that the dilated mask covers",
 )
 
 # %% [markdown] about="label"
@@ -249,14 +249,14 @@ pictures.picture(
 # in any order. Pixels outside the mask get 0.
 
 # %% task="label"
-# Return labels (H, W) of the connected regions of a mask of bool, 0 elsewhere.
+# Return labels (H, W) of the connected regions of a mask, and 0 elsewhere.
 
 # %% about="label"
 squares = np.random.default_rng(3).uniform(size=(15, 20)) < 0.25
 regions = label(np.kron(squares, np.ones((12, 12), bool)))
 pictures.picture(
     colour.to_8bit(regions / regions.max()),
-    alt="Squares on black, each group that touches, in a side or a corner, in a gray of its own",
+    alt="Squares on black; squares that touch at a side or a corner have the same gray",
 )
 
 # %% [markdown] about="ratio_steps"
@@ -280,7 +280,7 @@ pictures.picture(
 # first state and after each round; `used` is a mask `(K,)`. You may also return a list of states.
 
 # %% task="ratio_steps"
-# Yield (k, used, V) of all pairs, and after each round; found = (x, y, v).
+# Yield (k, used, V) for all pairs and after each round; found = (x, y, v).
 
 # %% about="ratio_steps"
 rng = np.random.default_rng(2)
@@ -288,7 +288,7 @@ darker = rng.uniform(5, 60, 300)
 brighter = 4 * darker + rng.normal(0, 1, 300)
 brighter[:60] *= 0.5
 for k, used, V in ratio_steps((darker, brighter, np.ones(300))):
-    print(f"k = {k:.4f} by {np.count_nonzero(used)} pairs, which miss by {np.sqrt(V):.2f}")
+    print(f"k = {k:.4f} from {np.count_nonzero(used)} pairs, with an error of {np.sqrt(V):.2f}")
 
 # %% [markdown]
 # ## All checks

@@ -38,7 +38,7 @@ use_plan("hw4")
 # %%
 room = scenes.room((240, 320))
 L = colour.luminance(room)
-pictures.radiance(room, alt="The room's radiance in false colour")
+pictures.radiance(room, alt="The radiance of the room in false color")
 
 # %% [markdown] about="log_average"
 # ## 1 · Reinhard: how bright is the scene? ({points})
@@ -74,7 +74,7 @@ Lm = 0.18 * L / log_average(L)
 Ld = display(Lm, Lm, 20.0)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)),
-    alt="The room by the global operator: inside and outside",
+    alt="The room, tone-mapped with the global operator: both inside and outside are visible",
 )
 
 # %% [markdown] about="scale_steps"
@@ -93,7 +93,7 @@ pictures.picture(
 # adaptation so far. (Some programs use the index of the loop instead of $s$. That is wrong.)
 
 # %% task="scale_steps"
-# Yield (s, V1, V, even, adaptation) of each width, from small to large, given V1 at every width.
+# Yield (s, V1, V, even, adaptation) for each width, from small to large, given V1 at every width.
 
 # %% [markdown] about="layers"
 # ## 4 · Durand and Dorsey: base and detail ({points})
@@ -130,7 +130,7 @@ low, high = np.quantile(base, [0.01, 0.99])
 Ld = np.clip(10 ** (compress(base, low, high) + detail), 0, 1)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)),
-    alt="The room with its light compressed, details kept",
+    alt="The room with a compressed base and unchanged details",
 )
 
 # %% [markdown] about="fix_uncertain"
@@ -150,7 +150,7 @@ pictures.picture(
 # it.)
 
 # %% task="fix_uncertain"
-# Return u mean + (1 - u) blur(mean), (H, W): the certainty u rises with ln k.
+# Return u mean + (1 - u) blur(mean), (H, W), where the certainty u increases with ln k.
 
 # %% [markdown] about="adjust_steps"
 # ## 7 · Ward: a histogram with limited contrast ({points})
@@ -169,7 +169,7 @@ pictures.picture(
 # the trimmed amount are infinite.
 
 # %% task="adjust_steps"
-# Yield (h, ceiling, T, trimmings): the histogram as it is, and after every trim.
+# Yield (h, ceiling, T, trimmings): the original histogram, and the histogram after every trim.
 
 # %% [markdown] about="scale"
 # ## 8 · Chiu: a scale that varies slowly ({points})
@@ -186,7 +186,7 @@ pictures.picture(
 Ld = np.clip(scale(L, sigma=20.0) * L, 0, 1)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)),
-    alt="The room by a slow scale: dark clouds around the window",
+    alt="The room, tone-mapped with a slowly varying scale: dark halos around the window",
 )
 
 # %% [markdown] about="attenuation_steps"
@@ -205,7 +205,7 @@ pictures.picture(
 # from the coarsest level to the full image: $k$, $l_k$, $|\nabla l_k|$, $\varphi_k$, $\Phi_k$.
 
 # %% task="attenuation_steps"
-# Yield (k, lL, slope, phi, Phi) of the levels k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k.
+# Yield (k, lL, slope, phi, Phi) for k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k.
 
 # %% [markdown] about="divergence"
 # ## 10 · Fattal: the divergence ({points})
@@ -235,7 +235,7 @@ pictures.picture(
 # sparse solver instead.
 
 # %% task="solve"
-# Return the u of mean 0 whose Laplacian is div G.
+# Return the image u with mean 0 whose Laplacian is div G.
 
 # %% about="solve divergence attenuation_steps"
 l = np.log(L).astype(np.float32)
@@ -247,7 +247,8 @@ low, high = np.quantile(np.exp(u), [0.01, 0.995])
 Ld = np.clip((np.exp(u) - low) / (high - low), 0, 1)
 shown = colour.to_8bit(colour.recolour(room, L, Ld, saturation=0.6))
 pictures.picture(
-    shown, alt="The room with its steep gradients flattened: window, walls and dark corner at once"
+    shown,
+    alt="The room with attenuated gradients: the window, the walls and the dark corner are visible",
 )
 
 # %% [markdown]

@@ -50,7 +50,7 @@ use_plan("hw5")
 # %%
 room = scenes.room((240, 320))
 L = colour.luminance(room)
-pictures.radiance(room, alt="The room's radiance in false colour")
+pictures.radiance(room, alt="The radiance of the room in false color")
 
 # %% [markdown] about="variance"
 # ## 1 · The noise of one photo ({points})
@@ -67,7 +67,7 @@ pictures.radiance(room, alt="The room's radiance in false colour")
 # of `X`.
 
 # %% task="variance"
-# Return the variance V of the exposure X: of photons, of the amplifier, and of rounding.
+# Return the variance V of the exposure X: photon noise, read noise and rounding.
 
 # %% about="variance"
 light = np.logspace(-4, 0, 201)
@@ -81,11 +81,11 @@ pictures.picture(
     curves.lines(
         np.log2(light),
         {name: np.log2(snr) for name, snr in each.items()},
-        across="exposure, stops below full",
-        up="signal over noise, stops",
+        across="exposure, stops below saturation",
+        up="signal-to-noise ratio, stops",
         legend="upper left",
     ),
-    alt="Signal over noise: half a stop for each of light where photons are the noise, a whole one below",
+    alt="The signal-to-noise ratio rises by half a stop per stop of light under photon noise, by one below",
 )
 
 # %% [markdown] about="inverse_variance_merge"
@@ -109,7 +109,7 @@ pictures.picture(
 # `variance`. In the checks, at least one photo measures each pixel.
 
 # %% task="inverse_variance_merge"
-# Return E and s: the mean of X / t, each counted by the inverse of its variance, and its standard deviation.
+# Return E and s: the inverse-variance weighted mean of X / t, and its standard deviation.
 
 # %% about="inverse_variance_merge"
 green = room[..., 1] / room[..., 1].max()
@@ -121,8 +121,8 @@ g = responses.true_g("linear", 2**16)
 X = np.exp(g - g[-1])[taken.images]
 E, s = inverse_variance_merge(X, np.full(X.shape, 1 / 65535), X < 0.98, t, full, R)
 within = np.abs(E - green) < 1.96 * s
-print(f"{np.mean(within[s < np.inf]):.1%} of the pixels that were measured lie within E ± 1.96 s")
-pictures.radiance(s / E, alt="s over E in false colour: the shadows are the least sure")
+print(f"{np.mean(within[s < np.inf]):.1%} of the measured pixels lie within E ± 1.96 s")
+pictures.radiance(s / E, alt="s / E in false color: it is largest in the shadows")
 
 # %% [markdown] about="guided"
 # ## 3 · A line in each window: the guided filter ({points})
@@ -145,7 +145,7 @@ pictures.radiance(s / E, alt="s over E in false colour: the shadows are the leas
 # only look at pixels further than $2 \cdot$ `radius` from it.
 
 # %% task="guided"
-# Return q = mean(a) I + mean(b), means over all windows that hold the pixel.
+# Return q = mean(a) I + mean(b), with means over all windows that contain the pixel.
 
 # %% about="guided"
 l = np.log(L)
@@ -155,7 +155,7 @@ high = np.quantile(base, 0.99)
 Ld = np.clip(np.exp(0.45 * (base - high) + detail), 0, 1)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)),
-    alt="The room with its base compressed, details kept",
+    alt="The room with a compressed base and unchanged details",
 )
 
 # %% [markdown] about="remap"
@@ -174,7 +174,7 @@ pictures.picture(
 # $\sigma$ is `sigma` and $\alpha$ is `alpha`, both above 0; $\beta$ is `beta`.)
 
 # %% task="remap"
-# Return r, for log luminance lL (H, W) about the brightness g.
+# Return the remapped r of log luminance lL (H, W), for the reference value g.
 
 # %% about="remap"
 i = np.linspace(-8, 0, 201)[None]
@@ -201,14 +201,14 @@ pictures.picture(
 # $F_D$ is an array of any shape, from 0 to 10,000. $v$ has the same shape, from 0 to 1.
 
 # %% task="pq"
-# Return the signal v, 0 to 1, of luminance FD, 0 to 10,000 cd/m2.
+# Return the signal v from 0 to 1 of the luminance FD from 0 to 10,000 cd/m2.
 
 # %% about="pq"
 light = np.logspace(-2, 4, 201)
 signals = {"PQ": pq(light), "gamma 2.4": (light / 10_000) ** (1 / 2.4)}
 pictures.picture(
     curves.lines(np.log10(light), signals, across="log10 of the luminance, cd/m²", up="v"),
-    alt="The signal over the logarithm of luminance: PQ is nearly a line, gamma leaves the dark no codes",
+    alt="The signal over log luminance: PQ is nearly a line; gamma gives dark luminance almost no codes",
 )
 
 # %% [markdown] about="gain_map"
@@ -233,14 +233,14 @@ pictures.picture(
 # one for each channel, (3,). If an offset is 0, no check tests black.)
 
 # %% task="gain_map"
-# Return g, 0 to 1, for the picture sdr and the scene hdr.
+# Return the gain map g from 0 to 1 for the image sdr and the scene hdr.
 
 # %% about="gain_map"
 sdr = np.clip(0.18 * room / np.exp(np.mean(np.log(L))), 0, None)
 hdr, sdr = np.minimum(sdr, 8), sdr / (1 + sdr)
 g = gain_map(sdr, hdr, 0.0, 3.2)
 pictures.picture(
-    colour.to_8bit(g), alt="The gain map: bright in the window, the lamp and where sun falls"
+    colour.to_8bit(g), alt="The gain map: bright in the window, at the lamp and in sunlight"
 )
 
 # %% [markdown] about="apply_gain"
@@ -259,7 +259,7 @@ pictures.picture(
 # has the shape of `sdr`.)
 
 # %% task="apply_gain"
-# Return the light, 1 = white, that a screen shows which takes the part W of the gain.
+# Return the light (1 = white) of a screen that applies the fraction W of the gain.
 
 # %% about="gain_map apply_gain"
 shown = [
@@ -267,7 +267,7 @@ shown = [
 ]
 pictures.picture(
     colour.to_8bit(np.clip(np.hstack(shown), 0, 1)),
-    alt="The room on screens of 1, 2, 4 and 8 times white: the larger, the more is to be seen in the window",
+    alt="The room on screens of 1, 2, 4 and 8 times white: brighter screens show more in the window",
 )
 
 # %% [markdown] about="line"
@@ -296,8 +296,10 @@ signal = np.array([0, 200, 400, 800, 1200, 1600, 2400, 3000.0])
 noise = np.array([4.0, 104, 210, 398, 612, 801, 1230, 1690])
 fitted = noise[0] + line(signal, noise) * signal
 pictures.picture(
-    curves.lines(signal, {"measured": noise, "line": fitted}, across="S, levels", up="V, levels²"),
-    alt="Variance over signal: the line from the dark pair on passes below the brightest, which errs most",
+    curves.lines(
+        signal, {"measured": noise, "line": fitted}, across="S, pixel values", up="V, squared"
+    ),
+    alt="Variance over signal: the line starts at the dark pair and passes below the brightest pair",
 )
 
 # %% [markdown] about="brightness_transfer"
@@ -322,7 +324,7 @@ pictures.picture(
 # no check tests it.)
 
 # %% task="brightness_transfer"
-# Return T (n,), the level in B of what has level m in A, NaN where B's outer levels hold it.
+# Return T (n,): the value in B for each value m in A, NaN at the end values of B.
 
 # %% about="brightness_transfer"
 exposures = [t * L / np.quantile(L, 0.95) for t in (0.25, 1.0)]
@@ -330,8 +332,8 @@ taken = [np.round(255 * np.clip(X, 0, 1) ** (1 / 2.2)).astype(int) for X in expo
 T = brightness_transfer(*(np.bincount(Z.ravel(), minlength=256) for Z in taken))
 inside = np.flatnonzero(np.isfinite(T))
 pictures.picture(
-    curves.lines(inside, {"T": T[inside], "m": inside}, across="m, level in A", up="level in B"),
-    alt="T over m: above the diagonal, rising to the top of B at a bit more than half of A's levels",
+    curves.lines(inside, {"T": T[inside], "m": inside}, across="m, value in A", up="value in B"),
+    alt="T over m: above the diagonal, reaching the top of B a bit above the middle of the values of A",
 )
 
 # %% [markdown] about="snr"
@@ -352,43 +354,43 @@ pictures.picture(
 # (`g` (n,) increases, and $n$ is even. $w$ (n,) may have any scale.)
 
 # %% task="snr"
-# Return w = f / f' (n,), f = exp g, and 0 at both ends.
+# Return w = f / f' (n,) with f = exp g, and 0 at both ends.
 
 # %% about="snr"
 levels = np.arange(256)
 sure = {f"gamma {gamma}": snr(gamma * np.log((levels + 0.5) / 256)) for gamma in (1.0, 1.8, 2.6)}
 pictures.picture(
-    curves.lines(levels, sure, across="z, level", up="w"),
-    alt="w over the level: for each gamma nearly a line, the steeper the smaller gamma, 0 at both ends",
+    curves.lines(levels, sure, across="z, pixel value", up="w"),
+    alt="w over the pixel value: nearly a line for each gamma, steeper for smaller gamma, 0 at both ends",
 )
 
 # %% [markdown] about="weight"
 # ## 11 · What a good pixel is: the weights of exposure fusion ({points})
 #
-# [Mertens, Kautz and Van Reeth (2007)](https://doi.org/10.1109/PG.2007.17) make no radiance map. They
-# blend the photographs themselves, by three measures of each pixel; $F$ is a photograph from 0 to 1, its
-# channels R, G and B as planes:
+# [Mertens, Kautz and Van Reeth (2007)](https://doi.org/10.1109/PG.2007.17) do not make a radiance map.
+# They blend the photos themselves. Three measures decide the weight of a pixel. $F$ is a photo from
+# 0 to 1, with its channels R, G and B as planes:
 #
 # - **contrast** $C = |Y_\text{up} + Y_\text{down} + Y_\text{left} + Y_\text{right} - 4\, Y|$, with the
-#   gray picture $Y = 0.299 R + 0.587 G + 0.114 B$;
-# - **saturation** $S$, the standard deviation of R, G and B, the mean of the squares being their sum over 3;
+#   gray image $Y = 0.299 R + 0.587 G + 0.114 B$;
+# - **saturation** $S$, the standard deviation of R, G and B (divide the sum of squares by 3);
 # - **exposedness** $E = \prod_{R, G, B} \exp\bigl(-(F - 0.5)^2 / (2 \cdot 0.2^2)\bigr)$.
 #
-# A pixel is to be good in all three: $W = C^{a}\, S^{b}\, E^{c}$, with `powers` $= (a, b, c)$, of which
-# none is negative, and $x^0 = 1$.
+# The weight is their product, so that a pixel needs all three: $W = C^{a}\, S^{b}\, E^{c}$ with
+# `powers` $= (a, b, c)$. No power is negative, and $x^0 = 1$.
 #
-# ($F$ is (3, H, W), $W$ is (H, W). What stands past the edge of the picture is yours to choose, and so is
-# a trace of weight in all pixels, up to 1e-9; the checks look at pixels that do not touch the edge.)
+# ($F$ is (3, H, W), and $W$ is (H, W). How you extend the image beyond its edge is up to you: the
+# checks only look at pixels that do not touch the edge. You may add up to 1e-9 to all weights.)
 
 # %% task="weight"
-# Return W = C^a S^b E^c (H, W) of a photograph F (3, H, W) from 0 to 1.
+# Return W = C^a S^b E^c (H, W) of a photo F (3, H, W) from 0 to 1.
 
 # %% about="weight"
 F = np.moveaxis(np.clip(room / np.quantile(L, 0.9), 0, 1) ** (1 / 2.2), -1, 0).astype(np.float32)
 W = weight(F)
 pictures.picture(
     colour.to_8bit(np.clip(W / np.quantile(W, 0.99), 0, 1)),
-    alt="The weight of the room's photograph: bright at edges of coloured things, black where it is clipped",
+    alt="The weight of a photo of the room: bright at edges of colored objects, black where it is clipped",
 )
 
 # %% [markdown] about="optimum"
@@ -402,7 +404,7 @@ pictures.picture(
 # $$\mathrm{EV}_\text{opt} = \mathrm{EV}_\text{pre} + \log_2 B_\text{pre} - \log_2 B_\text{opt}.$$
 
 # %% task="optimum"
-# Return EV_opt of numbers EV_pre, B_pre and B_opt.
+# Return EV_opt for the numbers EV_pre, B_pre and B_opt.
 
 # %% [markdown] about="spot"
 # ## 13 · Where does a spot meter look? ({points})
@@ -422,14 +424,14 @@ pictures.picture(
 # (`shape` is (H, W), and the result $w$ is (H, W). In the checks, no two pixels are equally near.)
 
 # %% task="spot"
-# Return the weights w (H, W) of a disc of the nearest pixels, whose sum is 1.
+# Return the weights w (H, W) of the nearest pixels, a disc; they sum to 1.
 
 # %% about="spot"
 pictures.picture(
     colour.to_8bit(
         np.clip(L / np.quantile(L, 0.95), 0, 1) * (0.3 + 0.7 * (spot(L.shape, at=(0.6, 0.5)) > 0))
     ),
-    alt="The room, dark but for a disc at the lower half of the window",
+    alt="The room, dark except for a disc at the lower half of the window",
 )
 
 # %% [markdown] about="centre"
@@ -445,14 +447,14 @@ pictures.picture(
 # (`shape` is (H, W), and `inside` is larger than `share`. You may call your `spot`.)
 
 # %% task="centre"
-# Return w (H, W), a Gaussian about `at` whose sum is 1: `inside` of it lies on the pixels of a spot.
+# Return w (H, W), a Gaussian around `at` that sums to 1, the fraction `inside` of it in the spot.
 
 # %% about="centre"
 pictures.picture(
     colour.to_8bit(
         np.clip(L / np.quantile(L, 0.95), 0, 1) * centre(L.shape) / centre(L.shape).max()
     ),
-    alt="The room, which becomes darker and darker from the middle to the edges of the picture",
+    alt="The room, gradually darker from the center to the edges of the image",
 )
 
 # %% [markdown] about="flat"
@@ -481,7 +483,7 @@ pictures.picture(
 # flat. Return a mask (H, W), of bool, or 0 and 1.
 
 # %% task="flat"
-# Return where the patch around a pixel is flat, (H, W), of frames A (t, H, W).
+# Return a mask (H, W) of the pixels with a flat patch around them, for frames A (t, H, W).
 
 # %% about="flat"
 frames = np.clip(L / np.quantile(L, 0.95), 0, 1) + np.random.default_rng(8).normal(
@@ -489,7 +491,7 @@ frames = np.clip(L / np.quantile(L, 0.95), 0, 1) + np.random.default_rng(8).norm
 )
 pictures.picture(
     colour.to_8bit(flat(frames).astype(float)),
-    alt="White on most of the walls; black along edges, on most of the floor, and at the picture's rim",
+    alt="White on most of the walls; black along edges, on most of the floor, and at the image borders",
 )
 
 # %% [markdown] about="solve_by_svd"
@@ -507,15 +509,13 @@ pictures.picture(
 # is (m, k) with $m \ge k$, `b` is (m,) and `x` is (k,).)
 
 # %% task="solve_by_svd"
-# Return the shortest x (k,) that minimises |A x - b|, by the SVD of A.
+# Return the shortest x (k,) that minimizes |A x - b|, with the SVD of A.
 
 # %% about="solve_by_svd"
-chain = np.array(
-    [[1.0, -1, 0], [0, 1, -1], [1, 0, -1]]
-)  # differences of three numbers, and no number
+chain = np.array([[1.0, -1, 0], [0, 1, -1], [1, 0, -1]])  # the differences of three numbers
 print(
     solve_by_svd(chain, np.array([1.0, 1, 2])),
-    "as the differences say: 1, 1 and 2; their mean is 0",
+    "has the differences 1, 1 and 2, and the mean 0",
 )
 
 # %% [markdown]

@@ -73,7 +73,7 @@ bracket = camera.shoot(
 if FOLDER:
     bracket = photos.read_bracket(Path(FOLDER))
 pictures.picture(
-    plots.thumbnails(bracket), alt="The photographs, from the shortest exposure to the longest"
+    plots.thumbnails(bracket), alt="The photos, from the shortest exposure to the longest"
 )
 
 # %% [markdown]
@@ -86,7 +86,7 @@ pictures.picture(
 # %%
 assembly = pipeline.assemble(bracket)
 print("\n".join(assembly.doubts) or "no doubts")
-pictures.radiance(assembly.E, alt="The radiance map in false colour")
+pictures.radiance(assembly.E, alt="The radiance map in false color")
 
 # %% [markdown]
 # ## 4 · The tone-mapped image
@@ -98,7 +98,7 @@ pictures.radiance(assembly.E, alt="The radiance map in false colour")
 L = colour.luminance(assembly.E)
 Ld = tonemap(L, key=0.25, local=True)
 artifact = colour.to_8bit(colour.recolour(assembly.E, L, Ld))
-pictures.picture(artifact, alt="The artifact: the scene by your operator")
+pictures.picture(artifact, alt="The artifact: the scene, tone-mapped with your operator")
 
 # %% [markdown]
 # ## 5 · The report

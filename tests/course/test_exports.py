@@ -192,7 +192,7 @@ HIDDEN = """
 import pytest
 
 @pytest.mark.points(1)
-def test_any_number_of_levels_will_do(subject):
+def test_any_number_of_levels_works(subject):
     assert len(subject.hat(12)) == 13
 """
 RIGHT = """import numpy as np

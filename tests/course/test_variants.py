@@ -195,7 +195,7 @@ def test_what_a_variant_rewords_stands_nowhere_any_more(task, variant):
 # last hints
 SAID = {
     "exclusion": {
-        "clipped": {"excluded": ("codes 0 and 255", "neither 0 nor 255")},
+        "clipped": {"excluded": ("values 0 and 255", "neither 0 nor 255")},
         "tie": {"above": ("t| > ", "t| > "), "from": (r"t| \ge ", "t| >= ")},
         "margin": {
             "four": (" 4$", "and t + 4"),
@@ -204,7 +204,7 @@ SAID = {
         },
     },
     "shift": {
-        "border": {"cut": ("cut them to", "Cut the images"), "black": ("is black", "is black")},
+        "border": {"cut": ("crop them to", "Crop the images"), "black": ("is black", "are black")},
         "direction": {
             "goes": ("must move, ", "where the image must move: "),
             "came": ("has moved, ", "how far the image has moved: "),
@@ -434,7 +434,7 @@ def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(cours
         "The sheet is of another variant than yours, which is what the checks ask: exclusion, shift",
     )
     promises = {one.name for one in other.checks} ^ {one.name for one in own.checks}
-    assert any("codes_on_either_side" in name for name in promises)
+    assert any("values_on_either_side" in name for name in promises)
 
 
 @pytest.mark.parametrize("named", ["", "a/b/c", "excluded/from/six/and", "../../x/y/z", "<b>/x/y"])

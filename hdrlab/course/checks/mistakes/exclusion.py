@@ -15,7 +15,7 @@ def bytes_wrap(Y, t):
 
 @mistake(
     "exclusion_four_kept",
-    says="The codes t - 4 and t + 4 are within the noise too: compare with > 4, not >= 4.",
+    says="The values t - 4 and t + 4 are within the noise too: compare with > 4, not >= 4.",
 )
 def four_kept(Y, t):
     return (Y >= t + NOISE) | (Y <= t - NOISE)

@@ -1,4 +1,6 @@
-"""Ward's trims: adjust_steps(h, db, D) -> states that begin with the histogram h after each trim."""
+"""Checks of adjust_steps(h, db, D), Ward's histogram trimming: the first part of each state is h
+after a trim.
+"""
 
 import numpy as np
 
@@ -8,10 +10,10 @@ from hdrlab.tonemap import ward
 
 
 def drawn(rng, bins=50):
-    """Return h (bins,), db and D: a scene with two peaks, of more range than the display has.
+    """Return h (bins,), db and D: a scene with two peaks and a larger range than the display.
 
-    Whether trimmings are measured by the first T [the paper's pseudo-code] or by the T before each
-    trim [pcond, Ward's program], the trims of such a histogram end at the same one.
+    The paper's pseudo-code compares the trimmings with the first T; Ward's program pcond compares
+    them with the T before each trim. For this histogram both stop after the same trim.
     """
     b, D = np.arange(bins), float(np.log(100))
     while True:
@@ -31,24 +33,25 @@ def asked(subject, h, db, D, **knobs):
     each = [one[0] if isinstance(one, tuple | list) else one for one in came]
     found = [finite(one, h.shape, what="h").astype(float) for one in each]
     low = h < 25  # far below every ceiling
-    said = "h: expected bins below the ceiling to stay, got less"
+    said = "h: expected bins far below the ceiling to stay as they are, got smaller ones"
     require(np.all(found[-1][low] >= 0.9 * h[low]), said, expected=h, came=found[-1], kind="curve")
     return found
 
 
 @points(4)
 def test_nothing_stays_above_the_ceiling(subject, rng):
-    """After a trim T is less, and so is the ceiling: what stood just below it stands above it now.
+    """A trim lowers T, and so it lowers the ceiling. Bins that were just below the old ceiling can
+    be above the new one.
 
-    Trim again, with a new T and a new ceiling.
+    Compute T and the ceiling again after each trim, and trim again.
 
-    Until the trimmings are below tolerance times T.
+    Stop when the trimmings are below tolerance times T.
     """
     h, db, D = drawn(rng)
     end = asked(subject, h, db, D)[-1]
     T = end.sum()
     above = np.maximum(end - T * db / D, 0).sum()
-    said = f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T"
+    said = f"h: expected at most 3 % of T above the ceiling T db / D, got {above / T:.1%} of T; trim again"
     require(
         above <= 0.03 * T,
         said,
@@ -59,29 +62,33 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
 
 
 @points(4)
-def test_trimmings_are_not_put_elsewhere(subject, rng):
-    """Where do the trimmings go?
+def test_trimmings_are_not_redistributed(subject, rng):
+    """Does a bin grow when you trim another one?
 
-    Nowhere: put elsewhere they would make another slope too steep.
+    Throw the trimmings away. If you put them into other bins, the curve becomes too steep there.
 
-    h = minimum(h, ceiling), and that is all.
+    h = minimum(h, ceiling), and nothing else.
     """
     h, db, D = drawn(rng)
     for before, after in zip(
         [h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False
     ):
-        said, grown = "h: expected no bin to grow in a trim", after > before + 1e-6 * before.max()
+        said, grown = (
+            "h: expected that no bin grows in a trim, got larger ones",
+            after > before + 1e-6 * before.max(),
+        )
         require(not np.any(grown), said, expected=before, came=after, kind="curve")
-    require(after.sum() < h.sum(), "h: expected trims, and nothing was cut off")
+    require(after.sum() < h.sum(), "h: expected trims, but the histogram did not change")
 
 
 @points(4)
-def test_the_histogram_ends_where_the_trims_lead(subject, rng):
-    """The slope of ln Ld over ln L is h D / (T db): above which h does it exceed 1?
+def test_the_last_histogram_is_correct(subject, rng):
+    """Check your ceiling. The slope of ln Ld over ln L is h D / (T db); the ceiling is the h at
+    which this slope is 1.
 
     ceiling = T db / D.
 
-    D and db are both natural logarithms: mix no log10 in.
+    D and db are both natural logarithms. Do not mix in log10.
     """
     h, db, D = drawn(rng)
     truth = last(ward.adjust_steps(h, db, D)).h
@@ -95,12 +102,12 @@ def test_the_histogram_ends_where_the_trims_lead(subject, rng):
 
 
 @points(3)
-def test_an_even_histogram_is_left_alone(subject, rng):
-    """A scene without any bin above the ceiling: what is there to trim?
+def test_a_flat_histogram_is_left_alone(subject, rng):
+    """No bin of this scene is above the ceiling, so there is nothing to trim.
 
-    Nothing, and h comes out as it went in.
+    Return h as it came in.
 
-    Do not scale h, and do not make it a density.
+    Do not scale h, and do not normalize it to a density.
     """
     h = np.full(40, float(rng.integers(50, 90)))
     same(asked(subject, h, 0.05, float(np.log(100)) / 3)[-1], h, 1e-6, what="h", kind="curve")

@@ -1,4 +1,6 @@
-"""Ward's alignment: align(images, bits=6) -> offsets (P, 2), 0 for the image of middling brightness."""
+"""Checks of align(images, bits=6), Ward's alignment: offsets (P, 2), (0, 0) for the image of
+middle brightness.
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -6,12 +8,14 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.course.checks.compare import finite, points, same
 
 MARGIN, H, W = 48, 160, 208
-# the coarsest level has 10 x 13 pixels: one of 5 x 6 is a matter of ties, which any scan may break
+# the coarsest level has 10 x 13 pixels: at 5 x 6 ties would decide, and any order may break them
 BITS = 5
 
 
 def scene(rng, *, fine=0.05):
-    """Return a scene (H + 2 MARGIN, W + 2 MARGIN) of median 1: soft blobs, hard edges, fine texture."""
+    """Return a scene (H + 2 MARGIN, W + 2 MARGIN) of median 1 with soft blobs, hard edges and
+    fine texture.
+    """
     shape = (H + 2 * MARGIN, W + 2 * MARGIN)
     soft = sum(s * gaussian_filter(rng.standard_normal(shape), s) for s in (3, 8, 20))
     hard = np.zeros(shape)
@@ -23,7 +27,7 @@ def scene(rng, *, fine=0.05):
 
 
 def photographs(rng, E, offsets, times, noise=0.004):
-    """Return the 8-bit photographs (P, H, W) that `offsets` lay on each other."""
+    """Return 8-bit photos (P, H, W) that `offsets` align."""
     taken = []
     for (dy, dx), t in zip(offsets, times, strict=True):
         X = 0.2 * t * E[MARGIN + dy : MARGIN + dy + H, MARGIN + dx : MARGIN + dx + W]
@@ -33,42 +37,43 @@ def photographs(rng, E, offsets, times, noise=0.004):
 
 
 def drawn(rng, least, most):
-    """Return an offset (dy, dx), each as far as that in either direction."""
+    """Return an offset (dy, dx), each of `least` to `most` pixels in a random direction."""
     return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
 
 
-@points(1, needs="test_photographs_a_pixel_apart_are_told_apart")
-def test_identical_photographs_stay_where_they_are(subject, rng):
-    """What is there to be moved?
+@points(1, needs="test_a_shift_of_one_pixel_is_found")
+def test_identical_images_have_offsets_of_zero(subject, rng):
+    """Nothing has to move here.
 
-    The offsets are an array (P, 2), a row for each image.
+    Return an array (P, 2) with one row for each image.
 
-    The same image twice: zeros.
+    For copies of one image, all offsets are 0.
     """
     images = photographs(rng, scene(rng), [(0, 0)], [1])
     same(subject.align(np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
 
 
-def test_photographs_a_pixel_apart_are_told_apart(subject, rng):
-    """Is anything found at all, whatever its sign?
+def test_a_shift_of_one_pixel_is_found(subject, rng):
+    """This check ignores the sign. Does your function find any shift at all?
 
-    At the finest level an offset is at most a pixel either way.
+    At the finest level, an offset changes by at most one pixel in each direction.
 
-    Of the nine candidates, the one with the fewest differing pixels is the offset.
+    Try the nine candidates, and take the one with the fewest differing pixels.
     """
     images = photographs(rng, scene(rng), [(0, 0), drawn(rng, 1, 1)], (1, 1))
     came = finite(subject.align(images), (2, 2), what="the offsets").astype(float)
-    same(np.abs(came[1] - came[0]), [1, 1], 0, what="the offset's size in y and in x")
+    same(np.abs(came[1] - came[0]), [1, 1], 0, what="the size of the offset in y and in x")
 
 
 @points(6)
 def test_a_known_offset_is_found_two_stops_apart(subject, rng):
-    """Look at the sign first: the offset says where the image must move, not where it has moved to.
+    """Check the sign first. The offset says where the image must move, not where it has moved to.
 
-    At every level the best of nine is found, and twice that is where the next level begins.
+    At each level, take the best of the nine candidates. Twice this offset is the start of the next
+    finer level.
 
-    XOR of the bitmaps, AND with both exclusion bitmaps; the least share of the compared pixels
-    wins.
+    XOR the bitmaps, and AND the result with both exclusion bitmaps. The candidate with the smallest
+    fraction of differing pixels wins.
     """
     for least, times in zip(
         (16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True
@@ -79,17 +84,17 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
-@points(4, needs="test_photographs_a_pixel_apart_are_told_apart")
+@points(4, needs="test_a_shift_of_one_pixel_is_found")
 def test_in_a_tie_nothing_moves(subject, rng):
-    """Which candidate wins where all nine are equally good?
+    """Which candidate do you take when all nine are equally good?
 
-    A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a
-    level.
+    If you start in a corner and take the first of equal candidates, the offset drifts diagonally by
+    one pixel per level.
 
-    Begin with the centre, and move only for a count that is less.
+    Start with the center, and move only if another candidate has a smaller count.
     """
     flat = np.full((2, 96, 128), int(rng.integers(60, 200)), np.uint8)
-    same(subject.align(flat), np.zeros((2, 2)), 0, what="the offsets of two even walls")
+    same(subject.align(flat), np.zeros((2, 2)), 0, what="the offsets of two uniform images")
     for _ in range(3):
         levels = gaussian_filter(rng.standard_normal(160), 2)
         bars = np.tile(128 + 120 * levels / np.abs(levels).max(), (120, 1))
@@ -98,17 +103,17 @@ def test_in_a_tie_nothing_moves(subject, rng):
             subject.align(images),
             np.zeros((2, 2)),
             0,
-            what="the offsets of upright bars that agree",
+            what="the offsets of two images of vertical bars",
         )
 
 
 @points(5)
 def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
-    """At which level is the picture compared with its median?
+    """At which level do you compare the image with its median?
 
-    A bitmap made small is not the bitmap of the small picture: fine texture becomes noise.
+    A shrunk bitmap is not the bitmap of the shrunk image: fine texture becomes noise.
 
-    Shrink the gray picture, and make threshold and bitmaps anew at every level.
+    Shrink the gray image. Compute the threshold and both bitmaps again at each level.
     """
     for _ in range(2):
         dy, dx = drawn(rng, 17, 23)
@@ -118,10 +123,11 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
 
 
 @points(2)
-def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
-    """More than half of the picture is a wall as bright as the median. What does its bitmap show?
+def test_noise_near_the_median_does_not_count(subject, rng):
+    """More than half of this image is a wall that is as bright as the median. What does its bitmap
+    show?
 
-    Noise alone; and where a sensor's noise is the same in each photograph, it says that nothing has
+    It shows only noise. This noise is the same in both images, so it suggests that nothing has
     moved.
 
     AND the differences with both exclusion bitmaps before you count.
@@ -137,9 +143,10 @@ def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
 def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     """How far can an offset of n levels reach? 1 + 2 + 4 + ...
 
-    Each level doubles what the level above found, and adds at most 1.
+    Each level doubles the offset of the coarser level and adds at most 1.
 
-    Check that the coarsest level is used too, and that you double before you look around.
+    Make sure that you use the coarsest level, and that you double the offset before you search
+    around it.
     """
     E, (dy, dx) = scene(rng), (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
     came = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
@@ -149,13 +156,13 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
 
 
 @points(6)
-def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subject, rng):
-    """Neighbours in brightness have bitmaps that are alike; the darkest and the brightest have not.
+def test_a_bracket_is_aligned_in_pairs_to_its_middle_image(subject, rng):
+    """Align neighbors in brightness: their bitmaps look alike. The bitmaps of the darkest and the
+    brightest image do not.
 
-    The offsets of pairs are summed along the chain, away from the image in the middle.
+    Sum the offsets of the pairs along the chain, starting from the image in the middle.
 
-    Sort by brightness to make the pairs, and give the offsets back in the order that the images
-    came in.
+    Sort by brightness to form the pairs, but return the offsets in the order of the input images.
     """
     true = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
     true -= true[2]

@@ -1,4 +1,6 @@
-"""What a screen makes of a gain map: apply_gain(sdr, g, low, high, W, gamma, k) -> light, 1 = white."""
+"""Checks of apply_gain(sdr, g, low, high, W, gamma, k): the linear light that a screen shows, 1
+= white.
+"""
 
 import numpy as np
 
@@ -7,7 +9,9 @@ from hdrlab.course.checks.compare import points, same
 
 
 def agree(subject, rng, channels=(), **knobs):
-    """Compare the light of a picture, of which a third is black, and gains of one range or one a channel."""
+    """Compare the light of an image, a third of it black, for gains with one range or one per
+    channel.
+    """
     low, high = rng.uniform(-2, -1, channels), rng.uniform(2, 3, channels)
     sdr, g = np.maximum(rng.uniform(-0.5, 1, (2, 12, 16, 3)), 0)
     came, expected = (
@@ -17,44 +21,47 @@ def agree(subject, rng, channels=(), **knobs):
 
 
 @points(5)
-def test_the_brightest_screen_shows_the_picture_times_its_gain(subject, rng):
-    """A map of 0 is the gain low, a map of 1 the gain high. By what is the picture multiplied?
+def test_the_brightest_screen_applies_the_full_gain(subject, rng):
+    """A map value of 0 is the gain low, and 1 is the gain high. By which factor do you multiply the
+    image?
 
-    Gains are stops: each doubles the light.
+    Gains are in stops: each stop doubles the light.
 
-    sdr 2^G with G = low + (high - low) g, where W and gamma are 1 and both offsets 0.
+    With W = 1, gamma = 1 and offsets of 0, return sdr 2^G with G = low + (high - low) g.
     """
     agree(subject, rng, k=(0.0, 0.0))
 
 
 @points(3)
-def test_a_screen_between_takes_a_part_of_the_stops(subject, rng):
-    """A screen with half of the stops, W = 1/2: where the picture is white and the gain 4, what does it show?
+def test_a_screen_in_between_applies_a_fraction_of_the_stops(subject, rng):
+    """A screen with W = 1/2 shows half of the stops. What does it show where the image is white and
+    the gain is 4?
 
-    Twice white: half of two stops is one. The part is taken of G, not of the light.
+    It shows twice white: half of two stops is one stop. W multiplies G, not the light.
 
-    sdr 2^(W G), where gamma is 1 and both offsets 0.
+    With gamma = 1 and offsets of 0, return sdr 2^(W G).
     """
     agree(subject, rng, W=rng.uniform(0.3, 0.7), k=(0.0, 0.0))
 
 
-def test_a_screen_no_brighter_than_white_shows_the_picture(subject, rng):
-    """W is 0 there. By what is the picture multiplied?
+def test_a_screen_without_headroom_shows_the_image_itself(subject, rng):
+    """Here W is 0. By which factor do you multiply the image?
 
-    By 2^0, wherever the gains begin.
+    By 2^0 = 1, whatever the value of low.
 
-    G is low at the least, and W is a part of all of G.
+    W multiplies all of G, including low.
     """
     agree(subject, rng, W=0.0)
 
 
 @points(3)
-def test_the_offsets_of_the_map_are_taken_off_again(subject, rng):
-    """The gain was that of the picture and the scene with an offset each. Which of them comes off at the end?
+def test_the_offset_of_the_scene_is_subtracted_at_the_end(subject, rng):
+    """The encoder added an offset to the image and another one to the scene. Which of them do you
+    subtract at the end?
 
-    Add the picture's, k[0], multiply, and take off the scene's, k[1].
+    Add the image's offset k[0], multiply, and subtract the scene's offset k[1].
 
-    (sdr + k_sdr) 2^(W G) - k_hdr.
+    Return (sdr + k_sdr) 2^(W G) - k_hdr.
     """
     for k in ((1 / 64, 1 / 64), (1 / 512, 1 / 16)):
         agree(subject, rng, k=k)
@@ -62,10 +69,10 @@ def test_the_offsets_of_the_map_are_taken_off_again(subject, rng):
 
 @points(3)
 def test_gamma_is_undone_before_the_range_of_each_channel_is_applied(subject, rng):
-    """The map was raised to gamma when it was made. What gives the share of the range back?
+    """The encoder raised the map to the power gamma. How do you undo this?
 
-    The power 1 / gamma, of the map alone.
+    Raise the map g, and nothing else, to the power 1 / gamma. Then apply low and high.
 
-    low and high may hold a number for each channel, (3,), and gamma as well.
+    low, high and gamma can be numbers or arrays (3,), one value per channel.
     """
     agree(subject, rng, (3,), gamma=rng.choice([0.5, 2.0], 3), k=(0.0, 0.0))

@@ -1,4 +1,6 @@
-"""Fattal's attenuation: attenuation_steps(lL, alpha, beta) -> states k, lL_k, slope, phi, Phi."""
+"""Checks of attenuation_steps(lL, alpha, beta), Fattal's attenuation: states (k, lL_k, slope,
+phi, Phi).
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -10,7 +12,7 @@ INNER = (slice(24, -24), slice(24, -24))
 
 
 def drawn(rng, shape=(128, 144)):
-    """Return log luminance: soft light, a few steep edges, a little texture."""
+    """Return log luminance with soft light, a few steep edges and some texture."""
     soft = gaussian_filter(rng.standard_normal(shape), 12)
     y, x = np.indices(shape)
     lamp = np.hypot(y - rng.integers(40, 88), x - rng.integers(40, 104)) < rng.integers(14, 24)
@@ -20,7 +22,7 @@ def drawn(rng, shape=(128, 144)):
 
 
 def asked(subject, lL, **knobs):
-    """Return the states, and ln Phi of the last one, that of the picture itself."""
+    """Return the states, and ln Phi of the last one, at full size."""
     came = [parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **knobs))]
     Phi = finite(came[-1][4], lL.shape, what="Phi").astype(float)
     require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi)
@@ -28,58 +30,60 @@ def asked(subject, lL, **knobs):
 
 
 def test_there_is_a_state_for_each_level(subject, rng):
-    """Halve the picture as long as its shorter side stays at 32 or more.
+    """Halve the image as long as its shorter side stays at 32 pixels or more.
 
-    The coarsest comes first, the picture itself last.
+    Yield the coarsest level first and the full image last.
 
-    128 x 144 pixels have three levels: 32, 64 and 128.
+    128 x 144 pixels have three levels, with 32, 64 and 128 rows.
     """
     lL = drawn(rng)
     came, _ = asked(subject, lL, alpha=0.1, beta=0.9)
     rows = np.array([np.shape(one[3])[0] for one in came])
-    same(rows, [32, 64, 128], 0, what="rows of phi, state by state")
+    same(rows, [32, 64, 128], 0, what="the number of rows of phi in each state")
 
 
-@points(3, needs="test_phi_of_the_picture_gathers_all_levels")
-def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
-    """On a ramp every slope is the mean slope.
+@points(3, needs="test_the_last_phi_combines_all_levels")
+def test_every_level_attenuates_a_ramp_by_the_same_factor(subject, rng):
+    """On a ramp, every gradient equals the mean gradient, so phi is the same everywhere.
 
-    There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made
-    less.
+    Is your phi the right value or its inverse? Slopes above alpha times the mean must become
+    smaller.
 
-    phi = (a / slope) (slope / a)^beta, a = alpha mean, and Phi multiplies the phi of all levels.
+    phi = (a / gradient) (gradient / a)^beta with a = alpha mean. Phi is the product of phi over all
+    levels.
     """
     c = float(rng.uniform(0.01, 0.05))
     lL = np.broadcast_to(np.arange(160, dtype=np.float32) * np.float32(c), (128, 160)).copy()
     came, lPhi = asked(subject, lL, alpha=0.1, beta=0.9)
-    same(len(came), 3, 0, what="levels of 128 x 160 pixels, none of them below 32")
+    same(len(came), 3, 0, what="the number of levels of 128 x 160 pixels")
     expected = np.full(lPhi.shape, 0.3 * np.log(0.1))
     same(lPhi[INNER], expected[INNER], 0.04, what="ln Phi of a ramp", picture=True)
 
 
 @points(3)
 def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
-    """With beta = 1 nothing is to change.
+    """With beta = 1, phi must be 1 everywhere.
 
-    phi = (slope / a)^(beta - 1).
+    phi = (gradient / a)^(beta - 1).
 
-    Another alpha multiplies all Phi by one number, for a is alpha times each level's own mean.
+    a is alpha times the mean gradient of each level. So another alpha multiplies all of Phi by one
+    number.
     """
     lL = drawn(rng)
     _, none = asked(subject, lL, alpha=0.1, beta=1.0)
     same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
     one, other = (asked(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
     expected = np.full(lL.shape, 3 * 0.2 * np.log(3))
-    same(other - one, expected, 0.05, what="what alpha 0.3 instead of 0.1 adds to ln Phi")
+    same(other - one, expected, 0.05, what="ln Phi with alpha = 0.3 minus ln Phi with alpha = 0.1")
 
 
 @points(4)
 def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
-    """Which slope belongs to which phi? Look at each level's picture beside its phi.
+    """Which gradient do you use for which phi? Plot each level's image next to its phi.
 
-    Phi_k = Phi_(k+1), enlarged, times phi_k: each level by its own slopes.
+    Phi_k is Phi_(k+1), enlarged, times phi_k. Compute phi_k from the gradients of level k.
 
-    The mean, too, is that of the level's own slopes.
+    The mean gradient is that of level k, too.
     """
     lL = drawn(rng)
     came, _ = asked(subject, lL, alpha=0.1, beta=0.8)
@@ -98,15 +102,21 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
 
 
 @points(5)
-def test_phi_of_the_picture_gathers_all_levels(subject, rng):
-    """Compare with the picture: dark in Phi is where the light jumps, at every scale.
+def test_the_last_phi_combines_all_levels(subject, rng):
+    """Compare Phi with the image: Phi must be small where the luminance jumps, at every scale.
 
-    Start at the coarsest level, enlarge, and multiply by the phi of the next finer one.
+    Start at the coarsest level. Enlarge Phi, and multiply it by phi of the next finer level.
 
-    Enlarge by linear interpolation: repeated pixels leave blocks.
+    Enlarge with linear interpolation. Repeated pixels leave blocks.
     """
     lL = drawn(rng)
     _, lPhi = asked(subject, lL, alpha=0.1, beta=0.85)
     truth = np.log(list(fattal.attenuation_steps(lL, alpha=0.1, beta=0.85))[-1].Phi)
     soft = gaussian_filter(lPhi - truth, 3)
-    same(soft[INNER], np.zeros(lL.shape)[INNER], 0.2, what="ln Phi less the true one", picture=True)
+    same(
+        soft[INNER],
+        np.zeros(lL.shape)[INNER],
+        0.2,
+        what="ln Phi minus the correct one",
+        picture=True,
+    )

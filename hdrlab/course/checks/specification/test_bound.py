@@ -1,4 +1,4 @@
-"""Pixels that no frame measures: bound(Z, B, g, top, shown) -> E (M,) and flags (M,)."""
+"""Checks of bound(Z, B, g, top, shown), pixels that no frame measures: E (M,) and flags (M,)."""
 
 import numpy as np
 
@@ -26,11 +26,11 @@ def asked(subject, Z, B, shown=None):
 
 
 def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
-    """Two things come back: E, and how it is known.
+    """Return two arrays: E, and the flags that say how it is known.
 
-    Z holds a column for each pixel: M of them.
+    Z has a column for each of the M pixels.
 
-    E (M,) and flags (M,).
+    E and flags both have the shape (M,).
     """
     Z, B = drawn(rng)
     E, flags = parts(subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool)), 2)
@@ -38,12 +38,13 @@ def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
 
 
 @points(5)
-def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
-    """Clipped in a frame of t seconds: the radiance is at least f^-1(top) / t.
+def test_a_pixel_clipped_in_all_frames_gets_the_bound_of_the_shortest(subject, rng):
+    """If a pixel is clipped in a frame of t seconds, its radiance is at least f^-1(top) / t.
 
-    Of several lower bounds the tightest counts, the largest: that of the shortest clipped frame.
+    Of several lower bounds, the largest one is the tightest. It comes from the shortest clipped
+    frame.
 
-    ln E = max over the clipped frames of g[top] - B.
+    ln E = max of g[top] - B over the clipped frames.
     """
     _, B = drawn(rng)
     Z = rng.integers(TOP, 256, (3, 20))
@@ -57,12 +58,12 @@ def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
 
 
 @points(4)
-def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
-    """Dark in a frame of t seconds: the radiance is at most f^-1(1) / t.
+def test_a_pixel_dark_in_all_frames_gets_the_bound_of_the_longest(subject, rng):
+    """If a pixel is dark in a frame of t seconds, its radiance is at most f^-1(1) / t.
 
-    Of several upper bounds the tightest counts, the least: that of the longest dark frame.
+    Of several upper bounds, the smallest one is the tightest. It comes from the longest dark frame.
 
-    ln E = min over the dark frames of g[1] - B.
+    ln E = min of g[1] - B over the dark frames.
     """
     _, B = drawn(rng)
     lE, _ = asked(subject, np.zeros((3, 20), int), B)
@@ -70,10 +71,11 @@ def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
 
 
 @points(3)
-def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
-    """Dark in one frame and clipped in the next: the truth lies between two bounds.
+def test_between_two_bounds_ln_E_is_their_mean(subject, rng):
+    """If a pixel is dark in one frame and clipped in the next, its radiance lies between two
+    bounds.
 
-    Between means between the logarithms: radiance is a matter of factors.
+    Take the middle of the logarithms, because radiance is compared by ratios.
 
     ln E = (lower + upper) / 2.
     """
@@ -83,12 +85,12 @@ def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
 
 
 @points(2)
-def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
-    """A frame that does not show the pixel says nothing of it.
+def test_a_frame_that_does_not_show_the_pixel_is_ignored(subject, rng):
+    """Do you use frames that do not show the pixel?
 
-    `shown` is False there: neither clipped nor dark.
+    Where `shown` is False, the pixel counts neither as clipped nor as dark.
 
-    clipped = shown & (Z >= top), dark = shown & (Z == 0).
+    clipped = shown & (Z >= top), and dark = shown & (Z == 0).
     """
     Z, B = drawn(rng)
     shown = np.ones(Z.shape, bool)
@@ -97,12 +99,12 @@ def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
     same(asked(subject, Z, B, shown)[0], np.log(truth), 1e-3, what="ln E")
 
 
-def test_the_flags_say_what_stood_in_the_way(subject, rng):
-    """The second answer says how each pixel is known.
+def test_the_flags_say_why_a_pixel_has_no_measurement(subject, rng):
+    """The second result says how each pixel is known.
 
-    1 is clipped, 2 is dark, and 3 is both.
+    1 means clipped, 2 means dark, 3 means both.
 
-    1 * clipped + 2 * dark, and 8 where neither.
+    flags = 1 * clipped + 2 * dark, and 8 where a pixel is neither.
     """
     Z, B = drawn(rng)
     flags = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[1]

@@ -1,4 +1,4 @@
-"""Brightness transfer from histograms: brightness_transfer(h_A, h_B) -> T (n,), NaN where not known."""
+"""Checks of brightness_transfer(h_A, h_B), from histograms: T (n,), NaN where T is not known."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
-    """Return the histograms of two photographs of as many pixels, B the brighter one."""
+    """Return the histograms of two photos with equally many pixels, B the brighter one."""
     n = int(rng.integers(50, 80))
     h = rng.integers(5, 60, (2, n)) + np.linspace(60, 0, n).astype(int) * [[1], [0]]
     h[1, -1] += h[0].sum() - h[1].sum() if h[0].sum() > h[1].sum() else 0
@@ -15,18 +15,20 @@ def drawn(rng):
 
 
 def sure(T, n):
-    """Return where a level is known, and not so near to B's outer levels that rounding decides."""
+    """Return where T is known and far enough from B's end levels that rounding does not matter."""
     return (T > 0.6) & (T < n - 1.6)
 
 
 @points(8)
-def test_the_darkest_of_one_are_the_darkest_of_the_other(subject, rng):
-    """Which level has the hundredth pixel of A, counted from the dark? And of B?
+def test_pixels_of_equal_rank_correspond(subject, rng):
+    """Sort the pixels of A and of B from dark to bright. The hundredth pixel of A corresponds to
+    the hundredth pixel of B.
 
-    The middle of A's step m has the rank H(m) + h(m) / 2, with H(m) the share of the pixels below
-    level m.
+    The rank of pixel value m in A is H(m) + h(m) / 2, where H(m) is the fraction of pixels below
+    pixel value m.
 
-    Find that rank on the line through B's edges: from H_B(z) at z - 1/2 to H_B(z + 1) at z + 1/2.
+    Find this rank in B by linear interpolation between the edges of the pixel values: H_B(z) at z -
+    1/2 and H_B(z + 1) at z + 1/2.
     """
     h_A, h_B = drawn(rng)
     T = brightness_transfer(h_A, h_B)
@@ -37,25 +39,26 @@ def test_the_darkest_of_one_are_the_darkest_of_the_other(subject, rng):
 
 
 @points(2)
-def test_a_photograph_and_itself_have_the_same_levels(subject, rng):
-    """What is T where both are one photograph?
+def test_a_photo_compared_with_itself_keeps_its_levels(subject, rng):
+    """What is T if A and B are the same photo?
 
-    Each rank has the level that it had.
+    Each rank keeps its pixel value.
 
-    T(m) = m, and not m + 1/2.
+    T(m) = m, not m + 1/2.
     """
     h, _ = drawn(rng)
     came, levels = subject.brightness_transfer(h, h), np.arange(1.0, len(h) - 1)
     same(came[1:-1], levels, 0.02, what="T of one photograph", kind="curve")
 
 
-@points(2, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
-def test_the_outer_levels_of_b_say_nothing(subject, rng):
-    """How bright is a pixel of B's highest level?
+@points(2, needs="test_pixels_of_equal_rank_correspond")
+def test_T_is_not_known_at_the_end_levels_of_b(subject, rng):
+    """How bright is a pixel of B's highest value?
 
-    At least so bright: the level holds all that is brighter. The lowest holds all that is darker.
+    It can have any brightness from that pixel value up, because brighter pixels are clipped to it.
+    The same holds for the lowest pixel value and darker pixels.
 
-    T is NaN where it falls on level 0 or n - 1 of B.
+    Set T to NaN where it falls on pixel value 0 or n - 1 of B.
     """
     h_A, h_B = drawn(rng)
     h_A[-3:] += h_A.sum() // 8
@@ -64,11 +67,11 @@ def test_the_outer_levels_of_b_say_nothing(subject, rng):
     same(subject.brightness_transfer(h_A, h_B)[-3:], T[-3:], 0.02, what="T of the brightest")
 
 
-@points(1, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
-def test_a_photograph_of_more_pixels_has_the_same_transfer(subject, rng):
-    """B may come from a larger sensor. What does that do to ranks?
+@points(1, needs="test_pixels_of_equal_rank_correspond")
+def test_the_number_of_pixels_does_not_matter(subject, rng):
+    """B can come from a larger sensor. What does this do to your ranks?
 
-    A rank is a share of all pixels.
+    A rank is a fraction of all pixels.
 
     Divide each histogram by its own sum.
     """

@@ -1,4 +1,4 @@
-"""A centre-weighted meter: centre(shape, inside, share, at) -> w (H, W)."""
+"""Checks of centre(shape, inside, share, at), a center-weighted meter: weights w (H, W)."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def asked(subject, rng):
-    """Return what came, what was expected, and where the middle is."""
+    """Return the student's weights and the expected ones."""
     H, W = shape = int(rng.integers(20, 30)), int(rng.integers(36, 48))
     at = float(rng.uniform(0.2, 0.3)), float(rng.uniform(0.65, 0.8))
     inside, share = float(rng.uniform(0.6, 0.8)), int(rng.integers(120, 300)) / (H * W)
@@ -16,23 +16,24 @@ def asked(subject, rng):
 
 
 @points(3)
-def test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian(subject, rng):
-    """How wide is a Gaussian of which `inside` lies in the disc?
+def test_the_weights_are_a_gaussian_around_the_center(subject, rng):
+    """Find the width of the Gaussian that has the fraction `inside` of its weight in the disc.
 
-    Too wide, and too little lies in it: halve the interval.
+    A Gaussian that is too wide has too little weight in the disc. Find the width by bisection.
 
-    The distance is in parts of the picture, down and right; the disc is that of the spot meter.
+    Measure distances as fractions of the image, down and to the right. The disc is that of the spot
+    meter.
     """
     for _ in range(4):
         came, w = asked(subject, rng)
-        same(came / came.max(), w / w.max(), 0.01, what="w, in shares of the largest", picture=True)
+        same(came / came.max(), w / w.max(), 0.01, what="w / max(w)", picture=True)
 
 
-@points(1, needs="test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian")
-def test_all_weights_together_are_one(subject, rng):
-    """Which is the reading of a picture that is 0.5 everywhere?
+@points(1, needs="test_the_weights_are_a_gaussian_around_the_center")
+def test_the_weights_sum_to_one(subject, rng):
+    """What does the meter read for an image that is 0.5 everywhere?
 
-    0.5, if the weights add up to 1.
+    It reads 0.5 if the weights sum to 1.
 
     Divide w by its sum.
     """

@@ -1,4 +1,4 @@
-"""Durand's compression: compress(base, low, high, contrast) -> m (base - high)."""
+"""Checks of compress(base, low, high, contrast), Durand's compression: m (base - high)."""
 
 import numpy as np
 
@@ -6,19 +6,19 @@ from hdrlab.course.checks.compare import points, same
 
 
 def drawn(rng):
-    """Return a base, and the levels that bound it, which none of its pixels reaches."""
+    """Return a base, and bounds low and high that none of its pixels reaches."""
     low = float(rng.uniform(-2, 0))
     high = low + float(rng.uniform(3, 5))
     return rng.uniform(low + 0.4, high - 0.6, (20, 30)).astype(np.float32), low, high
 
 
 @points(4)
-def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
-    """The range of the base, high - low decades, is to become c = log10(contrast) decades.
+def test_the_base_gets_the_requested_contrast(subject, rng):
+    """The base has a range of high - low decades. It must become c = log10(contrast) decades.
 
-    m = c / (high - low), and all logarithms have the base 10.
+    m = c / (high - low). All logarithms have the base 10.
 
-    A natural logarithm would make c larger by a factor of 2.3.
+    With a natural logarithm, c is too large by a factor of 2.3.
     """
     base, low, high = drawn(rng)
     for contrast in (50.0, 10.0):
@@ -26,17 +26,17 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
             np.log10(contrast) / (high - low),
             subject.compress(base, low, high, contrast=contrast),
         )
-        what = "the compressed base less its mean"
+        what = "the compressed base minus its mean"
         same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
 
 @points(3)
 def test_the_bright_end_becomes_white(subject, rng):
-    """Where does the bright end of the base go?
+    """What does the bright end of your base become?
 
-    White is 1, whose logarithm is 0.
+    White is 1, and its logarithm is 0.
 
-    Subtract high from the base before you multiply.
+    Subtract high from the base before you multiply by m.
     """
     base, low, high = drawn(rng)
     ends = np.array([[low, high]], np.float32)
@@ -50,11 +50,11 @@ def test_the_bright_end_becomes_white(subject, rng):
 
 @points(3)
 def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
-    """A scene of little contrast: what does your m do to it?
+    """What does your m do to a scene with little contrast?
 
-    No scene is stretched.
+    Never stretch a scene.
 
-    m is at most 1.
+    Limit m to at most 1.
     """
     base, low, high = drawn(rng)
     flat, high = low + (base - low) / 10, low + (high - low) / 10

@@ -1,4 +1,4 @@
-"""Half floats: decode_half(bits) -> their values, of bits uint16 of any shape."""
+"""Checks of decode_half(bits), half floats: the values of an array of bits (uint16, any shape)."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import as_shape, numbers, points, require, sam
 
 
 def asked(subject, rng, e):
-    """Return the values of 200 halves whose exponents are e, and what they are."""
+    """Return the student's values of 200 halves with exponents e, and the correct values."""
     shape = (10, 20)
     bits = (
         rng.integers(0, 2, shape) << 15 | rng.choice(e, shape) << 10 | rng.integers(1, 1024, shape)
@@ -17,25 +17,31 @@ def asked(subject, rng, e):
 
 @points(5)
 def test_a_half_is_its_mantissa_times_a_power_of_two(subject, rng):
-    """16 bits: the sign, five of the exponent e, ten of the mantissa m. What is the number?
+    """A half has 16 bits: one for the sign, five for the exponent e, ten for the mantissa m.
 
-    The first 1 of a mantissa is not written: it is 1 + m / 1024. And e = 15 stands for 2^0.
+    The leading 1 of the mantissa is not stored, so the mantissa is 1 + m / 1024. The exponent e =
+    15 stands for 2^0.
 
-    2^(e - 15) (1 + m / 1024): shift the bits by 10 for e, and keep the last 10 for m.
+    The value is 2^(e - 15) (1 + m / 1024). Shift the bits right by 10 to get e, and keep the lowest
+    10 bits for m.
     """
     came, values = asked(subject, rng, np.arange(1, 31))
     shares = np.abs(as_shape(numbers(came), values.shape) / values)
     same(
-        shares, np.ones(values.shape), 1e-6, what="sizes, in shares of the right ones", picture=True
+        shares,
+        np.ones(values.shape),
+        1e-6,
+        what="absolute values, divided by the correct ones",
+        picture=True,
     )
 
 
 def test_the_first_bit_is_the_sign(subject, rng):
-    """Which bit says that a number is below 0?
+    """Which bit is set for a negative number?
 
-    The first one, which is worth 2^15.
+    The highest one, which is worth 2^15.
 
-    Shifted by 15, the bits are 1 for a negative number.
+    Shift the bits right by 15: the result is 1 for a negative number.
     """
     came, values = asked(subject, rng, [15])
     same(
@@ -48,25 +54,27 @@ def test_the_first_bit_is_the_sign(subject, rng):
 
 
 @points(2)
-def test_the_smallest_have_no_hidden_one(subject, rng):
-    """What are the numbers of e = 0? With a hidden 1 none of them could be 0.
+def test_the_smallest_numbers_have_no_hidden_one(subject, rng):
+    """What are the numbers with e = 0? With a hidden 1, none of them could be 0.
 
-    There the mantissa stands for itself, m / 1024, and the power is that of e = 1.
+    For e = 0, the mantissa is m / 1024 without the 1, and the power is that of e = 1.
 
-    2^-14 m / 1024.
+    The value is 2^-14 m / 1024.
     """
     came, values = asked(subject, rng, [0])
-    same(1e8 * numbers(came), 1e8 * values, 1e-3, what="values of e = 0, times 10^8", picture=True)
+    same(
+        1e8 * numbers(came), 1e8 * values, 1e-3, what="values with e = 0, times 10^8", picture=True
+    )
     same(subject.decode_half(np.zeros(3, np.uint16)), np.zeros(3), 0, what="three zeros")
 
 
 @points(2)
-def test_the_largest_exponent_is_infinite_or_no_number(subject, rng):
-    """e = 31 stands for no power. For what, then?
+def test_the_largest_exponent_is_infinity_or_nan(subject, rng):
+    """e = 31 is not a power of two. What does it stand for?
 
-    Without a mantissa it is infinite, with the sign; with one it is no number, NaN.
+    With m = 0 it is infinity, with its sign. With any other m it is NaN.
 
-    np.inf where m is 0, and np.nan elsewhere.
+    Return np.inf with the sign where m is 0, and np.nan elsewhere.
     """
     bits = np.array(
         [0x7C00, 0xFC00, 0x7C00 + rng.integers(1, 1024), 0xFC00 + rng.integers(1, 1024)]

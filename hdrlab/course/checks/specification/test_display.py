@@ -1,4 +1,6 @@
-"""Reinhard's curve: display(Lm, adaptation, white) -> Ld; the adaptation is Lm or its neighbourhood."""
+"""Checks of display(Lm, adaptation, white), Reinhard's curve: Ld. The adaptation is Lm or its
+local average.
+"""
 
 import numpy as np
 
@@ -10,24 +12,24 @@ def drawn(rng):
 
 
 @points(3)
-def test_without_a_white_it_is_lm_over_one_plus_adaptation(subject, rng):
-    """Without a white, Ld stays below 1, and a Lm of 1 becomes a half.
+def test_without_a_white_Ld_is_Lm_over_one_plus_adaptation(subject, rng):
+    """Without a white, Ld stays below 1, and Lm = 1 becomes 0.5.
 
     Ld = Lm / (1 + adaptation).
 
-    For the global operator the adaptation is Lm itself.
+    For the global operator, the adaptation is Lm itself.
     """
     Lm = drawn(rng)
     same(subject.display(Lm, Lm), Lm / (1 + Lm), 1e-4, what="Ld", picture=True)
 
 
 @points(3)
-def test_white_becomes_1_and_what_is_brighter_stays_there(subject, rng):
-    """Put Lm = white into your formula: it should come out as 1.
+def test_white_becomes_1_and_brighter_pixels_are_clipped(subject, rng):
+    """Put Lm = white into your formula: the result must be 1.
 
-    The factor (1 + Lm / white^2) brings white back to 1.
+    The factor (1 + Lm / white^2) brings white to 1.
 
-    White is squared. What is above it is clipped at 1.
+    Use the square of white, and clip larger values at 1.
     """
     Lm, white = drawn(rng), float(rng.uniform(1.5, 6))
     Lm[0, :5] = white * np.array([1, 1.5, 2, 10, 100])
@@ -36,12 +38,12 @@ def test_white_becomes_1_and_what_is_brighter_stays_there(subject, rng):
 
 
 @points(2)
-def test_a_pixel_is_held_back_by_its_neighbourhood(subject, rng):
-    """Dodge and burn: whose brightness holds a pixel back?
+def test_the_neighborhood_goes_below_the_fraction_bar(subject, rng):
+    """Dodging and burning: which brightness stands in the denominator?
 
-    Below the fraction stands the neighbourhood, and above it the pixel.
+    The denominator has the neighborhood, and the numerator has the pixel.
 
-    Ld = Lm / (1 + adaptation): the second argument.
+    Ld = Lm / (1 + adaptation), where adaptation is the second argument.
     """
     Lm = drawn(rng)
     around = np.full_like(Lm, np.exp(rng.uniform(-1, 1)))

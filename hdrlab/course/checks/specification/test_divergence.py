@@ -1,4 +1,4 @@
-"""The divergence of a gradient field: divergence(G) -> div G (H, W), G = (Gy, Gx) of forward differences."""
+"""Checks of divergence(G): div G (H, W) of a field G = (Gy, Gx) of forward differences."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def field(rng, shape=(12, 17)):
-    """Return a field (2, H, W) that is 0 on the steps beyond the last row and column."""
+    """Return a field (2, H, W) that is 0 on the differences beyond the last row and column."""
     G = rng.standard_normal((2, *shape))
     G[0, -1], G[1, :, -1] = 0, 0
     return G
@@ -20,28 +20,28 @@ def gradient(u):
 
 
 def test_every_pixel_has_a_finite_divergence(subject, rng):
-    """Two components go in, one number for each pixel comes out.
+    """The field has two components; the divergence is one number per pixel.
 
-    G is (2, H, W), the answer (H, W).
+    G has the shape (2, H, W), and the result has (H, W).
 
-    A field that is 0 has a divergence that is 0.
+    The divergence of a field of zeros is 0.
     """
     finite(subject.divergence(field(rng)), (12, 17), what="div G")
     same(
         subject.divergence(np.zeros((2, 5, 6))),
         np.zeros((5, 6)),
         1e-9,
-        what="the divergence of nothing",
+        what="the divergence of a zero field",
     )
 
 
 @points(5)
-def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, rng):
-    """The gradient looks forward: in which direction must the divergence look?
+def test_the_divergence_of_a_gradient_is_the_laplacian(subject, rng):
+    """The gradient uses forward differences. Which differences must the divergence use?
 
     Backward differences: Gy(y, x) - Gy(y - 1, x) + Gx(y, x) - Gx(y, x - 1).
 
-    At the first row and column there is nothing before: only Gy(0, x), only Gx(y, 0).
+    The first row and column have no pixel before them: use only Gy(0, x) and only Gx(y, 0) there.
     """
     u = rng.standard_normal((12, 17))
     wide = np.pad(u, 1, mode="edge")
@@ -51,11 +51,11 @@ def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, r
 
 @points(4)
 def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
-    """Nothing flows through the edges: what flows out of one pixel flows into the next.
+    """Nothing flows through the borders: what leaves one pixel enters its neighbor.
 
     The divergence of any field sums to 0.
 
-    It is minus the transpose of the gradient.
+    As a matrix, it is minus the transpose of the gradient.
     """
     G, u = field(rng), rng.standard_normal((12, 17))
     divG = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")

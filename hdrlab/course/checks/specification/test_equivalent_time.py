@@ -1,4 +1,4 @@
-"""The same exposure with other settings: equivalent_time(T, F, F_new, S, S_new) -> seconds."""
+"""Checks of equivalent_time(T, F, F_new, S, S_new): the time with the same exposure, in seconds."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import points, same
 
 
 def drawn(rng):
-    """Return T, F, F_new, S, S_new: neither speed is the other, nor twice it."""
+    """Return T, F, F_new, S, S_new. No speed equals another one or is twice another one."""
     F, F_new = rng.uniform(1.4, 22, 2)
     S, S_new = np.array([100, 160]) * 2.0 ** rng.integers(0, 6, 2)
     return float(2.0 ** rng.uniform(-10, 2)), float(F), float(F_new), float(S), float(S_new)
@@ -14,9 +14,9 @@ def drawn(rng):
 
 @points(4)
 def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
-    """A larger f-number is a smaller hole: does your time become longer?
+    """A larger f-number is a smaller aperture. Does your time become longer?
 
-    The light goes with the area of the hole, 1 / F^2.
+    The light is proportional to the area of the aperture, 1 / F^2.
 
     T' = T (F' / F)^2.
     """
@@ -31,10 +31,10 @@ def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
 
 
 @points(3)
-def test_twice_the_speed_is_half_the_time(subject, rng):
-    """Twice the speed needs half the time.
+def test_twice_the_speed_needs_half_the_time(subject, rng):
+    """At twice the speed, half the time is enough.
 
-    T' is longer where the new speed is lower.
+    T' must be longer if the new speed is lower.
 
     Multiply by S / S'.
     """
@@ -44,10 +44,10 @@ def test_twice_the_speed_is_half_the_time(subject, rng):
 
 
 @points(3)
-def test_there_and_back_is_the_time_one_began_with(subject, rng):
-    """Change the settings, and change them back.
+def test_changing_the_settings_back_restores_the_time(subject, rng):
+    """Change the settings and change them back: do you get the first time again?
 
-    What you multiply by on the way must be what you divide by on the way back.
+    The factor on the way back must be the inverse of the factor on the way there.
 
     T' = T (F' / F)^2 S / S'.
     """
@@ -57,7 +57,7 @@ def test_there_and_back_is_the_time_one_began_with(subject, rng):
         there * S_new / F_new**2,
         exposure,
         1e-4 * exposure,
-        what="T' S' / F'^2, which is the exposure",
+        what="the new exposure, T' S' / F'^2",
     )
     back = subject.equivalent_time(there, F_new, F, S=S_new, S_new=S)
-    same(back / T, np.array(1.0), 1e-4, what="the time after the way back, over that before")
+    same(back / T, np.array(1.0), 1e-4, what="the time after changing back / the first time")

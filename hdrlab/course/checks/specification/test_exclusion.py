@@ -1,4 +1,4 @@
-"""The exclusion bitmap: exclusion(Y, t) -> True where a pixel is compared."""
+"""Checks of exclusion(Y, t), the exclusion bitmap: True where a pixel is compared."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from hdrlab.course.checks.compare import finite, points, require, same
 CODES = np.arange(256, dtype=np.uint8)[None]
 
 
-def test_it_says_yes_or_no_for_every_pixel(subject, rng):
-    """The answer has the shape of the picture.
+def test_every_pixel_is_either_compared_or_not(subject, rng):
+    """The result has the shape of the image.
 
-    True or False, or 1 or 0, for every pixel.
+    Return True or False (1 or 0) for every pixel.
 
     A comparison of arrays gives an array of bool.
     """
@@ -21,9 +21,9 @@ def test_it_says_yes_or_no_for_every_pixel(subject, rng):
 
 @points(4)
 def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
-    """Is the bitmap True where a pixel is compared, or where it is left out?
+    """Is your bitmap True where a pixel is compared, or where it is left out?
 
-    Noise decides the bit of a pixel close to the threshold; such a pixel must not be compared.
+    Noise decides the bit of a pixel close to the threshold, so do not compare such a pixel.
 
     |Y - t| > 4.
     """
@@ -33,12 +33,12 @@ def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
 
 
 @points(3)
-def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
-    """Write down by hand what happens to the codes t - 5, t - 4, t + 4 and t + 5.
+def test_it_leaves_out_the_four_values_on_either_side(subject, rng):
+    """Work out by hand what happens to the values t - 5, t - 4, t + 4 and t + 5.
 
-    Four codes on either side are left out, and t itself.
+    Four values on either side are left out, and t itself.
 
-    > 4 and not >= 4.
+    Use > 4 and not >= 4.
     """
     t = int(rng.integers(20, 230))
     same(
@@ -53,9 +53,9 @@ def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
 def test_bytes_do_not_wrap_around(subject, rng):
     """What is 3 - 5 in uint8?
 
-    Codes of one byte cannot be negative: a difference wraps around to 254.
+    A byte cannot be negative: the difference wraps around to 254.
 
-    Turn Y into int before you subtract, or compare with t - 4 and t + 4.
+    Convert Y to int before you subtract, or compare with t - 4 and t + 4.
     """
     Y = rng.integers(0, 256, (30, 40), dtype=np.uint8)
     for t in (2, 250):

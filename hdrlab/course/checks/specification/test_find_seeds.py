@@ -1,4 +1,4 @@
-"""The threshold of a ghost mask: find_seeds(score) -> mask (H, W)."""
+"""Checks of find_seeds(score), the threshold of a ghost mask: mask (H, W)."""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -8,29 +8,29 @@ from hdrlab.radiance.deghosting import regions
 
 
 def drawn(rng):
-    """Return a score of wide and of thin places above 1, some at the edge."""
+    """Return a score with wide and thin areas above 1, some of them at the border."""
     score = 1 + 3 * gaussian_filter(rng.standard_normal((40, 50)), 2)
     score[int(rng.integers(10, 30)), :], score[:, int(rng.integers(10, 40))] = 2, 2
     return score.astype(np.float32)
 
 
 @points(3)
-def test_what_is_above_1_in_a_whole_square_is_marked(subject, rng):
-    """Something that moved has a width. And an edge, and noise?
+def test_squares_that_are_entirely_above_1_are_marked(subject, rng):
+    """A moving object covers an area. Noise and edges do not.
 
-    Look at squares of 3 x 3 pixels: is all of one above 1?
+    Look at each square of 3 x 3 pixels: are all nine scores above 1?
 
-    Mark all nine pixels of each such square, and nothing else.
+    Mark all nine pixels of each such square, and no other pixel.
     """
     for _ in range(3):
         score = drawn(rng)
         same(subject.find_seeds(score), regions.find_seeds(score), 0, what="the mask", picture=True)
 
 
-def test_exactly_1_is_no_contradiction(subject, rng):
+def test_a_score_of_exactly_1_is_not_marked(subject, rng):
     """Is a score of 1 above 1?
 
-    What noise explains just so is no motion.
+    A score of exactly 1 can still be noise.
 
     Compare with >, not with >=.
     """
@@ -39,13 +39,13 @@ def test_exactly_1_is_no_contradiction(subject, rng):
     same(subject.find_seeds(score), score > 1, 0, what="the mask of one block", picture=True)
 
 
-@points(1, needs="test_what_is_above_1_in_a_whole_square_is_marked")
-def test_a_line_and_a_dot_are_no_motion(subject, rng):
-    """A line of one pixel, or of two, is above 1. Which square lies in it?
+@points(1, needs="test_squares_that_are_entirely_above_1_are_marked")
+def test_lines_and_dots_are_not_marked(subject, rng):
+    """Lines of one or two pixels are above 1 here. Does a square of 3 x 3 pixels fit into them?
 
-    No square of 3 x 3 does.
+    No square fits.
 
-    A pixel without a square is not marked, however high its score.
+    Do not mark a pixel outside such a square, however high its score is.
     """
     score = np.zeros((20, 30))
     score[int(rng.integers(3, 9))], score[14, int(rng.integers(3, 20))], score[16:18] = 9, 50, 3

@@ -1,4 +1,4 @@
-"""Durand's uncertain pixels: fix_uncertain(mean, k, sigma_s) -> base (H, W)."""
+"""Checks of fix_uncertain(mean, k, sigma_s), Durand's uncertain pixels: base (H, W)."""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -10,7 +10,9 @@ INNER = np.s_[10:-10, 10:-10]
 
 
 def drawn(rng):
-    """Return a mean, with pixels unlike their neighbourhood, and k of each, which is small there."""
+    """Return a mean in which some pixels differ from their neighborhood, and k, which is small
+    at these pixels.
+    """
     mean = gaussian_filter(rng.standard_normal((60, 70)), 8) * 20
     lone = rng.uniform(size=mean.shape) < 0.05
     k = np.where(lone, rng.uniform(1, 12, mean.shape), rng.uniform(150, 300, mean.shape))
@@ -18,12 +20,13 @@ def drawn(rng):
 
 
 @points(6)
-def test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood(subject, rng):
-    """A pixel unlike all around it is its own base. What is a better one?
+def test_uncertain_pixels_are_blended_with_the_blurred_mean(subject, rng):
+    """Few neighbors are similar to such a pixel, so its mean is uncertain. Which value is better?
 
-    The blurred mean, the more the fewer pixels it rests on: u mean + (1 - u) blur.
+    Blend it with the blurred mean: u mean + (1 - u) blur. A pixel with a smaller k has a smaller u.
 
-    u = ln k / ln(root of 2 pi sigma_s^2), from 0 to 1, and the blur is a Gaussian of 2 pixels.
+    u = ln k / ln(sqrt(2 pi sigma_s^2)), clipped to 0 ... 1. The blur is a Gaussian with a sigma of
+    2 pixels.
     """
     for sigma_s in (6.0, float(rng.uniform(4, 9))):
         mean, k = drawn(rng)
@@ -34,13 +37,13 @@ def test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood(subject, r
         same(came, base, 0.02, what="the base", picture=True, where=inner)
 
 
-@points(2, needs="test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood")
-def test_a_base_that_rests_on_many_stays(subject, rng):
-    """And a pixel with many of its kind around it?
+@points(2, needs="test_uncertain_pixels_are_blended_with_the_blurred_mean")
+def test_certain_pixels_keep_their_mean(subject, rng):
+    """What is u of a pixel with many similar neighbors?
 
-    Its u is 1 from the root of 2 pi sigma_s^2 pixels on, and not above.
+    u reaches 1 at k = sqrt(2 pi sigma_s^2), and must not go above 1.
 
-    Clip u at 1: a larger one would sharpen the base.
+    Clip u at 1. A larger u would sharpen the base.
     """
     mean, k = drawn(rng)
     came = subject.fix_uncertain(mean, k, sigma_s=6.0)
@@ -48,10 +51,10 @@ def test_a_base_that_rests_on_many_stays(subject, rng):
 
 
 @points(2)
-def test_a_pixel_alone_has_no_say(subject, rng):
-    """What is u of a pixel that only itself is like, k = 1?
+def test_a_pixel_without_similar_neighbors_takes_the_blur(subject, rng):
+    """What is u of a pixel that no neighbor is similar to, with k = 1?
 
-    ln 1 = 0: its base is the blur alone, and below 1 it is no less.
+    ln 1 = 0, so its base is the blur alone. For k below 1 it is the blur, too.
 
     Clip u at 0.
     """

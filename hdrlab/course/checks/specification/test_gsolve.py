@@ -1,4 +1,6 @@
-"""Debevec and Malik's system: gsolve(Z, B, smoothness, w) -> g, lE. Any gauge and any solver will do."""
+"""Checks of gsolve(Z, B, smoothness, w), Debevec and Malik's system: g and lE. Any gauge and any
+solver are accepted.
+"""
 
 import numpy as np
 
@@ -12,14 +14,16 @@ HAT = weights.hat()
 
 
 def samples(rng, N=50, P=5, *, response=None, noise=1.0, light=(-3, 3)):
-    """Return Z (N, P) and B (P,) of a camera, frames one and a half stops apart, noise in levels."""
+    """Return Z (N, P) and B (P,) of a camera, with frames 1.5 stops apart and noise in levels."""
     lE, B = rng.uniform(*light, N), 1.5 * np.log(2) * (np.arange(P) - P // 2)
     M = (response or laws.drawn_response(rng)).f(np.clip(0.2 * np.exp(lE[:, None] + B), 0, 1))
     return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
 
 
 def asked(subject, Z, B, smoothness, w):
-    """Return g and lE of a subject, moved to the gauge g[n // 2] = 0: a constant in both is free."""
+    """Return g and lE of a subject, shifted to g[n // 2] = 0, because a constant in both is
+    free.
+    """
     g, lE = parts(subject.gsolve(Z, B, smoothness, w), 2, what="g and lE")
     g, lE = finite(g, (len(w),), what="g"), finite(lE, (len(Z),), what="lE")
     g, lE = g.astype(float), lE.astype(float)
@@ -27,24 +31,24 @@ def asked(subject, Z, B, smoothness, w):
 
 
 def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
-    """Two things come back: g and lE.
+    """Return two arrays: g and lE.
 
-    g has an entry for each level, lE one for each sample.
+    g has one value per pixel value, and lE has one per sample.
 
-    Split the solution x at n: x[:n] and x[n:].
+    Split the solution x at n: g = x[:n] and lE = x[n:].
     """
     Z, B = samples(rng, N=40)
     asked(subject, Z, B, 30.0, HAT)
 
 
 @points(4)
-def test_the_curve_of_a_camera_comes_out(subject, rng):
-    """Every sample in every frame gives one row, w (g(Z) - lE) = w B.
+def test_the_curve_of_a_camera_is_recovered(subject, rng):
+    """Every sample in every frame gives one row: w (g(Z) - lE) = w B.
 
-    Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural
-    logarithms.
+    Column Z[i, j] holds w, column n + i holds -w, and the right-hand side is w B[j]. B is a natural
+    logarithm.
 
-    Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.
+    Plot g: it must rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
     Z, B = samples(
@@ -56,13 +60,13 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
 
 
 @points(6)
-def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
-    """Weights multiply whole rows: the left-hand side and the right-hand side.
+def test_g_and_lE_minimize_the_sum_of_squares(subject, rng):
+    """Multiply whole rows by the weight: the left-hand side and the right-hand side.
 
-    The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and
-    w(z) too.
+    The smoothness row of pixel value z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0. It has
+    both factors, lambda and w(z).
 
-    Count your rows: N P of data, one for the gauge, n - 2 of smoothness.
+    Count your rows: N P for the data, one for the gauge, n - 2 for smoothness.
     """
     Z, B = samples(rng)
     g, lE = asked(subject, Z, B, 30.0, HAT)
@@ -72,12 +76,12 @@ def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
 
 
 @points(4)
-def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subject, rng):
-    """What happens to your curve when the knob is turned from 1 to 300?
+def test_more_smoothness_gives_a_straighter_curve_and_a_worse_fit(subject, rng):
+    """What happens to your curve when you raise `smoothness` from 1 to 300?
 
-    The printed listing shows a digit where lambda belongs.
+    What looks like the digit 1 in the printed listing is the letter l, for lambda.
 
-    Multiply every smoothness row by `smoothness`, once: a larger one makes g straighter.
+    Multiply every smoothness row by `smoothness`, once. A larger value makes g straighter.
     """
     Z, B = samples(rng, N=40)
     bends, misses = [], []
@@ -85,9 +89,9 @@ def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subjec
         g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    said = f"sum (w g'')^2: expected less and less as lambda grows, got {_few(bends)}"
+    said = f"sum (w g'')^2: expected it to decrease as lambda grows, got {_few(bends)}"
     require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], said)
-    said = f"sum (w (g - lE - B))^2: expected more and more as lambda grows, got {_few(misses)}"
+    said = f"sum (w (g - lE - B))^2: expected it to increase as lambda grows, got {_few(misses)}"
     require(np.all(np.diff(misses) > 0), said)
 
 
@@ -95,27 +99,27 @@ def _few(numbers):
     return ", ".join(f"{one:.3g}" for one in numbers)
 
 
-@points(2, needs="test_the_curve_of_a_camera_comes_out")
+@points(2, needs="test_the_curve_of_a_camera_is_recovered")
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
-    """Does any line of yours look at the order of the frames?
+    """Does your code depend on the order of the frames?
 
-    B[j] belongs to column j of Z, wherever that column stands.
+    B[j] belongs to column j of Z, in any order.
 
-    Do not sort Z or B by themselves.
+    Do not sort Z without B, or B without Z.
     """
     Z, B = samples(rng, N=40)
     order = rng.permutation(len(B))
     g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
-    same(g, asked(subject, Z, B, 30.0, HAT)[0], 0.02, what="g of the frames in another order")
+    same(g, asked(subject, Z, B, 30.0, HAT)[0], 0.02, what="g with the frames in another order")
 
 
-@points(2, needs="test_the_curve_of_a_camera_comes_out")
-def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
-    """Twice the time in every frame is half the irradiance, and the same curve.
+@points(2, needs="test_the_curve_of_a_camera_is_recovered")
+def test_another_unit_of_time_changes_lE_but_not_g(subject, rng):
+    """Twice the time in every frame means half the irradiance and the same curve.
 
-    A constant added to B must come out of lE, and leave g alone.
+    If you add a constant to B, lE must decrease by this constant, and g must not change.
 
-    The right-hand side is w B[j]: B as it is given, neither its logarithm nor its exponential.
+    The right-hand side is w B[j]. Use B as it is, not its logarithm or its exponential.
     """
     Z, B = samples(rng, N=40)
     (g, lE), (moved, less) = (asked(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0)))
@@ -123,13 +127,13 @@ def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
     same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
 
-@points(2, needs="test_the_curve_of_a_camera_comes_out")
-def test_any_number_of_levels_will_do(subject, rng):
-    """Is there a 256 in your code? The weights say how many levels there are.
+@points(2, needs="test_the_curve_of_a_camera_is_recovered")
+def test_any_number_of_levels_works(subject, rng):
+    """Is there a 256 in your code? The length of w is the number of pixel values.
 
-    n = len(w); the gauge sits at level n // 2.
+    n = len(w), and the gauge is at pixel value n // 2.
 
-    The unknowns are g (n,) and then lE (N,): n + N columns.
+    The unknowns are g (n,) followed by lE (N,): n + N columns.
     """
     Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
     (g, _), (few, _) = (
@@ -141,6 +145,6 @@ def test_any_number_of_levels_will_do(subject, rng):
         few[4:12],
         fine[4:12],
         0.3,
-        what="g of levels 4 to 11 of 16, beside yours of 256",
+        what="g of levels 4 to 11 of 16, compared with your g of 256 levels",
         kind="curve",
     )

@@ -1,4 +1,6 @@
-"""The guided filter: guided(I, p, radius, epsilon) -> q, lines of windows, averaged."""
+"""Checks of guided(I, p, radius, epsilon), the guided filter: q (H, W), the average of linear
+models in windows.
+"""
 
 import numpy as np
 
@@ -9,27 +11,28 @@ SHAPE = (36, 48)
 
 
 def drawn(rng):
-    """Return a guide of two walls with texture, another picture of the same walls, and the knobs."""
+    """Return a guide of two walls with texture, another image of the same walls, and the
+    parameters.
+    """
     wall = np.arange(SHAPE[1]) < rng.integers(18, 30)
     guide, p = (wall * rng.uniform(1, 2) + 0.2 * rng.standard_normal(SHAPE) for _ in range(2))
     return guide, p, {"radius": int(rng.integers(2, 5)), "epsilon": float(rng.uniform(0.02, 0.1))}
 
 
 def inside(radius):
-    """Return a mask of the pixels whose windows, and all windows that hold them, lie in the picture."""
+    """Return a mask of the pixels that only complete windows influence."""
     mask = np.zeros(SHAPE, bool)
     mask[2 * radius : -2 * radius, 2 * radius : -2 * radius] = True
     return mask
 
 
 @points(6)
-def test_a_picture_is_smoothed_along_its_guide(subject, rng):
-    """Each window has a line, p = a I + b. A pixel lies in many windows: which line is its own?
+def test_an_image_is_smoothed_along_its_guide(subject, rng):
+    """Each window has its own model, q = a I + b. A pixel is in many windows: average their models.
 
-    a = cov(I, p) / (var(I) + eps), b = mean(p) - a mean(I); q is the mean of a times I, plus the
-    mean of b.
+    a = cov(I, p) / (var(I) + eps), and b = mean(p) - a mean(I). Then q = mean(a) I + mean(b).
 
-    All of it are means over (2 r + 1) x (2 r + 1) pixels: cov(I, p) = mean(I p) - mean(I) mean(p).
+    All means are over (2 r + 1) x (2 r + 1) pixels, and cov(I, p) = mean(I p) - mean(I) mean(p).
     """
     guide, p, knobs = drawn(rng)
     expected, where = guided(guide, p, **knobs), inside(knobs["radius"])
@@ -37,10 +40,10 @@ def test_a_picture_is_smoothed_along_its_guide(subject, rng):
 
 
 @points(4)
-def test_a_picture_that_guides_itself_keeps_its_edge(subject, rng):
-    """Where no p is given, I takes its place.
+def test_an_image_that_guides_itself_keeps_its_edges(subject, rng):
+    """If p is not given, use I in its place.
 
-    Beside the edge the variance is far above eps, and a is near 1; on a wall it is below, and a is
+    At the edge, the variance is far above eps, so a is near 1. On a wall it is far below, so a is
     near 0.
 
     cov(I, I) is the variance of I.
@@ -50,13 +53,13 @@ def test_a_picture_that_guides_itself_keeps_its_edge(subject, rng):
     same(subject.guided(guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
-@points(1, needs="test_a_picture_is_smoothed_along_its_guide")
-def test_where_every_edge_is_small_only_means_are_left(subject, rng):
-    """With an eps far above every variance, what is left of a?
+@points(1, needs="test_an_image_is_smoothed_along_its_guide")
+def test_a_large_epsilon_leaves_the_mean_of_means(subject, rng):
+    """What is a if eps is much larger than every variance?
 
-    a is 0 then, and b the mean of p.
+    Then a is 0, and b is the mean of p.
 
-    The mean of all b is a mean of means.
+    Average b, too: the result is a mean of means.
     """
     guide, p, knobs = drawn(rng)
     knobs["epsilon"] = 1e6
@@ -65,12 +68,12 @@ def test_where_every_edge_is_small_only_means_are_left(subject, rng):
 
 
 @points(2)
-def test_another_unit_and_zero_of_p_are_those_of_q(subject, rng):
-    """Filter p, and then 2 p + 3. What should the second answer be?
+def test_scaling_and_shifting_p_scales_and_shifts_q(subject, rng):
+    """Filter p, and then 2 p + 3. How must the two results differ?
 
-    The guide alone says where the edges are: nothing but means is taken of p.
+    The second result must be 2 q + 3: q depends on p only through means.
 
-    A constant goes into b, and a factor into both a and b.
+    A constant added to p goes into b. A factor of p goes into a and b.
     """
     guide, p, knobs = drawn(rng)
     q, again = (finite(subject.guided(guide, x, **knobs), SHAPE, what="q") for x in (p, 2 * p + 3))

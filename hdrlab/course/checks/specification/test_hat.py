@@ -1,4 +1,6 @@
-"""The weights of pixel levels: hat(n) -> w (n,). Their scale is free; what counts is one against another."""
+"""Checks of hat(n), the weights of pixel levels: w (n,). Their scale is free; only ratios of
+weights count.
+"""
 
 import numpy as np
 
@@ -6,7 +8,7 @@ from hdrlab.course.checks.compare import finite, points, require, same
 
 
 def asked(subject, n):
-    """Return w (n,) in shares of its largest value."""
+    """Return w (n,) divided by its largest value."""
     w = finite(subject.hat(n), (n,), what="w").astype(float)
     require(w.max() > 0, f"w: expected weights above 0, got none above {w.max():.3g}")
     return w / w.max()
@@ -18,14 +20,14 @@ def hat(n):
 
 
 def some(rng):
-    """Return how many levels to ask for, about as many as a photograph has: no table learnt by heart."""
+    """Return a random number of levels close to 256, so that a fixed table does not pass."""
     return 2 * int(rng.integers(100, 140))
 
 
-def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
-    """As many weights as levels.
+def test_every_level_has_a_weight_of_at_least_0(subject, rng):
+    """Return one weight for each pixel value.
 
-    An array (n,), from level 0 to n - 1.
+    w is an array (n,), from pixel value 0 to pixel value n - 1.
 
     No weight is below 0.
     """
@@ -35,12 +37,12 @@ def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
 
 
 @points(4)
-def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng):
-    """Which levels does a photograph tell best: the ends of its range, or the middle?
+def test_the_weight_is_largest_in_the_middle_and_falls_to_both_ends(subject, rng):
+    """Which pixel values are most reliable: those at the ends of the range, or those in the middle?
 
-    A level is trusted the less the closer it is to 0 or to the top, 255 where there are 256.
+    The weight decreases toward pixel value 0 and toward the highest pixel value, n - 1.
 
-    w(z) = z below the middle, and n - 1 - z above it.
+    w(z) = z below the middle, and w(z) = n - 1 - z above it.
     """
     n = some(rng)
     w = asked(subject, n)
@@ -48,20 +50,18 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
         np.arange(n - 1) < n // 2, 1, -1
     )  # the one in the middle may be 0
     wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
-    said = (
-        f"w: expected to rise up to the middle and to fall from there, not so from level {wrong} on"
-    )
+    said = f"w: expected weights that rise to the middle and fall after it; yours do not at level {wrong}"
     require(wrong == n, said, expected=hat(n), came=w, kind="curve")
-    same(w, hat(n), 0.02, what="w", kind="curve")  # ends that count are another promise
+    same(w, hat(n), 0.02, what="w", kind="curve")  # another check tests the ends
 
 
 @points(3)
-def test_clipped_levels_do_not_count(subject, rng):
-    """What does a pixel of the lowest level say of the light? And one of the highest?
+def test_clipped_levels_have_weight_0(subject, rng):
+    """What does a pixel of value 0 or n - 1 tell you about the light?
 
-    Only "at most" and "at least": they measure nothing, and count nothing.
+    Only "at most" or "at least". It measures nothing, so its weight is 0.
 
-    w(0) = w(n - 1) = 0: do not add 1.
+    w(0) = w(n - 1) = 0. Do not add 1.
     """
     n = some(rng)
     w = asked(subject, n)
@@ -69,12 +69,12 @@ def test_clipped_levels_do_not_count(subject, rng):
 
 
 @points(3)
-def test_any_number_of_levels_will_do(subject, rng):
-    """How many levels has a RAW photograph of 12 bits?
+def test_any_number_of_levels_works(subject, rng):
+    """How many pixel values does a 12-bit RAW photo have?
 
-    n says how many: is there a 255 or a 128 in your code?
+    The argument n is the number of pixel values. Is there a 255 or a 128 in your code?
 
-    z = arange(n), and the top level is n - 1.
+    Use z = arange(n); the highest pixel value is n - 1.
     """
     for n in (2 * int(rng.integers(10, 60)), 4096):
         same(asked(subject, n), hat(n), 1e-3, what=f"w of {n} levels", kind="curve")

@@ -1,4 +1,6 @@
-"""The surest mean: inverse_variance_merge(X, D, measured, t, N, R) -> E and s, each (H, W)."""
+"""Checks of inverse_variance_merge(X, D, measured, t, N, R), the most certain mean: E and s,
+each (H, W).
+"""
 
 import numpy as np
 
@@ -9,7 +11,7 @@ TIMES, SHAPE = np.array([1.0, 4.0, 16.0]), (30, 40)
 
 
 def counted(rng, times=TIMES, dimmest=2.0):
-    """Return what a linear camera counts, as a student gets it, and the true radiance."""
+    """Return the measurements of a linear camera, as a student gets them, and the true radiance."""
     N, R = float(rng.uniform(800, 1200)), float(rng.uniform(2, 4))
     E = np.exp(rng.uniform(np.log(dimmest / N), np.log(0.2), SHAPE))
     t = times[:, None, None]
@@ -27,7 +29,7 @@ def counted(rng, times=TIMES, dimmest=2.0):
 
 
 def asked(subject, given):
-    """Return E and s of a student."""
+    """Return the student's E and s."""
     E, s = parts(subject.inverse_variance_merge(*given), 2)
     return finite(E, SHAPE, what="E").astype(float), finite(s, SHAPE, what="s").astype(float)
 
@@ -37,93 +39,99 @@ def alike(came, expected, tolerance, what, unit=1.0):
 
 
 @points(2)
-def test_one_photograph_alone_is_as_sure_as_its_own_noise(subject, rng):
-    """Of one photograph the mean is its own answer, X / t.
+def test_a_single_photo_keeps_its_own_noise(subject, rng):
+    """With one photo, the mean is its own value, X / t.
 
-    The variance of X / t is that of X over the square of t.
+    The variance of X / t is the variance of X divided by t^2.
 
-    s is a standard deviation: the root of a variance, V = variance(X, D, N, R) / t^2.
+    s is a standard deviation: the square root of V = variance(X, D, N, R) / t^2.
     """
     given, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
     (X, D, _, t, N, R), (E, s) = given, asked(subject, given)
-    alike(E, X[0] / t, 1e-3, "E over X / t", X[0] / t)
+    alike(E, X[0] / t, 1e-3, "E / (X / t)", X[0] / t)
     true = np.sqrt(variance(X[0], D[0], N, R)) / t
-    alike(s, true, 0.02, "s over that of one photograph", true)
+    alike(s, true, 0.02, "s / the standard deviation of one photo", true)
 
 
 @points(2)
-def test_of_equal_times_it_is_the_plain_mean(subject, rng):
-    """Four photographs of one light and one time. One of them caught more photons than the others, by chance.
+def test_equal_exposure_times_give_the_plain_mean(subject, rng):
+    """Four photos have the same scene and the same time. By chance, one of them caught more photons
+    than the others.
 
-    Chance is no reason to count it for less. V is that of the light which is there, the same in all
-    four.
+    Chance is no reason to give it a smaller weight. V depends on the true light, which is the same
+    in all four.
 
-    Take V from E t, once E is known, and not from what each photograph counted; then the weights
-    are equal.
+    Compute V from E t, once you know E, and not from the count of each photo. Then all weights are
+    equal.
     """
     given, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
     (X, D, _, _, N, R), (E, s) = given, asked(subject, given)
     plain = X.mean(axis=0) / 2
-    alike(E, plain, 0.005, "E over the plain mean", plain)
+    alike(E, plain, 0.005, "E / the plain mean", plain)
     true = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
-    alike(s, true, 0.02, "s over half that of one photograph", true)
+    alike(s, true, 0.02, "s / half the standard deviation of one photo", true)
 
 
 @points(2)
-def test_a_photograph_that_does_not_measure_a_pixel_has_no_say_in_it(subject, rng):
-    """Where `measured` is False, what stands in X is no measurement.
+def test_a_photo_that_does_not_measure_a_pixel_is_ignored(subject, rng):
+    """Where `measured` is False, the value in X is not a measurement.
 
-    Such a photograph is missing in all of the sums.
+    Leave such a photo out of all sums.
 
-    Let its V be infinite: then 1 / V is 0.
+    Set its V to infinity: then 1 / V is 0.
     """
     (X, D, measured, *rest), _ = counted(rng)
     before, D = asked(subject, (X, D, measured, *rest)), np.where(measured, D, 1e-4)
     E, s = asked(subject, (np.where(measured, X, 0.5), D, measured, *rest))
-    alike(E, before[0], 1e-3, "E with other values there, over E before", before[0])
-    alike(s, before[1], 1e-3, "s with other values there, over s before", before[1])
+    alike(E, before[0], 1e-3, "E after changing unmeasured values / E before", before[0])
+    alike(s, before[1], 1e-3, "s after changing unmeasured values / s before", before[1])
 
 
 @points(9)
-def test_each_answer_counts_by_the_inverse_of_its_variance(subject, rng):
-    """The longest photograph knows most, if it is not clipped. How much do the others count beside it?
+def test_each_measurement_is_weighted_by_its_inverse_variance(subject, rng):
+    """The longest unclipped photo is the most certain one. How much do the others count?
 
-    An answer x = X / t counts by 1 / V, V the variance of x: V = variance(E t, D, N, R) / t^2.
+    The weight of a measurement x = X / t is 1 / V, where V = variance(E t, D, N, R) / t^2 is the
+    variance of x.
 
-    E = sum (x / V) / sum (1 / V), and s^2 = 1 / sum (1 / V).
+    E = sum(x / V) / sum(1 / V), and s^2 = 1 / sum(1 / V).
     """
     given, _ = counted(rng)
     (E, s), true = asked(subject, given), inverse_variance_merge(*given)
     alike(E, true[0], 0.05, "E, in standard deviations", true[1])
-    alike(s, true[1], 0.05, "s over what it should be", true[1])
+    alike(s, true[1], 0.05, "s / the correct s", true[1])
 
 
 @points(7)
-def test_no_other_mean_errs_less(subject, rng):
-    """A mean is as good as its errors are small. Hold yours against the scene that was photographed.
+def test_no_other_mean_has_a_smaller_error(subject, rng):
+    """Compare your E with the true scene: its error must be as small as possible.
 
-    Is the longest photograph that is not clipped the one that counts most? And in the dark?
+    Does the longest unclipped photo have the largest weight? Also in the dark?
 
-    Weights other than 1 / V make the error of each pixel larger, more or less, in units of s.
+    Any weights other than 1 / V make the error of E larger.
     """
     given, scene = counted(rng)
     best, s = inverse_variance_merge(*given)
     least, came = (
         np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, asked(subject, given)[0])
     )
-    same(max(came / least, 1.0), 1.0, 0.02, what="root mean square error, over the least")
+    same(max(came / least, 1.0), 1.0, 0.02, what="root mean square error / the smallest possible")
 
 
 @points(2)
-def test_of_100_pixels_95_lie_within_1_96_deviations(subject, rng):
-    """To say E +- 1.96 s is to say something that can be wrong: hold it against the scene.
+def test_95_percent_of_the_pixels_lie_within_1_96_standard_deviations(subject, rng):
+    """If s is right, the true scene lies within E +- 1.96 s for 95 % of the pixels.
 
-    Too many outside: is something left out of V? Too few: is s that of the mean, or of one answer?
+    Are too many pixels outside? Then V lacks a term. Too few? Then s belongs to one photo and not
+    to the mean.
 
-    Three photographs of one light know more than one: s^2 = 1 / sum (1 / V).
+    Several photos together are more certain than one: s^2 = 1 / sum(1 / V).
     """
     given, scene = counted(rng)
     E, s = asked(subject, given)
     same(
-        100 * np.mean(np.abs(E - scene) < 1.96 * s), 95.0, 3.0, what="pixels within 1.96 s, of 100"
+        100 * np.mean(np.abs(E - scene) < 1.96 * s),
+        95.0,
+        3.0,
+        what="percentage of pixels within 1.96 s",
     )

@@ -1,4 +1,4 @@
-"""Robertson's irradiance: irradiance(Z, t, f_inv, w) -> E (N,)."""
+"""Checks of irradiance(Z, t, f_inv, w), Robertson's irradiance: E (N,)."""
 
 import numpy as np
 
@@ -10,28 +10,28 @@ HAT = weights.hat()
 
 
 def drawn(rng, N=300, P=4):
-    """Return Z (N, P), t (P,) and a rising f^-1 (256,)."""
+    """Return Z (N, P), t (P,) and an increasing f^-1 (256,)."""
     return rng.integers(0, 256, (N, P)), rng.uniform(0.1, 2, P), np.sort(rng.uniform(0.01, 2, 256))
 
 
 def test_every_sample_has_an_irradiance(subject, rng):
-    """One number for each sample, and not for each frame.
+    """Return one number per sample, not one per frame.
 
-    Sum over the frames, which are the second axis of Z.
+    Sum over the frames, the second axis of Z.
 
-    The answer is E (N,).
+    The result is E (N,).
     """
     Z, t, f_inv = drawn(rng)
     finite(subject.irradiance(Z.clip(20, 230), t, f_inv, HAT), (300,), what="E")
 
 
 @points(4)
-def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
-    """Divide one sum by another, both over the frames.
+def test_it_is_the_weighted_mean_of_the_slides(subject, rng):
+    """Divide one sum over the frames by another one.
 
-    Above stands sum w f^-1 t: the time is there too.
+    The numerator is the sum of w f^-1(Z) t. Do not forget t.
 
-    E = sum_j w f^-1(Z_ij) t_j / sum_j w t_j^2, the time squared below.
+    E = sum_j w f^-1(Z_ij) t_j / sum_j w t_j^2. The denominator has the square of the time.
     """
     Z, t, f_inv = drawn(rng)
     truth, seen = robertson.irradiance(Z, t, f_inv, HAT), HAT[Z].sum(axis=1) > 0.05
@@ -39,12 +39,12 @@ def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
 
 
 @points(3)
-def test_frames_that_agree_give_what_they_agree_on(subject, rng):
-    """Where every frame says the same E, the mean is that E.
+def test_frames_that_agree_give_their_common_value(subject, rng):
+    """If every frame gives the same E, the mean must be this E.
 
-    f^-1(Z_ij) = E_i t_j in every frame: put that into your formula.
+    Put f^-1(Z_ij) = E_i t_j into your formula.
 
-    Weights and times must cancel: what stands above must stand below with f^-1 = E t divided by E.
+    The numerator must become E times the denominator, so that weights and times cancel.
     """
     f_inv, t = np.arange(256) / 128.0, np.array([1.0, 2.0, 4.0])
     x = rng.integers(3, 60, 50)
@@ -53,12 +53,12 @@ def test_frames_that_agree_give_what_they_agree_on(subject, rng):
 
 
 @points(2)
-def test_twice_the_time_is_half_the_irradiance(subject, rng):
-    """Twice the time for the same photographs is half the light.
+def test_twice_the_time_gives_half_the_irradiance(subject, rng):
+    """The same pixel values at twice the time mean half the light.
 
-    Replace t by 2 t in the quotient.
+    Replace t by 2 t in your formula. Does the result become half as large?
 
-    The time stands once above, and squared below.
+    The numerator has t, and the denominator has t^2.
     """
     Z, t, f_inv = drawn(rng)
     truth, seen = robertson.irradiance(Z, t, f_inv, HAT), HAT[Z].sum(axis=1) > 0.05
@@ -71,12 +71,12 @@ def test_twice_the_time_is_half_the_irradiance(subject, rng):
     )
 
 
-def test_a_sample_that_no_frame_saw_well_is_nan(subject, rng):
-    """What is known of a sample that is clipped in all frames?
+def test_a_sample_without_any_weight_is_nan(subject, rng):
+    """What do you know about a sample that is clipped in all frames?
 
-    Nothing: 0 / 0.
+    Nothing: the formula gives 0 / 0.
 
-    NaN is the number that says so; 0 would be a dark hole.
+    Return NaN for it. A 0 would look like a dark spot.
     """
     _, t, f_inv = drawn(rng)
     Z = np.array([[0, 0, 255, 255], [100, 150, 200, 250]])

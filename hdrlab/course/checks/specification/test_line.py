@@ -1,4 +1,4 @@
-"""The photon transfer line: line(S, V) -> its slope 1 / K, one per electron and level."""
+"""Checks of line(S, V), the photon transfer line: its slope 1 / K, in levels per electron."""
 
 import numpy as np
 
@@ -6,18 +6,18 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng, M=9):
-    """Return S (M,) and V (M,) on a line through the dark pair, which is the first."""
+    """Return S (M,) and V (M,) on a line through the dark pair, which comes first."""
     S = np.concatenate([[0], np.sort(rng.uniform(100, 3000, M - 1))])
     return S, S / rng.uniform(1, 4) + rng.uniform(3, 12)
 
 
 @points(2)
-def test_the_slope_of_a_line_is_found_from_the_dark_pair_on(subject, rng):
-    """How much does the variance grow with the signal, beyond that of the dark?
+def test_the_line_starts_at_the_dark_pair(subject, rng):
+    """By how much does the variance grow with the signal, beyond the variance of the dark pair?
 
-    The read noise is in every pair, and in the dark one alone.
+    Every pair contains the read noise, and the dark pair contains nothing else.
 
-    Take V[0] off all V: what is left is S / K.
+    Subtract V[0] from all V. The rest is S / K.
     """
     S, V = drawn(rng)
     slope = (V[-1] - V[0]) / S[-1]
@@ -25,27 +25,33 @@ def test_the_slope_of_a_line_is_found_from_the_dark_pair_on(subject, rng):
 
 
 @points(7)
-def test_a_pair_counts_the_less_the_more_its_variance_errs(subject, rng):
-    """Which of the variances is known best?
+def test_pairs_with_uncertain_variances_have_smaller_weights(subject, rng):
+    """Which of the measured variances is most certain?
 
-    Measured in n pixels a variance errs in proportion to itself: the weight is 1 / V^2.
+    The error of a measured variance is proportional to the variance itself, so the weight is w = 1
+    / V^2.
 
-    1 / K = sum w S (V - V_0) / sum w S^2: the dark pair is on the line, whatever the others say.
+    1 / K = sum(w S (V - V[0])) / sum(w S^2). The line always goes through the dark pair.
     """
     S, V = drawn(rng)
     V = V * (1 + 0.3 * (S > S[-4]) + rng.uniform(-0.05, 0.05, len(V)))
     slope = np.sum(S * (V - V[0]) / V**2) / np.sum((S / V) ** 2)
-    same(subject.line(S, V), slope, 2e-3 * slope, what="1 / K of scattered pairs")
+    same(subject.line(S, V), slope, 2e-3 * slope, what="1 / K of noisy pairs")
 
 
-@points(1, needs="test_the_slope_of_a_line_is_found_from_the_dark_pair_on")
-def test_levels_half_as_large_double_the_slope(subject, rng):
-    """With one bit more, S doubles. And V?
+@points(1, needs="test_the_line_starts_at_the_dark_pair")
+def test_halving_the_level_step_doubles_the_slope(subject, rng):
+    """With one more bit, S doubles. What happens to V?
 
-    The variance is a square: it becomes four times as large.
+    V becomes four times as large, because a variance is a square.
 
-    Nothing in the slope has a size of its own.
+    Do not put a number with a fixed unit into the slope.
     """
     S, V = drawn(rng)
     before = float(finite(subject.line(S, V), (), what="1 / K"))
-    same(subject.line(2 * S, 4 * V), 2 * before, 1e-3 * before, what="1 / K in half levels")
+    same(
+        subject.line(2 * S, 4 * V),
+        2 * before,
+        1e-3 * before,
+        what="1 / K with twice as many levels",
+    )

@@ -1,4 +1,4 @@
-"""How bright a scene is on the whole: log_average(L) -> Lav."""
+"""Checks of log_average(L), the overall brightness of a scene: Lav."""
 
 import numpy as np
 
@@ -10,22 +10,22 @@ def drawn(rng):
 
 
 def test_a_scene_has_one_average(subject, rng):
-    """One number for the whole picture.
+    """Return one number for the whole image.
 
-    Not one for each row.
+    Do not return one number per row.
 
-    np.mean without an axis.
+    Use np.mean without an axis.
     """
     finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
 
 
 @points(6)
 def test_it_is_the_geometric_mean(subject, rng):
-    """One lamp must not decide how bright the whole scene is.
+    """One lamp must not change the average of the whole scene much.
 
-    The mean of the logarithms, not the logarithm of the mean.
+    Take the mean of the logarithms, not the logarithm of the mean.
 
-    exp(mean(log(delta + L))): the paper's 1 / N stands inside exp.
+    exp(mean(log(delta + L))). The factor 1 / N belongs inside exp; the paper prints it outside.
     """
     L = drawn(rng)
     lit = np.where(np.arange(L.size).reshape(L.shape) == 154, np.float32(1e6), L)  # one lamp
@@ -38,22 +38,22 @@ def test_it_is_the_geometric_mean(subject, rng):
 def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
     """What is log 0?
 
-    A small delta is added, so that black has a logarithm.
+    Add a small delta, so that black has a finite logarithm.
 
-    log(delta + L), with the delta inside.
+    Use log(delta + L), with delta inside the logarithm.
     """
     L = drawn(rng)
     L[:4] = 0
     came = float(finite(subject.log_average(L), (), what="Lav"))
-    said = f"Lav: expected above 0, and less than without the black pixels, got {came:.4g}"
+    said = f"Lav: expected a value above 0 and below that without the black pixels, got {came:.4g}"
     require(0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()), said)
 
 
 @points(2, needs="test_it_is_the_geometric_mean")
-def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
-    """Ten times the light: which number should come?
+def test_ten_times_the_light_gives_ten_times_the_average(subject, rng):
+    """Make the scene ten times as bright. How should Lav change?
 
-    The unit of L is the unit of Lav.
+    Lav has the same unit as L, so it must become ten times as large.
 
     Do not forget exp at the end.
     """
@@ -61,4 +61,4 @@ def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
     one, ten = (
         float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10)
     )
-    same(ten / one, 10.0, 0.01, what="Lav of 10 L, over that of L")
+    same(ten / one, 10.0, 0.01, what="Lav of 10 L / Lav of L")

@@ -1,4 +1,4 @@
-"""The exposure that a meter asks for: optimum(EV_pre, B_pre, B_opt) -> EV_opt."""
+"""Checks of optimum(EV_pre, B_pre, B_opt), the exposure that a meter recommends: EV_opt."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from hdrlab.course.checks.compare import points, same
 
 
 @points(3)
-def test_a_reading_too_bright_by_so_many_stops_asks_for_as_many(subject, rng):
-    """The reading is four times what it should be. How many stops are that?
+def test_a_reading_that_is_off_by_n_stops_changes_the_exposure_by_n(subject, rng):
+    """The reading is four times what it should be. How many stops is that?
 
-    Two. A higher exposure value lets less light in.
+    Two. A higher exposure value lets in less light.
 
     EV_opt = EV_pre + log2(B_pre / B_opt).
     """
@@ -19,17 +19,17 @@ def test_a_reading_too_bright_by_so_many_stops_asks_for_as_many(subject, rng):
             subject.optimum(EV, 0.18 * 2**n),
             EV + n,
             1e-3,
-            what=f"EV after a reading off by {n:g} stops",
+            what=f"EV after a reading that is off by {n:g} stops",
         )
 
 
 @points(2)
-def test_what_the_reading_should_be_is_asked(subject, rng):
-    """Not every meter takes the world for 18 % gray. Where does B_opt stand in your formula?
+def test_the_target_reading_can_be_chosen(subject, rng):
+    """Not every meter assumes 18 % gray. Do you use the argument B_opt?
 
-    A higher B_opt wants more light, so a lower exposure value.
+    A higher B_opt needs more light, so the exposure value is lower.
 
-    Subtract log2 B_opt.
+    Subtract log2(B_opt).
     """
     EV, B, B_opt = rng.uniform(4, 14), rng.uniform(0.05, 0.9), rng.uniform(0.3, 0.6)
     same(

@@ -1,4 +1,4 @@
-"""The code of BT.2100's PQ: pq(FD) -> v, from cd/m2 to a signal of 0 to 1."""
+"""Checks of pq(FD), the PQ code of BT.2100: v, a signal from 0 to 1 for luminance in cd/m2."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from hdrlab.tonemap import transfer
 
 @points(5)
 def test_a_luminance_has_the_code_of_the_standard(subject, rng):
-    """Is it the curve of the standard? 100 cd/m2 has the signal 0.508.
+    """Is your curve that of the standard? The signal of 100 cd/m2 is 0.508.
 
-    Y is FD over 10,000, and m1 is about 1/6. The quotient is raised to m2, which is about 79, last.
+    Y is FD / 10,000. The power m1, about 1/6, comes first; the power m2, about 79, comes last.
 
     v = ((c1 + c2 Y^m1) / (1 + c3 Y^m1))^m2.
     """
@@ -19,29 +19,29 @@ def test_a_luminance_has_the_code_of_the_standard(subject, rng):
 
 
 @points(3)
-def test_the_white_of_an_old_display_lies_in_the_middle(subject, rng):
-    """Where do 10,000 and 100 cd/m2, and none at all, get their codes?
+def test_black_100_and_10000_have_the_signals_of_the_standard(subject, rng):
+    """What are the signals of 0, 100 and 10,000 cd/m2?
 
-    The largest luminance has the largest signal, 1: then Y is 1, and c1 + c2 = 1 + c3.
+    10,000 cd/m2 has the signal 1: there Y = 1, and c1 + c2 = 1 + c3.
 
-    Without light Y is 0, and c1^m2 is as good as 0.
+    At 0 cd/m2, Y = 0, and the signal is c1^m2, almost 0.
     """
     FD = rng.permutation([0.0, 100.0, 10_000.0, 10_000.0])
     same(
         subject.pq(FD),
         np.interp(FD, [0, 100, 10_000], [0, 0.508, 1]),
         1e-3,
-        what="v of black and whites",
+        what="v of 0, 100 and 10,000 cd/m2",
     )
 
 
 @points(2)
-def test_a_picture_is_coded_pixel_by_pixel(subject, rng):
-    """A picture has rows, columns and channels. What does each of them change?
+def test_every_value_of_an_image_is_coded_by_itself(subject, rng):
+    """An image has rows, columns and channels. Does your function keep its shape?
 
-    Every number has its own code.
+    The signal of a value does not depend on other values.
 
-    Work on the whole array at once, and keep its shape.
+    Compute with the whole array at once, and return an array of the same shape.
     """
     FD = 10 ** rng.uniform(0, 3, (8, 12, 3))
-    same(subject.pq(FD), transfer.pq(FD), 1e-4, what="v of a picture")
+    same(subject.pq(FD), transfer.pq(FD), 1e-4, what="v of an image")

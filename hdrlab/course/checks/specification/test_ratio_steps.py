@@ -1,11 +1,15 @@
-"""The ratio of two exposures: ratio_steps(found, limit, tolerance, rounds) -> states (k, used, V)."""
+"""Checks of ratio_steps(found, limit, tolerance, rounds), the ratio of two exposures: states (k,
+used, V).
+"""
 
 from hdrlab.course.checks.compare import parts, points, same, states
 from hdrlab.radiance import ratios
 
 
 def drawn(rng, off=10, scatter=0.1):
-    """Return 60 equations of one ratio, within a scatter; the first `off` are of something that moved."""
+    """Return 60 equations of one ratio with some scatter; the first `off` of them show something
+    that moved.
+    """
     x, v = rng.uniform(10, 60, 60), rng.uniform(0.2, 1, 60)
     y = x * rng.uniform(2, 6) * (1 + rng.uniform(-scatter, scatter, 60))
     y[:off] *= rng.uniform(0.3, 0.5, off)
@@ -13,16 +17,16 @@ def drawn(rng, off=10, scatter=0.1):
 
 
 def asked(subject, found, **knobs):
-    """Return the student's states as (k, used, V) each, and the library's."""
+    """Return the student's states as (k, used, V), and the library's."""
     came = states(subject.ratio_steps(found, **knobs), what="the states")
     return [parts(one, 3, what="a state") for one in came], list(ratios.ratio_steps(found, **knobs))
 
 
 @points(3)
 def test_the_first_ratio_is_that_of_least_squares(subject, rng):
-    """Which k makes the sum of (v (y - k x))^2 smallest?
+    """Which k minimizes the sum of (v (y - k x))^2?
 
-    Set the derivative to 0: k is a quotient of two sums over all pairs.
+    Set the derivative to 0: k is a sum over all pairs divided by another one.
 
     k = sum v^2 x y / sum v^2 x^2, and V is the mean of (v (y - k x))^2.
     """
@@ -32,12 +36,12 @@ def test_the_first_ratio_is_that_of_least_squares(subject, rng):
 
 
 @points(4)
-def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng):
-    """Which pairs are those of something that moved?
+def test_a_round_leaves_out_pairs_with_large_errors(subject, rng):
+    """Which pairs show something that moved?
 
-    Those whose square error is above `limit` times the mean V of the last state.
+    Those whose squared error is larger than `limit` times V of the last state.
 
-    Then take k, and V, of the pairs that are left.
+    Compute k and V again from the remaining pairs.
     """
     for limit in (3.0, 2.0):
         came, expected = asked(subject, drawn(rng), limit=limit, tolerance=0.0, rounds=1)
@@ -47,13 +51,13 @@ def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng)
         same(came[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
 
 
-@points(2, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+@points(2, needs="test_a_round_leaves_out_pairs_with_large_errors")
 def test_a_pair_that_fits_again_comes_back(subject, rng):
-    """The first k was drawn aside by what moved. Who was left out for that alone?
+    """The first k is biased by what moved. It may have excluded pairs that fit a better k.
 
-    Every round asks all pairs, those that the last one left out, too.
+    In every round, test all pairs, including those that the last round left out.
 
-    `used` is made anew in each round, of the errors of all pairs.
+    Compute `used` again in each round, from the errors of all pairs.
     """
     for _ in range(3):
         came, expected = asked(subject, drawn(rng, 25, 0.02), limit=1.2, tolerance=0.0, rounds=4)
@@ -66,13 +70,13 @@ def test_a_pair_that_fits_again_comes_back(subject, rng):
         )
 
 
-@points(1, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+@points(1, needs="test_a_round_leaves_out_pairs_with_large_errors")
 def test_there_is_a_state_before_the_first_round_and_one_after_each(subject, rng):
-    """How many states are there after three rounds?
+    """How many states do you yield after three rounds?
 
-    The first one has all pairs, and no round before it.
+    The first state uses all pairs and comes before the first round.
 
-    Yield the state of a round before you ask whether k stands still.
+    Yield the state of a round before you test whether k has converged.
     """
     for knobs in ({"tolerance": 0.0, "rounds": 3}, {"tolerance": 1e9}):
         came, expected = asked(subject, drawn(rng), **knobs)

@@ -1,4 +1,6 @@
-"""Mitsunaga and Nayar's response: recover(images, times) -> g, ln exposure of each level, g[128] = 0."""
+"""Checks of recover(images, times), Mitsunaga and Nayar's response: g, the ln exposure of each
+level, with g[128] = 0.
+"""
 
 import numpy as np
 
@@ -11,7 +13,9 @@ SHOWN = slice(25, 246)
 
 
 def asked(subject, images, times, channels=(), **knobs):
-    """Return g, moved to g[128] = 0; ln 0 at level 0 is taken for half of level 1."""
+    """Return g, shifted to g[128] = 0; minus infinity at level 0 is replaced by the log of half
+    of level 1.
+    """
     came = numbers(subject.recover(images, times, **knobs), what="g")
     g = as_shape(came, (256, *channels), "g").astype(float)
     g[0] = np.where(np.isneginf(g[0]), g[1] - np.log(2), g[0])
@@ -20,7 +24,7 @@ def asked(subject, images, times, channels=(), **knobs):
 
 
 def photographs(rng, response, frames=5, shape=(60, 80)):
-    """Return a Bracket a stop apart, hardly any noise."""
+    """Return a Bracket of frames one stop apart, with almost no noise."""
     E = (10.0 ** rng.uniform(-1.5, 1.5, shape)).astype(np.float32)
     return camera.shoot(
         E, camera.times_around(E, frames, stops=1), camera.Camera(response=response), rng=rng
@@ -28,9 +32,10 @@ def photographs(rng, response, frames=5, shape=(60, 80)):
 
 
 def settled(rng):
-    """Return a response and its photographs, of which a polynomial of order 5 rises by itself.
+    """Return a response and its photos, for which a polynomial of order 5 increases without a
+    constraint.
 
-    Where it falls, readings of the paper part ways: a clamp, a constraint, or none.
+    Where it decreases, the paper can be read in several ways: a clamp, a constraint, or neither.
     """
     for _ in range(20):
         response = laws.drawn_response(rng)
@@ -43,7 +48,7 @@ def settled(rng):
 
 
 def same_curve(g, response, tolerance):
-    """Compare f^-1 = exp g, its unit fitted, over levels 10 to 250."""
+    """Compare f^-1 = exp g, with its unit fitted, over levels 10 to 250."""
     truth = responses.true_g(response)
     error = laws.curve_error(g, truth)
     said = f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}"
@@ -51,35 +56,37 @@ def same_curve(g, response, tolerance):
 
 
 def test_every_level_above_0_has_a_finite_g(subject, rng):
-    """One number for each of 256 levels.
+    """Return one number for each of the 256 pixel values.
 
-    f^-1(0) = 0, whose logarithm is minus infinity; no other level may have that, and none NaN.
+    f^-1(0) = 0, so g[0] may be minus infinity. All other values of g must be
+    finite.
 
-    Level 0 may have minus infinity, or a part of what level 1 has.
+    Instead, you can give pixel value 0 a fraction of the f^-1 of pixel value 1.
     """
     taken = photographs(rng, "linear", frames=3)
     asked(subject, taken.images, taken.times, order=3)
 
 
 @points(7)
-def test_the_curve_of_a_camera_comes_out(subject, rng):
-    """Plot f^-1 over M, from 0 to 1: it goes through (0, 0) and (1, 1).
+def test_the_curve_of_a_camera_is_recovered(subject, rng):
+    """Plot f^-1 over M from 0 to 1: it must go through (0, 0) and (1, 1).
 
-    With known ratios R the error sum (f^-1(M_q) - R f^-1(M_q+1))^2 is least squares in the
-    coefficients.
+    With known ratios R, minimizing the sum of (f^-1(M_q) - R f^-1(M_q+1))^2 is linear least squares
+    in the coefficients.
 
-    Use samples between 0.05 and 0.98 in both frames alone, and let f^-1(1) = 1 fix the scale.
+    Use only samples that are between 0.05 and 0.98 in both frames. The condition f^-1(1) = 1 fixes
+    the scale.
     """
     for _ in range(2):
         response, taken = settled(rng)
         same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
 
 
-@points(5, needs="test_the_curve_of_a_camera_comes_out")
+@points(5, needs="test_the_curve_of_a_camera_is_recovered")
 def test_frames_in_another_order_give_the_same_curve(subject, rng):
-    """The ratio in eq. 5 is that of a frame to the next longer one: below 1.
+    """In eq. 5, R is the ratio of a frame to the next longer one, so it is below 1.
 
-    R = t_q / t_q+1, and not its inverse.
+    R = t_q / t_q+1, not the inverse.
 
     Sort the frames by their times first.
     """
@@ -89,28 +96,31 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
     same_curve(shuffled, response, 0.025)
 
 
-@points(5, needs="test_the_curve_of_a_camera_comes_out")
+@points(5, needs="test_the_curve_of_a_camera_is_recovered")
 def test_rough_times_are_corrected(subject, rng):
-    """The method takes the times for rough. Which quantity does it correct?
+    """The method assumes that the times are only approximate. Which quantity does it correct?
 
-    With the curve known, R is the quotient of the sums of f^-1 over the two frames.
+    It corrects R. With a known curve, R is the sum of f^-1 over one frame divided by the sum over
+    the next one.
 
-    Alternate: coefficients, ratios, coefficients, until f^-1 changes by less than eps.
+    Alternate between coefficients and ratios until f^-1 changes by less than eps.
     """
     for frame, factor in ((1, 1.3), (2, 1 / 1.3)):
         taken = photographs(rng, "linear", frames=4)
         rough = taken.times.copy()
-        rough[frame] *= factor  # of one frame in the middle; an error a stop could not be seen
+        rough[frame] *= (
+            factor  # one frame in the middle; a constant factor per stop could not be detected
+        )
         same_curve(asked(subject, taken.images, rough, order=3), "linear", 0.015)
 
 
-@points(4, needs="test_the_curve_of_a_camera_comes_out")
+@points(4, needs="test_the_curve_of_a_camera_is_recovered")
 def test_the_curve_rises_at_all_levels(subject, rng):
-    """A level that is brighter can never mean less light.
+    """Does your curve fall anywhere? A brighter pixel value can never mean less light.
 
-    ln f^-1 needs f^-1 above 0, and g that rises.
+    f^-1 must be above 0 and must increase; otherwise g has no value or falls.
 
-    Clamp the increments of f^-1 from level to level before you take the logarithm.
+    Clamp the differences of f^-1 between neighboring pixel values before you take the logarithm.
     """
     for response in (laws.drawn_response(rng), laws.drawn_response(rng)):
         taken = photographs(rng, response)
@@ -120,13 +130,13 @@ def test_the_curve_rises_at_all_levels(subject, rng):
         same_curve(g, response, 0.05)
 
 
-@points(4, needs="test_the_curve_of_a_camera_comes_out")
-def test_three_equal_channels_have_the_curve_of_gray(subject, rng):
+@points(4, needs="test_the_curve_of_a_camera_is_recovered")
+def test_three_equal_channels_have_the_gray_curve(subject, rng):
     """Each channel has its own curve.
 
-    g of colour photographs is (256, 3).
+    For color photos, g has the shape (256, 3).
 
-    Gray is what comes out in each of three equal channels.
+    Three equal channels must all have the curve of the gray photo.
     """
     taken = photographs(rng, "gamma", frames=4)
     rgb = asked(subject, np.stack([taken.images] * 3, axis=-1), taken.times, (3,), order=5)

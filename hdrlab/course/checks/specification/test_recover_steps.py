@@ -1,4 +1,6 @@
-"""Robertson's iterations: recover_steps(Z, times, w) -> states that begin with f^-1 (256,)."""
+"""Checks of recover_steps(Z, times, w), Robertson's iterations: the first part of each state is
+f^-1 (256,).
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -14,7 +16,9 @@ SHOWN = slice(12, 245)
 
 
 def samples(rng, response, N=900, P=6):
-    """Return Z (N, P) and t (P,) of a camera, frames a stop apart, without noise but for the rounding."""
+    """Return Z (N, P) and t (P,) of a camera, with frames one stop apart and no noise except
+    rounding.
+    """
     E = 2.0 ** (10 * (np.arange(N) + rng.random(N)) / N - 5)  # even over ten stops
     t = 2.0 ** (np.arange(P) - P // 2)
     M = response.f(np.clip(0.2 * E[:, None] * t, 0, 1))
@@ -22,13 +26,15 @@ def samples(rng, response, N=900, P=6):
 
 
 def same_curve(f, truth, tolerance):
-    """Compare at levels 12 to 244, smoothed over a few: a level that three pixels have is off by chance."""
+    """Compare at levels 12 to 244, smoothed, because a level that only a few pixels have is
+    inexact.
+    """
     f, truth = (gaussian_filter1d(one, 3)[SHOWN] for one in (f, truth))
     same(f, truth, tolerance * truth[-1], what="f^-1 at levels 12 to 244", kind="curve")
 
 
 def asked(subject, Z, t, **knobs):
-    """Return f^-1 of every state, in shares of f^-1(128): a scale of it and one of E cancel."""
+    """Return f^-1 of every state divided by f^-1(128), because its scale is free."""
     came = states(subject.recover_steps(Z, t, W, **knobs), what="the states")
     found = []
     for state in came:
@@ -41,12 +47,12 @@ def asked(subject, Z, t, **knobs):
 
 
 @points(5)
-def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
-    """Plot f^-1 after every iteration: where does it go?
+def test_the_iterations_converge_to_the_curve_of_the_camera(subject, rng):
+    """Plot f^-1 after every iteration. Does it approach the curve of the camera?
 
-    One iteration: E from f^-1, then f^-1 from E, then divide it by its value at 128.
+    One iteration computes E from f^-1, then f^-1 from E, and then divides f^-1 by its value at 128.
 
-    Let them go on until f^-1 hardly changes; about thirty are enough.
+    Iterate until f^-1 hardly changes. About thirty iterations are enough.
     """
     for response in (
         laws.drawn_response(rng),
@@ -59,13 +65,13 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
 
 
 @points(3)
-def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
-    """An iteration is two means, one after the other. Which of them has weights?
+def test_an_iteration_is_a_weighted_mean_followed_by_a_plain_one(subject, rng):
+    """An iteration computes two means, one after the other. Which of them has weights?
 
-    The irradiance is a weighted mean; the new f^-1(m) is the plain mean of E t over the pixels of
-    level m.
+    The irradiance is a weighted mean. The new f^-1(m) is the plain mean of E t over the pixels of
+    value m.
 
-    Do not weight the update: all its pixels have one level.
+    Do not use weights in the update: all its pixels have the same pixel value.
     """
     Z, t = rng.integers(15, 250, (900, 4)), rng.uniform(0.2, 1, 4)
     line, shown = np.arange(256) / 128, slice(15, 249)
@@ -77,13 +83,13 @@ def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
 
-@points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
-def test_the_truth_is_where_the_iterations_rest(subject, rng):
-    """A linear camera is the initial guess: what should the iterations change?
+@points(3, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
+def test_a_correct_curve_does_not_change(subject, rng):
+    """For a linear camera, the initial guess is already correct. What should the iterations change?
 
-    Start from a line, not from an exponential.
+    Nothing. Start with a line, not with an exponential.
 
-    f^-1(m) = m / 128 is the line that is 1 at 128.
+    The initial guess is f^-1(m) = m / 128, which is 1 at pixel value 128.
     """
     x = np.union1d(rng.permutation(np.arange(5, 62))[:45], 32)  # 4 x 32 = 128, where f^-1 is 1
     Z, t = np.stack([x, 2 * x, 4 * x], axis=1), np.array([1.0, 2.0, 4.0])
@@ -93,13 +99,13 @@ def test_the_truth_is_where_the_iterations_rest(subject, rng):
         same(f, truth, 2e-3, what="f^-1 of a linear camera", kind="curve", where=~np.isnan(truth))
 
 
-@points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
-def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng):
-    """Some levels no pixel has. What is their mean?
+@points(3, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
+def test_levels_without_pixels_are_filled_by_interpolation(subject, rng):
+    """Some pixel values have no pixels. What is their mean?
 
-    0 / 0 is NaN, and one NaN spoils every sum of the next iteration.
+    It is 0 / 0, which is NaN. One NaN spoils every sum of the next iteration.
 
-    Fill empty levels from their neighbours: np.interp over those that have pixels.
+    Interpolate the empty pixel values: use np.interp over the pixel values that have pixels.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
     whole, even = (asked(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
@@ -107,25 +113,26 @@ def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng)
 
 
 @points(2)
-def test_each_iteration_is_a_state_and_moves_the_curve_less(subject, rng):
-    """Yield a state before the first iteration, and one after each.
+def test_each_iteration_yields_a_state_and_changes_the_curve_less(subject, rng):
+    """Yield a state before the first iteration, and one after each iteration.
 
-    Each state is another array: one that is changed in place shows the last one everywhere.
+    Use a new array for each state. If you change one array in place, all states show the last
+    curve.
 
-    The changes from one to the next become smaller.
+    The changes must become smaller from one iteration to the next.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
     found = asked(subject, Z, t, max_iterations=8, tolerance=0.0)
     moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
-    said = f"expected 9 states that change less and less, got {len(found)} that move by {moved}"
+    said = f"expected 9 states with smaller and smaller changes, got {len(found)} with changes of {moved}"
     require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], said)
 
 
-@points(2, needs="test_the_iterations_end_at_the_curve_of_the_camera")
+@points(2, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
 def test_the_unit_of_time_does_not_matter(subject, rng):
-    """Seconds or milliseconds: who could tell from the photographs?
+    """The photos do not show whether the times are in seconds or milliseconds.
 
-    Times that are all 1000 times as long make E a thousandth, and leave f^-1.
+    If all times are 1000 times as long, E becomes a thousandth, and f^-1 does not change.
 
     Divide f^-1 by its value at 128 at the end of every iteration.
     """

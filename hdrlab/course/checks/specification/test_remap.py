@@ -1,4 +1,6 @@
-"""The remapping of a local Laplacian filter: remap(lL, g, sigma, alpha, beta) -> r, nats."""
+"""Checks of remap(lL, g, sigma, alpha, beta), the remapping of a local Laplacian filter: r in
+nats.
+"""
 
 import numpy as np
 
@@ -6,19 +8,20 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
-    """Return log luminance, a brightness g in its midst, and sigma."""
+    """Return log luminance, a value g in the middle of its range, and sigma."""
     g = float(rng.uniform(-4, -2))
     return (g + rng.uniform(-3, 3, (24, 30))).astype(np.float32), g, float(rng.uniform(0.4, 0.75))
 
 
 @points(4)
-def test_sigma_tells_details_from_edges(subject, rng):
-    """In a picture there are both. What differs from g by less than sigma is detail, the rest is an edge.
+def test_sigma_separates_details_from_edges(subject, rng):
+    """A difference from g below sigma is detail, and a larger one is an edge. Do you treat them
+    differently?
 
-    Draw r over lL: the power up to sigma on either side of g, and from there on a line of slope
-    beta.
+    Plot r over lL: a power curve up to sigma on both sides of g, and a line with slope beta beyond.
 
-    r = g +- sigma (d / sigma)^alpha where d <= sigma, and g +- (sigma + beta (d - sigma)) beyond.
+    With d = |lL - g|: r = g +- sigma (d / sigma)^alpha where d <= sigma, and r = g +- (sigma + beta
+    (d - sigma)) beyond.
     """
     lL, g, sigma = drawn(rng)
     d, alpha, beta = np.abs(lL - g), float(rng.uniform(0.4, 0.8)), float(rng.uniform(0.2, 0.6))
@@ -28,15 +31,17 @@ def test_sigma_tells_details_from_edges(subject, rng):
 
 
 @points(2)
-def test_details_take_the_power(subject, rng):
-    """What differs from g by less than sigma is detail, and stays on its side of g.
+def test_details_are_raised_to_the_power_alpha(subject, rng):
+    """A difference from g below sigma is detail. Each pixel must stay on its side of g.
 
-    Measure the difference in sigmas, raise it to alpha, and give it its unit back.
+    Divide the difference by sigma, raise it to alpha, and multiply it by sigma again.
 
-    r = g +- sigma (d / sigma)^alpha, d = |lL - g|.
+    r = g +- sigma (d / sigma)^alpha, with d = |lL - g|.
     """
     lL, g, sigma = drawn(rng)
-    small = (g + (lL - g) * sigma / 3.01).astype(np.float32)  # the same, all of it within sigma
+    small = (g + (lL - g) * sigma / 3.01).astype(
+        np.float32
+    )  # scaled so that all differences are below sigma
     for alpha in (0.5, 2.0):
         expected = g + np.sign(small - g) * sigma * (np.abs(small - g) / sigma) ** alpha
         came = subject.remap(small, g, sigma=sigma, alpha=alpha, beta=0.0)
@@ -44,17 +49,17 @@ def test_details_take_the_power(subject, rng):
 
 
 @points(3)
-def test_of_an_edge_beta_is_left(subject, rng):
-    """What differs by more than sigma is an edge. Where the two meet, r makes no jump.
+def test_edges_are_scaled_by_beta(subject, rng):
+    """A difference from g above sigma is an edge. At d = sigma, r must not jump.
 
-    Its first sigma is kept whole; of what is beyond, beta is left.
+    Keep the first sigma of the difference, and multiply the rest by beta.
 
-    r = g +- (sigma + beta (d - sigma)); alpha does not matter here.
+    r = g +- (sigma + beta (d - sigma)). alpha has no effect here.
     """
     lL, g, sigma = drawn(rng)
     edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(
         np.float32
-    )  # the same, all of it beyond sigma
+    )  # shifted so that all differences are above sigma
     for beta in (0.0, 0.4):
         beyond = np.abs(edges - g) - sigma
         expected = g + np.sign(edges - g) * (sigma + beta * beyond)
@@ -62,12 +67,12 @@ def test_of_an_edge_beta_is_left(subject, rng):
         same(came, expected, 1e-3, what=f"r of edges, beta = {beta:g}", picture=True)
 
 
-def test_twice_the_light_moves_r_and_changes_nothing_else(subject, rng):
-    """Twice the light adds ln 2 to lL and to g. What does it add to r?
+def test_twice_the_light_only_shifts_r(subject, rng):
+    """Twice the light adds ln 2 to lL and to g. What should it add to r?
 
-    Only the difference of lL and g decides what is detail.
+    Also ln 2: only the difference between lL and g decides what is detail.
 
-    Add g back at the end, and nowhere else.
+    Compute with lL - g, and add g once, at the end.
     """
     lL, g, sigma = drawn(rng)
     knobs = {"sigma": sigma, "alpha": 0.6, "beta": 0.3}

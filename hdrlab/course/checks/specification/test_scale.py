@@ -1,4 +1,6 @@
-"""Chiu's scale: scale(L, headroom, sigma) -> s (H, W), so that s L is the picture."""
+"""Checks of scale(L, headroom, sigma), Chiu's scale: s (H, W), so that s L is the tone-mapped
+image.
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -6,11 +8,11 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.course.checks.compare import finite, points, require, same
 
 SIGMA = 4.0
-INNER = (slice(16, -16), slice(16, -16))  # away from the border, where a blur may do this or that
+INNER = (slice(16, -16), slice(16, -16))  # away from the border, where blurs differ
 
 
 def drawn(rng, shape=(60, 76)):
-    """Return luminance without hot pixels: soft light."""
+    """Return smooth luminance without hot pixels."""
     lL = gaussian_filter(rng.standard_normal(shape), 5)
     return np.exp(0.7 * lL / lL.std()).astype(np.float32)
 
@@ -21,23 +23,23 @@ def asked(subject, L, k=8.0):
 
 
 def test_every_pixel_has_a_scale_above_0(subject, rng):
-    """A scale for each pixel: the shape of L.
+    """Return one scale per pixel, with the shape of L.
 
-    A luminance that is blurred is above 0, and so is its inverse.
+    The blurred luminance is above 0, and so is its inverse.
 
-    Nothing in it is NaN or infinite.
+    No value may be NaN or infinite.
     """
     s = asked(subject, drawn(rng))
     require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", came=s)
 
 
 @points(2)
-def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
-    """An even wall of luminance L: how bright should it be shown?
+def test_a_uniform_image_is_shown_at_one_over_k(subject, rng):
+    """How bright should a uniform wall of luminance L become?
 
-    s L = 1 / k: the neighbourhood comes out as one k-th of white.
+    s L = 1 / k: the local average becomes 1 / k of white.
 
-    s = 1 / (k blur(L)): no further factor L, which is a misprint.
+    s = 1 / (k blur(L)). The extra factor L in the paper is a misprint.
     """
     for _ in range(2):
         level, k = float(10 ** rng.uniform(-2, 3)), float(rng.uniform(2, 16))
@@ -47,9 +49,9 @@ def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
 
 @points(6)
 def test_it_is_one_over_k_times_the_blur(subject, rng):
-    """Blur first, and divide then: the mean of 1 / L is another thing.
+    """Blur L first, and divide afterwards. The blur of 1 / L is something else.
 
-    A Gaussian of `sigma` pixels.
+    Use a Gaussian with a standard deviation of `sigma` pixels.
 
     s = 1 / (k blur(L)).
     """
@@ -60,12 +62,12 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
 
 
 @points(2, needs="test_it_is_one_over_k_times_the_blur")
-def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
-    """Ten times the light in the whole scene: what becomes of s, and what of s L?
+def test_the_unit_of_luminance_cancels(subject, rng):
+    """Make the scene ten times as bright. What happens to s, and to s L?
 
-    The scale is the inverse of a luminance.
+    s is proportional to 1 / L, so s L does not change.
 
-    s of 10 L is s / 10.
+    s of 10 L must be s / 10.
     """
     L = drawn(rng)
     one, ten = (asked(subject, light) * light for light in (L, np.float32(10) * L))

@@ -1,4 +1,6 @@
-"""Reinhard's neighbourhoods: scale_steps(blurred) -> states (width, centre, response, even, adaptation)."""
+"""Checks of scale_steps(blurred), Reinhard's local scales: states (width, centre, response,
+even, adaptation).
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -10,7 +12,7 @@ CLOSE = 2e-4  # a response so close to the threshold may fall on either side
 
 
 def drawn(rng, shape=(48, 64)):
-    """Return V1 at each of the nine widths, of a picture with edges and texture."""
+    """Return V1 at each of the nine widths, for an image with edges and texture."""
     y, x = np.indices(shape)
     lit = (np.hypot(y - rng.integers(10, 38), x - rng.integers(10, 54)) < rng.integers(6, 12)) * 8.0
     Lm = ((0.2 + lit) * np.exp(0.15 * rng.standard_normal(shape) + 0.02 * x)).astype(np.float32)
@@ -23,12 +25,12 @@ def asked(subject, blurred, **knobs):
 
 
 def doubtful(truth, threshold=0.05):
-    """Return where a response lies so close to the threshold that rounding decides."""
+    """Return where a response is so close to the threshold that rounding decides."""
     return np.any([np.abs(np.abs(one.response) - threshold) < CLOSE for one in truth], axis=0)
 
 
 def same_adaptation(came, truth, what, sure):
-    """Compare the adaptations of the last states, in shares of the largest."""
+    """Compare the adaptations of the last states, divided by the largest value."""
     scale = truth[-1].adaptation.max()
     same(
         came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure
@@ -37,57 +39,58 @@ def same_adaptation(came, truth, what, sure):
 
 @points(4)
 def test_each_response_compares_a_width_with_the_next(subject, rng):
-    """The surround of one width is the centre of the next: eight responses out of nine blurs.
+    """The surround of one width is the center of the next width, so nine blurs give eight
+    responses.
 
-    s in the formula is the width in pixels, 1, 1.6, 2.56, ..., and not the number of the step.
+    In the formula, s is the width in pixels (1, 1.6, 2.56, ...), not the number of the step.
 
     V = (V1 - V2) / (2^phi a / s^2 + V1).
     """
     blurred = drawn(rng)
     truth, came = list(reinhard.scale_steps(blurred)), asked(subject, blurred)
-    same(len(came), 8, 0, what="states")
+    same(len(came), 8, 0, what="the number of states")
     for one, true in zip(came, truth, strict=True):
         same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
 
 
 @points(4)
-def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
-    """The widths are tried from small to large. When does a pixel stop?
+def test_a_pixel_takes_the_largest_even_width(subject, rng):
+    """Try the widths from small to large. When does a pixel stop?
 
-    Once |V| has reached the threshold the neighbourhood stays as it is, whatever larger widths say.
+    When |V| reaches the threshold, the neighborhood of the pixel stays as it is at all larger
+    widths.
 
-    even = even & (|V| < threshold); the adaptation takes the centre where it is still even.
+    even = even & (|V| < threshold). Set the adaptation to the center V1 where the pixel is still
+    even.
     """
     blurred = drawn(rng)
     truth = list(reinhard.scale_steps(blurred))
     came, sure = asked(subject, blurred), ~doubtful(truth)
     same_adaptation(came, truth, "the adaptation", sure)
     for one, true in zip(came, truth, strict=True):
-        same(
-            one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure
-        )
+        same(one[3], true.even, 0, what=f"even at width {true.width:.3g}", picture=True, where=sure)
 
 
-def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
-    """What does an even wall say at any width?
+def test_a_uniform_image_takes_the_largest_neighborhood(subject, rng):
+    """What is the response of a uniform image?
 
-    Its response is 0 everywhere, so it takes the largest width.
+    It is 0 at every width, so every pixel takes the largest width.
 
-    At the widest the adaptation is V1(26.8), the centre of the last step, not its surround.
+    At the largest width, the adaptation is the center V1(26.8) of the last step, not its surround.
     """
     level = float(rng.uniform(0.1, 2))
     blurred = [np.full((12, 15), level * (1 + 1e-3 * k), np.float32) for k in range(9)]
     came = asked(subject, blurred)
-    same(came[-1][4], blurred[7], 2e-4 * level, what="the adaptation of an even wall")
+    same(came[-1][4], blurred[7], 2e-4 * level, what="the adaptation of a uniform image")
 
 
 @points(4)
-def test_the_knobs_are_used(subject, rng):
-    """The knobs are the key a, the sharpening phi, and the threshold.
+def test_key_phi_and_threshold_are_used(subject, rng):
+    """Do you use the arguments key (a), phi (the sharpening) and threshold?
 
-    A higher phi makes V less sensitive: larger neighbourhoods.
+    A larger phi makes V smaller, so the neighborhoods become larger.
 
-    2^phi a / s^2, with the knobs' own values.
+    Use 2^phi a / s^2 with the values that you are given.
     """
     blurred = drawn(rng)
     for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):

@@ -1,4 +1,4 @@
-"""Moving photographs: shift(images, offsets) -> the images moved, and cut to what all of them show."""
+"""Checks of shift(images, offsets): the moved images, cropped to the area that all of them show."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import points, same
 
 
 def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
-    """Compare the part that all show of views of one picture, which `offsets` (dy, dx) lay on each other."""
+    """Compare the common part of views of one scene that `offsets` (dy, dx) align."""
     margin, H, W = 12, 40, 50
     world = rng.integers(0, 256, (H + 2 * margin, W + 2 * margin, *channels), dtype=np.uint8)
     images = [
@@ -21,43 +21,43 @@ def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
 
 
 @points(5)
-def test_moved_images_lie_on_each_other(subject, rng):
+def test_moved_images_are_aligned(subject, rng):
     """An offset (dy, dx) says where the image must move: down, and to the right.
 
-    After the move, what stood at (y, x) stands at (y + dy, x + dx).
+    After the move, the pixel from (y, x) is at (y + dy, x + dx).
 
-    The part that all show begins at the largest offset, and in image j at that less its own.
+    The common area starts at the largest offset; in image j, subtract the offset of image j.
     """
     agree(subject, rng, np.array([[0, 0], [3, -5]]))
 
 
 @points(5)
-def test_nothing_comes_in_from_the_other_side(subject, rng):
-    """Where do the pixels at the border come from?
+def test_pixels_do_not_wrap_around_the_border(subject, rng):
+    """Where do the pixels at your borders come from?
 
-    np.roll brings in at the left what left at the right.
+    np.roll moves pixels from the right border to the left one.
 
-    Cut the images to the rectangle that every moved one covers.
+    Crop the images to the rectangle that all moved images cover.
     """
     agree(subject, rng, rng.integers(-9, 10, (4, 2)))
 
 
 @points(3)
-def test_colour_moves_like_gray(subject, rng):
-    """Three channels move together.
+def test_color_images_move_like_gray_ones(subject, rng):
+    """Move all three channels together.
 
-    Only the first two axes of an image are places.
+    Only the first two axes of an image are positions.
 
-    image[top:bottom, left:right] takes all channels along.
+    image[top:bottom, left:right] keeps all channels.
     """
     agree(subject, rng, rng.integers(-6, 7, (3, 2)), channels=(3,))
 
 
-def test_images_that_need_not_move_stay_whole(subject, rng):
-    """What is to be done where all offsets are the same?
+def test_images_without_offsets_stay_whole(subject, rng):
+    """All offsets are 0 here. What should your function do?
 
-    All images move, and all show the same part of the picture then.
+    Return the images as they are.
 
-    Only differences between offsets cost pixels, beside what leaves the frame of (0, 0).
+    Crop only what an offset moves out of the frame, or leaves uncovered.
     """
     agree(subject, rng, np.zeros((3, 2), int), what="the images")

@@ -1,4 +1,4 @@
-"""A level of the pyramid: shrink(Y) -> half the size."""
+"""Checks of shrink(Y), a level of the pyramid: half the size."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def means(Y):
-    """Return the mean of each 2 x 2 pixels, not rounded."""
+    """Return the mean of each block of 2 x 2 pixels, not rounded."""
     rows, columns = Y.shape[0] // 2, Y.shape[1] // 2
     return Y[: 2 * rows, : 2 * columns].reshape(rows, 2, columns, 2).mean(axis=(1, 3))
 
 
 def test_a_level_has_half_the_rows_and_columns(subject, rng):
-    """How many rows has the next level?
+    """How many rows does the next level have?
 
-    Half of them, and half of the columns.
+    Half of the rows, and half of the columns.
 
     16 x 20 pixels become 8 x 10.
     """
@@ -24,11 +24,11 @@ def test_a_level_has_half_the_rows_and_columns(subject, rng):
 
 @points(4)
 def test_a_level_is_the_rounded_mean_of_four_pixels(subject, rng):
-    """Every pixel of the photograph counts: none is skipped.
+    """Use every pixel of the image; do not skip any.
 
-    A pixel of the next level is the mean of four.
+    A pixel of the next level is the mean of four pixels.
 
-    Round to the nearest whole code; cutting off the fraction makes every level darker.
+    Round to the nearest whole number. Truncation makes every level darker.
     """
     Y = rng.integers(0, 60, (24, 36), dtype=np.uint8)
     same(subject.shrink(Y), means(Y), 0.5, what="the level", picture=True)
@@ -38,9 +38,9 @@ def test_a_level_is_the_rounded_mean_of_four_pixels(subject, rng):
 def test_a_bright_sky_does_not_overflow(subject, rng):
     """What is 200 + 100 in uint8?
 
-    The sum of four bytes needs more than a byte.
+    The sum of four bytes does not fit into a byte.
 
-    Turn Y into a wider type before you add.
+    Convert Y to a wider type before you add.
     """
     Y = rng.integers(180, 256, (16, 20), dtype=np.uint8)
     same(subject.shrink(Y), means(Y), 0.5, what="the level", picture=True)
@@ -48,11 +48,11 @@ def test_a_bright_sky_does_not_overflow(subject, rng):
 
 @points(3)
 def test_an_odd_row_or_column_is_left_out(subject, rng):
-    """Half of 7 rows are 3.
+    """Half of 7 rows are 3 rows.
 
-    The last row or column of an odd number has no partner, and is left out.
+    If the number of rows or columns is odd, leave out the last one.
 
-    Cut the picture to an even size first.
+    Crop the image to an even size first.
     """
     Y = rng.integers(0, 256, (17, 23), dtype=np.uint8)
     same(subject.shrink(Y), means(Y), 0.5, what="the level", picture=True)

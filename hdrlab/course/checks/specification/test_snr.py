@@ -1,4 +1,4 @@
-"""The weight of the signal over the noise: snr(g, least, span) -> w (n,). Its scale is free."""
+"""Checks of snr(g, least, span), the weight as signal-to-noise ratio: w (n,). Its scale is free."""
 
 import numpy as np
 
@@ -8,24 +8,25 @@ from hdrlab.course.checks.laws import drawn_response
 
 
 def drawn(rng, n):
-    """Return the response g (n,) of a camera that nobody has seen."""
+    """Return the response g (n,) of a random camera."""
     M = (np.arange(n) + 0.5) / n
     return np.log(drawn_response(rng).inverse(M))
 
 
 def asked(subject, g, **knobs):
-    """Return w (n,) in units of the weight in the middle."""
+    """Return w (n,) divided by the weight in the middle."""
     w = finite(subject.snr(g, **knobs), (len(g),), what="w").astype(float)
     return w / w[len(g) // 2]
 
 
 @points(5)
-def test_a_level_counts_as_its_signal_over_its_slope(subject, rng):
-    """Noise of one size in the levels: what does it do to the exposure?
+def test_the_weight_is_the_signal_over_its_slope(subject, rng):
+    """The noise has the same size at all pixel values. How large is the error of the exposure that
+    it causes?
 
-    It moves the exposure by the slope f' of the curve. The signal is f itself.
+    The error is proportional to the slope f' of the curve. The signal is f itself.
 
-    w = f / f', f = exp g, and f' over `span` levels on either side.
+    w = f / f' with f = exp(g). Compute f' from the pixel values `span` below and `span` above.
     """
     g, span = drawn(rng, 2 * int(rng.integers(80, 140))), int(rng.integers(2, 4))
     # ripples that a slope over `span` levels on either side does not see
@@ -35,42 +36,45 @@ def test_a_level_counts_as_its_signal_over_its_slope(subject, rng):
 
 
 @points(2)
-def test_clipped_levels_do_not_count(subject, rng):
-    """What does a pixel of the lowest level say? And one of the highest?
+def test_clipped_levels_have_weight_0(subject, rng):
+    """What does a pixel of value 0 or n - 1 tell you about the light?
 
-    Only "at most" and "at least".
+    Only "at most" or "at least".
 
     w(0) = w(n - 1) = 0.
     """
     g = drawn(rng, 100)
     same(
-        asked(subject, g, least=0.01, span=4)[[0, -1]], [0, 0], 1e-6, what="the weights of the ends"
+        asked(subject, g, least=0.01, span=4)[[0, -1]],
+        [0, 0],
+        1e-6,
+        what="the weights of the lowest and the highest level",
     )
 
 
 @points(2)
-def test_where_the_curve_is_level_the_weight_is_bounded(subject, rng):
-    """Where the curve is level, f' is 0. And f / f'?
+def test_the_weight_is_bounded_where_the_curve_is_flat(subject, rng):
+    """Where the curve is flat, f' is 0. What is f / f' there?
 
-    `least` is the smallest slope that counts, in units of the mean slope.
+    Replace slopes below `least` times the mean slope by this limit.
 
     The mean slope is (f(n - 1) - f(0)) / (n - 1).
     """
     g = drawn(rng, 120)
     g[70:100], g[100:] = g[70], g[100:] - g[100] + g[70]
     expected, came = weights.snr(g, least=0.2, span=3), asked(subject, g, least=0.2, span=3)
-    same(came, expected, 0.02 * expected.max(), what="w of a level", kind="curve")
+    same(came, expected, 0.02 * expected.max(), what="w of a curve with a flat part", kind="curve")
 
 
-@points(1, needs="test_a_level_counts_as_its_signal_over_its_slope")
+@points(1, needs="test_the_weight_is_the_signal_over_its_slope")
 def test_the_unit_of_the_exposure_cancels(subject, rng):
-    """g is known but for a constant. What does a constant do to f? And to f'?
+    """g is known up to a constant. What does this constant do to f and to f'?
 
-    It multiplies both by the same factor.
+    It multiplies both by the same factor, so w must not change.
 
-    Measure `least` in the mean slope of this very f.
+    `least` is relative to the mean slope of f, so compute the mean slope from the same f.
     """
     g = drawn(rng, 100)
     before = asked(subject, g, least=0.05, span=4)
     came = asked(subject, g + rng.uniform(-3, 3), least=0.05, span=4)
-    same(came, before, 1e-2 * before.max(), what="w in another unit", kind="curve")
+    same(came, before, 1e-2 * before.max(), what="w with another unit of exposure", kind="curve")

@@ -1,4 +1,4 @@
-"""The picture that has a divergence: solve(divG) -> u, Laplacian u = div G. A constant in u is free."""
+"""Checks of solve(divG): the image u whose Laplacian is div G. A constant in u is free."""
 
 import numpy as np
 
@@ -6,35 +6,38 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def laplacian(u):
-    """Return the sum over the neighbours inside the picture of their difference to it."""
+    """Return the sum of the differences between each pixel's neighbors inside the image and the
+    pixel.
+    """
     wide = np.pad(u, 1, mode="edge")
     return wide[2:, 1:-1] + wide[:-2, 1:-1] + wide[1:-1, 2:] + wide[1:-1, :-2] - 4 * u
 
 
 def asked(subject, divG):
-    """Return u, moved to the mean 0."""
+    """Return u, shifted to the mean 0."""
     u = finite(subject.solve(divG), divG.shape, what="u").astype(float)
     return u - u.mean()
 
 
-def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
-    """Which picture has no slopes at all?
+def test_zero_divergence_gives_a_constant_image(subject):
+    """Which image has no gradient at all?
 
-    div G = 0 everywhere: u is a constant.
+    If div G is 0 everywhere, u is a constant.
 
-    0 / 0 at the first coefficient: set it to 0.
+    The first coefficient is 0 / 0: set it to 0.
     """
-    same(asked(subject, np.zeros((9, 12))), np.zeros((9, 12)), 1e-9, what="u less its mean")
+    same(asked(subject, np.zeros((9, 12))), np.zeros((9, 12)), 1e-9, what="u minus its mean")
 
 
 @points(5)
-def test_its_laplacian_is_the_divergence(subject, rng):
-    """Take the Laplacian of what you found: is it div G?
+def test_the_laplacian_of_u_is_the_divergence(subject, rng):
+    """Compute the Laplacian of your u: is it div G?
 
-    Cosines (DCT-II) are the eigenvectors, with eigenvalues 2 cos(pi i / n) - 2; the two axes add
-    up.
+    The eigenvectors are cosines (DCT-II), with eigenvalues 2 cos(pi i / n) - 2. Add the eigenvalues
+    of the two axes.
 
-    Divide the coefficients by the eigenvalues, all but the first, which is 0 / 0: set it to 0.
+    Divide the coefficients by the eigenvalues, except for the first one, which is 0 / 0: set it to
+    0.
     """
     u = rng.standard_normal((20, 31))
     u -= u.mean()
@@ -42,10 +45,10 @@ def test_its_laplacian_is_the_divergence(subject, rng):
 
 
 @points(3)
-def test_a_ramp_of_light_does_not_wrap_around(subject, rng):
-    """Look at the borders: does the left one continue at the right one?
+def test_a_ramp_does_not_wrap_around(subject, rng):
+    """Look at the borders: does the left border continue at the right one?
 
-    A Fourier transform makes the picture periodic; nothing flows through our edges.
+    A Fourier transform makes the image periodic. Here nothing may flow through the borders.
 
     Use dctn(type=2) and idctn(type=2).
     """
@@ -54,12 +57,12 @@ def test_a_ramp_of_light_does_not_wrap_around(subject, rng):
 
 
 @points(2)
-def test_tall_and_wide_pictures_are_solved_alike(subject, rng):
-    """A picture is as high as it is wide only now and then.
+def test_images_of_any_shape_are_solved(subject, rng):
+    """Do you mix up height and width?
 
-    Rows and columns have eigenvalues of their own.
+    Rows and columns have different eigenvalues.
 
-    np.add.outer of the two, with the height first.
+    Use np.add.outer of the two, with the rows (the height) first.
     """
     for shape in ((9, 40), (40, 9)):
         u = rng.standard_normal(shape)

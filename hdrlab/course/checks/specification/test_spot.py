@@ -1,23 +1,25 @@
-"""A spot meter: spot(shape, at, share) -> w (H, W)."""
+"""Checks of spot(shape, at, share), a spot meter: weights w (H, W)."""
 
 from hdrlab.capture import metering
 from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
-    """Return a shape, a place off its middle, and a share that is a whole number of pixels."""
+    """Return a shape, a position off its center, and a fraction of the image that is a whole
+    number of pixels.
+    """
     H, W = int(rng.integers(20, 30)), int(rng.integers(36, 48))
     at = float(rng.uniform(0.3, 0.45)), float(rng.uniform(0.55, 0.7))
     return (H, W), {"at": at, "share": int(rng.integers(20, 60)) / (H * W)}
 
 
 @points(4)
-def test_the_pixels_that_are_nearest_count(subject, rng):
-    """Which pixels lie in a disc around a place?
+def test_the_nearest_pixels_are_used(subject, rng):
+    """Which pixels are in a disc around a position?
 
-    Those that are nearest to it, measured in pixels down and right.
+    The nearest ones. Measure the distance in pixels, down and to the right.
 
-    A pixel's middle is at (y + 1/2, x + 1/2), and the place at (at[0] H, at[1] W).
+    The center of a pixel is at (y + 1/2, x + 1/2), and the position is at (at[0] H, at[1] W).
     """
     for shape, knobs in (drawn(rng) for _ in range(12)):
         w = finite(subject.spot(shape, **knobs), shape, what="w")
@@ -25,21 +27,21 @@ def test_the_pixels_that_are_nearest_count(subject, rng):
             w > 0,
             metering.spot(shape, **knobs) > 0,
             0,
-            what="the pixels of weight above 0",
+            what="the pixels with a weight above 0",
             picture=True,
         )
 
 
-@points(3, needs="test_the_pixels_that_are_nearest_count")
-def test_they_count_alike_and_together_one(subject, rng):
-    """Which weight has each of k pixels that count alike?
+@points(3, needs="test_the_nearest_pixels_are_used")
+def test_the_used_pixels_have_equal_weights_that_sum_to_one(subject, rng):
+    """k pixels have equal weights. What is the weight of each?
 
-    All weights add up to 1.
+    All weights sum to 1.
 
     w = 1 / k in the disc, and 0 elsewhere.
     """
     shape, knobs = drawn(rng)
-    for share in (knobs["share"], 0.12, 1.0):  # of a spot, a partial and an average meter
+    for share in (knobs["share"], 0.12, 1.0):  # a spot, a partial and an average meter
         w = metering.spot(shape, at=knobs["at"], share=share)
         came = subject.spot(shape, at=knobs["at"], share=share)
-        same(came, w, 1e-3 * float(w.max()), what=f"w of a share of {share:.3g}", picture=True)
+        same(came, w, 1e-3 * float(w.max()), what=f"w for share = {share:.3g}", picture=True)

@@ -1,4 +1,4 @@
-"""Writing a portable float map: to_bytes(E) -> the file's bytes."""
+"""Checks of to_bytes(E), writing a portable float map: the bytes of the file."""
 
 import numpy as np
 
@@ -11,76 +11,85 @@ def drawn(rng, channels=()):
 
 
 def asked(subject, E):
-    """Return the bytes that came."""
+    """Return the bytes of the student's file."""
     data = subject.to_bytes(E)
-    require(isinstance(data, bytes), "expected the bytes of a file, got something else")
+    require(
+        isinstance(data, bytes), "expected bytes, got another type: return the bytes of the file"
+    )
     return data
 
 
 def as_read(data):
-    """Return what hdrlab reads out of the bytes, or raise AnswerMismatch with the reader's words."""
+    """Return what hdrlab reads from the bytes, or raise AnswerMismatch with the reader's
+    message.
+    """
     try:
         return pfm.from_bytes(data)
     except ValueError as error:
         raise AnswerMismatch(f"the file cannot be read: {error}") from None
 
 
-def test_the_file_begins_with_the_kind_of_map(subject, rng):
-    """Two letters say what follows.
+def test_the_file_starts_with_the_type_of_map(subject, rng):
+    """The first two letters say which type of map follows.
 
-    Pf for gray, PF for colour.
+    Pf means gray, and PF means color.
 
-    The bytes begin with b'Pf'.
+    Start the bytes of a gray map with b'Pf'.
     """
     for E, kind in ((drawn(rng), b"Pf"), (drawn(rng, (3,)), b"PF")):
-        require(asked(subject, E)[:2] == kind, f"expected a file that begins with {kind.decode()}")
+        require(asked(subject, E)[:2] == kind, f"expected a file that starts with {kind.decode()}")
 
 
 @points(6)
-def test_what_is_written_is_read_again_and_stands_upright(subject, rng):
-    """Look at the file with another program: where is the sky?
+def test_a_gray_map_is_read_back_the_right_way_up(subject, rng):
+    """Open your file in another program: is the sky at the top?
 
-    The rows of a PFM file run from the bottom to the top.
+    The rows of a PFM file run from bottom to top.
 
     Write E[::-1].
     """
     E = drawn(rng)
-    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the picture read again", picture=True)
+    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the gray map read back", picture=True)
 
 
 @points(4)
-def test_a_map_in_colour_is_read_again(subject, rng):
-    """A gray map is Pf, a map in colour is PF.
+def test_a_color_map_is_read_back(subject, rng):
+    """A gray map is Pf, and a color map is PF.
 
     The three values of a pixel follow each other.
 
-    The second line is width and height, in this order.
+    The second line has the width first, then the height.
     """
     E = drawn(rng, (3,))
-    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the map read again")
+    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the color map read back")
 
 
 @points(3)
-def test_the_file_holds_four_bytes_a_value_and_no_more(subject, rng):
-    """The values are float32: 4 bytes each, no more.
+def test_the_file_has_four_bytes_per_value(subject, rng):
+    """The values are float32, with 4 bytes each.
 
-    A file of n values is the header and 4 n bytes.
+    A file with n values has the header and 4 n bytes.
 
-    E.astype('<f4').tobytes(): float64 would take twice as many.
+    Use E.astype('<f4').tobytes(). float64 takes twice as many bytes.
     """
     E = drawn(rng)
     data = asked(subject, E)
     start = data.find(b"\n", data.find(b"\n", data.find(b"\n") + 1) + 1) + 1
-    same(len(data) - start, 4 * E.size, 0, what="bytes after the header's three lines")
+    same(
+        len(data) - start,
+        4 * E.size,
+        0,
+        what="the number of bytes after the three lines of the header",
+    )
 
 
 @points(2)
-def test_the_sign_of_the_scale_is_the_order_of_the_bytes(subject, rng):
-    """Which byte of a number comes first? The third line says so.
+def test_the_sign_of_the_scale_is_the_byte_order(subject, rng):
+    """In which order are the bytes of a number? The third line says it.
 
-    A negative scale means little endian, a positive one big endian.
+    A negative scale means little-endian, and a positive one means big-endian.
 
-    Write -1.0, and '<f4'.
+    Write -1.0 as the scale, and the values as '<f4'.
     """
     E = drawn(rng)
     data = asked(subject, E)
@@ -90,5 +99,5 @@ def test_the_sign_of_the_scale_is_the_order_of_the_bytes(subject, rng):
         values[::-1],
         E,
         1e-6 * E.max(),
-        what="the values, in the order of bytes that the scale tells",
+        what="the values, read in the byte order of the scale",
     )

@@ -1,4 +1,6 @@
-"""Radiance as RGBE: to_pixels(E) -> (H, W, 4), three mantissas and the exponent that they share."""
+"""Checks of to_pixels(E), radiance as RGBE: (H, W, 4), three mantissas and their shared
+exponent.
+"""
 
 import numpy as np
 
@@ -7,7 +9,9 @@ from hdrlab.io.maps import rgbe
 
 
 def drawn(rng):
-    """Return E (9, 11, 3), of which no brightest channel is so near a power of 2 that rounding reaches it."""
+    """Return E (9, 11, 3) in which no brightest channel is so close to a power of 2 that
+    rounding reaches it.
+    """
     channels = rng.permuted(np.insert(rng.uniform(0.02, 1, (9, 11, 2)), 0, 1, axis=-1), axis=-1)
     brightest = 2.0 ** rng.integers(-20, 21, (9, 11, 1)) * rng.uniform(0.5, 0.99, (9, 11, 1))
     return (brightest * channels).astype(np.float32)
@@ -15,50 +19,50 @@ def drawn(rng):
 
 def asked(subject, E):
     pixels = finite(subject.to_pixels(E), (*E.shape[:2], 4), what="the pixels").astype(float)
-    said = f"expected whole numbers 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}"
+    said = f"expected whole numbers from 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}"
     require(((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all(), said)
     return pixels
 
 
 def test_every_pixel_is_four_bytes(subject, rng):
-    """Three mantissas and an exponent.
+    """A pixel has three mantissas and an exponent.
 
-    The answer is (H, W, 4).
+    The result has the shape (H, W, 4).
 
-    Whole numbers from 0 to 255.
+    All values are whole numbers from 0 to 255.
     """
     asked(subject, drawn(rng))
 
 
 @points(4)
-def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
-    """Decode what you encoded: E = m / 256 2^(e - 128).
+def test_decoding_restores_the_radiance_to_one_part_in_128(subject, rng):
+    """Decode what you have encoded: E = m / 256 2^(e - 128).
 
-    The exponent is that of the brightest channel; np.frexp gives it.
+    The exponent comes from the brightest channel; np.frexp gives it.
 
-    m = floor(256 E / 2^(e - 128)): do not forget the 256, nor the 128.
+    m = floor(256 E / 2^(e - 128)). Do not forget the 256 or the 128.
     """
     E = drawn(rng)
     E[0, :3] = [
         [1.999, 0.5, 0.25],
         [0.03, 0.9985, 0.4],
         [0.1, 0.2, 3.997],
-    ]  # 255.9 is no byte when rounded
+    ]  # a mantissa of 255.9 must not be rounded up to 256
     m, e = np.split(asked(subject, E), [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
     same(
         m / 256 * 2.0 ** (e - 128) / brightest,
         E / brightest,
         1 / 127,
-        what="E per its brightest channel",
+        what="E / its brightest channel",
     )
 
 
-@points(3, needs="test_decoding_gives_the_radiance_back_to_a_part_in_128")
+@points(3, needs="test_decoding_restores_the_radiance_to_one_part_in_128")
 def test_the_largest_mantissa_is_128_or_more(subject, rng):
-    """How many of the mantissa's 256 values do you use?
+    """How much of the range from 0 to 255 do your mantissas use?
 
-    The brightest channel's mantissa lies between 128 and 255.
+    The mantissa of the brightest channel must be between 128 and 255.
 
     The brightest channel is f 2^x with 0.5 <= f < 1, and e = x + 128.
     """
@@ -69,16 +73,21 @@ def test_the_largest_mantissa_is_128_or_more(subject, rng):
 
 
 @points(3)
-def test_twice_the_light_is_one_more_in_the_exponent_and_black_is_zero(subject, rng):
-    """Twice the light: what happens to the four bytes?
+def test_twice_the_light_adds_one_to_the_exponent_and_black_is_zero(subject, rng):
+    """What happens to the four bytes at twice the light?
 
     The mantissas stay, and the exponent grows by one. Black is (0, 0, 0, 0).
 
-    Take care of log2(0): use np.where for black pixels.
+    Avoid log2(0): use np.where for black pixels.
     """
     E = drawn(rng)
     E[2, 3] = 0
     truth, lit = rgbe.to_pixels(E).astype(float), E.max(axis=-1, keepdims=True) > 0
     one, two = asked(subject, E), asked(subject, 2 * E)
-    same(two - one, lit * np.array([0, 0, 0, 1]), 0, what="what twice the light changes")
+    same(
+        two - one,
+        lit * np.array([0, 0, 0, 1]),
+        0,
+        what="the change of the bytes at twice the light",
+    )
     same(one[..., 3], truth[..., 3], 0, what="the exponents")

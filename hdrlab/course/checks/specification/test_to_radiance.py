@@ -1,4 +1,4 @@
-"""RGBE as radiance: to_radiance(pixels) -> E (H, W, 3)."""
+"""Checks of to_radiance(pixels), RGBE as radiance: E (H, W, 3)."""
 
 import numpy as np
 
@@ -12,11 +12,11 @@ def drawn(rng):
 
 
 def test_every_pixel_is_three_radiances(subject, rng):
-    """The exponent is no channel of the answer.
+    """Do not return the exponent as a channel.
 
-    The answer is (H, W, 3).
+    The result has the shape (H, W, 3).
 
-    Nothing in it is below 0.
+    No value is below 0.
     """
     E = finite(subject.to_radiance(drawn(rng)), (9, 11, 3), what="E")
     require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
@@ -24,9 +24,10 @@ def test_every_pixel_is_three_radiances(subject, rng):
 
 @points(5)
 def test_a_mantissa_is_a_fraction_of_256(subject):
-    """The pixel (145, 215, 87, 103) can be read as 4.32e-06 and more: which factor is missing?
+    """Are your values 256 times too large? For the pixel (145, 215, 87, 103), E is about 1.7e-08,
+    2.5e-08 and 1.0e-08.
 
-    A mantissa is a fraction of 256.
+    Divide the mantissas by 256.
 
     E = m / 256 2^(e - 128).
     """
@@ -39,9 +40,9 @@ def test_a_mantissa_is_a_fraction_of_256(subject):
 def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
     """What is 110 - 128 in uint8?
 
-    Bytes do not go below 0: the exponent wraps around.
+    A byte cannot be below 0: the difference wraps around.
 
-    Turn the exponent into int or float before you subtract 128.
+    Convert the exponent to int or float before you subtract 128.
     """
     pixels = drawn(rng)
     scale = 2.0 ** (pixels[..., 3:].astype(float) - 128)
@@ -51,9 +52,9 @@ def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
 
 @points(2)
 def test_the_exponent_0_is_black(subject, rng):
-    """The exponent 0 has a meaning of its own.
+    """The exponent 0 has a special meaning.
 
-    Whatever its mantissas, such a pixel is black.
+    Such a pixel is black, whatever its mantissas are.
 
     E = 0 where e = 0.
     """

@@ -1,4 +1,6 @@
-"""The photographic operator: tonemap(L, key, white, local, phi, threshold) -> Ld in [0, 1]."""
+"""Checks of tonemap(L, key, white, local, phi, threshold), the photographic operator: Ld in [0,
+1].
+"""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -7,28 +9,31 @@ from hdrlab.course.checks import laws
 from hdrlab.course.checks.compare import finite, numbers, points, require, same
 from hdrlab.tonemap import reinhard
 
-SHOWN = "test_it_shows_the_scene_within_what_a_display_has"
+SHOWN = "test_the_scene_fits_the_range_of_a_display"
 OPERATOR = "test_it_is_the_photographic_operator"
 
 
 def asked(subject):
-    """Return the subject's operator, its answer as float32, which is how pictures travel."""
+    """Return the subject's operator with its result as float32, the type in which images are
+    sent.
+    """
     return lambda L: numbers(subject.tonemap(L), what="Ld").astype(np.float32)
 
 
 def drawn(rng, shape=(96, 128)):
-    """Return luminance of some decades, and no black in it."""
+    """Return luminance over a few decades, without black."""
     soft = gaussian_filter(rng.standard_normal(shape), 6)
     return np.exp(1.5 * soft / soft.std() + 0.2 * rng.standard_normal(shape)).astype(np.float32)
 
 
 @points(14)
 def test_it_is_the_photographic_operator(subject, rng):
-    """Which Lm has a pixel that is as bright as the log average? And which Ld?
+    """What are Lm and Ld of a pixel with L = Lav, the log average?
 
-    Scale L by key / Lav, Lav = exp(mean(log L)).
+    Scale L by key / Lav, with Lav = exp(mean(log L)).
 
-    Ld = Lm (1 + Lm / white^2) / (1 + Lm), at most 1, with the key and the white that are given.
+    Ld = Lm (1 + Lm / white^2) / (1 + Lm), clipped at 1. Use the key and the white that you are
+    given.
     """
     for key, white in ((0.18, np.inf), (float(rng.uniform(0.3, 0.7)), float(rng.uniform(1.5, 4)))):
         L = drawn(rng)
@@ -39,12 +44,13 @@ def test_it_is_the_photographic_operator(subject, rng):
 
 
 @points(6, needs=OPERATOR)
-def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
-    """Without a white, which luminance becomes white?
+def test_the_default_white_is_the_brightest_luminance_without_outliers(subject, rng):
+    """If no white is given, which luminance becomes white?
 
-    The brightest scaled luminance but for 0.01 % of the pixels, and at least 1.
+    The largest scaled luminance after you leave out the brightest 0.01 % of the pixels, and at
+    least 1.
 
-    white = max(1, np.quantile(Lm, 0.9999)), with Lm after the scaling to the key.
+    white = max(1, np.quantile(Lm, 0.9999)). Compute it after scaling to the key.
     """
     L = drawn(rng)
     L[:6, :9] = (
@@ -57,12 +63,13 @@ def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
 
 
 @points(6, needs=OPERATOR)
-def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
-    """With local=True, whose brightness stands below the fraction?
+def test_local_divides_each_pixel_by_its_neighborhood(subject, rng):
+    """With local=True, which brightness stands in the denominator?
 
-    V1 at the largest width that is still even, of Lm blurred at s = 1, 1.6, ... with sigma = s / 4.
+    V1 at the largest width that is still even, where V1 is Lm blurred at s = 1, 1.6, ... with sigma
+    = s / 4.
 
-    phi and threshold decide how large that is: hand them on to your scale_steps.
+    phi and threshold decide the width: pass them on to your scale_steps.
     """
     for knobs in ({}, {"phi": 12.0, "threshold": 0.02}):
         L = drawn(rng)
@@ -71,52 +78,54 @@ def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
             subject.tonemap(L, white=np.inf, local=True, **knobs), L.shape, what="Ld"
         ).astype(float)
         off = np.mean(np.abs(came - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
-        said = f"Ld with local=True{knobs or ''}: expected another value at {off:.0%} of the pixels"
+        said = (
+            f"Ld with local=True{knobs or ''}: {off:.0%} of the pixels differ from what is expected"
+        )
         require(off <= 0.03, said, expected=expected, came=came, kind="image")
 
 
 @points(2)
-def test_it_shows_the_scene_within_what_a_display_has(subject):
-    """Look at the picture: can more than half of the scene be seen?
+def test_the_scene_fits_the_range_of_a_display(subject):
+    """Look at your image: can you see more than half of the scene?
 
-    A display has two decades at most; what is below or above them is black or white.
+    A display has two decades at most. Anything below or above them is black or white.
 
-    Half the pixels, or more, belong between 0.01 and 0.99, and what differs in light differs in the
-    picture.
+    At least half of the pixels must be between 0.01 and 0.99, and pixels of different luminance
+    must differ in the image.
     """
     laws.shows_the_scene(asked(subject))
 
 
 @points(3, needs=SHOWN)
-def test_it_stays_in_range_whatever_the_scene(subject):
-    """Try your operator on black, on one lamp in the dark, on a single pixel.
+def test_the_result_stays_in_range_for_any_scene(subject):
+    """Try your operator on a black image, on one lamp in the dark, and on a single pixel.
 
-    0 / 0 and log 0 come from pictures that are all black, or all alike.
+    Images that are all black or all alike can give 0 / 0 or log 0.
 
-    Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide
-    by it.
+    Clip the result to 0 ... 1. Before you divide by a maximum, a range or a mean, check that it is
+    not 0.
     """
     laws.stays_in_range(asked(subject))
 
 
 @points(1, needs=SHOWN)
-def test_it_answers_the_same_twice(subject):
-    """Does your operator remember anything?
+def test_the_same_image_gives_the_same_result(subject):
+    """Does your operator remember anything between two calls?
 
-    Randomness without a seed, or a global that changes?
+    Look for random numbers without a seed, and for a global variable that changes.
 
-    The same picture must give the same answer.
+    The same image must give the same result.
     """
     laws.answers_the_same_twice(asked(subject))
 
 
 @points(3, needs=OPERATOR)
-def test_it_shrugs_off_a_hot_pixel(subject, rng):
-    """One pixel of a million times the light: what happens to all the others?
+def test_one_hot_pixel_does_not_darken_the_image(subject, rng):
+    """One pixel is a million times as bright as the others. What happens to all other pixels?
 
-    A maximum over the picture is a matter of one pixel.
+    The maximum of an image depends on a single pixel.
 
-    Leave out 0.01 % of the pixels: of this picture these are 5.
+    Leave out the brightest 0.01 % of the pixels. In this image, these are 5.
     """
     tonemap, L = asked(subject), laws.scene((200, 256))
     for one in (L, L**0.2):
@@ -125,33 +134,33 @@ def test_it_shrugs_off_a_hot_pixel(subject, rng):
 
 
 @points(2, needs=SHOWN)
-def test_it_keeps_the_light_the_right_way_up(subject):
-    """Is what was bright still bright?
+def test_bright_regions_stay_bright(subject):
+    """Are bright regions still bright?
 
-    Compare the averages of large regions before and after: their ranks should hardly change.
+    Compare the averages of large regions before and after. Their order should hardly change.
 
-    A sign, or an inverse scale?
+    Look for a wrong sign, or for a scale that should be its inverse.
     """
     laws.keeps_the_light_the_right_way_up(asked(subject))
 
 
 @points(2, needs=OPERATOR)
 def test_the_unit_of_luminance_cancels(subject):
-    """Radiance has no unit that is sacred: watts or candelas show the same scene.
+    """The unit of luminance does not matter: watts and candelas describe the same scene.
 
-    Twice the luminance everywhere is the same picture.
+    Twice the luminance everywhere must give the same image.
 
-    Scale by a statistic of the picture itself: the log average, the median, a percentile.
+    Scale by a statistic of the image itself: the log average, the median, or a percentile.
     """
     laws.exposure(asked(subject))
 
 
 @points(1, needs=SHOWN)
 def test_it_takes_any_memory_layout(subject):
-    """Which orders in memory does your code count on?
+    """Does your code depend on how the array is stored in memory?
 
-    ravel, reshape and views of other strides all name the same pixels.
+    A transposed array or a view with other strides has the same pixels.
 
-    Begin with L = np.asarray(L, dtype=float).
+    Start with L = np.asarray(L, dtype=float).
     """
     laws.takes_any_memory_layout(asked(subject))

@@ -1,4 +1,4 @@
-"""Robertson's new inverse response: update(Z, t, E, n) -> f^-1 (n,)."""
+"""Checks of update(Z, t, E, n), Robertson's new inverse response: f^-1 (n,)."""
 
 import numpy as np
 
@@ -7,17 +7,17 @@ from hdrlab.response import robertson
 
 
 def drawn(rng, N=4000, P=4):
-    """Return Z (N, P), t (P,) and E (N,), all levels occupied."""
+    """Return Z (N, P), t (P,) and E (N,), with pixels at all levels."""
     Z = rng.integers(0, 256, (N, P))
     return Z, rng.uniform(0.1, 2, P), rng.uniform(0.2, 3, N)
 
 
 def test_every_level_has_a_response(subject, rng):
-    """One number for each level.
+    """Return one number for each pixel value.
 
-    The answer is f^-1 (256,), whatever levels the samples have.
+    The result is f^-1 (256,), even if the samples do not have all pixel values.
 
-    np.bincount with minlength=n counts and sums by level.
+    np.bincount with minlength=n counts and sums by pixel value.
     """
     Z, t, E = drawn(rng)
     finite(subject.update(Z, t, E), (256,), what="f^-1")
@@ -25,24 +25,23 @@ def test_every_level_has_a_response(subject, rng):
 
 @points(4)
 def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
-    """For each level m: which samples in which frames have it?
+    """For each pixel value m: which samples in which frames have this pixel value?
 
-    The new f^-1(m) is the mean of E_i t_j over these.
+    The new f^-1(m) is the mean of E_i t_j over these pixels.
 
-    Divide by how many there are of this level, not by the number of samples.
+    Divide by the number of pixels of this value, not by the number of samples.
     """
     Z, t, E = drawn(rng)
     same(subject.update(Z, t, E), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
 @points(3)
-def test_the_mean_is_a_plain_one(subject):
-    """Does it matter in your mean whether m is close to the ends of the range?
+def test_the_mean_has_no_weights(subject):
+    """Do you weight the pixels of a pixel value?
 
-    All pixels of E_m have one level, hence one weight; the exposures of a level are averaged as
-    they are.
+    All pixels of one value have the same weight, so the mean does not need weights.
 
-    A plain mean: no table of weights, no time squared.
+    Use the plain mean of E_i t_j: no weights, and no squared time.
     """
     Z, t, E = (
         np.array([[7, 200], [200, 7], [7, 7]]),
@@ -51,15 +50,15 @@ def test_the_mean_is_a_plain_one(subject):
     )
     expected = np.full(256, np.nan)
     expected[7], expected[200] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4, (3 * 2 + 5 * 1) / 2
-    told = ~np.isnan(expected)
-    same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=told)
+    known = ~np.isnan(expected)
+    same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=known)
 
 
 @points(2)
 def test_a_sample_without_irradiance_is_left_out(subject, rng):
-    """What is an E that is NaN worth in a sum?
+    """What does an E of NaN do to a sum?
 
-    A sample without irradiance tells nothing of f^-1, and must not spoil the others.
+    A sample without irradiance must not change the result.
 
     Leave out the rows of Z where E is NaN.
     """
@@ -69,11 +68,11 @@ def test_a_sample_without_irradiance_is_left_out(subject, rng):
 
 
 def test_a_level_without_pixels_is_nan(subject, rng):
-    """Which f^-1 has a level that no pixel has?
+    """What is f^-1 at a pixel value that no pixel has?
 
-    Nobody knows yet: 0 / 0.
+    It is 0 / 0.
 
-    NaN now; the next step fills it from its neighbours.
+    Return NaN there. The next step interpolates it.
     """
     Z, t, E = drawn(rng)
     Z = Z // 2 * 2

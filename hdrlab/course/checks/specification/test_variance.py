@@ -1,4 +1,6 @@
-"""The noise of one photograph: variance(X, D, N, R) -> V of the exposure, of the shape of X."""
+"""Checks of variance(X, D, N, R), the noise of one photo: V, the variance of the exposure, with
+the shape of X.
+"""
 
 import numpy as np
 
@@ -6,7 +8,9 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
-    """Return exposures and their steps (24, 30), electrons at exposure 1, and the read noise in electrons."""
+    """Return exposures and their steps (24, 30), the electrons at exposure 1, and the read noise
+    in electrons.
+    """
     X = np.exp(rng.uniform(-5, 1, (24, 30)))
     return (
         X,
@@ -17,57 +21,58 @@ def drawn(rng):
 
 
 def alike(came, V, what):
-    """Compare by the ratio: a variance is right or wrong by a factor."""
+    """Compare by the ratio, because errors of a variance are factors."""
     ratio = finite(came, V.shape, what=what) / V
-    same(ratio, np.ones(V.shape), 0.01, what=f"{what}, over what it should be", picture=True)
+    same(ratio, np.ones(V.shape), 0.01, what=f"{what} / the correct V", picture=True)
 
 
-def test_no_light_no_amplifier_and_no_rounding_have_no_noise(subject, rng):
-    """Where would noise come from, if nothing makes any?
+def test_without_any_cause_there_is_no_noise(subject, rng):
+    """Here all three causes of noise are 0. What should V be?
 
-    Each of the three causes has a term of its own, and each of them is 0 here.
+    Each of the three causes has its own term, and each term is 0 here.
 
-    The answer has the shape of X, and nothing is added to the three terms.
+    The result has the shape of X. Do not add anything to the three terms.
     """
     X, _, N, _ = drawn(rng)
-    same(subject.variance(0 * X, 0 * X, N, 0.0), 0 * X, 1e-12, what="V of nothing", picture=True)
+    same(subject.variance(0 * X, 0 * X, N, 0.0), 0 * X, 1e-12, what="V without noise", picture=True)
 
 
 @points(3)
-def test_photons_have_a_variance_that_grows_with_the_light(subject, rng):
-    """X N electrons were counted. By how many do counts of photons differ?
+def test_photon_noise_grows_with_the_light(subject, rng):
+    """The sensor counts X N electrons. What is the variance of this count?
 
-    The variance of a count is the count. V is not that of the count, but of the exposure: the count
-    over N.
+    The variance of the count is the count itself. V is the variance of the exposure, which is the
+    count divided by N.
 
     Var(x / N) = Var(x) / N^2, so the first term is X N / N^2.
     """
     X, _, N, _ = drawn(rng)
-    alike(subject.variance(X, 0 * X, N, 0.0), X / N, "V of photons alone")
+    alike(subject.variance(X, 0 * X, N, 0.0), X / N, "V of photon noise alone")
 
 
 @points(3)
-def test_the_amplifier_adds_as_much_in_the_dark(subject, rng):
-    """Without any light, what is left?
+def test_read_noise_does_not_depend_on_the_light(subject, rng):
+    """Which noise remains without any light?
 
-    R is a standard deviation, in electrons. A variance is the square, and N electrons are an
+    R is a standard deviation in electrons. A variance is its square, and N electrons are an
     exposure of 1.
 
-    The second term is (R / N)^2, whatever X is.
+    The second term is (R / N)^2, for any X.
     """
     X, _, N, R = drawn(rng)
     alike(
         subject.variance(0 * X, 0 * X, N, R),
         np.full(X.shape, (R / N) ** 2),
-        "V of the amplifier alone",
+        "V of read noise alone",
     )
 
 
 @points(3)
-def test_rounding_spreads_the_light_evenly_over_a_step(subject, rng):
-    """All exposures of a step D are rounded to one level, so the light lay anywhere in it.
+def test_rounding_noise_is_that_of_a_uniform_distribution(subject, rng):
+    """All exposures within a step D are rounded to the same level.
 
-    What is spread evenly from -D / 2 to D / 2 has the variance that an integral of x^2 / D gives.
+    The exposure is uniformly distributed from -D / 2 to D / 2 around it. Its variance is the
+    integral of x^2 / D.
 
     The third term is D^2 / 12.
     """
@@ -76,12 +81,12 @@ def test_rounding_spreads_the_light_evenly_over_a_step(subject, rng):
 
 
 @points(2)
-def test_variances_of_what_knows_nothing_of_each_other_add(subject, rng):
-    """Three causes, and none knows of the others.
+def test_variances_of_independent_causes_add(subject, rng):
+    """The three causes are independent of each other.
 
-    Their variances add, and not their standard deviations.
+    So their variances add, not their standard deviations.
 
     V = X / N + (R / N)^2 + D^2 / 12.
     """
     X, D, N, R = drawn(rng)
-    alike(subject.variance(X, D, N, R), X / N + (R / N) ** 2 + D**2 / 12, "V of all three")
+    alike(subject.variance(X, D, N, R), X / N + (R / N) ** 2 + D**2 / 12, "V of all three causes")

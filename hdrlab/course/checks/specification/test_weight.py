@@ -1,4 +1,4 @@
-"""The weight of a photograph in exposure fusion: weight(F, powers) -> W (H, W)."""
+"""Checks of weight(F, powers), the weight of an image in exposure fusion: W (H, W)."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def drawn(rng):
 
 
 def fused(F, powers):
-    """Return W away from the border, by the sheet's formulas."""
+    """Return W away from the border, computed with the formulas of the assignment."""
     Y = 0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2]
     C = np.abs(Y[:-2, 1:-1] + Y[2:, 1:-1] + Y[1:-1, :-2] + Y[1:-1, 2:] - 4 * Y[INNER])
     S, E = F.std(axis=0)[INNER], np.exp(-((F - 0.5) ** 2) / (2 * 0.2**2)).prod(axis=0)[INNER]
@@ -28,45 +28,45 @@ def compared(subject, F, powers, what):
 
 
 @points(3)
-def test_contrast_is_the_size_of_the_laplacian_of_gray(subject, rng):
-    """Where is detail? Where a pixel differs from its neighbours, above or below.
+def test_contrast_is_the_absolute_laplacian_of_gray(subject, rng):
+    """Detail is where a pixel differs from its neighbors, above or below.
 
-    The Laplacian is what four neighbours have together, less four times the pixel.
+    The Laplacian is the sum of four neighbors minus four times the pixel.
 
     C = |up + down + left + right - 4 Y|, of the gray Y.
     """
-    compared(subject, drawn(rng), (1, 0, 0), "W by contrast alone")
+    compared(subject, drawn(rng), (1, 0, 0), "W from contrast alone")
 
 
 @points(3)
-def test_saturation_is_the_deviation_of_red_green_and_blue(subject, rng):
-    """How far are R, G and B from each other?
+def test_saturation_is_the_standard_deviation_of_the_channels(subject, rng):
+    """How much do R, G and B differ from each other?
 
-    Their standard deviation, in each pixel.
+    Use their standard deviation in each pixel.
 
-    The mean of three squares is a sum over 3.
+    Divide the sum of the three squared differences by 3.
     """
-    compared(subject, drawn(rng), (0, 1, 0), "W by saturation alone")
+    compared(subject, drawn(rng), (0, 1, 0), "W from saturation alone")
 
 
 @points(3)
 def test_exposedness_is_a_product_over_the_channels(subject, rng):
-    """Which value is exposed best? And a pixel of which one channel is clipped?
+    """Which value is exposed best? And what if one channel is clipped?
 
-    0.5 is; a channel that is clipped makes the whole pixel count little.
+    0.5 is best. One clipped channel must make the weight of the whole pixel small.
 
     E = product of exp(-(F - 0.5)^2 / (2 0.2^2)) over R, G and B.
     """
-    compared(subject, drawn(rng), (0, 0, 1), "W by exposedness alone")
+    compared(subject, drawn(rng), (0, 0, 1), "W from exposedness alone")
 
 
 @points(3)
-def test_a_pixel_is_to_be_good_in_all_three(subject, rng):
-    """A pixel of fine contrast may be clipped. What should it weigh?
+def test_the_weight_is_the_product_of_all_three_measures(subject, rng):
+    """A pixel with high contrast can be clipped. What should its weight be?
 
-    A product is small where one of its factors is.
+    A product is small if one of its factors is small.
 
     W = C^a S^b E^c with the powers (a, b, c).
     """
     for powers in ((1, 1, 1), (0.5, 2, 1)):
-        compared(subject, drawn(rng), powers, f"W by powers {powers}")
+        compared(subject, drawn(rng), powers, f"W with powers {powers}")

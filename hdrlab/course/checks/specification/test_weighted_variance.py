@@ -1,4 +1,4 @@
-"""The contradiction of frames at a pixel: weighted_variance(x, w) -> v (H, W)."""
+"""Checks of weighted_variance(x, w), how much the frames contradict each other: v (H, W)."""
 
 import numpy as np
 
@@ -6,17 +6,17 @@ from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
-    """Return x (P, H, W), in which a square moved in one frame, and weights, some of them 0."""
+    """Return x (P, H, W) in which a square moved in one frame, and weights, some of them 0."""
     x = rng.uniform(-9, 3, (20, 30)) + rng.normal(0, 0.02, (4, 20, 30))
     x[int(rng.integers(0, 4)), 5:12, 8:20] += float(rng.uniform(0.5, 1.5))
     return x, rng.uniform(0, 1, x.shape) * (rng.uniform(size=x.shape) > 0.2)
 
 
 @points(3)
-def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
-    """By how much do the answers of the frames differ from their mean?
+def test_v_is_the_weighted_variance_over_the_frames(subject, rng):
+    """By how much do the values of the frames differ from their mean?
 
-    Both means are weighted: that of x, and that of the squares around it.
+    Both means are weighted: the mean of x, and the mean of the squared differences.
 
     v = sum w (x - m)^2 / sum w, with m = sum w x / sum w, over the frames.
     """
@@ -26,13 +26,13 @@ def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
     same(subject.weighted_variance(x, w), v, 1e-3 * v.max(), what="v", picture=True)
 
 
-@points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
-def test_one_frame_alone_contradicts_nobody(subject, rng):
-    """Where all frames but one are clipped, what does v say? And where all are?
+@points(1, needs="test_v_is_the_weighted_variance_over_the_frames")
+def test_a_single_frame_has_variance_0(subject, rng):
+    """What is v if all frames but one are clipped? And if all are clipped?
 
-    Who is alone agrees with himself, and 0 / 0 is not a number.
+    A single frame agrees with itself, so v is 0. With no frame, the formula gives 0 / 0.
 
-    Where the sum of the weights is 0, v is 0.
+    Set v to 0 where the sum of the weights is 0.
     """
     x, w = drawn(rng)
     w[1:, :, ::3], w[:, ::2, 1::3] = 0, 0
@@ -41,13 +41,13 @@ def test_one_frame_alone_contradicts_nobody(subject, rng):
     same(came, 0 * x[0], 1e-6, what="v where at most one frame measures", picture=True, where=alone)
 
 
-@points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
-def test_the_unit_of_light_and_of_the_weights_cancels(subject, rng):
-    """In another unit of light all x are larger by one number. And their differences?
+@points(1, needs="test_v_is_the_weighted_variance_over_the_frames")
+def test_the_units_of_light_and_weights_cancel(subject, rng):
+    """Another unit of light adds the same number to all x. What does it do to v?
 
-    Nothing changes, as long as the mean is taken off.
+    Nothing, if you subtract the mean.
 
-    Weights that are twice as large are so above and below the fraction.
+    Twice the weights double the numerator and the denominator, so v must not change.
     """
     x, w = drawn(rng)
     before = finite(subject.weighted_variance(x, w + 0.01), x[0].shape, what="v")
