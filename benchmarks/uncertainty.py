@@ -46,7 +46,7 @@ from hdrlab.cli.brackets import read_bracket
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray
 from hdrlab.core.bracket import Bracket
-from hdrlab.diagnostics.noise import FLAT, GROUPS, Noise, estimate_noise, slope
+from hdrlab.diagnostics.noise import FLAT_FRACTION, GROUP_COUNT, Noise, estimate_noise, slope
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery
 from hdrlab.radiance.uncertainty import merge_with_deviation, variance
@@ -202,12 +202,12 @@ def chi_square(taken: Bracket) -> Iterator[float]:
         variance(E * t, np.gradient(X)[images], N, R) / t**2,
         np.pad(slope(E), 2, constant_values=np.inf),
     )
-    flat = (steep <= np.quantile(steep, FLAT)) & np.isfinite(state.s[..., 1])
+    flat = (steep <= np.quantile(steep, FLAT_FRACTION)) & np.isfinite(state.s[..., 1])
     measured = (images > 0) & (images < int(0.98 * 255) + 1) & flat
     twice = np.count_nonzero(measured, axis=0) > 1
     measured, x, V, E = measured[:, twice], (X[images] / t)[:, twice], V[:, twice], E[twice]
     yield scattered(x, V + (rho * E) ** 2, measured)
-    for alike in np.array_split(np.argsort(E), GROUPS):
+    for alike in np.array_split(np.argsort(E), GROUP_COUNT):
         share = np.where(measured, x / E, np.nan)[:, alike]
         x[:, alike] -= (np.nan_to_num(np.nanmean(share, axis=1, keepdims=True), nan=1.0) - 1) * E[
             alike

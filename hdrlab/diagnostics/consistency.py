@@ -4,10 +4,10 @@ Z   pixel levels       (P, H, W[, 3])
 t   exposure times     (P,) seconds
 E   radiance           (H, W[, 3])
 
-A pixel of level z received the exposure f^-1(z), whichever frame it stands in. So for each level
-the median of log2(E t) over the pixels of that level must be the same in every frame. Where it is
-not, the times, the response or the alignment contradict the pixels; in photographic stops, and
-frame by frame.
+A pixel of level z received the exposure f^-1(z), in whichever frame it is. So for each level the
+median of log2(E t) over the pixels of that level must be the same in every frame. Where it is not,
+the times, the response or the alignment contradict the pixels. The functions here measure by how
+many stops, for each frame.
 """
 
 import warnings
@@ -20,18 +20,20 @@ from hdrlab.errors import InputError
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
-# an even choice of about so many represents the whole frame
-PIXELS = 400_000
-# a frame's pixel with a channel above is clipped, and not a measurement
-TOP = 250
-# pixels that make a median
-FEWEST = 50
+# about this number of pixels of a frame is used, on an even grid
+MAX_PIXELS = 400_000
+# a pixel with a channel above this level is clipped, and not a measurement
+MAX_LEVEL = 250
+# pixels of a level without which it has no median
+MIN_PIXELS_PER_LEVEL = 50
 
 
 def measure_level_exposures(
     images: ArrayLike, times: ArrayLike, E: ArrayLike, *, valid: ArrayLike | None = None
 ) -> F64:
-    """Return the median of log2(E t) per frame, channel and level, (P, C, 256); NaN where pixels are few.
+    """Return the median of log2(E t) of each frame, channel and level, (P, C, 256).
+
+    NaN where a level has too few pixels.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ def measure_level_exposures(
 
     Raises
     ------
-    ValueError
+    InputError
         If the shapes of photographs, map and mask do not fit together.
 
     Examples
@@ -53,46 +55,54 @@ def measure_level_exposures(
     array([[-1.,  0.],
            [-1.,  0.]])
     """
-    stack, E = arrays.as_stack(images), arrays.as_radiance(E)
-    times, mask = arrays.as_times(times, len(stack)), arrays.as_mask(valid, stack)
+    stack = arrays.as_stack(images)
+    E = arrays.as_radiance(E)
+    times = arrays.as_times(times, len(stack))
+    mask = arrays.as_mask(valid, stack)
     if E.shape != stack.shape[1:]:
         raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
-    few, channels = choose_grid(E.shape), 1 if E.ndim == 2 else E.shape[-1]
-    Z = np.moveaxis(arrays.to_256(stack[:, *few]).reshape(len(stack), -1, channels), -1, 0).copy()
-    whole: Mask = np.all(Z <= TOP, axis=0)
+    rows, columns = choose_grid(E.shape)
+    channel_count = 1 if E.ndim == 2 else E.shape[-1]
+    sample = arrays.to_256(stack[:, rows, columns]).reshape(len(stack), -1, channel_count)
+    Z = np.moveaxis(sample, -1, 0).copy()
+    is_measured: Mask = np.all(Z <= MAX_LEVEL, axis=0)
     if mask is not None:
-        whole &= mask[:, *few].reshape(len(stack), -1)
-    np.copyto(Z, 255, where=~whole)  # a level beyond TOP, which has no median
-    medians = np.empty((len(stack), channels, 256))
-    for c, light in enumerate(E[few].reshape(-1, channels).T):
-        rising = np.argsort(light)[np.count_nonzero(light == 0) :]  # once for all frames
-        lE = np.log2(light.take(rising))
+        is_measured &= mask[:, rows, columns].reshape(len(stack), -1)
+    np.copyto(Z, 255, where=~is_measured)  # a level beyond MAX_LEVEL, which has no median
+    medians = np.empty((len(stack), channel_count, 256))
+    for c, radiance in enumerate(E[rows, columns].reshape(-1, channel_count).T):
+        # sort once for all frames, without the pixels that are 0
+        ascending = np.argsort(radiance)[np.count_nonzero(radiance == 0) :]
+        lE = np.log2(radiance.take(ascending))
         for j, levels in enumerate(Z[c]):
-            medians[j, c] = _median_per_level(levels.take(rising), lE) + np.log2(times[j])
-    medians[..., TOP + 1 :] = np.nan
+            medians[j, c] = _median_per_level(levels.take(ascending), lE) + np.log2(times[j])
+    medians[..., MAX_LEVEL + 1 :] = np.nan
     return medians
 
 
 def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """Return the rows and columns of a picture (H, W[, 3]) that stand for all of it, about PIXELS places."""
-    step = max(1, int(np.sqrt(shape[0] * shape[1] / PIXELS)))
+    """Return the rows and columns of an even grid over an image (H, W[, 3]), at most MAX_PIXELS or so."""
+    step = max(1, int(np.sqrt(shape[0] * shape[1] / MAX_PIXELS)))
     return np.s_[::step, ::step]
 
 
 def _median_per_level(Z: Flags, lE: F32) -> F64:
-    """Return the median of lE, which rises, over the pixels of each level, (256,)."""
-    order, count = np.argsort(Z, kind="stable"), np.bincount(Z, minlength=256)
-    first, enough = np.cumsum(count) - count, count >= FEWEST
-    low, high = (order[(first + half)[enough]] for half in ((count - 1) // 2, count // 2))
+    """Return the median of the ascending lE over the pixels of each level, (256,)."""
+    order = np.argsort(Z, kind="stable")
+    count = np.bincount(Z, minlength=256)
+    first = np.cumsum(count) - count
+    is_enough = count >= MIN_PIXELS_PER_LEVEL
+    low = order[(first + (count - 1) // 2)[is_enough]]
+    high = order[(first + count // 2)[is_enough]]
     medians = np.full(256, np.nan)
-    medians[enough] = (lE[low] + lE[high]) / 2
+    medians[is_enough] = (lE[low] + lE[high]) / 2
     return medians
 
 
 def measure_deviations(medians: F64) -> F64:
-    """Return by how many stops each frame departs from the mean of all (P,): median over levels, channels.
+    """Return by how many stops each frame departs from the mean of all, (P,).
 
-    NaN for a frame that shares no level with another: nothing is known of it.
+    The median over levels and channels; NaN for a frame that shares no level with another.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
@@ -101,18 +111,17 @@ def measure_deviations(medians: F64) -> F64:
 
 
 def measure_residuals(medians: F64, g: ArrayLike) -> F64:
-    """Return what g and the times leave unexplained of each frame, channel and level, (P, C, 256) stops.
+    """Return the residuals of g and the times, (P, C, 256) stops.
 
-    All are 0 where the camera is the one that g and the times describe. A frame that lies off as a
-    whole has a wrong time; a level that lies off in all frames, a wrong g; a level that lies off
-    differently from frame to frame belongs to a camera that treats each photograph in its own way.
-    Where two frames contradict each other by a stop, each shows a part of it, for both have a share
-    in E.
+    They are 0 if g and the times describe the camera. A frame that is off as a whole has a wrong
+    time. A level that is off in all frames shows a wrong g. A level that is off differently in each
+    frame shows a camera that processes each photo differently. Where two frames contradict each
+    other by a stop, each has a part of it, because both contribute to E.
 
     Examples
     --------
     >>> g = np.log(np.maximum(np.arange(256), 0.5) / 128)
-    >>> medians = np.stack([g / np.log(2), g / np.log(2) - 1])[:, None]  # the second lies off by a stop
+    >>> medians = np.stack([g / np.log(2), g / np.log(2) - 1])[:, None]  # the second is a stop off
     >>> measure_residuals(medians, g)[:, 0, 64].tolist()
     [0.0, 1.0]
     """
@@ -120,9 +129,10 @@ def measure_residuals(medians: F64, g: ArrayLike) -> F64:
 
 
 def measure_spread(medians: F64) -> float:
-    """Return the map's spread in stops: standard deviation over the frames, median over levels and channels.
+    """Return the spread of the map in stops.
 
-    0 means that the frames are consistent; NaN that no level occurs in two frames.
+    The standard deviation over the frames, and its median over levels and channels. 0 means that
+    the frames are consistent, NaN that no level occurs in two frames.
 
     Examples
     --------

@@ -205,7 +205,7 @@ def measure_cost(stack: Array, stops: F64) -> float:
     """Return what errors of the photos, stops (P,), change in the map up to a factor: RMS over pixels."""
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / MAX_PIXELS)))
     Z = to_256(stack[:, ::step, ::step])
-    w = response_steps.W[Z.reshape(len(Z), Z.shape[1] * Z.shape[2], -1)].mean(axis=-1)
+    w = response_steps.LEVEL_WEIGHTS[Z.reshape(len(Z), Z.shape[1] * Z.shape[2], -1)].mean(axis=-1)
     total = w.sum(axis=0)
     is_measured = total > 0
     change = (np.nan_to_num(stops) @ w)[is_measured] / total[is_measured]
@@ -241,7 +241,7 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
     for j, step in enumerate(np.diff(B + fit.x)):
         a = patches.Z[j]
         b = patches.Z[j + 1]
-        is_trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
+        is_trusted = (response_steps.PAIR_WEIGHTS[a, b] > 0).all(axis=0)
         is_flat = is_trusted & flat_in_all
         if np.count_nonzero(is_flat) < MIN_FLAT_PATCHES:
             is_flat = is_trusted & patches.flat[j] & patches.flat[j + 1]

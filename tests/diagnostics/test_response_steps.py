@@ -38,11 +38,11 @@ def test_a_tenth_of_the_patches_moves_the_steps_by_least_squares_and_hardly_the_
 
 
 def test_least_squares_over_the_pairs_that_occur_are_those_over_one_equation_for_each():
-    H, sd, C = pair_tables(0.1), np.log(2) / 6, response_steps.CURVATURES
+    H, sd, C = pair_tables(0.1), np.log(2) / 6, response_steps.WEIGHTED_CURVATURES
     V, Q = response_steps.weight_pairs(H), response_steps.free_directions(B)
     found = response_steps.solve_steps(V, B, Q, sd=sd, smoothness=1.0)
     unit, F, k = (
-        np.sqrt(response_steps.MOST) / response_steps.SIGMA,
+        np.sqrt(response_steps.MAX_PATCHES_PER_PAIR) / response_steps.STEP_ERROR_LN,
         np.diff(Q, axis=0),
         np.arange(len(V.V)),
     )

@@ -146,7 +146,7 @@ def test_a_large_picture_is_read_on_an_even_grid_of_patches(monkeypatch):
         (2, 1, 70), np.uint8
     )
     every = flat_patches.find_flat_patches(images).Z
-    monkeypatch.setattr(flat_patches, "PATCHES", 40 * 10 // 4)
+    monkeypatch.setattr(flat_patches, "MAX_PATCHES", 40 * 10 // 4)
     assert np.array_equal(flat_patches.find_flat_patches(images).Z, every[:, :, ::2, ::2])
 
 
