@@ -28,7 +28,7 @@ class Asked(Subject):
     def __init__(self, *answers, said=""):
         super().__init__({"hat": ""}, None)
         self.calls = [Call("hat", (k,), {}, answer) for k, answer in enumerate(answers)]
-        self.said, self.begun = said, 0
+        self.printed, self.begun = said, 0
 
     def fresh(self, **sources):
         self.begun += 1

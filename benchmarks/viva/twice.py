@@ -111,7 +111,7 @@ class Twice(examining.QuestionGenerator):
             return False
         run: Any = self.run
         run.submission, run.other = run.other, run.submission
-        if run.submission.left < ENOUGH:
+        if run.submission.seconds_left < ENOUGH:
             examining.Examining._replace_sandbox(run)
         draft.shown["again"] = super().is_reproducible(draft)
         run.submission, run.other = run.other, run.submission

@@ -89,7 +89,7 @@ def test_a_check_has_the_subject_afresh_and_none_where_the_task_is_missing_or_wa
         with pytest.raises(NoAnswer) as raised:
             subject(checking, request(task)).hat()
         assert raised.value.kind == kind and str(raised.value) == ""
-    assert checking.submission.begun == 1 and Missing().said == ""
+    assert checking.submission.begun == 1 and Missing().printed == ""
 
 
 def test_inputs_are_drawn_from_the_tasks_seed_and_from_zero_without_one(checking):

@@ -66,8 +66,8 @@ def test_a_function_costs_its_call_and_no_more(name, strict):
             kind = error.kind
         subject.fresh()
         assert (
-            subject._running.clear_check()[1] <= 20
-            and subject._running.cpu_seconds_left > 0
+            subject._session.clear_check()[1] <= 20
+            and subject._session.cpu_seconds_left > 0
             or late
         )
     assert kind in KINDS.get(name, (False, True))
@@ -90,26 +90,26 @@ def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict
 
 def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 0.3) as subject:
-        subject._running.cpu_seconds_left = 0.1
+        subject._session.cpu_seconds_left = 0.1
         said = []
         for _ in range(2):
             subject.fresh()
             with pytest.raises(NoAnswer) as raised:
                 subject.hat(8)
             said.append(str(raised.value))
-            subject._drop()
-            subject._running.clear_check()
-            subject._running.cpu_seconds_left = min(
-                subject._running.cpu_seconds_left, 0.0
+            subject._close_link()
+            subject._session.clear_check()
+            subject._session.cpu_seconds_left = min(
+                subject._session.cpu_seconds_left, 0.0
             )  # a busy machine may not have used it
     assert said[0] == "hat took longer than 0.3 s"
-    assert said[1] == "hat: the 1.2 s of a processor for a whole submission are used up"
+    assert said[1] == "hat: the 1.2 s of processor time for a whole submission are used up"
 
 
 def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 20.0) as subject:
-        subject._running.cpu_seconds_left = 0.5
-        with pytest.raises(NoAnswer, match="hat took longer than 1 s of a processor") as raised:
+        subject._session.cpu_seconds_left = 0.5
+        with pytest.raises(NoAnswer, match="hat took longer than 1 s of processor time") as raised:
             subject.hat(8)
         assert raised.value.kind == "late"
 
@@ -121,11 +121,11 @@ def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_e
         assert raised.value.kind == "died"
     source = "import time\ndef hat(n):\n    time.sleep(30)\n"
     with Subject({"hat": source}, strict, 20.0) as subject:
-        subject._running.wait_until_ready()
-        subject._running._launched.process.kill()  # as a system that is out of memory does
-        subject._running._launched.process.wait()
-        subject._running.start_check = _silent(subject._running)
-        subject._running._is_busy = True
+        subject._session.wait_until_ready()
+        subject._session._launched.process.kill()  # as a system that is out of memory does
+        subject._session._launched.process.wait()
+        subject._session.start_check = _silent(subject._session)
+        subject._session._is_busy = True
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
         assert raised.value.kind == "killed"
@@ -177,9 +177,9 @@ def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, s
             subject.hat()
         except NoAnswer as error:
             message = str(error)
-        assert shown(message) and shown(subject.said)
+        assert shown(message) and shown(subject.printed)
         each = gradebook.write_results(
-            tmp_path, result(message=message, said=subject.said, kind="raised")
+            tmp_path, result(message=message, said=subject.printed, kind="raised")
         )
     told = {path.name: path.read_bytes().decode() for path in each}
     assert (

@@ -181,13 +181,13 @@ def test_nothing_is_kept_from_one_check_to_the_next(subject):
 def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject):
     subject.loud(1.0)
     assert (
-        "said\n" in subject.said
-        and "UserWarning: warned" in subject.said
-        and "red\n" in subject.said
+        "said\n" in subject.printed
+        and "UserWarning: warned" in subject.printed
+        and "red\n" in subject.printed
     )
-    assert "\x1b" not in subject.said
+    assert "\x1b" not in subject.printed
     subject.fresh()
-    assert subject.said == ""
+    assert subject.printed == ""
 
 
 def test_an_input_that_is_changed_there_is_not_changed_here(subject):
@@ -209,8 +209,8 @@ def test_grading_twice_gives_the_same(subject):
 
 def test_a_sandbox_that_is_ended_from_outside_is_started_anew(subject):
     subject.scaled(1.0)
-    subject._running._launched.process.kill()
-    subject._running._launched.process.wait()
+    subject._session._launched.process.kill()
+    subject._session._launched.process.wait()
     subject.fresh()
     assert subject.scaled(1.0) == 2.0
 
@@ -434,7 +434,7 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
             "from hdrlab.course.sandbox import tiers\n"
             f"tier, source = tiers.choose({tier!r}), 'def f():\\n while True: pass'\n"
             "with Subject({'f': source}, tier, 60) as subject:\n"
-            "    subject._running.start_check(); print('begun', flush=True); subject.f()\n"
+            "    subject._session.start_check(); print('begun', flush=True); subject.f()\n"
         )
         before = system.list_children()
         folder = tmp_path / tier
@@ -605,7 +605,7 @@ def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
 def test_a_check_is_cleared_away_once(monkeypatch):
     with opened("practice") as subject:
         assert subject.scaled(1.0) == 2.0
-        inside = subject._running
+        inside = subject._session
         ended, seconds = inside.clear_check()
         assert seconds > 0
         left = inside.cpu_seconds_left
@@ -684,8 +684,10 @@ def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks()
 def test_a_submission_that_has_used_up_its_processor_is_told_so():
     with opened("practice") as subject:
         assert subject.scaled(1.0) is not None
-        subject._running.cpu_seconds_left = 0.0
-        with pytest.raises(NoAnswer, match="s of a processor for a whole submission are used up"):
+        subject._session.cpu_seconds_left = 0.0
+        with pytest.raises(
+            NoAnswer, match="s of processor time for a whole submission are used up"
+        ):
             subject.scaled(1.0)
 
 
@@ -739,7 +741,7 @@ def test_a_check_has_the_time_of_three_calls_and_a_submission_of_twenty():
 def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
     """Yield a Subject whose links come from a function, and whose processes ended so."""
     subject = Subject({"f": "def f(): return 1"}, practice.sandbox(), timeout)
-    subject._running = SimpleNamespace(
+    subject._session = SimpleNamespace(
         cpu_seconds_left=9.0,
         granted_cpu_seconds=2,
         sandbox=SimpleNamespace(can_fork=forks),
@@ -747,7 +749,7 @@ def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
         clear_check=lambda seconds: (ended, used),
     )
     yield subject
-    subject._drop()
+    subject._close_link()
 
 
 @pytest.mark.parametrize(

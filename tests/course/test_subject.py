@@ -1,7 +1,6 @@
 """The subject of a check: what is asked, what is remembered of it, and which answers are none."""
 
 import math
-import socket
 from functools import partial
 
 import answering
@@ -21,12 +20,12 @@ def opened(monkeypatch):
 @pytest.mark.parametrize("timeout", [2.0, 10.0])
 def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, opened):
     subject, process = opened(timeout=timeout)
-    assert subject.left == 20 * timeout
+    assert subject.seconds_left == 20 * timeout
     with subject:
         assert process.begun == ("a sandbox", ["numpy"], 3 * timeout, 4 * timeout)
         process.cpu_seconds_left = 0.5
-        assert subject.left == 0.5
-    assert process.closed and subject.left == 20 * timeout
+        assert subject.seconds_left == 0.5
+    assert process.closed and subject.seconds_left == 20 * timeout
     with pytest.raises(RuntimeError, match="with statement"):
         subject.f()
 
@@ -60,7 +59,7 @@ def test_only_the_tasks_that_were_handed_in_are_there(opened):
 
 
 def test_answers_are_kept_as_long_as_they_fit_together(opened, monkeypatch):
-    monkeypatch.setattr(module, "REMEMBERED", 100)
+    monkeypatch.setattr(module, "MAX_KEPT_ANSWER_BYTES", 100)
     sizes = [40, 61, 60, 1, 0]
     subject, _ = opened(
         *(right(np.zeros(size, np.uint8)) for size in sizes), right((np.zeros(60, np.uint8), "a"))
@@ -81,40 +80,40 @@ def test_answers_are_kept_as_long_as_they_fit_together(opened, monkeypatch):
 
 
 def test_what_is_printed_is_kept_up_to_its_first_characters(opened, monkeypatch):
-    monkeypatch.setattr(module, "OUTPUT", 10)
+    monkeypatch.setattr(module, "MAX_PRINTED_CHARACTERS", 10)
     subject, _ = opened(right(1, "abcd"), right(1, "efgh\x07"), right(1, "ijkl"), right(1, "mn"))
     with subject:
         said = []
         for _ in range(4):
             subject.f()
-            said.append(subject.said)
+            said.append(subject.printed)
         assert said == ["abcd", "abcdefgh", "abcdefghij", "abcdefghij"]
         subject.fresh()
-        assert subject.said == ""
+        assert subject.printed == ""
 
 
 @pytest.mark.parametrize(
     ("answer", "why"),
     [
-        (("answer", ("", 1), 61), "an answer to what was not asked"),
-        (("answer", 1), "an answer without its output"),
-        (("answer", ("", 1, 2)), "an answer without its output"),
-        (("answer", ["", 1]), "an answer without its output"),
-        (("answer", (1, "")), "an answer without its output"),
-        (("refused", ("", 1)), "an answer of no kind"),
-        (("raised", ("", "a")), "an answer of no kind"),
-        (("of no kind", ("", "a")), "an answer of no kind"),
+        (("answer", ("", 1), 61), "another call"),
+        (("answer", 1), "without its output"),
+        (("answer", ("", 1, 2)), "without its output"),
+        (("answer", ["", 1]), "without its output"),
+        (("answer", (1, "")), "without its output"),
+        (("refused", ("", 1)), "wrong form"),
+        (("raised", ("", "a")), "wrong form"),
+        (("of no kind", ("", "a")), "wrong form"),
         (
             ("raised", ("", {"error": "E", "message": "", "text": "", "line": "1"})),
-            "an answer of no kind",
+            "wrong form",
         ),
         (
             ("raised", ("", {"error": "E", "message": "", "text": "", "line": 1, "more": 1})),
-            "of no kind",
+            "wrong form",
         ),
         (
             ("refused", ("", {"error": "E", "message": "", "text": "", "line": 1})),
-            "an answer of no kind",
+            "wrong form",
         ),
     ],
 )
@@ -124,14 +123,14 @@ def test_an_answer_of_another_form_is_none(answer, why, opened):
         kind, said = silence(subject)
         assert (
             kind == "damaged"
-            and said.startswith("f sent what is no answer: ")
+            and said.startswith("f sent an invalid answer: ")
             and said.endswith(why)
         )
 
 
 def test_what_came_before_it_was_asked_for_is_no_answer(opened):
     for spoken, said in (
-        (b"x", "f sent what is no answer: something before it was asked"),
+        (b"x", "f sent an invalid answer: data came before the call"),
         (b"", None),
     ):
         subject, process = opened(right(7))
@@ -141,14 +140,6 @@ def test_what_came_before_it_was_asked_for_is_no_answer(opened):
                 assert silence(subject) == ("damaged", said) and not process.asked
             else:
                 assert subject.f() == 7
-
-
-def test_a_real_link_has_spoken_when_something_lies_on_it():
-    ours, theirs = socket.socketpair()
-    with ours, theirs:
-        assert module._has_spoken(ours) is False
-        theirs.sendall(b"xy")
-        assert module._has_spoken(ours) is True and ours.recv(9) == b"y"
 
 
 @pytest.mark.parametrize(
@@ -178,4 +169,4 @@ def test_what_does_not_travel_is_told_by_what_it_is(opened):
 
 
 def test_without_a_sandbox_the_time_has_no_bound_but_its_own(opened):
-    assert min(opened(timeout=math.inf)[0].left, 1) == 1
+    assert min(opened(timeout=math.inf)[0].seconds_left, 1) == 1

@@ -24,13 +24,16 @@ def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submis
     with subject:
         for left in (191, 182, 173, 170):
             subject.f()
-            assert subject.left == left
+            assert subject.seconds_left == left
         assert process.until == [(10, 10), (10, 10), (10, 10), (3, 3)]
         assert silence(subject) == ("late", "f: the 30 s for one check are used up")
         subject.fresh()
         process.answers += [right(1, seconds=1.0), (10.5, TimeoutError())]
         subject.f()
-        assert silence(subject) == ("late", "f took longer than 10 s") and subject.left == 158.5
+        assert (
+            silence(subject) == ("late", "f took longer than 10 s")
+            and subject.seconds_left == 158.5
+        )
 
 
 def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened):
@@ -41,7 +44,7 @@ def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened)
         for _ in range(8):
             subject.f()
             subject.fresh()
-        assert process.until[-2:] == [(10, 10), (5, 5)] and subject.left == 0
+        assert process.until[-2:] == [(10, 10), (5, 5)] and subject.seconds_left == 0
         assert silence(subject) == ("late", "f: the 200 s for a whole submission are used up")
         assert len(process.asked) == 8
 
@@ -56,14 +59,14 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
             process.cpu_seconds_left = 0.0001
             assert silence(subject) == ("late", "f took longer than 10 s")
         else:
-            said = "f: the 40 s of a processor for a whole submission are used up"
+            said = "f: the 40 s of processor time for a whole submission are used up"
             assert silence(subject) == ("late", said) and not process.asked
 
 
 @pytest.mark.parametrize(
     ("error", "ended", "used", "forks", "kind", "said"),
     [
-        (EOFError(), KILL, 1.5, True, "late", "f took longer than 2 s of a processor"),
+        (EOFError(), KILL, 1.5, True, "late", "f took longer than 2 s of processor time"),
         (EOFError(), KILL, 1.499, True, "killed", "f ended its process, and gave no answer"),
         (EOFError(), KILL, 9.0, False, "killed", "f ended its process, and gave no answer"),
         (OSError(), 11, 9.0, True, "died", "f ended its process, and gave no answer"),
@@ -74,7 +77,7 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
             2.0,
             True,
             "late",
-            "f took longer than 2 s of a processor",
+            "f took longer than 2 s of processor time",
         ),
         (
             channel.ProtocolError("half"),
@@ -82,9 +85,9 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
             1.0,
             True,
             "killed",
-            "f sent what is no answer: half",
+            "f sent an invalid answer: half",
         ),
-        (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "f sent what is no answer: half"),
+        (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "f sent an invalid answer: half"),
     ],
 )
 def test_who_gave_no_answer_is_told_by_how_the_process_ended(
@@ -93,7 +96,7 @@ def test_who_gave_no_answer_is_told_by_how_the_process_ended(
     subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
     with subject:
         assert silence(subject) == (kind, said)
-        assert process.links[0].closed and process.cleared == [1.0] and subject.left == 196
+        assert process.links[0].closed and process.cleared == [1.0] and subject.seconds_left == 196
         subject.f()
         assert len(process.links) == 2
 

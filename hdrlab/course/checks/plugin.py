@@ -57,7 +57,7 @@ def pytest_configure(config: pytest.Config) -> None:
 class Missing:
     """The subject of a task that was not handed in, or took too long: every call raises NoAnswer."""
 
-    said = ""
+    printed = ""
 
     def __init__(self, kind: str = "missing") -> None:
         self._kind = kind
@@ -125,7 +125,7 @@ class GradingPlugin:
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
-        said = MEMORY_ADDRESS.sub("", subject.said[:MAX_PRINTED_CHARACTERS])
+        said = MEMORY_ADDRESS.sub("", subject.printed[:MAX_PRINTED_CHARACTERS])
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(task_of(item), [])
             room = MAX_REMEMBERED_CALLS - len(kept)

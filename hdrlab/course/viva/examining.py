@@ -119,7 +119,7 @@ class Examining(plugin.GradingPlugin):
         self, generator: "QuestionGenerator", candidate: Candidate
     ) -> dict[str, Any] | None:
         """Return the candidate's question, or None if there is none or the student's code fails."""
-        if self.submission.left < MIN_TIME_LEFT * self.job["timeout"]:
+        if self.submission.seconds_left < MIN_TIME_LEFT * self.job["timeout"]:
             self._replace_sandbox()
         with suppress(Exception):  # whatever a version answers costs one question
             return generator.question(candidate.kind, candidate.max_versions)
