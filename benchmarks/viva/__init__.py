@@ -93,7 +93,7 @@ def examined(
         "photographs": pages.photographs([]),
     }
     made: list[tuple[list[str], list[Question]]] = []
-    with patch.object(grader, "WHOLE", LONGEST):
+    with patch.object(grader, "ALL_CHECKS_TIMEOUT_SECONDS", LONGEST):
         found = list(grader.heard_steps(read, homework, CONDITIONS, by=by, **more))
     for one in found:
         if "passed" in one:
