@@ -75,7 +75,7 @@ MALLOPT_ARENA_MAX = -8
 )
 @click.version_option(__version__, prog_name="hdrlab")
 def main() -> None:
-    """High dynamic range imaging: from photos to a radiance map to a tone-mapped image."""
+    """Make radiance maps and tone-mapped images from photos, and teach HDR imaging."""
 
 
 main.params.append(debug_option(hidden=False))

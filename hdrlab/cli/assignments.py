@@ -27,10 +27,10 @@ homework_option = click.option(
 secret_option = click.option(
     "--secret-file",
     type=common.INPUT_PATH,
-    help="File with the secret that determines each student's inputs. Created if missing.",
+    help="File with the course's secret, see hdrlab grade. hdrlab creates it if it is missing.",
 )
 tier_option = common.choice_option(
-    "--tier", TIERS, help="Sandbox tier for the submitted code; see hdrlab doctor."
+    "--tier", TIERS, help="Sandbox tier for the submitted code, see hdrlab doctor."
 )
 
 
@@ -42,7 +42,8 @@ def find_homework(submission: Path, name: str | None, plan: Path | None) -> plan
         matches = [known for known in homeworks if known in submission.stem.lower()]
         if len(matches) != 1:
             raise InputError(
-                f"{submission.name} does not name one homework; pass --homework, one of {names}"
+                f"{submission.name}: the file name contains no homework's name; "
+                f"pass --homework, one of {names}"
             )
         return homeworks[matches[0]]
     if name not in homeworks:
@@ -53,10 +54,10 @@ def find_homework(submission: Path, name: str | None, plan: Path | None) -> plan
 def read_secret(file: Path | None) -> tuple[str, str]:
     """Return the course's secret, and a note for the instructor, "" if there is nothing to note."""
     if file is None:
-        return "", "for practice: without --secret-file the inputs are public"
+        return "", "for practice only: without --secret-file, anybody can compute the inputs"
     secret, is_new = plans.read_secret(file)
     if is_new:
-        return secret, f"{file}: a new secret for the course; keep it, and keep it to yourself"
+        return secret, f"{file}: created a secret for the course; do not lose or share this file"
     return secret, ""
 
 

@@ -33,7 +33,7 @@ SHORTEST_DECIMAL_SECONDS = 0.4
     "--map",
     "source",
     type=common.INPUT_PATH,
-    help="Radiance map in cd/m^2 to take LOW and HIGH from.",
+    help="Radiance map in cd/m^2 that determines LOW and HIGH.",
 )
 @click.option(
     "--aperture", type=click.FloatRange(0.1, 1000), default=8.0, help="f-number of all photos."
@@ -41,7 +41,7 @@ SHORTEST_DECIMAL_SECONDS = 0.4
 @click.option(
     "--iso", type=click.FloatRange(1, 10_000_000), default=100.0, help="ISO speed of all photos."
 )
-@click.option("--usable", default=7.0, help="Usable range of one photo, in stops.")
+@click.option("--usable", default=7.0, help="Dynamic range of one photo, in stops.")
 @click.option("--overlap", default=3.0, help="Overlap of two neighboring photos, in stops.")
 @click.option("--thirds", is_flag=True, help="Use shutter times in thirds of a stop.")
 @click.option(
@@ -72,16 +72,20 @@ def plan(
     snr: float | None,
     camera_file: Path | None,
 ) -> None:
-    """Plan the photos for a scene with luminances from LOW to HIGH, in cd/m^2.
+    """Plan the exposures for a scene.
 
-    Moonlight is about 0.1 cd/m^2, a living room in the evening 10, a white page in the sun 30 000.
-    With --map, hdrlab leaves out the darkest and the brightest thousandth of the pixels.
+    LOW and HIGH are the scene's smallest and largest luminance, in cd/m^2. Typical luminances are
+    0.1 cd/m^2 in moonlight, 10 cd/m^2 in a living room in the evening, and 30,000 cd/m^2 for a
+    white page in the sun. With --map, hdrlab ignores the darkest and the brightest thousandth of
+    the pixels.
 
-    With --snr 20, hdrlab also plans the bracket that takes the least time while the noise of the
-    merged map (the mean with inverse-variance weights) is at most a 20th of the signal from LOW to
-    HIGH. The --camera file may set full_well = 20000, read_noise = 5 (electrons), gain = 5
-    (electrons per level), converter_noise = 0 (levels), pause = 0.2 (seconds after each photo),
-    aperture = 8 (f-number) and speeds = [100, 400] (ISO; full_well and gain belong to the lowest).
+    With --snr 20, hdrlab also plans a second bracket: the fastest one with a signal-to-noise ratio
+    of at least 20 from LOW to HIGH. It assumes that the photos are merged with inverse-variance
+    weights. The --camera file describes the noise of the camera. It may contain, with these
+    defaults: full_well = 20000 and read_noise = 5 (electrons), gain = 5 (electrons per pixel
+    value), converter_noise = 0 (pixel values), pause = 0.2 (seconds after each photo), aperture = 8
+    (f-number) and speeds = [100] (ISO speeds to choose from, such as [100, 400]; full_well and gain
+    apply to the lowest).
     """
     from hdrlab.capture import planning
 
@@ -136,14 +140,14 @@ def _scene_range(source: Path) -> tuple[float, float]:
 
     L = luminance(common.read_map(source, clean=False))
     if not (L > 0).any():
-        raise InputError(f"{source}: expected a map with positive radiance, all of it is black")
+        raise InputError(f"{source}: all pixels are black; pass a map with positive radiance")
     darkest, brightest = np.quantile(L[L > 0], SCENE_QUANTILES)
     return float(darkest), float(brightest)
 
 
 def _read_camera(file: Path, known: tuple[str, ...]) -> dict[str, Any]:
     """Return the values of a camera's noise model in a TOML file, by name."""
-    expected = f"{file}: expected numbers {', '.join(known)}, and for speeds a list"
+    expected = f"{file}: expected a list of speeds and numbers for the rest of {', '.join(known)}"
     try:
         table = tomllib.loads(file.read_text(encoding="utf8"))
         values = {
@@ -215,13 +219,13 @@ def _noise_lines(
     "--at",
     metavar="DOWN,RIGHT",
     default="0.5,0.5",
-    help="Place of the spot, as fractions of the height and the width.",
+    help="Position of the spot, as fractions of the height and the width.",
 )
 def meter(photo: Path, mode: str, at: str) -> None:
-    """Meter PHOTO as a camera would, and report the exposure that it should have had.
+    """Meter PHOTO like a camera, and report the correct exposure.
 
-    hdrlab assumes an sRGB photo. Clipped pixels only give a lower bound of the brightness, so for
-    an overexposed photo the result is a first step: take that photo, and meter again.
+    hdrlab assumes an sRGB photo. The true brightness of clipped pixels is unknown. So if many are
+    clipped, take a photo with the reported time and meter that one again.
     """
     import numpy as np
 
@@ -290,14 +294,19 @@ def _parse_place(text: str) -> tuple[float, float]:
 )
 @common.choice_option("--way", ["chrominance", "locus"], help="Method that finds skin.")
 @click.option(
-    "--target", default=128.0, help="Mean pixel value of that region afterwards, 1 to 254."
+    "--target",
+    default=128.0,
+    help="Mean pixel value of that region after the correction, 1 to 254.",
 )
 def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
-    """Correct the exposure of PHOTO so that its important region is well exposed.
+    """Correct the exposure of PHOTO.
 
-    The region is skin, if skin covers at least a hundredth of the photo. Otherwise it is the blocks
-    with the most contrast and the sharpest focus. A photo that is less than a third of a stop off
-    is written unchanged. 16 bits become 8.
+    hdrlab changes the brightness so that the important region is well exposed. --by skin selects
+    skin, and --by blocks selects the blocks with the most contrast and the sharpest focus. --by
+    auto uses skin if it covers at least a hundredth of the photo, and otherwise blocks.
+
+    If the exposure is wrong by less than a third of a stop, hdrlab does not change it. The output
+    always has 8 bits per channel.
     """
     from hdrlab.core.arrays import to_256
     from hdrlab.enhance import battiato, skin
@@ -331,7 +340,7 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     "--stops",
     type=click.FloatRange(0, min_open=True),
     default=2.0,
-    help="Stops from one photo to the next.",
+    help="Stops between one photo and the next.",
 )
 @click.option(
     "--assemble",
@@ -342,12 +351,13 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
 def shoot(out: Path, frames: int, stops: float, map_file: Path | None) -> None:
     """Take a bracket with a camera on a USB cable.
 
-    hdrlab fixes focus, ISO and white balance, and restores them at the end. The aperture stays. The
-    middle time is the one that the camera shows: in A (Av) its metered time, in M the time that you
-    set. The others are the nearest times that the camera has.
+    hdrlab fixes focus, ISO and white balance, and restores them at the end. It does not change the
+    aperture. The middle photo gets the time that the camera shows: in mode A (Av) the metered time,
+    in mode M the time that you set. For the others, hdrlab uses the nearest times that the camera
+    has.
 
-    Each photo is saved when it is taken, and its time is added to exposures.csv. This needs the
-    extra `camera`, which exists for Linux and macOS.
+    hdrlab saves each photo as soon as it is taken, and adds its time to exposures.csv. This command
+    needs the extra `camera` and runs on Linux and macOS.
     """
     from hdrlab.capture import exposure, planning
     from hdrlab.io import files, radiance, sequence, tethered

@@ -92,8 +92,8 @@ def load_class(
 
     if options.roster is None:
         raise InputError(
-            f"{options.submissions} is a folder, which is graded as a class; "
-            "pass --roster, the class list"
+            f"{options.submissions} is a folder, which hdrlab grades as a class; "
+            "pass the class list with --roster"
         )
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
     course = run.GradingContext(
@@ -193,7 +193,7 @@ def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Sub
         return
     if len(submissions) > report.MAX_SUBMISSIONS:
         common.echo_notes(
-            [f"no similar.html: it compares at most {report.MAX_SUBMISSIONS:,} submissions"]
+            [f"no similar.html: hdrlab compares at most {report.MAX_SUBMISSIONS:,} submissions"]
         )
         return
     steps = report.write_steps(out, course.homework, submissions, course.conditions.secret)
@@ -217,7 +217,7 @@ def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
         return processes.Processes(grader.grade, options.jobs)
     if options.jobs is not None:
         raise InputError(
-            "--jobs and --cluster exclude each other: a cluster runs a job in each of its threads"
+            "--jobs and --cluster exclude each other; with a cluster, set the threads of its workers"
         )
     common.require_modules("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
@@ -255,7 +255,7 @@ def _read_options(results: Path) -> ClassOptions:
     file = results / OPTIONS_FILE
     if not file.is_file():
         raise InputError(
-            f"{results}: has no results of a class; pass the folder that `hdrlab grade` wrote"
+            f"{results}: contains no results of a class; pass the folder that `hdrlab grade` wrote"
         )
     try:
         folder, values = json.loads(file.read_bytes())

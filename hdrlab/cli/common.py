@@ -119,7 +119,7 @@ def operator_option(name: str) -> Decorator:
     return choice_option(
         name,
         OPERATORS,
-        help="Tone mapping operator. photograph adapts its settings to the map; the others use "
+        help="Tone-mapping operator. photograph adapts its settings to the map. The others use "
         "the settings of their papers.",
     )
 
@@ -127,7 +127,7 @@ def operator_option(name: str) -> Decorator:
 mask_option = click.option(
     "--mask",
     metavar="RRGGBB",
-    help="Ignore pixels of exactly this color (e.g. scan borders).",
+    help="Ignore pixels of exactly this color, such as the border of a scan.",
 )
 clean_option = click.option(
     "--clean", is_flag=True, help="Repair a map even if most of its pixels are NaN or negative."
@@ -145,7 +145,7 @@ def tier_error(reason: str) -> InputError:
         advice = f"{remedy}; {advice}"
     message = f"{first_line}; {advice}"
     if "practice" not in first_line:
-        message += "; for practice without credit, pass --tier practice"
+        message += "; or grade without credit: pass --tier practice"
     return InputError(message)
 
 
@@ -229,13 +229,13 @@ def read_map(source: Path, clean: bool) -> "F32":
     invalid = sanitized.unknown + sanitized.black + sanitized.infinite / channels
     if not clean and 2 * invalid >= pixels:
         raise InputError(
-            f"{source}: most pixels are no valid radiance ({repairs}, of {pixels} pixels); "
+            f"{source}: most of the {pixels} pixels have no valid radiance ({repairs}); "
             "pass --clean to repair them"
         )
     if repairs:
-        click.echo(f"note: {source}: cleaned {repairs}, of {pixels} pixels", err=True)
+        click.echo(f"note: {source}: repaired {repairs}, out of {pixels} pixels", err=True)
     elif clean:
-        click.echo(f"{source}: cleaned nothing, all is radiance")
+        click.echo(f"{source}: nothing to repair, all values are valid")
     return E
 
 
@@ -253,7 +253,7 @@ def describe_map(E: "F32") -> str:
 def describe_agreement(spread: float) -> str:
     """Return in words how far the frames of a map agree; NaN stops stand for "not measured"."""
     if spread != spread:
-        return "how far the frames agree could not be measured"
+        return "no agreement of the frames could be measured"
     return f"frames agree to {spread:.3f} stops"
 
 

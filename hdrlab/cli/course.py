@@ -11,7 +11,7 @@ from hdrlab.errors import InputError
 
 @click.group(cls=common.Group)
 def course() -> None:
-    """Build the course: its handouts, and exports for other systems."""
+    """Build assignments and solutions, and export the course."""
 
 
 @course.command()
@@ -22,12 +22,12 @@ def course() -> None:
     help="Folder with the text of each homework.",
 )
 @click.option(
-    "--out", type=common.OUTPUT_PATH, default="assignments", help="Folder for the handouts."
+    "--out", type=common.OUTPUT_PATH, default="assignments", help="Folder for the assignments."
 )
 @click.option(
     "--solutions",
     type=common.INPUT_PATH,
-    help="Folder for the solved notebooks. hdrlab executes them.",
+    help="Folder for the solved and executed notebooks.",
 )
 @click.option(
     "--jobs",
@@ -39,7 +39,7 @@ def course() -> None:
     "--variants",
     type=common.EXISTING_FILE,
     metavar="ROSTER",
-    help="Class list (CSV) with the teams that get handouts of their own.",
+    help="Class list (CSV), to build assignments for each team, see above.",
 )
 @assignments.secret_option
 @assignments.plan_option
@@ -53,10 +53,12 @@ def build(
     secret_file: Path | None,
     plan: Path | None,
 ) -> None:
-    """Build the handouts from the texts, the library's functions, and the plan's points and dates.
+    """Build the assignments.
 
-    With --variants, hdrlab writes a folder with handouts for each team. The plan's parameters in
-    them are determined by the secret of --secret-file.
+    hdrlab combines the texts, the library's functions and the course plan.
+
+    With --variants, hdrlab makes a folder for each team, with the team's own variants of the tasks.
+    The plan lists the parameters that vary. The secret of --secret-file determines their values.
     """
     from hdrlab.course.authoring import execute, handouts, solutions as solved
     from hdrlab.course.students import roster
@@ -70,7 +72,7 @@ def build(
             secret, note = assignments.read_secret(secret_file)
             if not secret:
                 raise InputError(
-                    "--variants needs --secret-file: the secret determines each team's parameters"
+                    "--variants needs --secret-file: the secret determines each team's variants"
                 )
             assignments.echo_secret_note(note)
             teams = roster.read(variants).teams()
@@ -84,18 +86,18 @@ def build(
 
 @course.command()
 @click.option(
-    "--nbgrader", type=common.OUTPUT_PATH, metavar="DIR", help="Folder for a course of nbgrader."
+    "--nbgrader", type=common.OUTPUT_PATH, metavar="DIR", help="Folder for an nbgrader course."
 )
 @click.option(
     "--gradescope",
     type=common.OUTPUT_PATH,
     metavar="DIR",
-    help="Folder for Gradescope's autograders, a zip file for each homework.",
+    help="Folder for Gradescope autograders, one zip file for each homework.",
 )
 @click.option(
     "--hidden",
     type=common.EXISTING_FOLDER,
-    help="Folder with your own checks, test_<task>.py, for Gradescope.",
+    help="Folder with your own hidden checks, test_<task>.py, for Gradescope.",
 )
 @assignments.secret_option
 @assignments.plan_option
@@ -107,7 +109,7 @@ def export(
     secret_file: Path | None,
     plan: Path | None,
 ) -> None:
-    """Export the course to another system. Its tests call the same checks."""
+    """Export the course to nbgrader or Gradescope."""
     from hdrlab.course.authoring.export import (
         gradescope as gradescope_export,
         nbgrader as nbgrader_export,
@@ -133,11 +135,14 @@ def export(
     "--folder",
     type=common.INPUT_PATH,
     default="our-tasks",
-    help="Folder for the task, outside the package.",
+    help="Folder for the task, outside hdrlab.",
 )
 @click.option("--homework", default="extra", help="Homework that the task belongs to.")
 def new_task(*, task: str, folder: Path, homework: str) -> None:
-    """Create a task of your own: a complete example that works, to change file by file."""
+    """Create a task of your own, from a complete example.
+
+    The example works. Change it file by file.
+    """
     from hdrlab.course.authoring import own_task
 
     common.echo_paths(own_task.write(folder, task, homework))
@@ -148,7 +153,10 @@ def new_task(*, task: str, folder: Path, homework: str) -> None:
 @click.argument("folder", type=common.INPUT_PATH)
 @assignments.plan_option
 def pack(*, folder: Path, plan: Path | None) -> None:
-    """Write the model solutions into FOLDER: each homework, solved with the library's functions."""
+    """Write model solutions to FOLDER.
+
+    hdrlab solves each homework with the library's functions.
+    """
     from hdrlab.course.authoring import solutions
 
     common.echo_paths(solutions.write(plans.read(plan), folder))
@@ -157,7 +165,10 @@ def pack(*, folder: Path, plan: Path | None) -> None:
 @course.command()
 @click.argument("folder", type=common.INPUT_PATH)
 def toy(*, folder: Path) -> None:
-    """Create an example class in FOLDER: a dozen good, late, wrong and hostile submissions."""
+    """Create an example class in FOLDER.
+
+    It consists of a dozen submissions: some are correct, the others late, wrong or hostile.
+    """
     from hdrlab.course.authoring import toy_class as toy_class
     from hdrlab.course.grading import doctor
 

@@ -22,7 +22,7 @@ folder_argument = click.argument("folder", type=common.INPUT_PATH)
 
 @click.group(cls=common.Group)
 def gallery() -> None:
-    """Let the class vote on its artifacts: init, add, links, serve, close, results."""
+    """Let the class vote on its project images."""
 
 
 @gallery.command()
@@ -35,7 +35,7 @@ def gallery() -> None:
     help="End of the vote, such as 2026-12-01T23:59+01:00.",
 )
 @click.option(
-    "--marks", type=click.IntRange(1, 20), default=3, help="Largest number of votes on a ballot."
+    "--marks", type=click.IntRange(1, 20), default=3, help="Largest number of votes of one student."
 )
 def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
     """Create a gallery in FOLDER."""
@@ -47,7 +47,8 @@ def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
         ) from None
     store.create(folder, sanitize_line(title, MAX_TITLE_LENGTH), end, marks)
     click.echo(
-        f"{folder}: a gallery, open until {store.format_time(end)}, {marks} votes on a ballot"
+        f"{folder}: gallery created; vote open until {store.format_time(end)}, "
+        f"up to {marks} votes for each student"
     )
 
 
@@ -61,12 +62,13 @@ def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
 )
 @click.argument("artifacts", nargs=-1, type=common.INPUT_PATH)
 def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
-    """Register the students of a roster as voters, and add ARTIFACTS to the gallery in FOLDER.
+    """Add voters and ARTIFACTS to the gallery in FOLDER.
 
-    ARTIFACTS are files or folders. A file, or its folder, is named after its team or student:
-    team7.jpg, b0123/submission.zip. A text file next to an image, team7.txt, holds its title and
-    then a caption. Archives of `hdrlab submit` contain both. hdrlab lists the artifacts that it
-    cannot add, and adds the others.
+    The voters are the students of the roster. ARTIFACTS are files or folders. The name of a
+    file, or of its folder, starts with the team or the student: team7.jpg, b0123/submission.zip. A
+    text file with the name of the image, such as team7.txt, contains its title in the first line
+    and a caption below. Archives of `hdrlab submit` contain both. hdrlab lists the artifacts that
+    it cannot add, and adds the others.
     """
     from hdrlab.course.gallery import collect
 
@@ -117,7 +119,7 @@ def _echo_note(text: str) -> None:
 @click.option(
     "--roster",
     type=common.INPUT_PATH,
-    help="Class list whose column email is copied next to the links.",
+    help="Class list with a column email, to copy to the table of links.",
 )
 @click.option(
     "--renew",
@@ -125,9 +127,7 @@ def _echo_note(text: str) -> None:
     metavar="STUDENT",
     help="Make a new link only for this student. Repeatable.",
 )
-@click.option(
-    "--all-anew", is_flag=True, help="Make new links for all students, and end their old ones."
-)
+@click.option("--all-anew", is_flag=True, help="Replace the links of all students with new ones.")
 def links(
     *,
     folder: Path,
@@ -137,9 +137,9 @@ def links(
     renew: tuple[str, ...],
     all_anew: bool,
 ) -> None:
-    """Make the personal links. Each works in one browser.
+    """Make a personal link for each student. Each link works in one browser only.
 
-    The links are written once and stored nowhere else. Students who have a link keep it, unless
+    hdrlab stores the links nowhere else, so keep the file. Students who have a link keep it, unless
     --renew or --all-anew replaces it.
     """
     from hdrlab.course.gallery import tokens
@@ -160,8 +160,8 @@ def links(
         rows = tokens.links(db, address, students, emails)
     csv_tables.write_csv(out, tokens.LINKS, rows, private=True)
     click.echo(
-        f"{out}: {len(rows)} personal links; anybody who has a link can vote with it, "
-        "so send each to its owner only"
+        f"{out}: {len(rows)} personal links; send each link only to its student, "
+        "because anybody who has it can vote with it"
     )
 
 
@@ -176,10 +176,10 @@ def links(
 @click.option(
     "--behind-proxy",
     is_flag=True,
-    help="Trust a proxy on this machine for TLS and the clients' addresses.",
+    help="Accept clients' addresses and TLS from a proxy on this machine.",
 )
 def serve(*, folder: Path, host: str, port: int, address: str | None, behind_proxy: bool) -> None:
-    """Serve the gallery in FOLDER until Ctrl-C. Every acknowledged ballot is on the disk."""
+    """Serve the gallery in FOLDER until Ctrl-C."""
     common.require_modules("class", SERVER_MODULES)
     from hdrlab.course.gallery.web.serve import serve as serve_gallery
 
@@ -190,7 +190,7 @@ def serve(*, folder: Path, host: str, port: int, address: str | None, behind_pro
             ["without https://, everybody on the same network can read the personal links"]
         )
     click.echo(
-        f"{address}: the gallery of {folder}; Ctrl-C stops it, errors are logged in gallery.log"
+        f"{address}: serving the gallery of {folder}; stop it with Ctrl-C; errors go to gallery.log"
     )
     serve_gallery(folder, address, host=host, port=port, behind_proxy=behind_proxy)
 
@@ -213,7 +213,10 @@ def close(*, folder: Path) -> None:
     "-o", "--out", required=True, type=common.OUTPUT_PATH, help="CSV file for the gradebook."
 )
 def results(*, folder: Path, out: Path) -> None:
-    """Write who voted, and the result of each artifact, after the end of the vote."""
+    """Write the results, after the end of the vote.
+
+    The CSV file shows who voted, and the votes of each student's artifact.
+    """
     from hdrlab.course.gallery import ballots
 
     with closing(store.connect(folder)) as db:

@@ -28,7 +28,7 @@ jobs_option = click.option(
     help="Show up to N hints for each failed check.",
 )
 @click.option(
-    "--page", type=common.OUTPUT_PATH, help="Page with the same results and figures: .html."
+    "--page", type=common.OUTPUT_PATH, help="Page to write, with results and figures: .html."
 )
 @assignments.plan_option
 def check(
@@ -40,9 +40,12 @@ def check(
     page: Path | None,
     plan: Path | None,
 ) -> None:
-    """Check SUBMISSION, a notebook or a Python file, as often as you like. Not for credit.
+    """Check SUBMISSION, a notebook or a Python file.
 
-    The functions run in a process of their own. That is no sandbox, so check only code you trust.
+    You can check a submission as often as you like. The result does not count for credit.
+
+    hdrlab runs the functions in a separate process, but not in a sandbox. So check only code that
+    you trust.
     """
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
@@ -76,7 +79,7 @@ def check(
     "--student",
     default="",
     show_default=False,
-    help="Name that determines this student's own inputs. Requires --secret-file.",
+    help="Student whose inputs to use, for a single submission. Requires --secret-file.",
 )
 @assignments.secret_option
 @click.option(
@@ -93,19 +96,19 @@ def check(
 @click.option(
     "--received",
     type=common.EXISTING_FILE,
-    help="Submission times of a class: a CSV file with the columns file and received.  "
-    "[default: the files' own times]",
+    help="Times of the submissions: a CSV file with the columns file and received.  "
+    "[default: the files' modification times]",
 )
 @click.option(
     "--before",
     type=common.EXISTING_FILE,
     multiple=True,
-    help="Gradebook of an earlier homework. Repeatable.",
+    help="Gradebook of an earlier homework, to count late days. Repeatable.",
 )
 @click.option(
     "--moodle",
     type=common.EXISTING_FILE,
-    help="Moodle's grading worksheet of the assignment, to fill in.",
+    help="Moodle's grading worksheet of the assignment. hdrlab writes a copy with the scores.",
 )
 @click.option(
     "--only",
@@ -119,12 +122,12 @@ def check(
     metavar="TIME",
     help="Grade only submissions received after this time (UTC), such as 2026-11-30T12:00:00.",
 )
-@click.option("--regrade", is_flag=True, help="Grade again what was graded before.")
+@click.option("--regrade", is_flag=True, help="Delete earlier results and grade again.")
 @jobs_option
 @click.option(
     "--cluster",
     metavar="ADDRESS",
-    help="Dask cluster that grades the class, such as tcp://HOST:8786.",
+    help="Address of a Dask cluster that grades the class, such as tcp://HOST:8786.",
 )
 @assignments.plan_option
 def grade(
@@ -148,29 +151,31 @@ def grade(
     cluster: str | None,
     plan: Path | None,
 ) -> None:
-    """Grade SUBMISSION, a notebook or a Python file, and write the results in every format.
+    """Grade SUBMISSION, or all submissions of a class.
 
-    The submitted code never runs in the process that computes the score. If this machine cannot run
-    the sandbox tier, hdrlab stops with an error. One call of a function may take --timeout seconds,
-    one check 3 times as long, and one submission 20 times as long.
+    SUBMISSION is a notebook, a Python file, or a folder with the files of a class. hdrlab runs
+    the submitted code in a separate process, in the sandbox of --tier. If this machine cannot run
+    that tier, hdrlab stops with an error. One call of a function may take --timeout seconds, one
+    check 3 times as long, and one submission 20 times as long.
 
-    The file of --secret-file holds one line that nobody else may know. Do not lose it.
+    The course's secret determines the inputs of each student's checks. It is one line in the file
+    of --secret-file. Do not share or lose it.
 
-    If SUBMISSION is a folder, hdrlab grades every submission in it (this requires --roster),
-    several at a time, and writes a gradebook and a page about the class. After an interruption, the
-    next run grades the rest. The options from --roster to --cluster apply only to a folder.
+    From a folder, hdrlab grades every submission, several at the same time. It also writes a
+    gradebook and a page about the class. If you interrupt it, run it again to grade the rest. The
+    options from --roster to --cluster apply only to a folder, which requires --roster.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
     if student and secret_file is None:
         raise InputError(
-            "--student needs --secret-file: without a secret anybody could compute the same inputs"
+            "--student needs --secret-file, because without a secret anybody can compute the inputs"
         )
     if submission.is_dir() and student:
         raise InputError(
-            f"--student applies to a single submission; {submission} is a folder, for which the "
-            "roster has the names"
+            f"--student is for a single submission, but {submission} is a folder; "
+            "leave --student out: the roster has the names"
         )
     class_options = {
         "--roster": roster,
@@ -186,7 +191,8 @@ def grade(
     given = [name for name, value in class_options.items() if value]
     if submission.is_file() and given:
         raise InputError(
-            f"{', '.join(given)}: for a folder of submissions; {submission} is a single one"
+            f"{', '.join(given)}: for a folder of submissions, but {submission} is a file; "
+            "pass the folder, or leave these options out"
         )
     secret, note = assignments.read_secret(secret_file)
     conditions = plans.GradingOptions(
@@ -235,30 +241,30 @@ def grade(
 @common.choice_option(
     "--policy",
     ["replace", "never-lower", "only-listed"],
-    help="Rule that decides which new results count.",
+    help="Rule for which new results to use, see above.",
 )
 @click.option(
     "--only",
     metavar="WHO",
     multiple=True,
-    help="Student or team whose new result counts with --policy only-listed. Repeatable.",
+    help="Student or team for --policy only-listed. Repeatable.",
 )
 @click.option(
     "--requests",
     type=common.EXISTING_FILE,
     multiple=True,
-    help="Regrade requests: a CSV file with the columns student, task and words. Repeatable.",
+    help="Students' requests: a CSV file with the columns student, task and words. Repeatable.",
 )
-@click.option("--why", default="", show_default=False, help="Reason to record in the signed log.")
+@click.option("--why", default="", show_default=False, help="Reason, for the log.")
 @jobs_option
 @click.option(
-    "--cluster", metavar="ADDRESS", help="Dask cluster that grades, such as tcp://HOST:8786."
+    "--cluster", metavar="ADDRESS", help="Address of a Dask cluster, such as tcp://HOST:8786."
 )
 @click.option(
     "--apply",
     "is_applied",
     is_flag=True,
-    help="Apply the changes and record them in the signed log.",
+    help="Apply the changes, and record them in the signed log.",
 )
 def regrade(
     *,
@@ -272,10 +278,13 @@ def regrade(
     cluster: str | None,
     is_applied: bool,
 ) -> None:
-    """Grade a class again with corrected checks, and show whose points change and why.
+    """Grade a class again with corrected checks.
 
-    RESULTS is the folder that `hdrlab grade` wrote for the class. Without --apply, the results in
-    it stay as they are.
+    RESULTS is the folder that `hdrlab grade` wrote for the class. hdrlab shows which scores change
+    and why. Without --apply, it does not change the results in the folder.
+
+    --policy replace uses all new results. never-lower keeps the old result if the score would drop.
+    only-listed uses the new results of students and teams named with --only or in --requests.
     """
     from hdrlab.course.classroom import jobs as grading_jobs, regrade as regrading, run
     from hdrlab.course.scratch import temporary_folder
@@ -311,7 +320,10 @@ def regrade(
 
 @click.command(cls=common.Command)
 def doctor() -> None:
-    """Report which sandbox tiers this machine can run, and what the others need."""
+    """Report which sandbox tiers this machine can run.
+
+    For the other tiers, hdrlab says what is missing.
+    """
     from hdrlab.course.grading import doctor as sandbox_doctor
 
     for tier, works, credit, says, remedy in sandbox_doctor.report():

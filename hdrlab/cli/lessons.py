@@ -22,7 +22,7 @@ HELP_WIDTH = 88
 @click.option("--seed", default=1, help="Seed of the noise and the camera shake.")
 @click.option("--real", is_flag=True, help="Use six real photos from a phone instead.")
 def demo(*, out: Path, seed: int, real: bool) -> None:
-    """Simulate a bracket of a dark chapel with bright windows, and assemble it."""
+    """Simulate a bracket of a dark chapel, and assemble it."""
     from hdrlab import demo as demo_steps
 
     steps = demo_steps.real_steps(out) if real else demo_steps.demo_steps(out, seed=seed)
@@ -40,10 +40,11 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks without starting JupyterLab.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[-- JUPYTERLAB_OPTIONS]")
 def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
-    """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
+    """Open JupyterLab on your own copy of the notebooks.
 
-    Files that you changed in your copy stay. JupyterLab saves the state of the widgets, unless your
-    own settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
+    hdrlab copies the notebooks and assignments to --folder, and opens the first notebook. It never
+    overwrites files in that folder. JupyterLab saves the state of the widgets, unless your own
+    settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
     """
     from hdrlab.course import materials
 
@@ -67,13 +68,13 @@ def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     "--out",
     type=common.OUTPUT_PATH,
     default="site",
-    help="Folder for the site: empty, or an earlier site.",
+    help="Folder for the site: new, empty, or with an earlier site.",
 )
 @click.option(
     "--notebooks",
     multiple=True,
     type=common.EXISTING_FILE,
-    help="Notebook to use instead of all of them. Repeatable.",
+    help="Notebook for the site, instead of all notebooks of hdrlab. Repeatable.",
 )
 @click.option(
     "--jobs",
@@ -88,11 +89,13 @@ def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     help="Address of the published site, https://..., for link previews.",
 )
 def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
-    """Build a web site of the course: executed notebooks, guides and the reference.
+    """Build a website of the course.
 
-    The pages need no server and load nothing from other sites: open index.html, or copy the folder
-    to any web server. Executed notebooks are cached in .NAME.cache next to the site, so the next
-    build runs only those that have changed.
+    It contains the executed notebooks, the guides and the reference. The pages need no server and
+    load nothing from other sites: open index.html, or copy the folder to any web server.
+
+    hdrlab keeps the executed notebooks in .NAME.cache next to the site. The next
+    build runs only notebooks that have changed.
     """
     common.require_modules("site", SITE_MODULES)
     from hdrlab.cli.terminal import elapsed
@@ -105,7 +108,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
     names = {notebook.stem for notebook in chosen}
     if len(names) < len(chosen) or pages.FRONT.stem in names:
         raise InputError(
-            f"--notebooks: pass notebooks of different names, and none called {pages.FRONT.name}"
+            f"--notebooks: pass notebooks with different names, and none named {pages.FRONT.name}"
         )
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()

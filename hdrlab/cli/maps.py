@@ -20,7 +20,7 @@ OUTPUT_KINDS = ["picture", "ultrahdr", "png", "avif", "jxl"]
 KIND_BY_SUFFIX = {".avif": "avif", ".jxl": "jxl"}
 
 gamut_option = common.choice_option(
-    "--way", ["hue", "ratio"], help="Treatment of colors that the display cannot show."
+    "--way", ["hue", "ratio"], help="Method for colors that the display cannot show."
 )
 
 
@@ -31,17 +31,17 @@ gamut_option = common.choice_option(
     "--out",
     required=True,
     type=common.OUTPUT_PATH,
-    help="Image to write: .png, .jpg or .tif; .avif or .jxl.",
+    help="Image to write: .png, .jpg, .tif, .avif or .jxl.",
 )
 @common.choice_option(
     "--to",
     OUTPUT_KINDS,
-    help="Kind of image. All but picture use the extra brightness of an HDR screen, see above.",
+    help="Kind of image: picture is for ordinary screens, the others are for HDR screens.",
 )
 @click.option(
     "--headroom",
     default=8.0,
-    help="Brightest light of the HDR screen, as a multiple of white.",
+    help="Peak brightness of the HDR screen, as a multiple of white.",
 )
 @common.choice_option("--primaries", ["bt2020", "p3"], help="Color primaries for png and avif.")
 @common.operator_option("--operator")
@@ -74,19 +74,18 @@ def tonemap(
 ) -> None:
     """Tone-map the radiance map SOURCE to an image.
 
-    A bright color may exceed the range of a display in one channel. --way hue makes the color a
-    little darker and paler and keeps its hue. --way ratio clips the channel: the image stays
+    A bright color may exceed the range of a display in one channel. --way hue keeps its hue and
+    makes it a little darker and paler. --way ratio clips the channel: the image stays more
     colorful, but a bright blue turns toward cyan.
 
-    --to ultrahdr writes an Ultra HDR .jpg (ISO 21496-1). Every program can show it, and it holds a
-    gain map from which an HDR screen restores the radiance, up to --headroom. Such a .jpg can also
-    be SOURCE.
+    --to ultrahdr writes an Ultra HDR .jpg (ISO 21496-1). Every program can show it. On an HDR
+    screen, its gain map restores the radiance, up to --headroom. Such a .jpg can also be SOURCE.
 
-    --to png and --to avif encode the radiance of the map itself with PQ (SMPTE ST 2084). White is
-    at 203 cd/m2 and as bright as the operator made it. Programs without PQ show the image pale.
+    --to png and --to avif store the radiance of the map with PQ (SMPTE ST 2084). White is at 203
+    cd/m^2. Programs without PQ show the image with pale colors.
 
-    --to jxl archives the same radiance as floating-point values, lossless and without a limit to
-    its range. A suffix .avif or .jxl selects its kind by itself.
+    --to jxl stores the radiance as floating-point values, lossless and with its full range. If the
+    output ends in .avif or .jxl, you can omit --to.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
@@ -154,19 +153,20 @@ def check_settings(
     "--operators", metavar="NAME,...", help="Operators to compare, in this order.  [default: all]"
 )
 @click.option(
-    "--size", type=click.IntRange(16), default=1024, help="Longest side of the map, in pixels."
+    "--size", type=click.IntRange(16), default=1024, help="Longer side of the images, in pixels."
 )
 @gamut_option
 @common.clean_option
 def compare(
     *, source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
 ) -> None:
-    """Make a contact sheet of the radiance map SOURCE, tone-mapped by every operator.
+    """Show the radiance map SOURCE with every tone-mapping operator.
 
-    The sheet also shows the run time and the quality (TMQI) of each operator.
+    hdrlab writes a contact sheet. It also shows the run time and the quality index (TMQI) of each
+    operator.
 
-    hdrlab first reduces the map to --size pixels along its longer side. Times and qualities are for
-    that size. `hdrlab tonemap --help` explains --way.
+    hdrlab first reduces the map to --size pixels along its longer side. Times and quality indices
+    are for that size. `hdrlab tonemap --help` explains --way.
     """
     from hdrlab.show.pages import contact, sheet
     from hdrlab.show.plots import figures
@@ -186,11 +186,14 @@ def compare(
 @click.option(
     "--half",
     is_flag=True,
-    help="Write half-precision floats to .exr: half the size, values up to 65504.",
+    help="Write half-precision floats to .exr, with half the size and values up to 65504.",
 )
 @common.clean_option
 def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
-    """Convert the radiance map SOURCE to the format of TARGET: .hdr, .exr, .pfm or .tif."""
+    """Convert the radiance map SOURCE to another format.
+
+    The suffix of TARGET selects the format: .hdr, .exr, .pfm or .tif.
+    """
     from hdrlab.io import radiance
 
     E = common.read_map(source, clean)
@@ -201,7 +204,10 @@ def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
 @click.command(cls=common.Command)
 @click.argument("files", nargs=-1, required=True, type=common.INPUT_PATH)
 def info(*, files: tuple[Path, ...]) -> None:
-    """Describe FILES, radiance maps or photos: format, size, values and exposure."""
+    """Describe FILES, which are radiance maps or photos.
+
+    hdrlab prints the format, size, values and exposure of each file.
+    """
     from hdrlab.show.describe import describe_file
 
     for file in files:

@@ -40,14 +40,13 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     "--times",
     metavar="exif|stated|estimate|FILE",
     default="exif",
-    help="exif: start from EXIF and correct from the pixels; stated: use as given; "
-    "estimate: compute from the pixels; FILE: a list of times.",
+    help="Source of the exposure times, see above.",
 )
-@click.option("--keep-times", is_flag=True, help="Use the times of a FILE without correction.")
+@click.option("--keep-times", is_flag=True, help="Do not correct the times of a FILE.")
 @click.option(
     "--stops",
     type=click.FloatRange(0, min_open=True),
-    help="Stops between neighboring photos whose times are unknown.",
+    help="Stops between one photo and the next, if no times are known.",
 )
 @common.mask_option
 @common.choice_option("--align", ALIGN_METHODS, help="Alignment method, see above.")
@@ -55,13 +54,13 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     "--response",
     type=brackets.ResponseType(),
     default="auto",
-    help="Response method, or a saved curve.",
+    help="Method that estimates the response curve, or a file with a saved curve.",
 )
 @common.choice_option(
-    "--weight", ["gaussian", "hat", "flat", "snr"], help="Weight of the pixel values."
+    "--weight", ["gaussian", "hat", "flat", "snr"], help="Weight function of the pixel values."
 )
 @common.choice_option(
-    "--merge", ["log", "likelihood", "mean", "shot"], help="Method that averages the exposures."
+    "--merge", ["log", "likelihood", "mean", "shot"], help="Method that merges the exposures."
 )
 @common.choice_option(
     "--ghosts",
@@ -70,12 +69,12 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     help="Removal of moving objects, see above.",
 )
 @common.choice_option(
-    "--flare", ["none", "glare"], help="Remove veiling glare, the light scattered in the lens."
+    "--flare", ["none", "glare"], help="Removal of veiling glare, the light scattered in the lens."
 )
 @click.option(
     "--calibrate",
     metavar="X,Y=CD",
-    help="Scale the map to cd/m^2 by a light meter's reading at a pixel.",
+    help="Scale the map so that the pixel X,Y has CD cd/m^2, as read from a light meter.",
 )
 @common.operator_option("--tonemap")
 @click.option(
@@ -86,17 +85,17 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
 @click.option(
     "--report",
     type=common.INPUT_PATH,
-    help="Folder for report.html, with the photos, the response, the map and the image.",
+    help="Folder for report.html, which shows photos, response, map and image.",
 )
 @click.option(
     "--uncertainty",
     type=common.OUTPUT_PATH,
-    help="File for the map and its standard deviation as two layers: .exr.",
+    help="File for the map and its standard deviation, as two layers: .exr.",
 )
 @click.option(
     "--strict",
     is_flag=True,
-    help=f"Exit with {EXIT_DOUBTFUL_MAP} if the map is doubtful. It is written all the same.",
+    help=f"Exit with code {EXIT_DOUBTFUL_MAP} if there are warnings. hdrlab still writes the map.",
 )
 def assemble(
     *,
@@ -121,19 +120,23 @@ def assemble(
 ) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
-    From a folder, hdrlab uses the photos that form one bracket and lists the ones it skipped.
+    From a folder, hdrlab uses the photos that form one bracket, and lists the ones it skipped.
 
-    hdrlab reads exposures from EXIF (time, ISO, f-number), or from a list in the folder with lines
-    such as `a.jpg 1/60`. To use a list named exif, stated or estimate, write ./exif.
+    --times exif (the default) reads time, ISO and f-number from EXIF. If EXIF has no times, hdrlab
+    looks in the folder for a list with lines such as `a.jpg 1/60`. --times FILE reads such a list.
+    In both cases, hdrlab corrects times that the pixels contradict. --times stated does not correct
+    them. --times estimate computes all times from the pixels.
 
-    --align mtb shifts the photos onto each other. cerman also rotates them, homography also
-    corrects perspective. auto uses mtb, and more only if mtb is not enough.
+    --align mtb shifts the photos onto each other. --align cerman also rotates them, and --align
+    homography also corrects perspective. --align auto starts with mtb and uses the other methods
+    only if mtb is not enough.
 
-    --ghosts regions takes each region that moved from the photo that exposed it best. auto does the
-    same only if much has moved. reference takes everything that moved from the middle photo.
+    --ghosts regions finds regions in which something moved, and takes each from the photo that
+    exposed it best. --ghosts auto does the same, but only if much has moved. --ghosts reference
+    takes all moving objects from the middle photo.
 
-    hdrlab writes the map even if it is doubtful. Warnings then say why and what to do, and the
-    report and the header of .hdr and .exr repeat them.
+    hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
+    file repeat them.
     """
     from hdrlab import pipeline
     from hdrlab.io import photos as photo_files, radiance
@@ -143,9 +146,7 @@ def assemble(
 
     # bad options are reported before the work starts
     if stops and times not in brackets.TIMES_KEYWORDS:
-        raise InputError(
-            f"--stops and --times {times} exclude each other: pass the list or the spacing"
-        )
+        raise InputError(f"--stops and --times {times} exclude each other; pass one of them")
     recover = brackets.saved_curve(response) if isinstance(response, Path) else response
     meter_reading = common.parse_meter_reading(calibrate) if calibrate else None
     radiance.format_of(out)
@@ -251,7 +252,7 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
         return doubts
     shown = doubts[: MAX_DOUBT_LINES - 1]
     hidden = len(doubts) - len(shown)
-    return *shown, f"{hidden} more warnings are in the report (--report FOLDER)"
+    return *shown, f"{hidden} more warnings; pass --report FOLDER to see all of them"
 
 
 @click.command(cls=common.Command)
@@ -267,18 +268,20 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
     "--times",
     metavar="exif|estimate|FILE",
     default="exif",
-    help="exif: use EXIF; estimate: compute from the pixels; FILE: a list of times.",
+    help="Source of the times: EXIF, an estimate from the pixels, or a list in a FILE.",
 )
 @click.option(
-    "--estimate-times", is_flag=True, help="Correct the times of EXIF or a FILE from the pixels."
+    "--estimate-times", is_flag=True, help="Correct the times from EXIF or FILE with the pixels."
 )
 @common.mask_option
 @common.choice_option("--align", ALIGN_METHODS, "mtb", help="Alignment method, as in assemble.")
-@common.choice_option("--response", CALIBRATION_METHODS, "debevec", help="Response method.")
+@common.choice_option(
+    "--response", CALIBRATION_METHODS, "debevec", help="Method that estimates the curve."
+)
 @click.option(
     "--plot",
     type=common.OUTPUT_PATH,
-    help="Figure of the curve and the residuals to write: .png or .svg.",
+    help="Figure of the curve and its residuals to write: .png or .svg.",
 )
 def calibrate(
     *,
@@ -291,9 +294,10 @@ def calibrate(
     response: str,
     plot: Path | None,
 ) -> None:
-    """Recover the camera's response from PHOTOS (files, or one folder), and measure its errors.
+    """Estimate the camera's response curve from PHOTOS.
 
-    The table lists the pixel values at which the exposure doubles.
+    PHOTOS are files, or one folder. hdrlab prints a table of the pixel values at which the exposure
+    doubles, and how far each photo deviates from the curve.
     """
     from hdrlab import pipeline
     from hdrlab.io import response_files

@@ -15,12 +15,14 @@ project_argument = click.argument("project", type=common.INPUT_PATH, default="."
 
 @click.command(cls=common.Command)
 @project_argument
-@click.option("--example", is_flag=True, help="Write report.md with the required headings.")
+@click.option(
+    "--example", is_flag=True, help="Write a report.md with the required headings, to start from."
+)
 def report(*, project: Path, example: bool) -> None:
     """Make report.html from PROJECT's report.md or report.ipynb.
 
     hdrlab inserts the artifact (artifact.jpg), the bracket (photographs/), the response
-    (response.csv) and the radiance map (map.hdr). The page is a single file.
+    (response.csv) and the radiance map (map.hdr). It writes the page as a single file.
     """
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course.projects import project as projects, report as reports
@@ -47,17 +49,17 @@ def report(*, project: Path, example: bool) -> None:
 @click.option(
     "--keep-metadata", is_flag=True, help="Keep location and serial numbers in the photos."
 )
-@click.option("--force", is_flag=True, help="Write an incomplete archive.")
+@click.option("--force", is_flag=True, help="Write the archive even if something is missing.")
 def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
-    """Check PROJECT, report what is missing, and pack it into one archive.
+    """Check PROJECT, and pack it into one archive.
 
-    hdrlab removes location, serial numbers and maker notes from the photos. Pixels and exposure
-    data stay as they are.
+    hdrlab reports what is missing. It removes location, serial numbers and maker notes from the
+    photos. It does not change pixels and exposure data.
     """
     from hdrlab.course.projects import project as projects, review, submit as packing
 
     if out.exists() and not packing.is_archive(out):
-        raise InputError(f"{out}: is no archive of hdrlab submit; pass a new name with --out")
+        raise InputError(f"{out}: not an archive of hdrlab submit; pass another name with --out")
     found = projects.look(project)
     other_files = tuple(file for file in found.files if file.resolve() != out.resolve())
     found = found._replace(files=other_files)
@@ -69,7 +71,7 @@ def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> Non
     missing = sum(not finding.good for finding in findings)
     if missing and not (force and found.artifact):
         raise InputError(
-            f"{missing} problems to fix; nothing was written (--force writes the archive anyway)"
+            f"{missing} problems to fix, and no archive written; pass --force to write it anyway"
         )
     packed = packing.pack(found, keep=keep_metadata)
     files = list(common.progress(packed, "packing", len(found.files)))

@@ -21,29 +21,32 @@ if TYPE_CHECKING:
     "--out",
     required=True,
     type=common.OUTPUT_PATH,
-    help="Film to write, .gif or .mp4, or a folder, see above.",
+    help="Video to write, .gif or .mp4, or a folder for radiance maps.",
 )
 @click.option(
     "--times",
     required=True,
     metavar="SECONDS,...",
-    help="Exposure times that the frames cycle through, such as 1/1000,1/60.",
+    help="Alternating exposure times of the frames, such as 1/1000,1/60.",
 )
 @click.option(
     "--response",
     type=brackets.ResponseType(),
     default="auto",
-    help="Response method, or a saved curve.",
+    help="Method that estimates the response curve, or a file with a saved curve.",
 )
-@click.option("--rate", type=float, default=25.0, help="Frames per second of the film.")
+@click.option("--rate", type=float, default=25.0, help="Frames per second of the video.")
 @click.option(
-    "--key", type=float, default=0.18, help="Brightness to which the frames' log average is mapped."
+    "--key",
+    type=float,
+    default=0.18,
+    help="Brightness to which to map the log average of the frames.",
 )
 @click.option(
     "--span",
     type=click.IntRange(0),
     default=1,
-    help="Frames before and after each frame that the brightness adapts to.",
+    help="Number of frames before and after each frame over which to smooth the brightness.",
 )
 def video(
     *,
@@ -55,18 +58,19 @@ def video(
     key: float,
     span: int,
 ) -> None:
-    """Make an HDR film from FRAMES whose exposure times alternate.
+    """Make an HDR video from FRAMES with alternating exposure times.
 
-    FRAMES is a folder of photos, sorted by name, or a film, which needs the extra `video`. The
-    first frame has the first of --times, the second frame the second one, and so on, over and over.
+    FRAMES is a folder of photos, sorted by name, or a video. Reading or writing a video needs the
+    extra `video`. The frames have the --times in turn: the first frame has the first time, the
+    second frame the second time, and after the last time the first one again.
 
-    hdrlab fills in what a frame's own exposure lacks from its neighbors, after motion compensation.
-    If --out ends in .gif or .mp4, the film is tone-mapped. A name without a suffix becomes a folder
-    of radiance maps, 0001.exr and so on.
+    For each frame, hdrlab takes clipped and dark pixels from its neighbors, after motion
+    compensation. If --out ends in .gif or .mp4, hdrlab writes a tone-mapped video. If it has no
+    suffix, hdrlab writes a folder of radiance maps: 0001.exr and so on.
 
-    hdrlab recovers the response from the first frame of each exposure time, which should show
-    nearly the same scene (auto: by a fit to measured curves). A curve saved by `hdrlab calibrate`
-    is better.
+    hdrlab estimates the response from the first frame of each exposure time. These frames should
+    show nearly the same scene. --response auto fits a curve to measured ones. A curve that you have
+    saved with `hdrlab calibrate` is more accurate.
     """
     from hdrlab.beyond import video as merging
     from hdrlab.io import sequence
@@ -118,7 +122,7 @@ def recover_response(
         return read_curve(response)
     if len(frames) < len(times):
         raise InputError(
-            f"expected at least a frame for each of the {len(times)} times, got {len(frames)}"
+            f"expected at least one frame for each of the {len(times)} times, got {len(frames)}"
         )
     first = bracket(np.stack(frames), times)
     recover = recovery.find_validated_method("space" if response == "auto" else response)

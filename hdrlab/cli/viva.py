@@ -33,16 +33,16 @@ class VivaOptions:
     "--photographs",
     type=common.EXISTING_FILE,
     multiple=True,
-    help="Photo to ask questions about. Repeatable.",
+    help="Photo to use in the questions. Repeatable.  [default: an embedded scene]",
 )
 @click.option(
     "--student",
     default="",
     show_default=False,
-    help="Name that determines this student's own questions, with --secret-file.",
+    help="Student whose own questions to write. Requires --secret-file.",
 )
 @click.option(
-    "--seed", type=click.IntRange(0), help="Seed of the questions, for a second examination."
+    "--seed", type=click.IntRange(0), help="Seed, to get other questions for a second exam."
 )
 @assignments.secret_option
 @assignments.plan_option
@@ -58,12 +58,14 @@ def viva(
     secret_file: Path | None,
     plan: Path | None,
 ) -> None:
-    """Write five questions about the code of SUBMISSION for an oral examination.
+    """Write five questions about SUBMISSION for an oral exam.
 
-    SUBMISSION is a notebook or a Python file. Each question changes one detail of a function that
-    passed all checks, and hdrlab answers it by running the changed function. viva.html, quiz.html
-    and oral.html hold the questions, examiner.html the answers, viva.ipynb is for practice. The
-    questions show whether students understand the code, not who wrote it.
+    SUBMISSION is a notebook or a Python file of a student. For each question, hdrlab changes one
+    detail of a function that passes all checks, and runs the changed function to compute the
+    answer. The questions show whether students understand the code, but not who wrote it.
+
+    hdrlab writes the questions to viva.html, quiz.html (to print) and oral.html (for the
+    conversation), the answers to examiner.html, and a practice notebook, viva.ipynb.
     """
     from hdrlab.course import scratch
     from hdrlab.course.grading import grader

@@ -407,10 +407,7 @@ def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(
     write_pfm(file, pixels)
     code, _, complaint = hdrlab("convert", file, out, capsys=capsys)
     assert (
-        code == 2
-        and str(file) in complaint
-        and "of 20 pixels" in complaint
-        and "--clean" in complaint
+        code == 2 and str(file) in complaint and "20 pixels" in complaint and "--clean" in complaint
     )
     assert not out.exists() and hdrlab("convert", file, out, "--clean") == 0
     assert np.isfinite(radiance.read_radiance(out)).all()
