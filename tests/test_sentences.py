@@ -245,7 +245,7 @@ SENTENCES = {
         "Once, where he stood in the reference photo": lambda n: len(n.result.references) == 1,
     },
     "13": {
-        "an error of one to two percent in the worst channel of half of the pixels": lambda n: (
+        "its median error in the worst channel of a pixel is one to two percent": lambda n: (
             1 < np.median(n.worst) < 2
         ),
         "At a tenth of red it is up to 8 %": lambda n: round(blue_off(n, 0.095, 0.105).max()) == 8,
