@@ -276,7 +276,7 @@ SENTENCES = {
         "nearly straight from a stop below middle gray to three stops above it": lambda n: (
             [-1, 3] == [round(n.ev[steep(n)][k]) for k in (0, -1)]
         ),
-        "10 pixels beside it at $s = 10.5$, 20 beside it at 26.8": lambda n: (
+        "10 pixels from it at $s = 10.5$, and 20 pixels from it at $s = 26.8$": lambda n: (
             [light_arrives(n, away) for away in (10, 20)] == ["10.5", "26.8"]
         ),
         "it leaves the band at 10.5 pixels, and is back at 16.8": lambda n: (
@@ -284,10 +284,10 @@ SENTENCES = {
         ),
     },
     "15": {
-        "A lonely pixel is its own base: its detail is zero": lambda n: (
+        "An isolated pixel is its own base. Its detail is zero": lambda n: (
             abs(n.glint - n.alone.mean)[32, 48] < 0.005 and round(float(n.alone.k[32, 48]), 1) == 1
         ),
-        "a decade on each side": lambda n: (
+        "by a decade on each side": lambda n: (
             round(
                 float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())
             )
@@ -295,22 +295,22 @@ SENTENCES = {
         ),
     },
     "17": {
-        "must flatten that the most to get the range down: soft edges": lambda n: (
+        "It must flatten them most to reduce the range, so its edges are soft": lambda n: (
             fine_detail(n, "finest alone")
             < fine_detail(n, "all levels")
             < fine_detail(n, "coarsest alone")
         ),
-        "Outlines stand after a few sweeps, and the large differences are missing for thousands": lambda n: (
+        "The outlines appear after a few sweeps, and the large differences are missing for thousands": lambda n: (
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
         "a climb of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
     },
     "18": {
-        "for three hundredths": lambda n: (
-            round(quality(n, "as it is").Q - quality(n, "red and blue exchanged").Q, 2) == 0.03
+        "but reduces $Q$ by only three hundredths": lambda n: (
+            round(quality(n, "unchanged").Q - quality(n, "red and blue exchanged").Q, 2) == 0.03
         ),
-        "The noise costs about as much; the vignette, which most viewers forgive, more": lambda n: (
+        "The noise costs about as much; the vignette, which most viewers accept, costs more": lambda n: (
             abs(quality(n, "with noise").Q - quality(n, "red and blue exchanged").Q)
             < 0.015
             < quality(n, "with noise").Q - quality(n, "vignette").Q
