@@ -265,7 +265,7 @@ SENTENCES = {
         "seven in ten belong to the brightest tenth": lambda n: (
             round(np.mean((n.L >= np.quantile(n.L, 0.9))[n.index == 0]), 1) == 0.7
         ),
-        "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
+        "which fill less than a thousandth of the image": lambda n: lamps(n) < 0.001,
         "One pixel nearly doubles the mean": lambda n: 1.8 < n.hot.mean() / n.L.mean() < 2,
         "would show the street five stops too dark": lambda n: (
             round(np.log2(n.hot.max() / n.L.max())) == 5
@@ -300,7 +300,7 @@ SENTENCES = {
             < fine_detail(n, "all levels")
             < fine_detail(n, "coarsest alone")
         ),
-        "The outlines appear after a few sweeps, and the large differences are missing for thousands": lambda n: (
+        "the large differences are missing for thousands of sweeps": lambda n: (
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
@@ -335,13 +335,15 @@ SENTENCES = {
         "nearly one pixel in ten of flag, rocket and wall": lambda n: all(
             0.07 < mistaken(n, "locus", tone) < 0.1 for tone in ("light", "dark")
         ),
-        "The face comes within a level in one round": lambda n: (
+        "The mean of the face is within one level of 128 after one round": lambda n: (
             abs(n.states["skin"][1].mean - 128) < 1
         ),
         "hardly anything of flag, rocket and wall": lambda n: all(
             mistaken(n, "chrominance", tone) < 0.02 for tone in ("light", "dark")
         ),
-        "The picture is off by two": lambda n: round(128 - n.states["whole picture"][1].mean) == 2,
+        "The whole photo is off by two": lambda n: (
+            round(128 - n.states["whole photo"][1].mean) == 2
+        ),
         "shade are off by nearly forty": lambda n: (
             35 < 128 - n.states["light and shade"][1].mean < 40
         ),
@@ -357,37 +359,38 @@ SENTENCES = {
         "About a third, most by little": lambda n: (
             round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
         ),
-        "of two pixels that differ by two stops few are exchanged": lambda n: exchanged(n) < 0.01,
+        "few pairs of pixels that are two stops apart are in the wrong order": lambda n: (
+            exchanged(n) < 0.01
+        ),
     },
     "21": {
-        "so bright that a fifth of the picture is full": lambda n: (
+        "so bright that a fifth of the pixels are full": lambda n: (
             round(np.mean(n.L >= 1), 1) == 0.2
         ),
-        "112 waves in 256 pixels come back as 16, coarse and at full strength": lambda n: (
+        "112 waves in 256 pixels become 16 coarse waves at full strength": lambda n: (
             np.argmax(np.abs(np.fft.rfft(n.wave()[1] - n.wave()[1].mean()))) == 16 // 4
         ),
         "17.6 times with the code": lambda n: round(n.flutter.amplification(n.CODE), 1) == 17.6,
         "The noise grows 52 times with one chop": lambda n: (
             round(n.flutter.amplification(n.ONE), 1) == 52
         ),
-        "averaged short pictures meets the coded one's at nine": lambda n: (
-            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"]))
-            == 9
+        "averaged short photos meets the coded one's at nine": lambda n: (
+            1 + np.argmin(np.abs(n.short["mean of short photos"] - n.short["one coded photo"])) == 9
         ),
         "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
         "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
     },
     "22": {
-        "has used up its sixteen digits, and the other still has some nine": lambda n: (
+        "have lost all sixteen digits, and the SVD still has about nine": lambda n: (
             n.errors[0][-1] > -1 and round(-n.errors[1][-1]) in (9, 10)
         ),
-        "In between lies the smallest condition number": lambda n: (
+        "In between is the smallest condition number": lambda n: (
             min(condition(n, 0.1), condition(n, 1000)) > 2 * condition(n, 1)
         ),
-        "there are as many zeros as groups less one": lambda n: (
+        "the number of zeros is the number of groups minus one": lambda n: (
             np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
         ),
-        "Exactly one is 0, but for rounding": lambda n: (
+        "Exactly one is 0 (apart from rounding)": lambda n: (
             np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1
         ),
         "one line is about twice as steep as the other": lambda n: (
@@ -403,7 +406,7 @@ SENTENCES = {
         "to the third sensor: 0.44 %. Only 0.04 % is lost": lambda n: (
             share_of_light(n)[2] == 0.44 and round(100 * (1 - n.shares.sum()), 2) == 0.04
         ),
-        "3.6 stops and 4.1 more": lambda n: (
+        "3.6 stops less than the first, and the third 4.1 more": lambda n: (
             np.log2(n.shares[:-1] / n.shares[1:]).round(1).tolist() == [3.6, 4.1]
         ),
         "Ratios of 12 and 17 are large": lambda n: (
@@ -430,16 +433,18 @@ SENTENCES = {
         "beyond three stops, eight times white, less than one is left": lambda n: (
             np.mean(n.light > 8) < 0.01
         ),
-        "with 10 bits 0.6 % at 1000 cd/m²": lambda n: round(step_at(n, "gamma", 1000), 1) == 0.6,
+        "with 10 bits they are 0.6 % at 1000 cd/m²": lambda n: (
+            round(step_at(n, "gamma", 1000), 1) == 0.6
+        ),
         "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
             round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
         ),
-        "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
+        "the walls then have half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
         "whose step is a fortieth of a stop": lambda n: (
             0.02 < np.max(n.largest - n.lowest) / 255 < 0.025
         ),
         "over eight stops a code is a thirtieth of a stop": lambda n: round(255 / 8) == 32,
-        "At 2 a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
+        "At 2 it applies a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
         "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
     },
 }
