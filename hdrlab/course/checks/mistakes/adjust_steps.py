@@ -8,8 +8,8 @@ from hdrlab.tonemap.ward import Trim, ceiling, trim
 
 @mistake(
     "adjust_steps_trimmings_redistributed",
-    says="You put the trimmings back into other bins. That raises their slopes above 1. Do not "
-    "redistribute what is cut off.",
+    says="You put the trimmings back into other bins, which makes the curve too steep there. "
+    "Discard them.",
 )
 def trimmings_redistributed(h, db, D, *, tolerance=0.025):
     def trim(h, db, D):
@@ -50,8 +50,8 @@ def decades(h, db, D, *, tolerance=0.025):
 
 @mistake(
     "adjust_steps_once",
-    says="You applied the ceiling once. Trimming makes T smaller, and the ceiling with it. "
-    "Trim again until hardly anything is cut.",
+    says="You applied the ceiling once. A trim lowers T, and with it the ceiling. Trim again "
+    "until hardly anything is cut off.",
     misses_method=True,
 )
 def once(h, db, D, *, tolerance=0.025):

@@ -51,8 +51,8 @@ def not_doubled(images, *, bits=6, luma=False):
 
 @mistake(
     "align_ties_from_the_corner",
-    says="When all nine candidates are equally good, you take the first one, in the corner, "
-    "and drift by a pixel per level. Prefer the centre.",
+    says="When all nine candidates are equally good, you take the first one, in the corner, and "
+    "drift by a pixel per level. Prefer the center.",
 )
 def ties_from_the_corner(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):

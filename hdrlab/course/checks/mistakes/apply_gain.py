@@ -19,8 +19,8 @@ def powers_of_e(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_part_of_the_light",
-    says="You mix the light of picture and scene in the ratio W. W is a fraction of the stops "
-    "instead: 2^(W G).",
+    says="You mix the light of the image and the scene in the ratio W. W is a fraction of the "
+    "stops instead: 2^(W G).",
 )
 def part_of_the_light(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)
@@ -30,8 +30,8 @@ def part_of_the_light(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "apply_gain_low_in_full",
-    says="You take the fraction W only of the gain above low. It applies to the whole gain G, "
-    "including low: W = 0 gives the picture.",
+    says="You apply the fraction W only to the part of the gain above low. It applies to the "
+    "whole gain G, including low: W = 0 shows the image itself.",
 )
 def low_in_full(sdr, g, low, high, *, W=1.0, gamma=1.0, k=OFFSETS):
     k_sdr, k_hdr = np.asarray(k)

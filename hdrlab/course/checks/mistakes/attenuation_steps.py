@@ -9,8 +9,8 @@ from hdrlab.tonemap.fattal import MIN_LEVEL_SIDE, Level, attenuation, slope
 
 @mistake(
     "attenuation_steps_power_inverted",
-    says="Your phi grows with the slope, so steep slopes become steeper. The power is beta - "
-    "1, which is negative.",
+    says="Your phi grows with the gradient, so steep gradients become steeper. The power is beta "
+    "- 1, which is negative.",
 )
 def power_inverted(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     def attenuation(slope, mean, *, alpha, beta, noise):
@@ -27,8 +27,8 @@ def power_inverted(lL, *, alpha=0.1, beta=0.9, noise=0.01):
 
 @mistake(
     "attenuation_steps_mean_of_the_finest",
-    says="alpha is a tenth of the mean slope at each level. You used the mean of the finest "
-    "level for all levels.",
+    says="Compare each gradient with the mean gradient of its own level. You used the mean of the"
+    " finest level for all levels.",
 )
 def mean_of_the_finest(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
@@ -44,8 +44,8 @@ def mean_of_the_finest(lL, *, alpha=0.1, beta=0.9, noise=0.01):
 
 @mistake(
     "attenuation_steps_finest_alone",
-    says="You attenuate by the finest level only. A soft edge with high contrast has small "
-    "slopes there and is not attenuated.",
+    says="You use only the finest level. A soft edge with high contrast has small gradients "
+    "there, so it is not attenuated.",
 )
 def finest_alone(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     levels = gaussian(lL, depth(lL.shape, MIN_LEVEL_SIDE))
@@ -59,8 +59,8 @@ def finest_alone(lL, *, alpha=0.1, beta=0.9, noise=0.01):
 
 @mistake(
     "attenuation_steps_phi_of_the_coarser",
-    says="You use phi of the wrong level. Phi_k uses the phi of level k itself; you used that "
-    "of the next coarser level again.",
+    says="You use phi of the wrong level. Phi_k contains phi of level k itself; you used that of "
+    "the next coarser level again.",
 )
 def phi_of_the_coarser(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     coarser_phi = None

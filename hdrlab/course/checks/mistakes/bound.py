@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "bound_loosest",
-    says="If several frames bound the pixel, you take the loosest bound. Take the tightest: "
-    "from the shortest clipped frame, or the longest dark one.",
+    says="If several frames give bounds for a pixel, you take the loosest one. Take the tightest:"
+    " that of the shortest clipped frame, or of the longest dark one.",
 )
 def loosest(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))

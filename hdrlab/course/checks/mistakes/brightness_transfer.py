@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "brightness_transfer_upper_edge",
-    says="You assign a cumulative count to the middle of its level, but it belongs to the "
-    "upper edge of the level. T is too high by up to one level.",
+    says="You assign a cumulative count to the middle of its pixel value, but it belongs to the "
+    "upper edge. T is too high by up to 1.",
 )
 def upper_edge(h_A, h_B):
     n = len(np.asarray(h_A))
@@ -21,8 +21,8 @@ def upper_edge(h_A, h_B):
 
 @mistake(
     "brightness_transfer_half_a_level",
-    says="You treat the edges of a level as the level itself. A level reaches from half below "
-    "it to half above it, so your T is too high by a half.",
+    says="You place the lower edge of pixel value z at z, but it is at z - 1/2. So your T is too "
+    "high by a half.",
 )
 def half_a_level(h_A, h_B):
     n = len(np.asarray(h_A))
@@ -46,7 +46,7 @@ def other_way(h_A, h_B):
 
 @mistake(
     "brightness_transfer_outer_levels_taken",
-    says="The highest level of B holds everything brighter, and the lowest everything darker. "
+    says="The highest value of B contains everything brighter, and the lowest everything darker. "
     "T must be NaN there, not a number.",
 )
 def outer_levels_taken(h_A, h_B):

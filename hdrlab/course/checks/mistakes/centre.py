@@ -35,8 +35,8 @@ def distance_in_pixels(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
 
 @mistake(
     "centre_disc_is_an_ellipse",
-    says="You select the pixels of the spot by relative distance, which gives an ellipse. A "
-    "spot is measured in pixels.",
+    says="You select the pixels of the spot by relative distance, which gives an ellipse. Measure"
+    " the spot in pixels.",
 )
 def disc_is_an_ellipse(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)

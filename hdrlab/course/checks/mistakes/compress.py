@@ -8,7 +8,7 @@ from hdrlab.course.checks.mistakes import mistake
 @mistake(
     "compress_dark_end_at_white",
     says="You map the dark end to white, so everything else is brighter than white. Map the "
-    "bright end to 1.",
+    "bright end to white.",
 )
 def dark_end_at_white(base, low, high, *, contrast=50.0):
     return min(1.0, math.log10(contrast) / max(high - low, 1e-6)) * (base - low)
@@ -16,8 +16,8 @@ def dark_end_at_white(base, low, high, *, contrast=50.0):
 
 @mistake(
     "compress_natural_logarithm",
-    says="Your c is a natural logarithm, but the base is in decades. The picture keeps 2.3 "
-    "times too much contrast.",
+    says="Your c is a natural logarithm, but the base is in decades. The image keeps 2.3 times "
+    "too much contrast. Use log10.",
 )
 def natural_logarithm(base, low, high, *, contrast=50.0):
     return min(1.0, math.log(contrast) / max(high - low, 1e-6)) * (base - high)

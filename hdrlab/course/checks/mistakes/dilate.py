@@ -7,7 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "dilate_holes_left",
-    says="Your mask has holes inside the figure. Fill the holes that the outline encloses.",
+    says="Your mask has holes. Fill the holes that the widened mask encloses.",
 )
 def holes_left(mask, margin):
     if not mask.any():

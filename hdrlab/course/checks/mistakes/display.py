@@ -24,8 +24,8 @@ def not_clipped(Lm, adaptation, white=np.inf):
 
 @mistake(
     "display_white_not_squared",
-    says="White is squared: Lm / white^2. In your formula Lm = white is above 1, and values "
-    "far below white are clipped.",
+    says="White is squared: Lm / white^2. With your formula, Ld is above 1 at Lm = white, and "
+    "values far below white are clipped.",
 )
 def white_not_squared(Lm, adaptation, white=np.inf):
     return np.minimum(Lm * (1 + Lm / white) / (1 + adaptation), 1)

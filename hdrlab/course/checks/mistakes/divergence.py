@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "divergence_forward",
-    says="You use forward differences, like those of the gradient. The divergence needs "
-    "backward differences; otherwise the picture drifts by a pixel.",
+    says="You use forward differences, like those of the gradient. The divergence needs backward "
+    "differences; otherwise the image shifts by a pixel.",
     misses_method=True,
 )
 def forward(G):
@@ -19,7 +19,7 @@ def forward(G):
 
 @mistake(
     "divergence_rolls_around",
-    says="np.roll wraps from one edge of the picture to the other. Before the first row and "
+    says="np.roll wraps from one border of the image to the other. Before the first row and "
     "column the gradient is 0.",
 )
 def rolls_around(G):
@@ -30,7 +30,7 @@ def rolls_around(G):
 
 @mistake(
     "divergence_wrong_sign",
-    says="Your divergence has the opposite sign. It is what flows out of a pixel, G(x) - G(x - 1).",
+    says="Your divergence has the opposite sign. It is the flow out of a pixel, G(x) - G(x - 1).",
 )
 def wrong_sign(G):
     Gy = np.pad(G[0, :-1], ((1, 1), (0, 0)))

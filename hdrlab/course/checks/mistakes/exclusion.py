@@ -6,8 +6,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "exclusion_bytes_wrap",
-    says="Y is of one byte: where Y is less than t, Y - t wraps around to a large number. Turn "
-    "Y into int first.",
+    says="Y contains bytes. Where Y is less than t, Y - t wraps around to a large number. Convert"
+    " Y to int first.",
 )
 def bytes_wrap(Y, t):
     return abs(Y - Y.dtype.type(t)) > NOISE
@@ -23,8 +23,8 @@ def four_kept(Y, t):
 
 @mistake(
     "exclusion_inverted",
-    says="Your exclusion bitmap is inverted: it keeps just those pixels near the threshold "
-    "that noise decides.",
+    says="Your exclusion bitmap is inverted: it keeps only the pixels near the threshold, which "
+    "noise decides.",
 )
 def inverted(Y, t):
     return (Y <= t + NOISE) & (Y >= t - NOISE)

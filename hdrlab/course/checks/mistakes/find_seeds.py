@@ -19,8 +19,8 @@ def threshold_alone(score):
 
 @mistake(
     "find_seeds_middles_alone",
-    says="You mark only the middle of each square, so a figure loses its rim. Mark all nine "
-    "pixels of the square.",
+    says="You mark only the middle pixel of each square, so an object loses its rim. Mark all "
+    "nine pixels of the square.",
 )
 def middles_alone(score):
     return ndimage.binary_erosion(score > 1, np.ones((SEED_SIDE, SEED_SIDE), bool))

@@ -24,7 +24,7 @@ def certainty_linear(mean, k, *, sigma_s):
 
 @mistake(
     "fix_uncertain_root_forgotten",
-    says="You require all 2 pi sigma_s^2 pixels for a certain base. The square root of that "
+    says="You require 2 pi sigma_s^2 similar pixels for a certain base. The square root of that "
     "number is enough.",
 )
 def root_forgotten(mean, k, *, sigma_s):

@@ -26,8 +26,8 @@ def noise_of_one_frame(A, *, size=5, psi=0.05, sigma=0.01):
 
 @mistake(
     "flat_divided_by_t",
-    says="You divide a pixel's variance over t frames by t. One degree of freedom went into "
-    "their mean, so divide by t - 1.",
+    says="You divide the sum of squares over t frames by t. Their mean uses up one degree of "
+    "freedom, so divide by t - 1.",
 )
 def divided_by_t(A, *, size=5, psi=0.05, sigma=0.01):
     def temporal_average(A, *, sigma=0.01):

@@ -37,7 +37,7 @@ def strips_the_values(data):
 
 @mistake(
     "from_bytes_upside_down",
-    says="Your picture is upside down: the first row in the file is the bottom row.",
+    says="Your image is upside down: the first row in the file is the bottom row.",
 )
 def upside_down(data):
     match = HEADER.match(data)

@@ -22,8 +22,8 @@ def natural_logarithm(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_without_offsets",
-    says="You left out the offsets, so black has no finite gain. Add k[0] to the picture and "
-    "k[1] to the scene.",
+    says="You left out the offsets, so black has no finite gain. Add k[0] to the image and k[1] "
+    "to the scene.",
 )
 def without_offsets(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     def log_gain(sdr, hdr, *, k=OFFSETS):
@@ -35,7 +35,7 @@ def without_offsets(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_offsets_swapped",
-    says="You swapped the offsets of scene and picture: k is (k_sdr, k_hdr).",
+    says="You swapped the offsets of scene and image: k is (k_sdr, k_hdr).",
 )
 def offsets_swapped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     def log_gain(sdr, hdr, *, k=OFFSETS):
@@ -55,8 +55,8 @@ def not_clipped(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
 
 @mistake(
     "gain_map_gamma_inverted",
-    says="You raise the fraction to 1 / gamma, as a reader of the map does. The map is the "
-    "fraction to the power of gamma.",
+    says="You raise the fraction to 1 / gamma, as a reader of the map does. To make the map, "
+    "raise it to gamma.",
 )
 def gamma_inverted(sdr, hdr, low, high, *, gamma=1.0, k=OFFSETS):
     return np.clip((log_gain(sdr, hdr, k=k) - low) / np.subtract(high, low), 0, 1) ** (1 / gamma)

@@ -8,8 +8,8 @@ from hdrlab.response.debevec import Solution
 
 @mistake(
     "gsolve_weight_of_the_neighbour",
-    says="The smoothness row of level z is weighted by w(z), the level in its middle. You used "
-    "the weight of a neighbour.",
+    says="The weight of the smoothness row of z is w(z), the weight of its middle. You used the "
+    "weight of a neighbor.",
 )
 def weight_of_the_neighbour(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -34,7 +34,7 @@ def weight_of_the_neighbour(Z, B, smoothness, w):
 @mistake(
     "gsolve_smoothness_not_weighted",
     says="The smoothness rows need a weight, too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). "
-    "Without w(z) the ends are as stiff as the middle.",
+    "Without w(z), the ends are as stiff as the middle.",
 )
 def smoothness_not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -158,8 +158,8 @@ def lambda_read_as_1(Z, B, smoothness, w):
 
 @mistake(
     "gsolve_log2_of_the_times",
-    says="B is the natural logarithm of the times. You used base 2, so every stop is 1.44 "
-    "times too long.",
+    says="B is the natural logarithm of the times. You used base 2, so every difference of B is "
+    "1.44 times too large.",
 )
 def log2_of_the_times(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):

@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "hat_ends_count",
-    says="You added 1, so clipped levels still have a weight. A pixel at level 255 only says "
-    "that there was at least that much light.",
+    says="You added 1, so clipped pixel values still have a weight. A pixel of value 255 only "
+    "says that there was at least that much light.",
 )
 def ends_count(n=256):
     z = np.arange(n)
@@ -27,7 +27,7 @@ def half_at_the_ends(n=256):
 
 @mistake(
     "hat_of_256_levels",
-    says="Your table has 256 levels whatever n is. Photographs of 16 bits have 65536.",
+    says="Your table always has 256 entries. Use n: a 16-bit photo has 65536 pixel values.",
 )
 def of_256_levels(n=256):
     z = np.arange(n)
@@ -36,8 +36,8 @@ def of_256_levels(n=256):
 
 @mistake(
     "hat_ramp",
-    says="Your weight rises to the top, so nearly clipped levels are trusted most. A hat falls "
-    "to both sides.",
+    says="Your weight rises to the top, so nearly clipped pixel values have the largest weight. A"
+    " hat falls to both ends.",
     misses_method=True,
 )
 def ramp(n=256):

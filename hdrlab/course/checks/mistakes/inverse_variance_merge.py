@@ -8,8 +8,8 @@ from hdrlab.radiance.uncertainty import REWEIGHTING_ROUNDS, variance
 
 @mistake(
     "inverse_variance_merge_by_what_was_counted",
-    says="You compute V from each photograph's own count, so one that counted too few photons "
-    "by chance gets too much weight. Compute it from E t.",
+    says="You compute V from each photo's own count, so one that counted too few photons by "
+    "chance gets too much weight. Compute it from E t.",
 )
 def by_what_was_counted(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -81,8 +81,7 @@ def root_forgotten(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_clipped_count",
-    says="You use photographs that do not measure the pixel. Where `measured` is False, 1 / V "
-    "is 0.",
+    says="You use photos that do not measure the pixel. Where `measured` is False, 1 / V is 0.",
 )
 def clipped_count(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -96,8 +95,8 @@ def clipped_count(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_best_alone",
-    says="Your s is that of the best photograph alone. Together they measure more precisely: "
-    "s^2 = 1 / sum (1 / V).",
+    says="Your s is that of the best photo alone. All photos together are more precise: s^2 = 1 /"
+    " sum (1 / V).",
 )
 def best_alone(X, D, measured, t, N, R):
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
@@ -111,8 +110,8 @@ def best_alone(X, D, measured, t, N, R):
 
 @mistake(
     "inverse_variance_merge_plain_mean",
-    says="You take the plain mean, so each photograph counts the same. Weight each by its "
-    "inverse variance, 1 / V.",
+    says="You take the plain mean, so each photo counts the same. Weight each by its inverse "
+    "variance, 1 / V.",
     misses_method=True,
 )
 def plain_mean(X, D, measured, t, N, R):

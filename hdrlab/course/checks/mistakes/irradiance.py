@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "irradiance_black_where_clipped",
-    says="If no frame measures the sample, its irradiance is unknown. You return 0, which "
-    "turns the sun black.",
+    says="If no frame measures the sample, its irradiance is unknown. You return 0, which would "
+    "make the sun black. Return NaN.",
 )
 def black_where_clipped(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):
@@ -17,8 +17,8 @@ def black_where_clipped(Z, t, f_inv, w):
 
 @mistake(
     "irradiance_not_weighted",
-    says="Without weights, clipped pixels count like all others and make bright irradiances "
-    "too low.",
+    says="You forgot the weights. Clipped pixels count like all others, so bright irradiances are"
+    " too low.",
 )
 def not_weighted(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):

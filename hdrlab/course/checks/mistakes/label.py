@@ -10,7 +10,7 @@ from hdrlab.radiance.deghosting.regions import CONNECTED
 @mistake(
     "label_corners_apart",
     says="You give different labels to pixels that touch at a corner. A pixel has eight "
-    "neighbours, not four.",
+    "neighbors, not four.",
 )
 def corners_apart(mask):
     return ndimage.label(mask)[0].astype(np.int32)
@@ -18,7 +18,8 @@ def corners_apart(mask):
 
 @mistake(
     "label_from_0_on",
-    says="You label the outside like a part. The outside is 0, and the parts are numbered from 1.",
+    says="You give the pixels outside the mask a label like a region. They get 0, and the regions"
+    " are numbered from 1.",
 )
 def from_0_on(mask):
     return ndimage.label(mask, CONNECTED)[0].astype(np.int32) + 1

@@ -10,8 +10,8 @@ from hdrlab.tonemap.durand import Layers, fix_uncertain
 
 @mistake(
     "layers_plain_blur",
-    says="Your base is a plain blur. It crosses edges and causes halos. Weight each neighbour "
-    "by its difference in lL, too.",
+    says="Your base is a plain blur. It crosses edges and causes halos. Weight each neighbor by "
+    "its difference in lL, too.",
     misses_method=True,
 )
 def plain_blur(lL, *, sigma_s, sigma_r=0.4):
@@ -32,7 +32,7 @@ def sigma_not_squared(lL, *, sigma_s, sigma_r=0.4):
 @mistake(
     "layers_weights_not_divided",
     says="You did not divide by the sum of the weights, so the base is too small where few "
-    "neighbours are similar.",
+    "neighbors are similar.",
 )
 def weights_not_divided(lL, *, sigma_s, sigma_r=0.4):
     base = np.prod(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), axis=0) / (
@@ -43,8 +43,8 @@ def weights_not_divided(lL, *, sigma_s, sigma_r=0.4):
 
 @mistake(
     "layers_detail_sign",
-    says="Your detail has the wrong sign, which one lecture also prints. detail = lL - base, "
-    "so that the two add up to lL.",
+    says="Your detail has the wrong sign. One lecture prints it, too. detail = lL - base, so that"
+    " the two add up to lL.",
 )
 def detail_sign(lL, *, sigma_s, sigma_r=0.4):
     base = fix_uncertain(*bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)

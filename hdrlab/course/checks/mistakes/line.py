@@ -39,7 +39,7 @@ def weighted_by_the_deviation(S, V):
 
 @mistake(
     "line_turned_over",
-    says="You return K, electrons per level. The slope of the line is 1 / K.",
+    says="You return K, electrons per pixel value. The slope of the line is 1 / K.",
 )
 def turned_over(S, V):
     w = 1 / np.maximum(V, ROUNDING_VARIANCE) ** 2

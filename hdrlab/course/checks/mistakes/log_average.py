@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "log_average_base_2",
-    says="You took the logarithm to one base and the power of another: exp belongs to the "
-    "natural logarithm.",
+    says="You took the logarithm to one base and the power of another one. Use log and exp, or "
+    "log2 and exp2.",
 )
 def base_2(L, *, delta=1e-06):
     median = np.median(L[L > 0]) if np.any(L) else 1.0
@@ -35,8 +35,8 @@ def stays_a_logarithm(L, *, delta=1e-06):
 
 @mistake(
     "log_average_linear",
-    says="This is the mean of L itself, so one lamp decides how bright the scene is. Take the "
-    "mean of the logarithms.",
+    says="You average L itself, so one lamp decides how bright the scene is. Take the mean of the"
+    " logarithms.",
     misses_method=True,
 )
 def linear(L, *, delta=1e-06):

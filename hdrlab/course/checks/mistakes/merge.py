@@ -29,8 +29,8 @@ def mean_of_radiance(images, times, g, w=None):
 
 @mistake(
     "merge_by_the_number_of_frames",
-    says="You divide by the number of frames. Divide by the sum of the weights, so that a "
-    "pixel with a weight in one frame only keeps that frame's value.",
+    says="You divide by the number of frames. Divide by the sum of the weights; otherwise a pixel"
+    " that only one frame measures is wrong.",
 )
 def by_the_number_of_frames(images, times, g, w=None):
     images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
@@ -128,8 +128,8 @@ def times_forgotten(images, times, g, w=None):
 
 @mistake(
     "merge_not_weighted",
-    says="All frames count the same in your mean, so noisy dark levels and nearly clipped "
-    "levels have full weight.",
+    says="All frames count the same in your mean, so noisy dark values and nearly clipped values "
+    "have full weight.",
     misses_method=True,
 )
 def not_weighted(images, times, g, w=None):

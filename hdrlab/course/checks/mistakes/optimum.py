@@ -8,8 +8,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "optimum_wrong_way",
-    says="A picture that is too bright needs a higher exposure value, which lets in less "
-    "light. Yours goes down.",
+    says="An image that is too bright needs a higher exposure value, which lets in less light. "
+    "Yours goes down.",
 )
 def wrong_way(EV_pre, B_pre, B_opt=MIDDLE_GRAY):
     return EV_pre - np.log2(B_pre) + np.log2(B_opt)

@@ -17,7 +17,7 @@ def inverted_first_power(FD):
 
 @mistake(
     "pq_over_the_brightest_of_the_picture",
-    says="You divide by the largest luminance in the picture. PQ is absolute: Y is FD / 10,000 "
+    says="You divide by the largest luminance in the image. PQ is absolute: Y is FD / 10,000 "
     "cd/m2.",
 )
 def over_the_brightest_of_the_picture(FD):

@@ -17,8 +17,8 @@ from hdrlab.response.mitsunaga import (
 
 @mistake(
     "recover_one_curve_for_all",
-    says="Each channel has its own curve: for colour photographs, g is (256, 3). Yours is the "
-    "curve of green alone.",
+    says="Each channel has its own curve: for color photos, g is (256, 3). You return the green "
+    "curve for all channels.",
 )
 def one_curve_for_all(images, times, *, order=5, eps=0.001):
     images, t = (
@@ -73,7 +73,7 @@ def times_believed(images, times, *, order=5, eps=0.001):
 
 @mistake(
     "recover_response_not_inverse",
-    says="You return f^-1, the exposure of each level. Return its logarithm, g = ln f^-1.",
+    says="You return f^-1, the exposure of each pixel value. Return its logarithm, g = ln f^-1.",
 )
 def response_not_inverse(images, times, *, order=5, eps=0.001):
     def curve(c, n=256, *, least=0.0001):

@@ -8,8 +8,8 @@ from hdrlab.response.robertson import State, alternate, fill, irradiance, linear
 
 @mistake(
     "recover_steps_weighted_update",
-    says="You weight the update of f^-1. It is a plain mean over the pixels of a level; "
-    "weights by time and level bias it.",
+    says="Your iterations use weights in the update of f^-1. The update is a plain mean; only the "
+    "irradiance is a weighted one.",
 )
 def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     def alternate(Z, t, w):
@@ -36,8 +36,8 @@ def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_exponential_start",
-    says="Start the iterations with a linear response. You start with an exponential, whose "
-    "shape remains where the photographs do not constrain the curve.",
+    says="You start with an exponential. Its shape remains where the photos do not constrain the "
+    "curve. Start with a line.",
 )
 def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     def linear(n=256):
@@ -57,7 +57,7 @@ def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_empty_left_at_0",
-    says="Levels without pixels stay 0 in your response. Fill them from their neighbours; "
+    says="Pixel values without pixels stay 0 in your response. Fill them from their neighbors; "
     "otherwise later iterations use 0 there.",
 )
 def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
@@ -75,8 +75,8 @@ def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 
 @mistake(
     "recover_steps_one_turn",
-    says="You stop after one iteration. A new f^-1 gives a better E, and that a better f^-1: "
-    "iterate until it hardly changes.",
+    says="You stop after one iteration. A new f^-1 gives a better E, and a better E gives a "
+    "better f^-1. Iterate until f^-1 hardly changes.",
     misses_method=True,
 )
 def one_turn(Z, times, w, *, tolerance=0.0001, max_iterations=200):

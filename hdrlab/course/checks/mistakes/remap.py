@@ -32,8 +32,8 @@ def edges_jump(lL, g, *, sigma, alpha, beta):
 
 @mistake(
     "remap_beta_of_the_whole",
-    says="You multiply the whole difference by beta. Only the part beyond sigma shrinks: beta "
-    "(d - sigma).",
+    says="You multiply the whole difference by beta. Multiply only the part beyond sigma: beta (d"
+    " - sigma).",
 )
 def beta_of_the_whole(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)

@@ -18,7 +18,7 @@ def blur_of_the_inverse(L, *, headroom=8.0, sigma=None):
 
 @mistake(
     "scale_headroom_above",
-    says="k belongs in the denominator. More headroom makes the picture darker, so that bright "
+    says="k belongs in the denominator. More headroom makes the image darker, so that bright "
     "pixels are not clipped.",
 )
 def headroom_above(L, *, headroom=8.0, sigma=None):
@@ -27,8 +27,8 @@ def headroom_above(L, *, headroom=8.0, sigma=None):
 
 @mistake(
     "scale_times_luminance",
-    says="You multiplied by L already. s = 1 / (k blur(L)) is only the scale; a printed "
-    "further factor L is a misprint, which would give L^2.",
+    says="You return s L. s = 1 / (k blur(L)) is only the scale. One lecture prints a further "
+    "factor L, which is a misprint.",
 )
 def times_luminance(L, *, headroom=8.0, sigma=None):
     return L / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)

@@ -10,8 +10,8 @@ from hdrlab.tonemap.reinhard import WIDTHS, Scale, response
 
 @mistake(
     "scale_steps_surround_kept",
-    says="You never update the surround. At each width, compare the centre with the next "
-    "larger blur, not always with the same one.",
+    says="You never update the surround. At each width, compare the center with the next larger "
+    "blur, not always with the same one.",
 )
 def surround_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     even, adaptation = np.array(True), np.zeros(1, np.float32)
@@ -40,8 +40,8 @@ def index_as_width(blurred, *, key=0.18, phi=8.0, threshold=0.05):
 
 @mistake(
     "scale_steps_does_not_stop",
-    says="A pixel stops at the first width that is not even. You continue and take a larger "
-    "width that happens to be even again, across the edge.",
+    says="A pixel stops at the first width that is not even. You continue, and take a larger "
+    "width beyond an edge that happens to be even again.",
 )
 def does_not_stop(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     even, adaptation = np.array(True), np.zeros(1, np.float32)

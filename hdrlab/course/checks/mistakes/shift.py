@@ -27,8 +27,8 @@ def axes_swapped(images, offsets):
 
 @mistake(
     "shift_rolls_around",
-    says="np.roll brings in at one side what left at the other: cut the images to what all of "
-    "them show.",
+    says="np.roll moves pixels from one border to the opposite one: crop the images to what all "
+    "of them show.",
 )
 def rolls_around(images, offsets):
     images = np.asarray(images)

@@ -7,7 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "shrink_cuts_fractions",
-    says="Truncating makes every pixel three eighths of a code darker on average: round instead.",
+    says="Truncation makes every pixel darker, by 3/8 on average. Round instead.",
 )
 def cuts_fractions(Y):
     Y = Y[: len(Y) // 2 * 2, : Y.shape[1] // 2 * 2].astype(np.uint16)

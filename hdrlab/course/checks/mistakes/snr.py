@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "snr_upside_down",
-    says="Your weight is inverted: the signal f belongs in the numerator, and the slope f', "
-    "which turns noise into error, in the denominator.",
+    says="Your weight is inverted. The signal f belongs in the numerator, and the slope f' in the"
+    " denominator.",
 )
 def upside_down(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -24,7 +24,7 @@ def upside_down(g, *, least=0.01, span=4):
 @mistake(
     "snr_signal_alone",
     says="You weight by the signal only. Divide by the slope f', which turns the noise of the "
-    "levels into noise of the exposure.",
+    "pixel values into noise of the exposure.",
 )
 def signal_alone(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -36,7 +36,8 @@ def signal_alone(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_ends_count",
-    says="The lowest and the highest level are only bounds, not measurements: their weight is 0.",
+    says="The lowest and the highest pixel value are only bounds, not measurements: their weight "
+    "is 0.",
 )
 def ends_count(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
@@ -50,8 +51,8 @@ def ends_count(g, *, least=0.01, span=4):
 
 @mistake(
     "snr_span_ignored",
-    says="You compute the slope between neighbours, where ripples of a recovered curve are as "
-    "steep as the curve. Use `span` levels on either side.",
+    says="You compute the slope between neighboring values, where noise in a recovered curve has "
+    "large slopes. Use `span` values on either side.",
 )
 def span_ignored(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)

@@ -9,8 +9,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "solve_periodic",
-    says="You solved with a Fourier transform, which assumes a periodic picture and bends its "
-    "edges. Use a cosine transform.",
+    says="You solved with a Fourier transform, which assumes a periodic image and distorts its "
+    "borders. Use a cosine transform.",
     misses_method=True,
 )
 def periodic(divG):
@@ -22,8 +22,8 @@ def periodic(divG):
 
 @mistake(
     "solve_axes_swapped",
-    says="You used the eigenvalues of the columns for the rows. The result is right for a "
-    "square picture only.",
+    says="You used the eigenvalues of the columns for the rows. The result is right for square "
+    "images only.",
 )
 def axes_swapped(divG):
     def eigenvalues(n, side):
@@ -41,8 +41,7 @@ def axes_swapped(divG):
 
 @mistake(
     "solve_wrong_sign",
-    says="Your picture is a negative. The eigenvalues of the Laplacian are negative: 2 "
-    "cos(...) - 2.",
+    says="Your image is a negative. The eigenvalues of the Laplacian are negative: 2 cos(...) - 2.",
 )
 def wrong_sign(divG):
     coefficients = dctn(divG, type=2)

@@ -30,7 +30,7 @@ def height_first(E):
 
 @mistake(
     "to_bytes_upside_down",
-    says="Your picture is upside down: the rows of a PFM file run from bottom to top.",
+    says="Your image is upside down: the rows of a PFM file run from bottom to top.",
 )
 def upside_down(E):
     E = np.asarray(E)

@@ -20,8 +20,8 @@ def exponent_of_red(E):
 
 @mistake(
     "to_pixels_exponent_too_large",
-    says="Your exponent is one too large, as from ceil(log2 E) + 1. All mantissas are below "
-    "128, and you lose one bit of precision.",
+    says="Your exponent is one too large. All mantissas are below 128, so you lose one bit of "
+    "precision. Check the limits of the largest mantissa.",
 )
 def exponent_too_large(E):
     brightest = E.max(axis=-1, keepdims=True)

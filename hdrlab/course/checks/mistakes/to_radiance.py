@@ -8,7 +8,8 @@ from hdrlab.io.maps.rgbe import SCALE
 
 @mistake(
     "to_radiance_exponent_wraps",
-    says="The exponent is a byte: below 128, e - 128 wraps around. Convert it to int first.",
+    says="The exponent is a byte. Where it is below 128, e - 128 wraps around. Convert it to int "
+    "first.",
 )
 def exponent_wraps(pixels):
     return np.where(

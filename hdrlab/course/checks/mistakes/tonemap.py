@@ -15,8 +15,8 @@ from hdrlab.tonemap.reinhard import (
 
 @mistake(
     "tonemap_absolute_unit",
-    says="Your curve uses absolute L, so the same scene in other units gives another picture. "
-    "Scale L by its log average first.",
+    says="Your curve uses absolute L, so the same scene in other units gives another image. Scale"
+    " L by its log average first.",
     misses_method=True,
 )
 def absolute_unit(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
@@ -26,7 +26,7 @@ def absolute_unit(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.
 
 @mistake(
     "tonemap_divided_by_the_maximum",
-    says="You divide by the brightest pixel, so one hot pixel darkens the whole picture. Use a "
+    says="You divide by the brightest pixel, so one hot pixel darkens the whole image. Use a "
     "percentile or a curve.",
     misses_method=True,
 )
@@ -51,8 +51,8 @@ def negative(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
 
 @mistake(
     "tonemap_not_clipped",
-    says="Your picture has values outside 0 ... 1. A display cannot show them, and 8-bit files "
-    "wrap around. Clip it.",
+    says="Your image has values outside 0 ... 1. A display cannot show them, and 8-bit files wrap"
+    " around. Clip it.",
 )
 def not_clipped(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
     L = as_light(L)

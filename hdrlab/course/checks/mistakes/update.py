@@ -7,8 +7,7 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "update_weighted",
-    says="The update of f^-1 is a plain mean over the pixels of a level. Weights by time give "
-    "another curve.",
+    says="You use weights in the update of f^-1. It is a plain mean over the pixels of one value.",
 )
 def weighted(Z, t, E, n=256):
     known = ~np.isnan(E)
@@ -21,8 +20,8 @@ def weighted(Z, t, E, n=256):
 
 @mistake(
     "update_by_all_samples",
-    says="Divide each level's sum by the number of pixels at that level, not by the number of "
-    "all samples.",
+    says="You divide by the number of all samples. Divide each sum by the number of pixels of "
+    "that value.",
 )
 def by_all_samples(Z, t, E, n=256):
     known = ~np.isnan(E)
@@ -35,7 +34,7 @@ def by_all_samples(Z, t, E, n=256):
 
 @mistake(
     "update_nan_taken_for_0",
-    says="Leave out samples of unknown irradiance. You count them as 0, which lowers their levels.",
+    says="You count samples of unknown irradiance as 0, which lowers the mean. Leave them out.",
 )
 def nan_taken_for_0(Z, t, E, n=256):
     known, E = np.ones(len(E), bool), np.nan_to_num(E)
@@ -48,8 +47,7 @@ def nan_taken_for_0(Z, t, E, n=256):
 
 @mistake(
     "update_time_forgotten",
-    says="A pixel at level m received the exposure E t. The exposure time is missing from your "
-    "mean.",
+    says="A pixel of value m received the exposure E t. You forgot the exposure time in your mean.",
 )
 def time_forgotten(Z, t, E, n=256):
     known = ~np.isnan(E)

@@ -36,8 +36,7 @@ def photons_not_divided_twice(X, D, N, R):
 
 @mistake(
     "variance_rounding_of_a_whole_step",
-    says="You add D^2. Rounding errors are spread evenly over one step D, and their variance "
-    "is D^2 / 12.",
+    says="You add D^2. The exposure is spread evenly over one step D, so its variance is D^2 / 12.",
 )
 def rounding_of_a_whole_step(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
@@ -46,7 +45,7 @@ def rounding_of_a_whole_step(X, D, N, R):
 
 @mistake(
     "variance_rounding_once",
-    says="You did not square the step. Rounding adds D^2 / 12.",
+    says="You did not square the step D. Rounding adds D^2 / 12.",
 )
 def rounding_once(X, D, N, R):
     N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)

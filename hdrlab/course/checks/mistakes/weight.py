@@ -28,8 +28,8 @@ def sign_kept(F, powers=(1, 1, 1)):
 
 @mistake(
     "weight_measures_added",
-    says="You add the three measures, so a clipped pixel with fine texture has a weight. "
-    "Multiply them: a product is small where one factor is.",
+    says="You add the three measures, so a clipped pixel with fine texture has a weight. Multiply"
+    " them: a product is small if one factor is small.",
 )
 def measures_added(F, powers=(1, 1, 1)):
     W = np.zeros(F.shape[1:], np.float32)
