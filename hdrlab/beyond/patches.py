@@ -20,7 +20,7 @@ minutes and more than two gigabytes: this is for small pictures, to see how it w
 """
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -148,7 +148,17 @@ def synthesise_steps(
         H = state.H
 
 
-def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) -> Array:
+def synthesise(
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    *,
+    reference: int | None = None,
+    side: int = 5,
+    coarsest: int = 24,
+    rounds: tuple[int, int] = (8, 2),
+    rng: int | np.random.Generator = 0,
+) -> Array:
     """Return the radiance of the moment at which one of the photographs was taken.
 
     Parameters
@@ -195,7 +205,17 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     >>> bool(np.allclose(H, 32 / 128, rtol=1e-3))
     True
     """
-    H = steps.last(synthesise_steps(images, times, g, **knobs)).H
+    states = synthesise_steps(
+        images,
+        times,
+        g,
+        reference=reference,
+        side=side,
+        coarsest=coarsest,
+        rounds=rounds,
+        rng=rng,
+    )
+    H = steps.last(states).H
     return H[..., 0] if np.ndim(images) == 3 else H
 
 

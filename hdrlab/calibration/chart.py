@@ -256,7 +256,10 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     return joining.join([blends.make_blend(times, patch) for patch in M.T], offset=False)
 
 
-def read_bracket(images: ArrayLike, corners: ArrayLike, **knobs: float) -> F64:
-    """Return M (P, 24[, 3]) of photographs (P, H, W[, 3]) from one place; knobs of `read_chart`."""
-    M = np.stack([read_chart(image, corners, **knobs) for image in as_stack(images)])
+def read_bracket(
+    images: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: float = 0.6
+) -> F64:
+    """Return M (P, 24[, 3]) of photos (P, H, W[, 3]) from one place; see `read_chart`."""
+    charts = [read_chart(image, corners, gap=gap, core=core) for image in as_stack(images)]
+    M = np.stack(charts)
     return M.reshape(len(M), ROWS * COLUMNS, *M.shape[3:])

@@ -13,7 +13,6 @@ where a window is bright.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -86,7 +85,16 @@ def expose_steps(
         EV = EV_opt
 
 
-def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
+def expose(
+    E: ArrayLike,
+    mode: str = "centre",
+    *,
+    at: metering.At = (0.5, 0.5),
+    start: float = 12.0,
+    target: float = metering.MIDDLE_GRAY,
+    max_shots: int = 8,
+    photograph: Callable[[ArrayLike, float], F32] = measure_brightness,
+) -> float:
     """Return the EV that automatic exposure settles on.
 
     Parameters
@@ -120,4 +128,7 @@ def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
     >>> round(expose(gray) - expose(2 * gray), 2)
     -1.0
     """
-    return steps.last(expose_steps(E, mode, **knobs)).EV_opt
+    states = expose_steps(
+        E, mode, at=at, start=start, target=target, max_shots=max_shots, photograph=photograph
+    )
+    return steps.last(states).EV_opt

@@ -16,7 +16,6 @@ these regions to 128 (`enhance.relight`).
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.ndimage import correlate1d, laplace
@@ -204,10 +203,28 @@ def quarter_size(mosaic: ArrayLike) -> Array:
 
 
 def correct_mosaic(
-    mosaic: ArrayLike, *, shape: tuple[float, float] = (relight.A, relight.C), **knobs: Any
+    mosaic: ArrayLike,
+    *,
+    target: float = relight.TARGET,
+    by: str = "auto",
+    find_skin: Callable[..., Mask] = skin.find_by_chrominance,
+    noise: float = NOISE,
+    shape: tuple[float, float] = (relight.A, relight.C),
+    least: float = 1 / 3,
 ) -> Correction:
-    """Return the Correction of a Bayer mosaic by its quarter-size picture; parameters as of `correct`."""
-    correction = correct(quarter_size(mosaic), shape=shape, **knobs)
+    """Correct the exposure of a Bayer mosaic by its quarter-size picture.
+
+    The parameters are those of `correct`.
+    """
+    correction = correct(
+        quarter_size(mosaic),
+        target=target,
+        by=by,
+        find_skin=find_skin,
+        noise=noise,
+        shape=shape,
+        least=least,
+    )
     a, c = shape
     table = relight.table(correction.delta, a=a, c=c)
     return dataclasses.replace(correction, picture=table[np.asarray(mosaic)])

@@ -185,12 +185,14 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
     choice = recovery.choose_response(options.response, state.bracket)
     has_true_times = choice.spread <= timing.MAX_CONSISTENT_STOPS
+    if options.times == "estimate" or (options.times == "correct" and not has_true_times):
+        refined = timing.refine_times(state, options.response, choice.spread)
+        is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
+        # Notes on times that stay are news only to those who asked for an estimate.
+        is_reported = options.times == "estimate" and not has_relative_times
+        if is_changed or is_reported:
+            state = refined
     if options.times != "stated":
-        if options.times == "estimate" or not has_true_times:
-            refined = timing.refine_times(state, options.response, choice.spread)
-            is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
-            if is_changed or not (has_relative_times or options.times == "correct"):
-                state = refined
         state = replace(state, stage="times")
         yield state
 
@@ -228,14 +230,13 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         partial(consistency.measure_level_exposures, sample, times, sample_map, valid=sample_valid),
         pixels=images[0].size,
     )
-    motion_found = motion_task.result()
-    moving_fraction = motion_found.fraction
-    band_stops = motion_found.band_stops
+    measured_motion = motion_task.result()
     medians = medians_task.result()
     contradictions = contradictions_task.result()
 
+    has_motion = measured_motion.fraction > motion.MOVED
     removes_ghosts = options.ghosts in ("regions", "reference") or (
-        options.ghosts == "auto" and moving_fraction > motion.MOVED
+        options.ghosts == "auto" and has_motion
     )
     is_usable = not state.fallback and not checks.is_worthless(medians)
     if options.release and is_usable and not removes_ghosts:
@@ -253,9 +254,10 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         yield state
 
     if state.moving is not None or is_misaligned:
-        moving_fraction = 0.0
-        band_stops = 0.0
-    checked = checks.check_map(state, medians, contradictions, moving_fraction, band_stops)
+        measured_motion = motion.Motion(fraction=0.0, band_stops=0.0)
+    checked = checks.check_map(
+        state, medians, contradictions, measured_motion.fraction, measured_motion.band_stops
+    )
     if is_misaligned:
         checked = replace(checked, doubts=state.doubts)
     yield checked

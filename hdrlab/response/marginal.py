@@ -17,7 +17,6 @@ and of Fisher scoring for theta alternate, from where `self_calibration` stopped
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -210,9 +209,21 @@ def fit_steps(
                 break
 
 
-def fit(Z: ArrayLike, c: ArrayLike, R: ArrayLike, **knobs: Any) -> State:
-    """Return the last State of `fit_steps`."""
-    return last(fit_steps(Z, c, R, **knobs))
+def fit(
+    Z: ArrayLike,
+    c: ArrayLike,
+    R: ArrayLike,
+    *,
+    stated: ArrayLike | None = None,
+    trust: float = np.inf,
+    tolerance: float = 0.01,
+    max_iterations: int = 30,
+) -> State:
+    """Return the last State of `fit_steps`, which has the same parameters."""
+    states = fit_steps(
+        Z, c, R, stated=stated, trust=trust, tolerance=tolerance, max_iterations=max_iterations
+    )
+    return last(states)
 
 
 def calibrate(
@@ -223,7 +234,8 @@ def calibrate(
     trust: float = 0.005,
     pixels: int = 10_000,
     valid: ArrayLike | None = None,
-    **knobs: float,
+    tolerance: float = 0.01,
+    max_iterations: int = 30,
 ) -> list[State]:
     """Return the last State of each channel of a bracket, starting where `self_calibration` stops.
 
@@ -240,7 +252,15 @@ def calibrate(
     start = self_calibrate(images, times, order=order, valid=valid)
     Z, stated = levels_by_time(images, times, pixels, valid=valid)
     return [
-        fit(Z_channel, c, start.R, stated=stated, trust=trust, **knobs)
+        fit(
+            Z_channel,
+            c,
+            start.R,
+            stated=stated,
+            trust=trust,
+            tolerance=tolerance,
+            max_iterations=max_iterations,
+        )
         for Z_channel, c in zip(Z, start.c, strict=True)
     ]
 
@@ -308,6 +328,5 @@ def recover(
         tolerance=0.5,
         max_iterations=10,
     )
-    return np.stack([curve(state.c) for state in states], axis=-1).reshape(
-        256, *np.shape(images)[3:]
-    )
+    g = np.stack([curve(state.c) for state in states], axis=-1)
+    return g.reshape(256, *np.shape(images)[3:])

@@ -10,7 +10,6 @@ M    brightness     (C, N, P), and R, c, H as in `mitsunaga`
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -194,8 +193,17 @@ def calibrate(
 
 
 def find_response(
-    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None, **knobs: Any
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    order: int | None = None,
+    eps: float = 1e-3,
+    valid: ArrayLike | None = None,
 ) -> F64:
-    """Return the response g (256,) or (256, 3), rising, g[128] = 0. Parameters as of `calibrate`."""
-    g = np.stack([curve(c) for c in calibrate(images, times, valid=valid, **knobs).c], axis=-1)
+    """Return the response g (256,) or (256, 3), which rises, with g[128] = 0.
+
+    The parameters are those of `calibrate`.
+    """
+    fit = calibrate(images, times, order=order, eps=eps, valid=valid)
+    g = np.stack([curve(c) for c in fit.c], axis=-1)
     return g.reshape(256, *np.shape(images)[3:])
