@@ -286,7 +286,7 @@ def _parse_place(text: str) -> tuple[float, float]:
     "-o",
     "--out",
     required=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_PICTURE,
     help="Photo to write: .png, .jpg or .tif.",
 )
 @common.choice_option(
@@ -345,7 +345,7 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
 @click.option(
     "--assemble",
     "map_file",
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_MAP,
     help=f"Radiance map to assemble from the photos: {common.MAP_SUFFIXES}.",
 )
 def shoot(out: Path, frames: int, stops: float, map_file: Path | None) -> None:
@@ -360,13 +360,11 @@ def shoot(out: Path, frames: int, stops: float, map_file: Path | None) -> None:
     needs the extra `camera` and runs on Linux and macOS.
     """
     from hdrlab.capture import exposure, planning
-    from hdrlab.io import files, radiance, sequence, tethered
+    from hdrlab.io import files, sequence, tethered
 
     # bad options are reported before the first photo
     common.require_modules("camera", ["gphoto2"])
     sequence.require_new(out)
-    if map_file:
-        radiance.format_of(map_file)
     with tethered.connected() as camera:
         common.echo_notes(camera.fix("light"))
         metered, names = camera.shutter()

@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -22,8 +23,49 @@ Item = TypeVar("Item")
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 INPUT_PATH = click.Path(path_type=Path)
-# an object of its own: `Command` finds the outputs among a command's options by it
-OUTPUT_PATH = click.Path(path_type=Path)
+
+
+class OutputPath(click.Path):
+    """The path of a file or folder to write. `Command` checks it before the command starts.
+
+    Parameters
+    ----------
+    check
+        Raises an error if the command cannot write under a path.
+    """
+
+    def __init__(self, check: Callable[[Path], object] | None = None) -> None:
+        super().__init__(path_type=Path)
+        self.check = check
+
+
+def _require_file(path: Path) -> None:
+    """Raise an error if the folder of a file to write is missing, or the file is a folder."""
+    from hdrlab.io import files
+
+    files.require_replaceable(path)
+
+
+def _require_map(path: Path) -> None:
+    """Raise an error if a radiance map cannot be written under this name."""
+    from hdrlab.io import radiance
+
+    radiance.require_writable(path)
+    _require_file(path)
+
+
+def _require_picture(path: Path) -> None:
+    """Raise an error if a tone-mapped image cannot be written under this name."""
+    from hdrlab.io import photos
+
+    photos.require_writable(path)
+    _require_file(path)
+
+
+OUTPUT_PATH = OutputPath()
+OUTPUT_FILE = OutputPath(_require_file)
+OUTPUT_MAP = OutputPath(_require_map)
+OUTPUT_PICTURE = OutputPath(_require_picture)
 EXISTING_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
 EXISTING_FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 
@@ -61,27 +103,35 @@ def debug_option(*, hidden: bool) -> click.Option:
 
 
 class Command(click.Command):
-    """A command that refuses to overwrite a file that it reads."""
+    """A command that checks the names of its outputs, and never overwrites a file that it reads."""
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self.params.append(debug_option(hidden=True))
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command, or raise InputError if an output is one of the files that it reads."""
+        """Run the command, or raise an error if it cannot write one of its outputs.
+
+        This happens before the command starts, because some commands work for minutes.
+        """
         from hdrlab.io.files import require_other
 
         written: list[Path] = []
         read: list[Path] = []
+        checks: list[Callable[[], object]] = []
         for param in self.params:
             paths = _paths(ctx.params.get(str(param.name)))
-            if param.type is OUTPUT_PATH:
-                written.extend(paths)
-            else:
+            if not isinstance(param.type, OutputPath):
                 read.extend(paths)
+                continue
+            written.extend(paths)
+            if param.type.check is not None:
+                checks += [partial(param.type.check, path) for path in paths]
         if written:
             photos = [photo for path in read for photo in _photos_in(path)]
             require_other(written, [*read, *photos])
+        for check in checks:
+            check()
         return super().invoke(ctx)
 
 

@@ -108,7 +108,7 @@ def _echo_note(text: str) -> None:
     "-o",
     "--out",
     required=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help="CSV file for the links. Keep it secret.",
 )
 @click.option(
@@ -210,7 +210,7 @@ def close(*, folder: Path) -> None:
 @gallery.command()
 @folder_argument
 @click.option(
-    "-o", "--out", required=True, type=common.OUTPUT_PATH, help="CSV file for the gradebook."
+    "-o", "--out", required=True, type=common.OUTPUT_FILE, help="CSV file for the gradebook."
 )
 def results(*, folder: Path, out: Path) -> None:
     """Write the results, after the end of the vote.

@@ -28,7 +28,7 @@ jobs_option = click.option(
     help="Show up to N hints for each failed check.",
 )
 @click.option(
-    "--page", type=common.OUTPUT_PATH, help="Page to write, with results and figures: .html."
+    "--page", type=common.OUTPUT_FILE, help="Page to write, with results and figures: .html."
 )
 @assignments.plan_option
 def check(

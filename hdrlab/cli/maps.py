@@ -19,6 +19,13 @@ OUTPUT_KINDS = ["picture", "ultrahdr", "png", "avif", "jxl"]
 # what --to picture writes for files whose suffix leaves no choice
 KIND_BY_SUFFIX = {".avif": "avif", ".jxl": "jxl"}
 
+SUFFIXES_BY_KIND = {
+    "ultrahdr": (".jpg", ".jpeg"),
+    "png": (".png",),
+    "avif": (".avif",),
+    "jxl": (".jxl",),
+}
+
 gamut_option = common.choice_option(
     "--way", ["hue", "ratio"], help="Method for colors that the display cannot show."
 )
@@ -30,7 +37,7 @@ gamut_option = common.choice_option(
     "-o",
     "--out",
     required=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help="Image to write: .png, .jpg, .tif, .avif or .jxl.",
 )
 @common.choice_option(
@@ -93,6 +100,8 @@ def tonemap(
 
     if to == "picture":
         to = KIND_BY_SUFFIX.get(out.suffix.lower(), "picture")
+    # bad options are reported before the work starts
+    _require_image_suffix(out, to)
     knobs = dict(common.parse_setting(text) for text in settings)
     E = common.read_map(source, clean)
     check_settings("tonemap", find_operator(operator), knobs)
@@ -102,6 +111,16 @@ def tonemap(
         )
         _write_image(out, to, developed.picture, E, headroom=headroom, primaries=primaries)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {developed.settings}")
+
+
+def _require_image_suffix(out: Path, kind: str) -> None:
+    """Raise an InputError if the suffix of `out` does not fit one of OUTPUT_KINDS."""
+    from hdrlab.io import files, photos
+
+    if kind == "picture":
+        photos.require_writable(out)
+    else:
+        files.require_suffix(out, SUFFIXES_BY_KIND[kind], f"an image for --to {kind}")
 
 
 def _write_image(
@@ -146,7 +165,7 @@ def check_settings(
     "-o",
     "--out",
     required=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help="Contact sheet to write: .png.",
 )
 @click.option(
@@ -182,7 +201,7 @@ def compare(
 
 @click.command(cls=common.Command)
 @click.argument("source", type=common.INPUT_PATH)
-@click.argument("target", type=common.OUTPUT_PATH)
+@click.argument("target", type=common.OUTPUT_MAP)
 @click.option(
     "--half",
     is_flag=True,
@@ -196,6 +215,7 @@ def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
     """
     from hdrlab.io import radiance
 
+    radiance.require_writable(target, half=half)
     E = common.read_map(source, clean)
     radiance.write_radiance(target, E, half=half)
     click.echo(f"{target}: {common.describe_map(E)}")

@@ -33,7 +33,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     "-o",
     "--out",
     required=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_MAP,
     help=f"Radiance map to write: {common.MAP_SUFFIXES}.",
 )
 @click.option(
@@ -79,7 +79,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
 @common.operator_option("--tonemap")
 @click.option(
     "--picture",
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_PICTURE,
     help="Tone-mapped image to write as well: .png, .jpg or .tif.",
 )
 @click.option(
@@ -89,7 +89,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
 )
 @click.option(
     "--uncertainty",
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help="File for the map and its standard deviation, as two layers: .exr.",
 )
 @click.option(
@@ -140,7 +140,7 @@ def assemble(
     """
     from hdrlab import pipeline
     from hdrlab.io import photos as photo_files, radiance
-    from hdrlab.io.files import require_suffix
+    from hdrlab.io.files import require_folder_name, require_suffix
     from hdrlab.io.maps import layers
     from hdrlab.show.pages import wording
 
@@ -149,7 +149,8 @@ def assemble(
         raise InputError(f"--stops and --times {times} exclude each other; pass one of them")
     recover = brackets.saved_curve(response) if isinstance(response, Path) else response
     meter_reading = common.parse_meter_reading(calibrate) if calibrate else None
-    radiance.format_of(out)
+    if report:
+        require_folder_name(report)
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
 
@@ -261,7 +262,7 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
     "-o",
     "--out",
     multiple=True,
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help=f"Curve to write: {brackets.CURVE_SUFFIXES}. Repeatable.",
 )
 @click.option(
@@ -280,7 +281,7 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
 )
 @click.option(
     "--plot",
-    type=common.OUTPUT_PATH,
+    type=common.OUTPUT_FILE,
     help="Figure of the curve and its residuals to write: .png or .svg.",
 )
 def calibrate(

@@ -44,7 +44,7 @@ def report(*, project: Path, example: bool) -> None:
 @click.command(cls=common.Command)
 @project_argument
 @click.option(
-    "-o", "--out", type=common.OUTPUT_PATH, default="submission.zip", help="Archive to write."
+    "-o", "--out", type=common.OUTPUT_FILE, default="submission.zip", help="Archive to write."
 )
 @click.option(
     "--keep-metadata", is_flag=True, help="Keep location and serial numbers in the photos."

@@ -28,10 +28,8 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
 
     Raises
     ------
-    FileNotFoundError
-        Where the folder of `path` does not exist.
-    ValueError
-        Where `path` is a folder or a device, which cannot be replaced.
+    FileNotFoundError, InputError
+        See `require_replaceable`.
 
     Examples
     --------
@@ -42,16 +40,9 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     >>> target.read_text()
     'all of it'
     """
-    path = Path(path).resolve()  # through a link, so that its target is replaced and not the link
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"cannot write {path.name}: there is no folder {path.parent}")
-    if path.exists() and not path.is_file():
-        raise InputError(
-            f"cannot write {path}: expected the name of a file, this is a folder or a device"
-        )
-    temporary = path.with_name(
-        f".hdrlab-{secrets.token_hex(6)}{path.suffix}"
-    )  # codecs look at the suffix
+    path = require_replaceable(path)
+    # Codecs choose the format by the suffix.
+    temporary = path.with_name(f".hdrlab-{secrets.token_hex(6)}{path.suffix}")
     try:
         if private:
             temporary.touch(mode=0o600)
@@ -96,6 +87,28 @@ def write(path: str | Path, content: str | bytes, *, private: bool = False) -> P
     return Path(path)
 
 
+def require_replaceable(path: str | Path) -> Path:
+    """Return the absolute path of a file to write, or raise an error if it cannot be written.
+
+    A link is followed, so that its target is replaced and not the link.
+
+    Raises
+    ------
+    FileNotFoundError
+        Where the folder of `path` does not exist.
+    InputError
+        Where `path` is a folder or a device, which cannot be replaced.
+    """
+    path = Path(path).resolve()
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {path.name}: there is no folder {path.parent}")
+    if path.exists() and not path.is_file():
+        raise InputError(
+            f"cannot write {path}: expected the name of a file, this is a folder or a device"
+        )
+    return path
+
+
 def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
     """Return the suffix of a file's name in lower case, or raise an InputError if it is unknown."""
     suffix = Path(path).suffix.lower()
@@ -113,6 +126,13 @@ def require_no_folder(path: str | Path, what: str) -> None:
     """
     if Path(path).is_dir():
         raise FileFormatError(f"{path}: this is a folder, not {what}; give the name of a file")
+
+
+def require_folder_name(path: str | Path) -> None:
+    """Raise an InputError if `path` is a file where a folder to write to is needed."""
+    path = Path(path)
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path}: expected the name of a folder, this is a file")
 
 
 def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:

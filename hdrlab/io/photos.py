@@ -163,13 +163,18 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    suffix = files.require_suffix(path, PICTURES, "a picture file")
+    suffix = require_writable(path)
     picture = as_picture(image)
     with files.replacing(path) as name:
         if suffix == ".png" and imagecodecs:
             name.write_bytes(imagecodecs.png_encode(picture, **PNG_OPTIONS))
         else:
             Image.fromarray(picture).save(name, **PICTURES[suffix])
+
+
+def require_writable(path: str | Path) -> str:
+    """Return the suffix of a picture's name, or raise an InputError if hdrlab cannot write it."""
+    return files.require_suffix(path, PICTURES, "a picture file")
 
 
 def _check_alike(headers: list[PhotoHeader]) -> None:

@@ -125,15 +125,21 @@ def write_radiance(
     >>> read_radiance(path).tolist()
     [[0.0010000000474974513, 1000000.0]]
     """
-    form = format_of(path)
-    if half and form is not exr:
-        raise InputError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
+    form = require_writable(path, half=half)
     if form is pfm:
         pfm.write(path, E)
     elif form is exr:
         exr.write(path, E, half=half, comments=comments)
     else:
         form.write(path, E, comments=comments)
+
+
+def require_writable(path: str | Path, *, half: bool = False) -> ModuleType:
+    """Return the module that writes a radiance map under this name, or raise an InputError."""
+    form = format_of(path)
+    if half and form is not exr:
+        raise InputError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
+    return form
 
 
 def format_of(path: str | Path, formats: Mapping[str, ModuleType] = SUFFIXES) -> ModuleType:

@@ -21,7 +21,7 @@ from hdrlab.core.arrays import F32, Array, as_picture
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.errors import InputError
 from hdrlab.io import album, photos, radiance, web
-from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
+from hdrlab.io.files import MAX_PIXELS, replacing, require_replaceable, require_suffix
 
 FILM_SUFFIXES = {".mp4", ".mov", ".mkv", ".avi", ".webm"}
 WRITABLE_SUFFIXES = (".gif", ".mp4")
@@ -224,6 +224,7 @@ def require_new(folder: Path) -> None:
 
 
 def require_writable(path: Path) -> None:
-    """Raise an InputError for a suffix that hdrlab cannot write, and for films without PyAV."""
+    """Raise an error for another suffix, for films without PyAV, and if the folder is missing."""
     if require_suffix(path, WRITABLE_SUFFIXES, "a film") in FILM_SUFFIXES:
         require_pyav(path)
+    require_replaceable(path)

@@ -93,3 +93,54 @@ def test_other_capitals_are_the_same_name_where_the_disk_says_so(tmp_path):
 
 def test_a_word_that_no_file_could_be_called_is_no_file(tmp_path):
     files.require_other([tmp_path], ["x" * 5000, "a\0b", ""])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "assemble photos --stops 2 -o room.xyz",
+        "assemble photos --stops 2 -o room.hdr --picture room.xyz",
+        "assemble photos --stops 2 -o room.hdr --uncertainty room.xyz",
+        "calibrate photos --times times.csv -o curve.xyz",
+        "calibrate photos --times times.csv --plot curve.xyz",
+        "correct photos/b.png -o room.xyz",
+        "tonemap photos/room.hdr -o room.xyz",
+        "tonemap photos/room.hdr -o room.xyz --to ultrahdr",
+        "tonemap photos/room.hdr -o room.xyz --to png",
+        "compare photos/room.hdr -o room.xyz",
+        "convert photos/room.hdr room.xyz",
+        "video photos --times 0.1,0.4 -o room.xyz",
+        "assemble photos --stops 2 -o missing/room.hdr",
+        "assemble photos --stops 2 -o room.hdr --picture missing/room.png",
+        "assemble photos --stops 2 -o room.hdr --picture photos",
+        "assemble photos --stops 2 -o room.hdr --uncertainty missing/room.exr",
+        "assemble photos --stops 2 -o room.hdr --report times.csv",
+        "calibrate photos --times times.csv -o missing/curve.csv",
+        "calibrate photos --times times.csv --plot missing/curve.png",
+        "correct photos/b.png -o missing/room.png",
+        "tonemap photos/room.hdr -o missing/room.png",
+        "compare photos/room.hdr -o missing/room.png",
+        "convert photos/room.hdr missing/room.exr",
+        "convert photos/room.hdr room.pfm --half",
+        "video photos --times 0.1,0.4 -o missing/room.gif",
+        "check hw2.py --page missing/page.html",
+    ],
+)
+def test_bad_name_of_an_output_is_rejected_before_any_input_is_read(
+    words, here, capsys, monkeypatch
+):
+    def read(*_, **__):
+        pytest.fail("an input was read")
+
+    monkeypatch.setattr("hdrlab.io.photos.read_bracket", read)
+    monkeypatch.setattr("hdrlab.io.photos.read_photo", read)
+    monkeypatch.setattr("hdrlab.io.radiance.read_sanitized", read)
+    monkeypatch.setattr("hdrlab.cli.assignments.find_homework", read)
+    before = contents(here)
+    with pytest.raises(SystemExit) as stop:
+        cli.run(words.split())
+    error = capsys.readouterr().err
+    assert stop.value.code == 2
+    assert error.count("\n") == 1
+    assert any(name in error for name in ("room", "curve", "page", "photos", "times.csv"))
+    assert contents(here) == before
