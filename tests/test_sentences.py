@@ -165,7 +165,7 @@ SENTENCES = {
         "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
-        "The screen and the many times hardly do worse than the true curve": lambda n: (
+        "The screen and the many times are hardly worse than the true curve": lambda n: (
             max(radiance_off(n, "a screen"), radiance_off(n, "a chart"))
             < 0.002 + radiance_off(n, "true")
         ),
@@ -175,21 +175,23 @@ SENTENCES = {
         "with 6 by a few tenths, with 9 by less": lambda n: (
             1 > spline_off(n, n.simplex(6)) > spline_off(n, n.simplex(9))
         ),
-        "They err by about the same, with opposite signs": lambda n: all(
+        "The two errors are about equal, with opposite signs": lambda n: all(
             left > 0 > right and abs(left + right) < 0.1 * left
             for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
         ),
         "Motion is far off": lambda n: radiance_off(n, "motion") > 0.1,
-        "Reading the photo as sRGB is worse than that": lambda n: (
+        "Decoding the photo as sRGB is even worse": lambda n: (
             radiance_off(n, "sRGB") > radiance_off(n, "motion")
         ),
     },
     "09": {
-        "`film` and `srgb` are met to a few tenths of a percent with 4 components": lambda n: all(
-            0.1 < off(*n.nearest(name, 4)) < 0.4 for name in ("film", "srgb")
+        "With 4 components the space represents `film` and `srgb` to a few tenths of a percent": lambda n: (
+            all(0.1 < off(*n.nearest(name, 4)) < 0.4 for name in ("film", "srgb"))
         ),
-        "`mix` with 6": lambda n: off(*n.nearest("mix", 6)) < 0.2,
-        "`wig` stays 2 to 3 % off with all twelve": lambda n: 2 < off(*n.nearest("wig", 12)) < 3,
+        "and with 6 also `mix`": lambda n: off(*n.nearest("mix", 6)) < 0.2,
+        "`wig` stays 2 to 3 % off even with all twelve": lambda n: (
+            2 < off(*n.nearest("wig", 12)) < 3
+        ),
         "as the second does for `srgb`": lambda n: (
             off(*n.nearest("srgb", 2)) > off(*n.nearest("srgb", 1))
         ),
@@ -201,18 +203,20 @@ SENTENCES = {
         "the space is better for `film` and `srgb`, with half to two thirds of the error": lambda n: (
             all(0.5 <= round(share(n, name, 100), 2) <= 0.67 for name in ("film", "srgb"))
         ),
-        "worse for `mix`, and much worse for `wig`": lambda n: (
+        "It is worse for `mix`, and much worse for `wig`": lambda n: (
             share(n, "wig", 100) > 5 > share(n, "mix", 100) > 1
         ),
-        "With thousands of pixels `mix` is met, too": lambda n: share(n, "mix", 4000) < 1,
+        "With thousands of pixels it also represents `mix` well": lambda n: (
+            share(n, "mix", 4000) < 1
+        ),
         "`gsolve` gains for `srgb` and `wig` and loses for `film`": lambda n: (
             gain(n, "film") < 1 < min(gain(n, "srgb"), gain(n, "wig"))
         ),
-        "`film` is well met from 0.002 to 0.1": lambda n: all(
-            off(*n.believed(noise, "film")) < 0.25 for noise in (0.002, 0.005, 0.02, 0.05, 0.1)
+        "With a thousand pixels the result for `film` is good from 0.002 to 0.1": lambda n: all(
+            off(*n.with_noise(noise, "film")) < 0.25 for noise in (0.002, 0.005, 0.02, 0.05, 0.1)
         ),
-        "at 0.05 it is already pulled off by a percent": lambda n: (
-            round(off(*n.believed(0.05, "mix"))) == 1
+        "at 0.05 it is already off by a percent": lambda n: (
+            round(off(*n.with_noise(0.05, "mix"))) == 1
         ),
     },
     "10": {
