@@ -227,8 +227,8 @@ SENTENCES = {
         "and the scene has eighteen": lambda n: (
             round(float(np.log2(n.true_L.max() / n.true_L.min()))) == 18
         ),
-        "The frames agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
-        "six stops below the windows": lambda n: (
+        "The photos agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
+        "and six stops below the windows": lambda n: (
             round(n.scenes.decades(n.real.E) / np.log10(2)) == 6
         ),
         "film reaches level 128 with a seventh of the light that fills it": lambda n: (
@@ -236,9 +236,13 @@ SENTENCES = {
         ),
     },
     "11": {
-        "A fifth of a degree": lambda n: round(float(np.abs(n.degrees).max()), 1) == 0.2,
-        "the frames agree alike": lambda n: np.ptp([one.spread for one in n.both.values()]) < 0.002,
-        "the histograms of the two photos tell nearly the same": lambda n: (
+        "A fifth of a degree. It moves a corner by a pixel here": lambda n: (
+            round(float(np.abs(n.degrees).max()), 1) == 0.2
+        ),
+        "the photos agree equally well": lambda n: (
+            np.ptp([one.spread for one in n.both.values()]) < 0.002
+        ),
+        "the histograms of the two photos give nearly the same value": lambda n: (
             abs(n.light.exposure_ratio(n.dark, n.bright, n.g[:, 1]) / n.k0 - 1) < 0.01
         ),
     },
