@@ -19,7 +19,7 @@ HERE = Path(__file__).parent / "attacks"
 NAMES = sorted(path.stem for path in HERE.glob("a*.py"))
 HONEST = "def double(x):\n    return 2 * x\n"
 # past Python's own refusals
-IMPOLITE = "import sys; getattr(sys.modules.get('worker'), 'REFUSED', {}).clear()\n"
+IMPOLITE = "import sys; getattr(sys.modules.get('worker'), 'FORBIDDEN_ACTIONS', {}).clear()\n"
 
 
 def armed(name, place, port):

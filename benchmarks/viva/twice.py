@@ -60,7 +60,9 @@ class InProcess:
                     scope: dict[str, Any] = {"__name__": task}
                     exec(compile(self.texts[task], task, "exec"), scope)
                     self.functions[task] = scope[task]
-                answer = worker.drained(self.functions[task](*deepcopy(given), **deepcopy(named)))
+                answer = worker.collect_items(
+                    self.functions[task](*deepcopy(given), **deepcopy(named))
+                )
                 channel.send(Nowhere(), "answer", answer)  # type: ignore[arg-type]  # or it is refused, as there
                 return compare.plain(answer)
 

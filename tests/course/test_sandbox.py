@@ -30,7 +30,7 @@ from hdrlab.course.sandbox import contents, filters, practice, running, strict, 
 from hdrlab.course.sandbox.inside import channel, system
 from hdrlab.course.source_code.names import imported_numpy_modules
 
-IMPOLITE = "import sys; sys.modules['worker'].REFUSED.clear()\n"
+IMPOLITE = "import sys; sys.modules['worker'].FORBIDDEN_ACTIONS.clear()\n"
 FUNCTIONS = """
 import os, sys, time, warnings
 from typing import NamedTuple
@@ -48,6 +48,9 @@ def nothing(x): pass
 def loud(x):
     print("said"); warnings.warn("warned"); print("\\x1b[31mred", file=sys.stderr)
     return x
+def loud_set(x):
+    print("printed first")
+    return {x}
 def wrong(x):
     y = 1 / 0
 def absent(x): import cv2
@@ -188,6 +191,13 @@ def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject)
     assert "\x1b" not in subject.printed
     subject.fresh()
     assert subject.printed == ""
+
+
+def test_what_a_function_printed_is_kept_if_its_answer_is_refused(subject):
+    with pytest.raises(NoAnswer) as raised:
+        subject.loud_set(1.0)
+    assert raised.value.kind == "refused"
+    assert "printed first" in subject.printed
 
 
 def test_an_input_that_is_changed_there_is_not_changed_here(subject):

@@ -1,8 +1,9 @@
-"""The process of a check: it runs a student's functions on what the channel brings, and sends their answers.
+"""Run a student's functions in the process of a check, and send their answers to the grader.
 
-It stands alone, on the standard library and on channel.py: it goes into the sandbox, where hdrlab
-is not. Nothing in it guards anything against the student's code, which may rewrite all of it in its
-own process. The sandbox around it does, and the reader at the other end of the channel.
+This file goes into the sandbox, where hdrlab is not: it needs the standard library and channel.py
+alone. Nothing in it protects anything from the student's code, which can change all of it in its
+own process. The sandbox around the process protects the grader, and so does the code that reads the
+other end of the channel.
 """
 
 import io
@@ -16,118 +17,178 @@ import types
 from collections.abc import Iterator
 from typing import Any
 
-STATES = 4096  # of a generator, at most
-OUTPUT = 1 << 16  # characters of what was printed, at most
-MESSAGE = 2000  # characters of an error's message, at most
-HERE = "numpy, scipy and Python's own modules are here"
-CHANGES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
-REFUSED = {  # what no tier for credit lets a function do, by the names of Python's audit events
+# of an iterator that a function returns
+MAX_ITEMS = 4096
+MAX_PRINTED_CHARACTERS = 2**16
+MAX_MESSAGE_CHARACTERS = 2000
+MAX_CLASS_NAME_CHARACTERS = 80
+MAX_LINE_CHARACTERS = 200
+MISSING_MODULE_HINT = "numpy, scipy and Python's own modules are here"
+
+WRITING_FLAGS = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
+# what no tier for credit lets a function do, by Python's audit events
+FORBIDDEN_ACTIONS = {
+    # only with flags for writing
     "open": "write a file",
-    **dict.fromkeys(
-        ("os.remove", "os.rename", "os.mkdir", "os.rmdir", "os.truncate"), "change a file"
-    ),
-    **dict.fromkeys(("os.link", "os.symlink", "os.chmod", "os.chown", "os.utime"), "change a file"),
-    **dict.fromkeys(
-        ("subprocess.Popen", "os.system", "os.exec", "os.posix_spawn"), "start a program"
-    ),
-    **dict.fromkeys(("os.fork", "os.forkpty"), "start a process"),
-    **dict.fromkeys(("socket.__new__", "socket.connect", "socket.bind"), "use the network"),
+    "os.remove": "change a file",
+    "os.rename": "change a file",
+    "os.mkdir": "change a file",
+    "os.rmdir": "change a file",
+    "os.truncate": "change a file",
+    "os.link": "change a file",
+    "os.symlink": "change a file",
+    "os.chmod": "change a file",
+    "os.chown": "change a file",
+    "os.utime": "change a file",
+    "subprocess.Popen": "start a program",
+    "os.system": "start a program",
+    "os.exec": "start a program",
+    "os.posix_spawn": "start a program",
+    "os.fork": "start a process",
+    "os.forkpty": "start a process",
+    "socket.__new__": "use the network",
+    "socket.connect": "use the network",
+    "socket.bind": "use the network",
 }
 
 
-class Output(io.TextIOBase):
-    """What is printed: the first OUTPUT characters, the rest goes nowhere."""
+class PrintedText(io.TextIOBase):
+    """A text stream that keeps the first MAX_PRINTED_CHARACTERS characters and discards the rest."""
 
     def __init__(self) -> None:
-        self.text: list[str] = []
-        self.left = OUTPUT
+        self._parts: list[str] = []
+        self._room = MAX_PRINTED_CHARACTERS
 
     def writable(self) -> bool:
         """Return True."""
         return True
 
     def write(self, text: str) -> int:
-        """Keep what there is room for."""
-        if self.left > 0:
-            self.text.append(text[: self.left])
-            self.left -= len(text)
+        """Keep as much of a text as there is room for."""
+        if self._room > 0:
+            self._parts.append(text[: self._room])
+            self._room -= len(text)
         return len(text)
 
     def take(self) -> str:
-        """Return what came since the last time."""
-        text, self.text = "".join(self.text), []
+        """Return what was written since the last call."""
+        text = "".join(self._parts)
+        self._parts = []
         return text
 
 
-def refuse(event: str, arguments: tuple[Any, ...]) -> None:
-    """Say in plain words what the walls of the stricter tiers would say in the system's: an audit hook.
+def forbid_actions(event: str, arguments: tuple[Any, ...]) -> None:
+    """Raise PermissionError with a plain message for what a check may not do: an audit hook.
 
-    It is a courtesy, that a function which is checked at home is checked alike later; it keeps
-    nobody in.
+    This protects nothing. It is there so that the practice tier, which has no walls, fails for the
+    same functions as the other tiers, and so that all tiers fail with a message that students
+    understand.
     """
-    if event in REFUSED:
-        reads = event == "open" and not (isinstance(arguments[2], int) and arguments[2] & CHANGES)
-        if not reads and arguments[:1] != (os.devnull,):
-            raise PermissionError(f"a function that is checked cannot {REFUSED[event]}")
+    if event not in FORBIDDEN_ACTIONS:
+        return
+    if event == "open":
+        flags = arguments[2]
+        opens_for_writing = isinstance(flags, int) and flags & WRITING_FLAGS != 0
+        if not opens_for_writing:
+            return
+    if arguments[:1] == (os.devnull,):
+        return
+    raise PermissionError(f"a function that is checked cannot {FORBIDDEN_ACTIONS[event]}")
 
 
-def run(source: str, name: str) -> dict[str, Any]:
+def run_source(source: str, name: str) -> dict[str, Any]:
     """Run a submission's source as a module of this name, and return what it defines."""
-    module, file = types.ModuleType(name), f"<{name}>"
-    sys.modules[name] = module  # a dataclass looks its module up
+    module = types.ModuleType(name)
+    # a dataclass looks its module up here
+    sys.modules[name] = module
+    file = f"<{name}>"
+    # for tracebacks, which then show the lines of the source
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
-    exec(compile(source, file, "exec"), module.__dict__)
+    code = compile(source, file, "exec")
+    exec(code, module.__dict__)
     return module.__dict__
 
 
-def drained(value: Any) -> Any:
-    """Return an iterator's items as a list, of STATES at most, and anything else as it is."""
-    return list(itertools.islice(value, STATES)) if isinstance(value, Iterator) else value
+def collect_items(value: Any) -> Any:
+    """Return the first MAX_ITEMS items of an iterator as a list; return any other value as it is."""
+    if isinstance(value, Iterator):
+        return list(itertools.islice(value, MAX_ITEMS))
+    return value
 
 
-def complaint(error: BaseException) -> dict[str, Any]:
-    """Return what an error says: its class, its message, and the last line of the submission on its way."""
+def describe_error(error: BaseException) -> dict[str, Any]:
+    """Return an error's class, its message, and the last line of the submission that led to it."""
     message = str(error)
     if isinstance(error, ModuleNotFoundError):
-        message = f"{message} ({HERE})"
-    frames = [
-        one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith("<")
-    ]
-    line = frames[-1].lineno if frames else getattr(error, "lineno", None)
-    text = frames[-1].line if frames else getattr(error, "text", None)
+        message = f"{message} ({MISSING_MODULE_HINT})"
+    frames = traceback.extract_tb(error.__traceback__)
+    # the submission's file has a name such as <gsolve>
+    own_frames = [frame for frame in frames if frame.filename.startswith("<")]
+    if own_frames:
+        line = own_frames[-1].lineno
+        text = own_frames[-1].line
+    else:
+        # a SyntaxError knows its place
+        line = getattr(error, "lineno", None)
+        text = getattr(error, "text", None)
     return {
-        "error": type(error).__name__[:80],
-        "message": message[:MESSAGE],
+        "error": type(error).__name__[:MAX_CLASS_NAME_CHARACTERS],
+        "message": message[:MAX_MESSAGE_CHARACTERS],
         "line": line if isinstance(line, int) else None,
-        "text": str(text or "").strip()[:200],
+        "text": str(text or "").strip()[:MAX_LINE_CHARACTERS],
     }
 
 
-def answer(order: dict[str, Any], known: dict[str, dict[str, Any]]) -> Any:
-    """Return what the student's function answers to the arguments of an order."""
-    if order["source"] not in known:
-        known[order["source"]] = run(order["source"], order["task"])
-    function = known[order["source"]].get(order["task"])
+def call_function(order: dict[str, Any], namespaces: dict[str, dict[str, Any]]) -> Any:
+    """Call a student's function as an order says, and return its answer.
+
+    Parameters
+    ----------
+    order : dict
+        The task, the source, and the arguments.
+    namespaces : dict
+        What each source that was run defines; a new source is added.
+    """
+    source = order["source"]
+    task = order["task"]
+    if source not in namespaces:
+        namespaces[source] = run_source(source, task)
+    function = namespaces[source].get(task)
     if function is None:
-        raise NameError(f"there is no function {order['task']}")
-    return drained(function(*order["args"], **order["kwargs"]))
+        raise NameError(f"there is no function {task}")
+    return collect_items(function(*order["args"], **order["kwargs"]))
 
 
 def serve(link: socket.socket, channel: Any) -> None:
-    """Answer calls until the other end closes."""
-    known: dict[str, dict[str, Any]] = {}
-    output = sys.stdout = sys.stderr = Output()
-    sys.addaudithook(refuse)
+    """Answer the grader's calls until it closes the link.
+
+    Parameters
+    ----------
+    link : socket
+        The connection to the grader.
+    channel : module
+        The module channel.py, which has another name in the sandbox than outside.
+    """
+    namespaces: dict[str, dict[str, Any]] = {}
+    printed = PrintedText()
+    sys.stdout = printed
+    sys.stderr = printed
+    sys.addaudithook(forbid_actions)
     while True:
         try:
-            _, call, order = channel.receive(link)
+            _, call_number, order = channel.receive(link)
         except EOFError:
             return
         try:
-            kind, value = "answer", answer(order, known)
-        except BaseException as error:  # sys.exit and the interrupt as well: they are no answer
-            kind, value = "raised", complaint(error)
+            value = call_function(order, namespaces)
+            kind = "answer"
+        # also SystemExit and KeyboardInterrupt
+        except BaseException as error:
+            value = describe_error(error)
+            kind = "raised"
+        output = printed.take()
         try:
-            channel.send(link, kind, (output.take(), value), call)
+            channel.send(link, kind, (output, value), call_number)
         except channel.UnsupportedValue as error:
-            channel.send(link, "refused", (output.take(), str(error)[:MESSAGE]), call)
+            reason = str(error)[:MAX_MESSAGE_CHARACTERS]
+            channel.send(link, "refused", (output, reason), call_number)
