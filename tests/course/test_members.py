@@ -12,43 +12,46 @@ from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, R
 from hdrlab.course.submissions.archives.packing import packed
 
 
-def test_the_limits_are_those_of_a_submission_with_photographs():
-    assert LIMITS == (2000, 1024**3, 512 * 1024**2, 12, 200, 200) and members.PIECE == 65536
-    ports = {f"{port}{k}" for port in ("com", "lpt") for k in "123456789"}
-    assert members.DEVICES == {"con", "prn", "aux", "nul"} | ports
+def test_device_names_of_windows_are_refused_with_any_extension():
+    ports = [f"{port}{k}" for port in ("com", "lpt") for k in "123456789"]
+    for name in ["con", "prn", "aux", "nul", *ports]:
+        for path in (name, f"{name.upper()}.txt", f"folder/{name}"):
+            with pytest.raises(Refused):
+                members.check_names([path])
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    "name",
     [
-        ("/a", "'/a' is an absolute name"),
-        ("\\a", r"'\\a' is an absolute name"),
-        ("C:/a", "'C:/a' is an absolute name"),
-        ("c:", "'c:' is an absolute name"),
-        ("a/../b", "'a/../b' leads out of the archive's folder"),
-        ("..", "'..' leads out of the archive's folder"),
-        ("a\\..\\b", r"'a\..\b' leads out of the archive's folder"),
-        ("a\\b", r"'a\b' has a backslash or a control character in its name"),
-        ("a\x01b", "b' has a backslash or a control character in its name"),
-        ("a\u200bb", "has a backslash or a control character in its name"),
-        ("a\udc80b", "has a backslash or a control character in its name"),
-        ("", "'' is empty, too long, or too deep"),
-        (".", "'.' is empty, too long, or too deep"),
-        ("n" * 201, "n\u2026' is empty, too long, or too deep"),
-        ("\u00e9" * 101, "\u00e9\u2026' is empty, too long, or too deep"),
-        ("/".join("abcdefghijklm"), "'a/b/c/d/e/f/g/h/i/j/k/l/m' is empty, too long, or too deep"),
-        ("Con", "'Con' is a device's name on some systems"),
-        ("a/lpt9.tar.gz/b", "'a/lpt9.tar.gz/b' is a device's name on some systems"),
-        ("a./b", "'a./b' is a device's name on some systems"),
-        ("a ", "is a device's name on some systems"),
-        ("ab:c", "'ab:c' is a device's name on some systems"),
+        "/a",
+        "\\a",
+        "C:/a",
+        "c:",
+        "a/../b",
+        "..",
+        "a\\..\\b",
+        "a\\b",
+        "a\x01b",
+        "a\u200bb",
+        "a\udc80b",
+        "",
+        ".",
+        "n" * 201,
+        "\u00e9" * 101,
+        "/".join("abcdefghijklm"),
+        "Con",
+        "a/lpt9.tar.gz/b",
+        "a./b",
+        "a ",
+        "ab:c",
     ],
 )
-def test_a_name_that_no_submission_needs_is_refused_with_the_reason(name, said):
+def test_a_name_that_no_submission_needs_is_refused_and_quoted(name):
     with pytest.raises(Refused) as refused:
         members.check_names([name])
-    found = str(refused.value).replace("\\\\", "\\")
-    assert found.endswith(said.replace("\\\\", "\\")) and found.isprintable() and len(found) < 150
+    message = str(refused.value)
+    assert members.quote_name(name) in message
+    assert message.isprintable() and len(message) < 150
 
 
 @pytest.mark.parametrize(
@@ -89,9 +92,9 @@ def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
     ],
 )
 def test_two_names_that_are_one_file_on_some_system_are_refused_at_the_second(names, twice):
-    with pytest.raises(Refused, match="is there twice, or differs from another by case") as refused:
+    with pytest.raises(Refused, match="twice") as refused:
         members.check_names([*names[:1], "between", *names[1:]])
-    assert str(refused.value).startswith(twice)
+    assert twice in str(refused.value)
 
 
 def test_files_may_share_their_folders():
@@ -106,22 +109,22 @@ def test_of_a_long_name_sixty_letters_are_shown():
 
 def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
     members.check_count(3, Limits(members=3))
-    with pytest.raises(Refused, match="^it has 4 members, .*at most 3$"):
+    with pytest.raises(Refused, match="4 members.*3"):
         members.check_count(4, Limits(members=3))
-    with pytest.raises(Refused, match="it has 2 members"):
+    with pytest.raises(Refused, match="2 members"):
         members.check_names(["../a", "b"], Limits(members=1))
 
 
 def test_a_ratio_is_said_in_whole_times_also_of_nothing():
     big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
-    with pytest.raises(Refused, match=r"^it unpacks to 262144 times its size, .*at most 200$"):
+    with pytest.raises(Refused, match="262144 times .*200"):
         members.check_sizes(big, 4, LIMITS)
-    with pytest.raises(Refused, match=r"^it unpacks to 1048577 times its size, .*at most 200$"):
+    with pytest.raises(Refused, match="1048577 times .*200"):
         members.check_sizes(big, 0, LIMITS)
     members.check_sizes([Member(PurePosixPath("a"), 1 << 20)], 0, LIMITS)
-    with pytest.raises(Refused, match="^'a' claims 8 bytes, .*at most 7$"):
+    with pytest.raises(Refused, match="'a' .*8 .*7"):
         members.check_sizes([Member(PurePosixPath("a"), 8)], 8, Limits(one=7))
-    with pytest.raises(Refused, match="^its files claim 14 bytes together, .*at most 13$"):
+    with pytest.raises(Refused, match="14 .*13"):
         members.check_sizes([Member(PurePosixPath("a"), 7)] * 2, 8, Limits(one=7, total=13))
 
 
@@ -132,9 +135,9 @@ def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less
     data = bytes(k % 251 for k in range(size))
     members.write(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
     assert (tmp_path / "new" / "folder" / "a").read_bytes() == data
-    with pytest.raises(Refused, match=f"^'b' is larger than the {size} bytes it claims$"):
+    with pytest.raises(Refused, match=f"'b' .*larger .*{size} bytes"):
         members.write(io.BytesIO(data + b"x"), tmp_path / "b", size)
-    with pytest.raises(Refused, match=f"^'c' is shorter than the {size + 1} bytes it claims$"):
+    with pytest.raises(Refused, match=f"'c' .*shorter .*{size + 1} bytes"):
         members.write(io.BytesIO(data), tmp_path / "c", size + 1)
 
 

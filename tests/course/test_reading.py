@@ -23,7 +23,7 @@ def tried(monkeypatch):
         left, asked = list(endings), []
 
         def run(work, order, *, timeout, limits):
-            assert work is reader._read and Path(order[1]).is_dir()
+            assert Path(order[1]).is_dir()
             asked.append((order[0], *order[2:], timeout, limits))
             end = left.pop(0)
             if isinstance(end, Exception):
@@ -43,35 +43,30 @@ def failed(own=False, killed=False):
     return made
 
 
-def test_the_bounds_of_a_submission_are_those_that_the_pages_name():
-    assert (reader.LARGEST, reader.MOST_CODE, reader.MOST_SOURCE) == (
-        50_000_000,
-        1_000_000,
-        900_000,
-    )
-    assert reader.UNPACKED == (2000, 256 << 20, 512 << 20, 12, 200, 200)
-    assert (reader.SECONDS, reader.MEMORY, reader.UNPACKING) == (2, 500 << 20, 3)
-    assert (reader.TRIES, reader.PATIENCE, reader.TOLD) == (3, 25, 12)
-
-
-@pytest.mark.parametrize(
-    ("name", "seconds"),
-    [("a.ipynb", 2), ("a.py", 2), ("a.zip", 5), ("a.tar.GZ", 5), ("a.tgz", 5), ("a.zip.txt", 2)],
-)
-def test_a_file_is_read_in_two_seconds_and_an_archive_in_five(name, seconds, tried):
+@pytest.mark.parametrize("name", ["a.ipynb", "a.py", "a.zip.txt"])
+def test_a_file_is_read_in_a_process_with_limited_time_and_memory(name, tried):
     asked = tried(SAID)
     found = reader.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
     assert found == SubmittedCode({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
-    limits = {"CPU": seconds, "AS": 500 << 20}
-    assert asked == [(Path(name), "hw2", ("f", "g"), (Cell("x = 1"),), 25.0, limits)]
+    ((*order, timeout, limits),) = asked
+    assert order == [Path(name), "hw2", ("f", "g"), (Cell("x = 1"),)]
+    assert 0 < limits["CPU"] < timeout and 0 < limits["AS"] < 2**30
+
+
+@pytest.mark.parametrize("name", ["a.zip", "a.tar.GZ", "a.tgz"])
+def test_reading_an_archive_may_take_more_processor_time_than_a_notebook(name, tried):
+    asked = tried(SAID, SAID)
+    reader.read(Path("a.ipynb"), "hw2", ["f"])
+    reader.read(Path(name), "hw2", ["f"])
+    notebook, archive = [limits["CPU"] for *_, limits in asked]
+    assert archive > notebook
 
 
 def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
     asked = tried(failed(own=True))
-    said = "a.zip takes more than 5 s or 500 MB to read, as no homework does"
-    assert (
-        reader.read(Path("a.zip"), "hw2", []) == SubmittedCode({}, (said,), "") and len(asked) == 1
-    )
+    found = reader.read(Path("a.zip"), "hw2", [])
+    (problem,) = found.problems
+    assert problem.startswith("a.zip") and found.sources == {} and len(asked) == 1
 
 
 @pytest.mark.parametrize(
@@ -91,24 +86,25 @@ def test_a_process_that_somebody_ends_is_tried_three_times_and_any_other_once(
     if read:
         assert reader.read(Path("a.py"), "hw2", []).hash == "digest"
     else:
-        with pytest.raises(ValueError, match="^it could not be read: it was ended$"):
+        with pytest.raises(ValueError, match="it was ended"):
             reader.read(Path("a.py"), "hw2", [])
     assert len(asked) == tries
 
 
-def test_in_that_process_an_archive_is_opened_and_its_notebook_is_read(tmp_path):
+def test_the_notebook_in_an_archive_is_read(tmp_path):
     text = "import numpy as np\nfrom scipy import ndimage\ndef f():\n    return np.pi, ndimage\n"
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
         opened.writestr("in/hw2.py", text)
-    (tmp_path / "scratch").mkdir()
-    order = (tmp_path / "a.zip", tmp_path / "scratch", "hw2", ("f",), ())
-    sources, problems, digest, modules, variants = json.loads(reader._read(order))
-    assert sources["f"].endswith("return np.pi, ndimage\n") and problems == [] and variants is None
-    assert modules == ["numpy", "scipy", "scipy.ndimage"] and len(digest) == 64
+    found = reader.read(tmp_path / "a.zip", "hw2", ["f"])
+    assert found.sources["f"].endswith("return np.pi, ndimage\n")
+    assert found.problems == () and found.variants is None
+    assert found.modules == ("numpy", "scipy", "scipy.ndimage") and len(found.hash) == 64
+
+
+def test_a_damaged_archive_is_a_problem_and_not_an_error(tmp_path):
     (tmp_path / "b.zip").write_bytes(b"none")
-    order = (tmp_path / "b.zip", tmp_path, "hw2", ("f",), ())
-    sources, problems, digest, *_ = json.loads(reader._read(order))
-    assert (sources, digest) == ({}, "") and problems[0].startswith("The archive is refused: ")
+    found = reader.read(tmp_path / "b.zip", "hw2", ["f"])
+    assert found.sources == {} and found.hash == "" and len(found.problems) == 1
 
 
 @pytest.mark.parametrize(
@@ -125,8 +121,8 @@ def test_where_an_archive_holds_no_one_notebook_the_first_five_are_named(names, 
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
         for name in names:
             opened.writestr(name, "1")
-    said = f"Expected one notebook or Python file in the archive, got {told}."
-    assert reader.opened(tmp_path / "a.zip", tmp_path, "hw2") == (tmp_path / "a.zip", said)
+    path, problem = reader.opened(tmp_path / "a.zip", tmp_path, "hw2")
+    assert path == tmp_path / "a.zip" and told in problem and "g.py" not in problem
 
 
 # What is in it
@@ -146,7 +142,8 @@ def read(tmp_path):
 def test_a_file_may_be_as_large_as_fifty_megabytes(read, monkeypatch):
     monkeypatch.setattr(reader, "LARGEST", 7)
     assert read("x = 123").problems == ()
-    assert read("x = 1234").problems == ("hw.py has more than 0 MB; clear its outputs",)
+    (problem,) = read("x = 1234").problems
+    assert "hw.py" in problem and "clear its outputs" in problem
 
 
 def test_a_task_may_need_as_much_code_as_goes_to_the_sandbox(read, monkeypatch):
@@ -155,7 +152,8 @@ def test_a_task_may_need_as_much_code_as_goes_to_the_sandbox(read, monkeypatch):
     assert read(text, "f").sources == {"f": text}
     monkeypatch.setattr(reader, "MOST_SOURCE", len(json.dumps(text)) - 1)
     found = read(text, "f")
-    assert found.sources == {} and found.problems == ("f needs more than 13 characters of code",)
+    (problem,) = found.problems
+    assert found.sources == {} and problem.startswith("f ") and "13" in problem
 
 
 def test_twelve_problems_are_told_each_in_three_hundred_characters(read):
