@@ -21,31 +21,29 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
 
     Raises
     ------
-    ValueError
-        If the arrays do not fit together, or no sample is seen well in two different exposures.
+    InputError
+        If the arrays do not fit together, or no sample is well exposed in two different exposures.
     """
     Z, B, w = _validate(Z, B, smoothness, w)
     n = len(w)
     W = w[Z] ** 2
     require_two_exposures(Z, B, w)
-    D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
+    # D[i] is the coefficient of lE_i in its own normal equation
+    D = W.sum(axis=1)
     has_weight = D > 0
     D[~has_weight] = 1
     means = (W @ B) / D
-    both = np.bincount(  # what two levels of a sample have in common
-        (n * Z[:, :, None] + Z[:, None]).ravel(),
-        (W[:, :, None] * (W / D[:, None])[:, None]).ravel(),
-        n * n,
-    )
-    S = (
-        np.diag(np.bincount(Z.ravel(), W.ravel(), n))
-        - both.reshape(n, n)
-        + _stiffness(w, smoothness)
-    )
+    # eliminating lE_i couples each two levels of sample i
+    level_pairs = n * Z[:, :, None] + Z[:, None]
+    pair_weights = W[:, :, None] * (W / D[:, None])[:, None]
+    coupling = np.bincount(level_pairs.ravel(), pair_weights.ravel(), n * n).reshape(n, n)
+    diagonal = np.diag(np.bincount(Z.ravel(), W.ravel(), n))
+    S = diagonal - coupling + _stiffness(w, smoothness)
     r = np.zeros(n)
     np.add.at(r, Z, W * (B - means[:, None]))
     g = _solve_with_gauge(S, r)
-    return debevec.Solution(g, np.where(has_weight, (W * g[Z]).sum(axis=1) / D - means, 0.0))
+    lE = np.where(has_weight, (W * g[Z]).sum(axis=1) / D - means, 0.0)
+    return debevec.Solution(g, lE)
 
 
 def _stiffness(w: F64, smoothness: float) -> F64:
@@ -58,10 +56,15 @@ def _stiffness(w: F64, smoothness: float) -> F64:
 
 
 def _solve_with_gauge(S: F64, r: F64) -> F64:
-    """Return g of S g = r with g(n // 2) = 0: exactly, as a constant added to both g and lE costs nothing."""
+    """Return g of S g = r with g(n // 2) = 0.
+
+    The gauge holds exactly, because a constant added to both g and lE costs nothing. Levels that
+    neither a sample nor smoothness reaches are interpolated.
+    """
     n = len(r)
-    reached = (np.diag(S) > 0) | (np.arange(n) == n // 2)
-    pinned = np.flatnonzero(~reached | (np.arange(n) == n // 2))
+    is_gauge = np.arange(n) == n // 2
+    reached = (np.diag(S) > 0) | is_gauge
+    pinned = np.flatnonzero(~reached | is_gauge)
     # an equation g(z) = 0 for each pinned level
     S = S.copy()
     r = r.copy()

@@ -13,13 +13,15 @@ def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
     if alpha != 1:
         return local_laplacian.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
     r = np.clip(lL, g - sigma, g + sigma)
-    return r + np.float32(beta) * (lL - r) if beta else r
+    if not beta:
+        return r
+    return r + np.float32(beta) * (lL - r)
 
 
 def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> F32:
     """Return the lesson's filtered picture, with levels that are added to in place, in bands of rows."""
     G = pyramid.gaussian(lL, depth(lL.shape, 2))
-    levels = [np.zeros_like(level) for level in G[:-1]] + G[-1:]
+    levels = [*(np.zeros_like(level) for level in G[:-1]), G[-1]]
     darkest = float(lL.min())
     spacing = max(float(np.ptp(lL)) / (samples - 1), 1e-6)
     for j in range(samples):
@@ -27,8 +29,9 @@ def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) 
         fine = remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
         for O_k, G_k in zip(levels[:-1], G, strict=False):
             coarse = pyramid.reduce(fine)
-            for _, rows, expanded in pyramid._finer(coarse, fine.shape):
-                h = np.maximum(1 - np.abs(G_k[rows] - np.float32(g)) * np.float32(1 / spacing), 0)
+            for _, rows, expanded in pyramid.expand_bands(coarse, fine.shape):
+                distance = np.abs(G_k[rows] - np.float32(g)) * np.float32(1 / spacing)
+                h = np.maximum(1 - distance, 0)
                 O_k[rows] += h * (fine[rows] - expanded)
             fine = coarse
     return pyramid.collapse(levels)

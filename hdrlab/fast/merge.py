@@ -6,16 +6,16 @@ planes                    (K, C, rows, W) uint16: of each channel, one frame or 
 shown                     (P, rows, W) bool, or None where the frames show every pixel
 E       radiance          (rows, W, C) float32
 
-Every method is a quotient of two sums over the frames, sum_j a_j(Z_j) / sum_j b_j(Z_j). A pixel
-costs one look-up a frame, a as the real and b as the imaginary part of one number, and two frames
-of 8 bits cost one together.
+Every method is a quotient of two sums over the frames, sum_j a_j(Z_j) / sum_j b_j(Z_j). Each pixel
+needs one look-up in each frame, because a and b are the real and the imaginary part of one number.
+Two frames of 8 bits need one look-up together.
 """
 
 import ctypes
 import mmap
 from collections.abc import Callable
-from itertools import product
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -47,19 +47,30 @@ TERMS: dict[str, Callable[[F64, F64, float], tuple[F64, F64]]] = {
 }
 
 
-class _Plan(NamedTuple):
-    """What the frames, from short to long, measure at every level: the same for all pixels."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Plan:
+    """The tables of the frames, from short to long, which are the same for all pixels.
 
-    B: F64  # (P,) ln times
-    g: F64  # (n, C)
-    top: int  # the first level that is clipped
-    tables: Array  # (P, C, n), T of each frame and channel
-    pairs: list[Array]  # (C, n * n) or (C, n), one table for each of the planes
-    finish: Callable[[Array], Array]  # from the quotient to E
+    Attributes
+    ----------
+    B : (P,) ln times
+    g : (n, C)
+    top : the first level that is clipped
+    tables : (P, C, n), T of each frame and channel
+    plane_tables : (C, n * n) or (C, n), one table for each of the planes
+    finish : from the quotient to E
+    """
+
+    B: F64
+    g: F64
+    top: int
+    tables: Array
+    plane_tables: list[Array]
+    finish: Callable[[Array], Array]
 
 
 class Expendable(np.ndarray[Any, np.dtype[Any]]):
-    """Photographs that are lost when they are merged: their memory goes back to the system, band by band."""
+    """Photos that are lost when they are merged: their memory goes back to the system, band by band."""
 
 
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
@@ -79,10 +90,10 @@ def merge_with_quality(
     valid: ArrayLike | None = None,
 ) -> Merged:
     """Return the radiance map and the quality flags of its pixels, the lesson's."""
-    stack, t, w, g, first = as_tables(images, times, g, w, method, top)
+    stack, t, w, g, first_clipped = as_tables(images, times, g, w, method, top)
     mask = as_mask(valid, stack)
     order = short_to_long(stack, t)
-    plan = _plan(t[order], g, w, first, method)
+    plan = _make_plan(t[order], g, w, first_clipped, method)
     pixels = stack.reshape(*stack.shape[:3], -1)
     E = np.empty(pixels.shape[1:], np.float32)
     quality = np.empty(pixels.shape[1:3], np.uint8)
@@ -95,16 +106,17 @@ def merge_with_quality(
     starts = range(0, len(quality), BLOCK_ROWS)
     for start, _ in zip(starts, map_in_threads(merge_rows, starts), strict=True):
         if isinstance(images, Expendable) and start % RELEASED_ROWS == 0:
-            for j in order[1:-1]:  # the shortest and the longest tell what is stuck
+            # not the shortest and the longest frame, which show the stuck pixels
+            for j in order[1:-1]:
                 _release(stack[j, :start])
-    plan.pairs.clear()  # the tables are needed no more
+    plan.plane_tables.clear()  # frees their memory
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
 
 
 def _release(rows: Array) -> None:
-    """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
+    """Give the memory of contiguous rows back, in whole pages: Linux fills them with 0 when read."""
     start = -(-rows.ctypes.data // PAGE_BYTES) * PAGE_BYTES
     stop = (rows.ctypes.data + rows.nbytes) // PAGE_BYTES * PAGE_BYTES
     if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
@@ -113,61 +125,72 @@ def _release(rows: Array) -> None:
         )
 
 
-def _plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:
+def _make_plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:
     """Return the _Plan of frames with these times."""
-    n, channels = g.shape
+    n, channel_count = g.shape
     z = np.arange(n)
-    usable = np.where((z > 0) & (z < top), np.maximum(w, MIN_RELATIVE_WEIGHT * w.max()), 0.0)
-    tables = np.empty((len(times), channels, n), np.complex64)
-    for (j, t), c in product(enumerate(times), range(channels)):
-        a, b = TERMS[method](usable, g[:, c], t)
-        tables[j, c] = a + 1j * b
-    finish = np.exp if method == "log" else np.positive
-    return _Plan(np.log(times), g, top, tables, _pair_tables(tables), finish)
+    is_measured = (z > 0) & (z < top)
+    level_weights = np.where(is_measured, np.maximum(w, MIN_RELATIVE_WEIGHT * w.max()), 0.0)
+    tables = np.empty((len(times), channel_count, n), np.complex64)
+    for j, t in enumerate(times):
+        for c in range(channel_count):
+            a, b = TERMS[method](level_weights, g[:, c], t)
+            tables[j, c] = a + 1j * b
+    return _Plan(
+        B=np.log(times),
+        g=g,
+        top=top,
+        tables=tables,
+        plane_tables=_pair_tables(tables),
+        finish=np.exp if method == "log" else np.positive,
+    )
 
 
 def _pair_tables(tables: Array) -> list[Array]:
-    """Return the tables of two 8-bit frames as one: at z1 + 256 z2 stands T1(z1) + T2(z2)."""
-    count, channels, n = tables.shape
+    """Return one table for each two frames of 8 bits: T1(z1) + T2(z2) at z1 + 256 z2.
+
+    Frames of 16 bits, and the last one of an odd number, keep their own.
+    """
+    count, channel_count, n = tables.shape
     if n > 256:
         return list(tables)
     firsts = tables[0 : count - 1 : 2, :, None, :]
     seconds = tables[1::2, :, :, None]
-    return [*(seconds + firsts).reshape(-1, channels, n * n), *tables[count - count % 2 :]]
+    pairs = (seconds + firsts).reshape(-1, channel_count, n * n)
+    unpaired = tables[count - count % 2 :]
+    return [*pairs, *unpaired]
 
 
 def _planes(frames: list[Array]) -> Array:
-    """Return the frames' rows (rows, W, C) as planes (K, C, rows, W): colour never in an inner loop.
+    """Return the frames' rows (rows, W, C) as planes (K, C, rows, W), so that inner loops are of one channel.
 
-    Two 8-bit frames make one plane, z1 + 256 z2: half as many elements to copy, and the index into
-    the pair's table.
+    Two 8-bit frames make one plane, z1 + 256 z2: it has half as many elements to copy, and is the
+    index into the table of the pair.
     """
-    paired = frames[0].dtype == np.uint8
-    rows, width, channels = frames[0].shape
-    planes = np.empty(
-        (-(-len(frames) // 2) if paired else len(frames), channels, rows, width), np.uint16
-    )
-    for k, plane in enumerate(planes):
-        first, *second = frames[2 * k : 2 * k + 2] if paired else frames[k : k + 1]
-        both = np.multiply(second[0], 256, dtype=np.uint16) + first if second else first
-        plane[:] = both.transpose(2, 0, 1)
+    rows, width, channel_count = frames[0].shape
+    frames_per_plane = 2 if frames[0].dtype == np.uint8 else 1
+    plane_count = -(-len(frames) // frames_per_plane)
+    planes = np.empty((plane_count, channel_count, rows, width), np.uint16)
+    for plane, j in zip(planes, range(0, len(frames), frames_per_plane), strict=True):
+        levels = frames[j]
+        if frames_per_plane == 2 and j + 1 < len(frames):
+            levels = np.multiply(frames[j + 1], 256, dtype=np.uint16) + levels
+        plane[:] = levels.transpose(2, 0, 1)
     return planes
 
 
 def _drop_clipped(planes: Array, n: int, top: int) -> Array:
-    """Return the planes with level 0, which weighs nothing, in all channels where a frame clips one."""
-    Z = planes.view(
-        np.uint8 if n == 256 else np.uint16
-    )  # each element a level: of pairs, (K, C, rows, 2 W)
-    whole = Z.max(axis=1, keepdims=True) < top
-    return np.multiply(Z, whole.view(np.uint8), out=Z).view(np.uint16)
+    """Return the planes with level 0, which has no weight, in all channels where a frame clips one."""
+    # each element is a level: (K, C, rows, 2 W) for pairs of frames
+    Z = planes.view(np.uint8 if n == 256 else np.uint16)
+    is_unclipped = Z.max(axis=1, keepdims=True) < top
+    return np.multiply(Z, is_unclipped.view(np.uint8), out=Z).view(np.uint16)
 
 
 def _sums(planes: Array, tables: list[Array]) -> Array:
     """Return sum_j a_j(Z_j) + i sum_j b_j(Z_j) of one channel, (rows, W), from its planes (K, rows, W)."""
-    total = tables[0].take(
-        planes[0], mode="clip"
-    )  # "clip" only spares the check: no level lies outside
+    # every level is in range; "clip" only saves the check
+    total = tables[0].take(planes[0], mode="clip")
     term = np.empty_like(total)
     for index, table in zip(planes[1:], tables[1:], strict=True):
         table.take(index, out=term, mode="clip")
@@ -181,26 +204,30 @@ def _merge_block(
     """Fill a block of rows, E (rows, W, C) and quality (rows, W), from the frames' rows (rows, W, C)."""
     masked = frames
     if shown is not None:
-        masked = [frame * one[..., None] for frame, one in zip(frames, shown, strict=True)]
+        masked = [frame * mask[..., None] for frame, mask in zip(frames, shown, strict=True)]
     planes = _drop_clipped(_planes(masked), len(plan.g), plan.top)
     quality[:] = Quality.MEASURED
     for c in range(plan.g.shape[1]):
-        total = _sums(planes[:, c], [table[c] for table in plan.pairs])
+        total = _sums(planes[:, c], [table[c] for table in plan.plane_tables])
         with np.errstate(divide="ignore", invalid="ignore"):
             mean = total.real / total.imag
         E[..., c] = plan.finish(mean)
         if np.isnan(mean).any():  # 0 / 0
             y, x = np.nonzero(np.isnan(mean))
             Z = np.stack([frame[y, x, c] for frame in frames])
-            E[y, x, c], flags = _unmeasured(Z, Z >= 0 if shown is None else shown[:, y, x], c, plan)
+            is_shown = np.ones(Z.shape, bool) if shown is None else shown[:, y, x]
+            E[y, x, c], flags = _estimate_unmeasured(Z, is_shown, c, plan)
             quality[y, x] |= flags
 
 
-def _unmeasured(Z: Array, shown: Mask, c: int, plan: _Plan) -> tuple[F64, Flags]:
-    """Return E (M,) and flags (M,): frames with another clipped channel measure it, or else bounds."""
+def _estimate_unmeasured(Z: Array, shown: Mask, c: int, plan: _Plan) -> tuple[F64, Flags]:
+    """Return E (M,) and flags (M,) of pixels where every frame clips a channel, or is black in c.
+
+    Frames that measure channel c itself are used; where there is none, E is a bound.
+    """
     E, flags = bound(Z, plan.B, plan.g[:, c], plan.top, shown)
-    alone = sum(table[c][levels] for table, levels in zip(plan.tables, Z * shown, strict=True))
-    measured = alone.imag > 0
-    E[measured] = plan.finish(alone[measured].real / alone[measured].imag)
-    flags[measured] = Quality.MEASURED
+    sums = sum(table[c][levels] for table, levels in zip(plan.tables, Z * shown, strict=True))
+    is_measured = sums.imag > 0
+    E[is_measured] = plan.finish(sums[is_measured].real / sums[is_measured].imag)
+    flags[is_measured] = Quality.MEASURED
     return E, flags

@@ -13,9 +13,8 @@ _BAND_ROWS = 16
 
 def _split_planes(Z: Array) -> F32:
     """Return F = Z / top level, the channels as planes, each in one piece."""
-    return np.ascontiguousarray(np.moveaxis(np.atleast_3d(Z), -1, 0)) * np.float32(
-        1 / (levels(Z) - 1)
-    )
+    planes = np.ascontiguousarray(np.moveaxis(np.atleast_3d(Z), -1, 0))
+    return planes * np.float32(1 / (levels(Z) - 1))
 
 
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
@@ -24,14 +23,14 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
     def measure(Z: Array) -> F32:
         return mertens.weight(_split_planes(np.moveaxis(Z, 0, -1)), powers)
 
-    each: list[F32] = [
+    image_weights: list[F32] = [
         _bands.banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images
     ]
     total: F32 = np.zeros(images.shape[1:3], np.float32)
-    for W in each:
+    for W in image_weights:
         total += W
-    while each:  # what was yielded is freed
-        yield each.pop(0) / total
+    while image_weights:  # pop, so that the memory of each is freed once it was used
+        yield image_weights.pop(0) / total
 
 
 def add_term(blended: F32, W: F32, detail: F32) -> F32:

@@ -1,12 +1,12 @@
 """Median threshold bitmaps, 64 pixels at a time: XOR, AND and counting of machine words [Ward03].
 
-words   a bitmap, packed     (..., H, ceil(W / 64)) uint64; a row's first pixel is the highest bit of its
-                             first word, and what follows its last pixel is 0
+words   a bitmap, packed     (..., H, ceil(W / 64)) uint64; the first pixel of a row is the highest bit
+                             of its first word, and the bits after its last pixel are 0
 bits    of one photograph    (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
 offset  (dy, dx) pixels      down and right
 
-Of photographs above 2^17 pixels the histogram is counted on rows spread evenly: their median is
-that of all to a code. Of levels above 2^19 pixels bits are compared on such rows.
+Photos of more than 2^17 pixels count their histogram on evenly spaced rows: their median is that of
+all rows to one pixel value. Levels of more than 2^18 pixels compare bits on such rows.
 """
 
 from functools import partial
@@ -55,12 +55,18 @@ class Photograph:
         return self._thresholds[q, level]
 
     def bits(self, q: float, level: int, dx: int = 0, first: int = 0) -> Words:
-        """Return the bits of a level, moved dx pixels to the right; of a large one of some rows alone."""
-        key = level, self.threshold(q, level), first, dx
-        if key not in self._bits and dx:
-            self._bits[key] = _slide(self.bits(q, level, 0, first), dx)
-        elif key not in self._bits:
-            self._bits[key] = _bitmaps(self.Y[level][first :: _every(self.Y[level])], key[1])
+        """Return the bits of a level, moved dx pixels to the right; cached.
+
+        A large level has bits of some rows only: `first`, and then one in `_row_step`.
+        """
+        threshold = self.threshold(q, level)
+        key = level, threshold, first, dx
+        if key not in self._bits:
+            if dx:
+                self._bits[key] = _shift_right(self.bits(q, level, 0, first), dx)
+            else:
+                Y = self.Y[level]
+                self._bits[key] = _bitmaps(Y[first :: _row_step(Y)], threshold)
         return self._bits[key]
 
     def compare(
@@ -68,27 +74,31 @@ class Photograph:
     ) -> tuple[Words, Words, int]:
         """Return where bits differ after an offset, where they are compared, and the rows of the upper half.
 
-        What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap
+        Bits that come in from the side are 0 in the exclusion bitmap, too, so only the overlap
         counts.
         """
         dy, dx = offset
         H = len(self.Y[level])
-        every = _every(self.Y[level])
-        top = -(-max(dy, 0) // every)
-        rows = len(range(top * every, min(H, H + dy), every))
-        start = (top * every - dy) // every
-        A = fixed.bits(q, level)[:, top : top + rows]
-        B = self.bits(q, level, dx, -dy % every)[:, start : start + rows]
-        kept = A[1] & B[1]
-        return (A[0] ^ B[0]) & kept, kept, max(-(-(H // 2) // every) - top, 0)
+        step = _row_step(self.Y[level])
+        top = -(-max(dy, 0) // step)
+        row_count = len(range(top * step, min(H, H + dy), step))
+        start = (top * step - dy) // step
+        fixed_bitmap, fixed_exclusion = fixed.bits(q, level)[:, top : top + row_count]
+        bitmap, exclusion = self.bits(q, level, dx, -dy % step)[:, start : start + row_count]
+        compared = fixed_exclusion & exclusion
+        differing = (fixed_bitmap ^ bitmap) & compared
+        upper_rows = max(-(-(H // 2) // step) - top, 0)
+        return differing, compared, upper_rows
 
     def error(self, fixed: Self, level: int, q: float, offset: Offset) -> float:
-        """Return bits that differ / bits compared."""
-        differ, kept, _ = self.compare(fixed, offset, level, q)
-        return int(np.bitwise_count(differ).sum()) / max(int(np.bitwise_count(kept).sum()), 1)
+        """Return the fraction of the compared bits that differ."""
+        differing, compared, _ = self.compare(fixed, offset, level, q)
+        differing_count = int(np.bitwise_count(differing).sum())
+        compared_count = int(np.bitwise_count(compared).sum())
+        return differing_count / max(compared_count, 1)
 
     def offset_onto(self, fixed: Self, q: float = 0.5) -> Offset:
-        """Return the offset that lays this photograph on another, as `align.mtb.search` finds it."""
+        """Return the offset that aligns this photo with another, as `align.mtb.search` finds it."""
         y = 0
         x = 0
         for level in reversed(range(len(self.Y))):
@@ -97,65 +107,79 @@ class Photograph:
         return y, x
 
     def count_differences(self, fixed: Self, offset: Offset, level: int, q: float = 0.5) -> Array:
-        """Return (4, 2), of the quarters of a level: bits that differ after an offset, bits compared.
+        """Return (4, 2): for each quarter of a level, the bits that differ, and the bits compared.
 
         The quarters are cut at a whole word.
         """
-        differ, kept, n = self.compare(fixed, offset, level, q)
-        ones = (np.bitwise_count(differ), np.bitwise_count(kept))
-        half = kept.shape[1] // 2
+        differing, compared, n = self.compare(fixed, offset, level, q)
+        differing_counts = np.bitwise_count(differing)
+        compared_counts = np.bitwise_count(compared)
+        half = compared.shape[1] // 2
         quarters = product((slice(n), slice(n, None)), (slice(half), slice(half, None)))
-        return np.array(
-            [[counts[quarter].sum(dtype=np.int64) for counts in ones] for quarter in quarters]
-        )
+        sums = [
+            (
+                differing_counts[quarter].sum(dtype=np.int64),
+                compared_counts[quarter].sum(dtype=np.int64),
+            )
+            for quarter in quarters
+        ]
+        return np.array(sums)
 
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
-    """Return the offsets (P, 2) that lay every image on the one in the middle of their brightness."""
+    """Return the offsets (P, 2) that align every image with the one of middle brightness."""
     images = as_stack(images)
     if bits < 1:
         raise InputError(f"expected at least 1 bit for the largest offset, got bits={bits}")
     order = lesson.by_brightness(images)
-    taken = map_in_threads(
-        lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size
-    )
-    found = [
-        moving.offset_onto(fixed) for moving, fixed in pairwise(taken)
-    ]  # a few at a time in memory
-    return lesson.chain_offsets(order, found)
+
+    def make_photograph(j: int) -> Photograph:
+        return Photograph(images[j], bits=bits, luma=luma)
+
+    # an iterator, so that only a few photographs are in memory at a time
+    photographs = map_in_threads(make_photograph, order, pixels=images[0].size)
+    offsets = [moving.offset_onto(fixed) for moving, fixed in pairwise(photographs)]
+    return lesson.chain_offsets(order, offsets)
 
 
 def _gray(image: Array, luma: bool) -> Array:
+    """Return the gray levels (H, W) of an image: green, or luma, see `align.mtb.gray`."""
     Y = np.empty(image.shape[:2], np.uint8)
     for row in range(0, len(Y), BAND_ROWS):
         Z = image[row : row + BAND_ROWS].copy()
-        green = Z.ndim == 3 and Z.itemsize == 1 and not luma
-        Y[row : row + BAND_ROWS] = Z[..., 1] if green else lesson.gray(Z, luma=luma)
+        is_green = Z.ndim == 3 and Z.itemsize == 1 and not luma
+        Y[row : row + BAND_ROWS] = Z[..., 1] if is_green else lesson.gray(Z, luma=luma)
     return Y
 
 
 def _shrink(Y: Array) -> Array:
+    """Return the rounded means of 2 x 2 gray levels."""
     rows = Y.shape[0] // 2 * 2
     columns = Y.shape[1] // 2 * 2
     half = np.empty((rows // 2, columns // 2), np.uint8)
     for row in range(0, rows, BAND_ROWS):
-        two = np.ascontiguousarray(Y[row : min(row + BAND_ROWS, rows), :columns]).view(np.uint16)
-        two = (two & 255) + (two >> 8)
-        half[row // 2 : (row + BAND_ROWS) // 2] = (two[::2] + two[1::2] + 2) >> 2
+        band = np.ascontiguousarray(Y[row : min(row + BAND_ROWS, rows), :columns])
+        # two neighbours of 8 bits are one number of 16 bits
+        pairs = band.view(np.uint16)
+        sums = (pairs & 255) + (pairs >> 8)
+        half[row // 2 : (row + BAND_ROWS) // 2] = (sums[::2] + sums[1::2] + 2) >> 2
     return half
 
 
-def _every(Y: Array) -> int:
-    """Return of how many rows one is compared."""
+def _row_step(Y: Array) -> int:
+    """Return the step between the rows that are compared."""
     return -(-Y.size // MAX_COMPARED_PIXELS)
 
 
 def _histogram(Y: Array) -> NDArray[np.int64]:
-    rows = np.linspace(0, len(Y) - 1, min(len(Y), PERCENTILE_PIXELS // Y.shape[1] + 1)).astype(int)
+    """Return the histogram of evenly spaced rows."""
+    row_count = min(len(Y), PERCENTILE_PIXELS // Y.shape[1] + 1)
+    rows = np.linspace(0, len(Y) - 1, row_count).astype(int)
     return np.bincount(Y[rows].ravel(), minlength=256)
 
 
 def _bitmaps(Y: Array, t: int) -> Words:
+    """Return the packed bitmap and exclusion bitmap of gray levels at a threshold."""
     packed = []
     for Z in np.array_split(Y, Y.size // PIXELS_PER_BAND + 1):
         mask = np.empty((2, *Z.shape), bool)
@@ -166,21 +190,28 @@ def _bitmaps(Y: Array, t: int) -> Words:
 
 
 def _pack(mask: Mask) -> Words:
+    """Return a mask packed into words of 64 pixels, filled up with 0."""
     packed = np.packbits(mask, axis=-1)
-    whole = np.zeros((*packed.shape[:-1], -(-packed.shape[-1] // 8) * 8), np.uint8)
-    whole[..., : packed.shape[-1]] = packed
-    return whole.view(">u8").astype(np.uint64)
+    byte_count = packed.shape[-1]
+    padded = np.zeros((*packed.shape[:-1], -(-byte_count // 8) * 8), np.uint8)
+    padded[..., :byte_count] = packed
+    return padded.view(">u8").astype(np.uint64)
 
 
-def _slide(words: Words, dx: int) -> Words:
-    """Return every row moved dx pixels to the right: zeros come in, and what leaves is gone."""
-    n = words.shape[-1]
-    whole, part = divmod(dx, 64)
+def _shift_right(words: Words, dx: int) -> Words:
+    """Return every row moved dx pixels to the right, or to the left for dx < 0; zeros come in."""
+    whole_words, bits = divmod(dx, 64)
     moved = np.zeros_like(words)
-    for by, bits in ((whole, part), (whole + 1, part - 64)) if part else ((whole, 0),):
-        end = max(n + min(by, 0), 0)
-        source = words[..., max(-by, 0) : max(n - by, 0)]
-        moved[..., max(by, 0) : end] |= (
-            source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
-        )
+    target, source = _overlap(words.shape[-1], whole_words)
+    moved[..., target] = words[..., source] >> np.uint64(bits)
+    if bits:
+        target, source = _overlap(words.shape[-1], whole_words + 1)
+        moved[..., target] |= words[..., source] << np.uint64(64 - bits)
     return moved
+
+
+def _overlap(n: int, offset: int) -> tuple[slice, slice]:
+    """Return which of n places a move by `offset` fills, and the places that they come from."""
+    target = slice(max(offset, 0), max(n + min(offset, 0), 0))
+    source = slice(max(-offset, 0), max(n - offset, 0))
+    return target, source

@@ -7,9 +7,9 @@ f_inv   f^-1               (n,), the exposure of each level
 d       each sample's sum of w(Z_ij) t_j^2 over its frames, (N,)
 
 An iteration goes over all pixels twice, from f^-1 to irradiances and back. But it is linear in
-f^-1, and what it adds up for a level m of one frame and a level z of another is the same number in
-every iteration. Summed once, in the frames' joint histograms with weight 1 / d, it makes an
-iteration a product with an (n, n) matrix, for a thousand samples as for a million.
+f^-1, and its sum over the pixels with level m in one frame and level z in another has the same
+weight in every iteration. These weights are summed once, in the joint histograms of the frames.
+Then an iteration is a product with an (n, n) matrix, whatever the number of samples.
 """
 
 from collections.abc import Callable, Iterator
@@ -46,7 +46,9 @@ class Joint:
         for start in range(0, len(Z), SAMPLES_PER_BLOCK):
             z = Z[start : start + SAMPLES_PER_BLOCK].T.astype(np.intp)
             d = t**2 @ w[z]
-            z, d = (z, d) if d.all() else (z[:, d > 0], d[d > 0])
+            if not d.all():
+                z = z[:, d > 0]
+                d = d[d > 0]
             self.pixels += np.bincount(z.ravel(), minlength=n)
             for j in range(P):
                 own += np.bincount(z[j], t[j] ** 2 / d, n)
@@ -66,7 +68,7 @@ recover_steps = with_parts(__name__, robertson.recover_steps, alternate=Joint)
 
 
 class Smooth:
-    """`recover_steps` with a penalty on second differences, which connects what equal steps leave open.
+    """`recover_steps` with a penalty on second differences, which connects levels that equal steps do not.
 
     After each iteration r = ln f^-1, less that of a linear camera, becomes the s of least sum (s -
     r)^2 + sum (lambda w s'')^2, r at the levels that have a mean. 100 is right for photographs.
@@ -116,7 +118,8 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
     known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
     bends = weights.second_differences(w, smoothness)
     data = np.diag(np.where(known, 1.0, 1e-6))
-    A = data + bends.T @ bends  # five diagonals, of which the lower three say all
+    # symmetric, with five diagonals: the lower three are enough
+    A = data + bends.T @ bends
     bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
     return np.asarray(scipy.linalg.solveh_banded(bands, data, lower=True))
 
@@ -124,10 +127,11 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
 def _thinned(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
     """Return the samples of `by_rank`, from an even choice of the pixels."""
     stack = as_stack(images)
-    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / max(RANKED_PIXELS, 4 * count))))
-    few = (slice(None), slice(every // 2, None, every), slice(every // 2, None, every))
-    shown = as_mask(valid, stack)
-    return sampling.by_rank(stack[few], count, valid=None if shown is None else shown[few])
+    pixel_count = stack.shape[1] * stack.shape[2]
+    step = max(1, int(np.sqrt(pixel_count / max(RANKED_PIXELS, 4 * count))))
+    grid = (slice(None), slice(step // 2, None, step), slice(step // 2, None, step))
+    mask = as_mask(valid, stack)
+    return sampling.by_rank(stack[grid], count, valid=None if mask is None else mask[grid])
 
 
 def recover(
@@ -140,7 +144,7 @@ def recover(
     valid: ArrayLike | None = None,
     steps: Callable[..., Iterator[robertson.State]] = recover_steps,
 ) -> F64:
-    """Return the response g of the lesson, whose parameters these are, with the `recover_steps` above."""
+    """Return the response g of the lesson `response.robertson.recover`, which has the same parameters."""
     stack = as_stack(images)
     t = as_times(times, len(stack))
     return robertson.recover(
