@@ -29,7 +29,7 @@ def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) 
         fine = remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
         for O_k, G_k in zip(levels[:-1], G, strict=False):
             coarse = pyramid.reduce(fine)
-            for _, rows, expanded in pyramid.expand_bands(coarse, fine.shape):
+            for _, rows, expanded in pyramid._expand_bands(coarse, fine.shape):
                 distance = np.abs(G_k[rows] - np.float32(g)) * np.float32(1 / spacing)
                 h = np.maximum(1 - distance, 0)
                 O_k[rows] += h * (fine[rows] - expanded)

@@ -45,7 +45,7 @@ def _halve_rows(a: F32) -> F32:
 def interpolate(image: F32, shape: Sequence[int]) -> F32:
     """Return `image` (H, W) at the next finer level, of this shape, by linear interpolation."""
     fine = np.empty(shape, np.float32)
-    for _, rows, values in expand_bands(image, shape, neighbour_weight=0):
+    for _, rows, values in _expand_bands(image, shape, neighbour_weight=0):
         fine[rows] = values
     return fine
 
@@ -72,12 +72,12 @@ def _combine(operation: np.ufunc, fine: F32, coarse: F32) -> F32:
     """Return operation(fine, expand(coarse)), band by band."""
     planes = fine.reshape(-1, *fine.shape[-2:])
     result = np.empty(planes.shape, np.float32)
-    for c, rows, values in expand_bands(coarse, fine.shape):
+    for c, rows, values in _expand_bands(coarse, fine.shape):
         operation(planes[c, rows], values, out=result[c, rows])
     return result.reshape(fine.shape)
 
 
-def expand_bands(
+def _expand_bands(
     coarse: F32, shape: Sequence[int], neighbour_weight: float = 1 / 8
 ) -> Iterator[tuple[int, slice, F32]]:
     """Yield the next finer level, of this shape, in bands: the plane, the rows and their values.

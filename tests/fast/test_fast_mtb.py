@@ -42,7 +42,7 @@ def test_what_slides_out_on_one_side_does_not_come_in_on_the_other(rows, columns
     wide = np.pad(mask, ((0, 0), (300, 300)))
     expected = np.roll(wide, dx, axis=1)
     expected[:, : max(dx, 0)] = False
-    assert np.array_equal(mtb._slide(mtb._pack(wide), dx), mtb._pack(expected))
+    assert np.array_equal(mtb._shift_right(mtb._pack(wide), dx), mtb._pack(expected))
 
 
 def test_the_threshold_of_a_large_picture_is_the_median_to_one_code():
