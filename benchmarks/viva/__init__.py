@@ -94,7 +94,7 @@ def examined(
     }
     made: list[tuple[list[str], list[Question]]] = []
     with patch.object(grader, "ALL_CHECKS_TIMEOUT_SECONDS", LONGEST):
-        found = list(grader.heard_steps(read, homework, CONDITIONS, by=by, **more))
+        found = list(grader.iter_events(read, homework, CONDITIONS, by=by, **more))
     for one in found:
         if "passed" in one:
             made.append((one["passed"], []))

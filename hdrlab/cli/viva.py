@@ -85,7 +85,7 @@ def viva(
     read, assignment = grader.read_tasks(submission, assignment, conditions)
     try:
         with scratch.temporary_folder():
-            steps = grader.heard_steps(
+            steps = grader.iter_events(
                 read,
                 assignment,
                 conditions,

@@ -1,8 +1,8 @@
-"""check("gsolve") in a notebook: what of the specification a function keeps that was just written.
+"""Check a student's functions in her notebook: `check("gsolve")`.
 
-The text of what was run is taken, with the helpers it needs, and called in a process of its own;
-what is in the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and its
-points are no grade yet.
+hdrlab takes the text of the cells that were run, extracts the function with the helpers that it
+needs, and calls it in a process of its own. Nothing in the kernel changes. This is the practice
+tier: it contains mistakes, not attacks, and its points are no grade yet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,74 +16,89 @@ from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
 PRACTICE = plans.GradingOptions(tier="practice")
-_latest: dict[str, results.Result] = {}  # of each task in this kernel, for the homework's bar
-_plan: dict[
-    str, plans.Homework
-] = {}  # the homeworks whose sheets said in this kernel what is asked
+
+# the latest result of each task in this kernel, for the bar of the homework
+_latest: dict[str, results.Result] = {}
+# the homeworks whose tasks and points `use_plan` has set in this kernel
+_planned: dict[str, plans.Homework] = {}
 
 
 class Feedback:
-    """A Result as a notebook shows it; as text, what a terminal would show."""
+    """A Result, shown as HTML in a notebook and as plain text elsewhere."""
 
     def __init__(self, result: results.Result, homework: plans.Homework) -> None:
-        self.result, self.homework = result, homework
+        self.result = result
+        self.homework = homework
 
     @property
     def points(self) -> float:
-        """Points earned by what was checked."""
+        """Points earned in the checked tasks."""
         return self.result.score
 
     def __repr__(self) -> str:
         return feedback.text(self.result)
 
     def _repr_html_(self) -> str:
-        whole = self.homework.points
+        max_points = self.homework.points
         earned = sum(_latest[task.id].score for task in self.homework.tasks if task.id in _latest)
-        below = feedback.bar(min(earned, whole), whole, f"{self.homework.name} so far")
-        return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{below}</div>'
+        label = f"{self.homework.name} so far"
+        bar = feedback.bar(min(earned, max_points), max_points, label)
+        return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{bar}</div>'
 
 
 def check(name: str, *, worth: float | None = None) -> Feedback:
-    """Return what a task's function keeps of its promises, or all functions of a homework.
+    """Run the checks of a task, or of all tasks of a homework, on the functions in this notebook.
 
     Parameters
     ----------
     name : str
-        A task, "gsolve", or a homework, "hw2".
+        A task, such as "gsolve", or a homework, such as "hw2".
     worth : float, optional
-        Points of the task, where a course has a plan of its own.
+        Points of the task, if a course has its own plan.
+
+    Returns
+    -------
+    feedback : Feedback
+        What is right, what is not, hints and points.
 
     Raises
     ------
-    ValueError
-        For a name that is neither.
+    InputError
+        For a name that is neither a task nor a homework.
     RuntimeError
-        Outside of a notebook; there, `hdrlab check FILE` does the same.
+        Outside a notebook; there, use `hdrlab check FILE`.
     """
     from IPython.display import HTML, DisplayHandle
 
-    homework, tasks = find_tasks(name)
-    sources, _ = closure.extract_sources(_history(), tasks, reader.given_cells(homework.name))
-    absent = [task for task in tasks if task not in sources]
-    missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
-    read = reader.SubmittedCode(
-        sources, missing, "", tuple(names.imported_numpy_modules(sources.values()))
-    )
-    of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
+    homework, task_ids = find_tasks(name)
+    code = _code_of_kernel(homework, task_ids)
+    tasks = tuple(task for task in homework.tasks if task.id in task_ids)
     if worth is not None:
-        of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
-    steps, shown = (
-        grader.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE),
-        DisplayHandle(),
-    )
-    shown.display(HTML(feedback.bar(0, 1, f"{name}, checking", "of its promises")))
-    for done, result in enumerate(steps, 1):  # the last one always comes
-        asked = len(result.checks)
-        shown.update(HTML(feedback.bar(min(done, asked), asked, f"{name}, checking", "promises")))
-    shown.update(HTML(""))
-    for task in tasks:
-        _latest[task] = result._replace(checks=result.of(task), problems=())
+        tasks = tuple(task._replace(points=worth) for task in tasks)
+    progress = DisplayHandle()
+    progress.display(HTML(feedback.bar(0, 1, f"{name}, checking", "checks")))
+    steps = grader.check_steps(code, homework._replace(tasks=tasks), PRACTICE)
+    for number, result in enumerate(steps, 1):
+        total = len(result.checks)
+        done = min(number, total)
+        progress.update(HTML(feedback.bar(done, total, f"{name}, checking", "checks")))
+    progress.update(HTML(""))
+    for task_id in task_ids:
+        _latest[task_id] = result._replace(checks=result.of(task_id), problems=())
     return Feedback(result, homework)
+
+
+def _code_of_kernel(homework: plans.Homework, task_ids: Sequence[str]) -> reader.SubmittedCode:
+    """Return the code of tasks from the cells that were run in this kernel."""
+    given = reader.given_cells(homework.name)
+    sources, _ = closure.extract_sources(_cells_of_kernel(), task_ids, given)
+    missing = [task_id for task_id in task_ids if task_id not in sources]
+    return reader.SubmittedCode(
+        sources=sources,
+        problems=tuple(f"{task_id} is not defined: run the cell with it" for task_id in missing),
+        hash="",
+        modules=tuple(names.imported_numpy_modules(sources.values())),
+    )
 
 
 def use_plan(
@@ -94,26 +109,40 @@ def use_plan(
     variants: Mapping[str, str] | None = None,
     **points: float,
 ) -> None:
-    """Take a homework's tasks and points from its sheet; without any, from hdrlab's own plan.
+    """Tell `check` which tasks a homework has, and what they are worth.
 
-    Of the points, `at_most` so many count. Tasks that are not hdrlab's stand in the file `plan`,
-    with their checks beside it. `variants` are those of the tasks of which not everybody is asked
-    the same.
+    Parameters
+    ----------
+    name : str
+        Name of the homework.
+    at_most : float, optional
+        Points that count at most, if the tasks give more.
+    plan : path, optional
+        The plan file with the instructor's own tasks; their checks are beside it. By default,
+        hdrlab's plan.
+    variants : dict, optional
+        Variants of tasks that differ between students, by task.
+    **points : float
+        Points of each task. Without any, the homework is as the plan says.
     """
-    own = plans.read(plan)
-    tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
-    known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(
-        name=name, title=name
+    course = plans.read(plan)
+    tasks = tuple(
+        course.task(task_id)._replace(points=float(worth)) for task_id, worth in points.items()
     )
-    asked = known._replace(tasks=tasks, at_most=at_most) if tasks else known
-    _plan[name] = plans.draw_variants(asked, "", "", variants)
+    homework = course.homeworks.get(name)
+    if homework is None:
+        some_homework = next(iter(course.homeworks.values()))
+        homework = some_homework._replace(name=name, title=name)
+    if tasks:
+        homework = homework._replace(tasks=tasks, at_most=at_most)
+    _planned[name] = plans.draw_variants(homework, "", "", variants)
 
 
 def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
-    """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
-    homeworks = _plan | {
-        key: one for key, one in plans.read().homeworks.items() if key not in _plan
-    }
+    """Return the homework that a name belongs to, and the ids of the tasks that it means."""
+    homeworks = dict(_planned)
+    for known, homework in plans.read().homeworks.items():
+        homeworks.setdefault(known, homework)
     if name in homeworks:
         return homeworks[name], [task.id for task in homeworks[name].tasks]
     for homework in homeworks.values():
@@ -125,14 +154,16 @@ def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
     )
 
 
-def _history() -> Sequence[closure.Cell]:
-    """Return what was run in this kernel, in order; what was no Python has told so already."""
+def _cells_of_kernel() -> Sequence[closure.Cell]:
+    """Return the text of each cell that was run in this kernel, in order."""
     from IPython.core.getipython import get_ipython
 
     shell = get_ipython()
     if shell is None:
         raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
-    entered: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
+    inputs: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
     return [
-        closure.Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()
+        closure.Cell(text, where=f"input {number}")
+        for number, text in enumerate(inputs)
+        if text.strip()
     ]

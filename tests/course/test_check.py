@@ -18,16 +18,16 @@ def hat(n=256):
 """
 
 
-def test_a_bar_grows_while_the_promises_of_a_task_are_checked_and_goes_at_the_end(monkeypatch):
+def test_check_shows_a_progress_bar_that_disappears_at_the_end(monkeypatch):
     shown = []
-    monkeypatch.setattr(notebook, "_history", lambda: [Cell(RIGHT)])
+    monkeypatch.setattr(notebook, "_cells_of_kernel", lambda: [Cell(RIGHT)])
     for way in ("display", "update"):
         monkeypatch.setattr(DisplayHandle, way, lambda handle, html: shown.append(html.data))
-    monkeypatch.setattr(notebook, "_plan", {})
+    monkeypatch.setattr(notebook, "_planned", {})
     monkeypatch.setattr(notebook, "_latest", {})
     notebook.use_plan("hw2", hat=20)
     found = notebook.check("hat")
     assert found.points == found.homework.points == 20 and "20 of 20 points" in found._repr_html_()
     first, *growing, last = shown
     assert "hat, checking" in first and last == ""
-    assert [re.search(r": (\d) of 4 promises", one)[1] for one in growing] == list("12344")
+    assert [re.search(r": (\d) of 4 checks", html)[1] for html in growing] == list("12344")

@@ -158,7 +158,7 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
         for name, data in members.items():
             archive.writestr(name, data)
     (tmp_path / "scratch").mkdir()
-    path, refused = reader.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
+    path, refused = reader.extract_code_file(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
     assert said in refused and bool(refused) == bool(said) and "\n" not in refused
     assert said or path.read_bytes() == b"x"
 

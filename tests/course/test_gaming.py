@@ -137,14 +137,22 @@ def test_the_library_finds_the_curve_of_any_students_camera(task):
         assert share == 1, (student, said)
 
 
-def test_a_table_of_public_inputs_is_not_for_credit():
+@pytest.mark.parametrize(("student", "secret"), [("", ""), ("ada", ""), ("", "salt")])
+def test_a_result_with_inputs_that_anybody_could_draw_is_not_for_credit(student, secret, tmp_path):
     homework = PLAN.homeworks["hw2"]._replace(tasks=(PLAN.task("hat"),))
-    for student, secret in (("", ""), ("ada", ""), ("", "salt")):
-        assert grader._seed_id(homework, GradingOptions("strict", student, secret)) == ""
-    assert grader._seed_id(homework, GradingOptions("strict", "ada", "salt"))
-    heard = [{"specification": ""}]
-    drawn, public = (grader._result(heard, NOTHING, homework, one) for one in (WITH, WITHOUT))
-    assert drawn.for_credit and not public.for_credit and "without a secret" in public.why_practice
+    (tmp_path / "hw2.py").write_text("")
+    result = next(
+        grader.grade_steps(
+            tmp_path / "hw2.py", homework, GradingOptions("practice", student, secret)
+        )
+    )
+    strict = result._replace(tier="strict")
+    assert not strict.for_credit
+    assert "without a secret" in strict.why_practice
+    drawn = next(
+        grader.grade_steps(tmp_path / "hw2.py", homework, GradingOptions("practice", "ada", "salt"))
+    )
+    assert drawn._replace(tier="strict").for_credit
 
 
 def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):

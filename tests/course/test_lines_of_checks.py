@@ -51,7 +51,7 @@ def heard(monkeypatch):
     """heard(lines) -> each Result of a run that writes these lines; `jobs` are the jobs of those runs."""
     jobs, chosen = [], []
 
-    def heard(*lines, conditions=grader.STRICT, homework=HOMEWORK, read=READ):
+    def heard(*lines, conditions=grader.FOR_CREDIT, homework=HOMEWORK, read=READ):
         def run(folder, job, files, patience):
             told = json.loads(job.read_text("utf8"))
             texts = {file: file.read_text("utf8") for file in files}
@@ -115,7 +115,7 @@ def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is
 
 def test_more_of_a_job_stands_beside_the_rest(heard, monkeypatch):
     heard()
-    list(grader.heard_steps(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
+    list(grader.iter_events(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
     assert heard.jobs[1][4]["by"] == "other" and heard.jobs[1][4]["asked"] == [1]
 
 

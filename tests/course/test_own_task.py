@@ -80,7 +80,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
     assert any(cell.startswith("def flat_field(Z, flat):") for cell in cells)
     (given,) = [cell for cell in cells if "use_plan(" in cell]
     assert given.endswith('use_plan("extra", plan="extra-checks/plan.toml", flat_field=10)')
-    monkeypatch.setattr(notebook, "_plan", {})
+    monkeypatch.setattr(notebook, "_planned", {})
     monkeypatch.chdir(out)
     exec(given[given.index("use_plan(") :], {"use_plan": notebook.use_plan})
     homework, tasks = notebook.find_tasks("flat_field")

@@ -265,7 +265,7 @@ def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homew
     with zipfile.ZipFile(archive, "w") as opened:
         for name in names_in_it:
             opened.writestr(name, "1 + 1\n")
-    path, refused = reader.opened(archive, tmp_path, "hw2")
+    path, refused = reader.extract_code_file(archive, tmp_path, "hw2")
     if found:
         assert (path, refused) == (tmp_path / "files" / found, "")
     else:
@@ -276,16 +276,15 @@ def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homew
 
 def test_a_file_that_is_no_archive_or_is_missing_is_taken_as_it_is(tmp_path):
     for name in ("hw2.ipynb", "missing.zip"):
-        assert reader.opened(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")
+        assert reader.extract_code_file(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")
 
 
-def test_a_million_characters_of_code_are_read_and_one_more_is_refused():
-    most = reader.MOST_CODE
+def test_a_file_with_more_code_than_a_homework_is_refused():
+    most = reader.MAX_CODE_CHARACTERS
     assert reader.cells_of(b"#" * most, "hw2.py")[1] == []
-    assert reader.cells_of(b"#" * (most + 1), "hw2.py") == (
-        [],
-        ["hw2.py holds more than 1,000,000 characters of code"],
-    )
+    cells, (problem,) = reader.cells_of(b"#" * (most + 1), "hw2.py")
+    assert cells == []
+    assert "hw2.py has more than 1,000,000 characters" in problem
 
 
 def test_a_function_that_reads_what_is_made_by_calling_it_stands_before_the_call_wherever_its_cell_is():

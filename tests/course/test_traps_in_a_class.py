@@ -33,7 +33,7 @@ def is_refused(said):
 def test_each_trap_is_refused_in_one_line_and_leaves_nothing(tmp_path, name):
     (tmp_path / "scratch").mkdir()
     TRAPS[name](tmp_path / "s01.zip")
-    path, said = reader.opened(tmp_path / "s01.zip", tmp_path / "scratch", "hw2")
+    path, said = reader.extract_code_file(tmp_path / "s01.zip", tmp_path / "scratch", "hw2")
     assert path == tmp_path / "s01.zip" and is_refused(said)
     assert {file.name for file in tmp_path.rglob("*")} == {"s01.zip", "scratch"}
 

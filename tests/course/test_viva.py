@@ -407,7 +407,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     conditions = GradingOptions("strict", timeout=5.0, draw=False)
     more = {"seed": "3", "photographs": pages.photographs([])}
     more["by"] = THERE
-    found = [*grader.heard_steps(bench.as_submission(sources), homework, conditions, **more)]
+    found = [*grader.iter_events(bench.as_submission(sources), homework, conditions, **more)]
     asked = [one["question"] for one in found if "question" in one]
     assert any(one["task"] == "equivalent_time" for one in asked)
     for text in written(asked).values():

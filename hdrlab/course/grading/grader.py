@@ -1,8 +1,7 @@
-"""Checking a submission: its tasks are read, the specification is run on them, and a Result comes of it.
+"""Grade one submission: read the code of its tasks, run the checks on it, and return a Result.
 
-The specification runs under pytest in a process of its own, which the student's code never enters:
-that one answers from a sandbox (`subject`). How far it is kept apart is said in the Result, by the
-tier's name.
+The checks run under pytest in a process of their own, which never runs the student's code: that
+runs in a sandbox (`checks.subject`). The Result names the tier of the sandbox.
 """
 
 import base64
@@ -12,6 +11,7 @@ import os
 import platform
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -20,12 +20,13 @@ import numpy as np
 import scipy
 
 import hdrlab
+from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
 from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION, running
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Drawing, Result
-from hdrlab.course.plan import GradingOptions, Homework
+from hdrlab.course.plan import GradingOptions, Homework, Task
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.sanitize import sanitize_text
@@ -34,230 +35,284 @@ from hdrlab.course.submissions.reader import SubmittedCode
 from hdrlab.course.variants import rewording
 from hdrlab.errors import InputError
 
-# for all checks of an assignment; the calls of a submission have 200 s, see `checks.subject`
+# for all checks of a homework; `checks.subject` limits the calls of the student's functions
 ALL_CHECKS_TIMEOUT_SECONDS = 240.0
-MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
-STRICT = GradingOptions()
-VERSIONS = {one.__name__: one.__version__ for one in (hdrlab, np, scipy)}
-VERSIONS["python"] = platform.python_version()
-SILENT = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
+MAX_MESSAGE_LENGTH = 2000
+MAX_PRINTED_LENGTH = 4000
+FOR_CREDIT = GradingOptions()
+VERSIONS = {
+    "hdrlab": hdrlab.__version__,
+    "numpy": np.__version__,
+    "scipy": scipy.__version__,
+    "python": platform.python_version(),
+}
+NO_ANSWER = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
+
+# What the checks write down, one after another: a dictionary for each check and for each end of one.
+Event = dict[str, Any]
 
 
-def grade(path: str | Path, homework: Homework, conditions: GradingOptions = STRICT) -> Result:
-    """Return what a notebook or a Python file is worth: the last of `grade_steps`.
+def grade(path: str | Path, homework: Homework, options: GradingOptions = FOR_CREDIT) -> Result:
+    """Return the result of a notebook or a Python file: the last of `grade_steps`.
 
     Raises
     ------
     Unavailable
-        For a tier that this machine cannot give.
-    ValueError
-        For a homework without checks, or a hidden folder that is none.
+        If this machine cannot run the requested sandbox tier.
+    InputError
+        If the homework has no checks, or the folder of hidden checks does not exist.
     """
-    return last(grade_steps(path, homework, conditions))
+    return last(grade_steps(path, homework, options))
 
 
 def grade_steps(
-    path: str | Path, homework: Homework, conditions: GradingOptions = STRICT
+    path: str | Path, homework: Homework, options: GradingOptions = FOR_CREDIT
 ) -> Iterator[Result]:
-    """Yield the Result as it grows: first with all checks unanswered, then after each."""
-    yield from check_steps(*read_tasks(path, homework, conditions), conditions)
+    """Yield the Result after each check; at first, no check is answered."""
+    code, homework = read_tasks(path, homework, options)
+    yield from check_steps(code, homework, options)
 
 
 def read_tasks(
-    path: str | Path, homework: Homework, conditions: GradingOptions
+    path: str | Path, homework: Homework, options: GradingOptions
 ) -> tuple[SubmittedCode, Homework]:
-    """Return what a file holds of a homework's tasks, and the homework as its student was given it."""
+    """Return the code of a submission, and the homework with the variants that its student is asked."""
     tasks = [task.id for task in homework.tasks]
-    read = reader.read(Path(path), homework.name, tasks, reader.given_cells(homework.name))
-    homework = plan.draw_variants(homework, conditions.student, conditions.secret, read.variants)
-    if others := ", ".join(plan.tasks_of_other_variants(homework, read.variants)):
-        said = f"The sheet is of another variant than yours, which is what the checks ask: {others}"
-        read = read._replace(problems=(*read.problems, said))
-    return read, homework
+    code = reader.read(Path(path), homework.name, tasks, reader.given_cells(homework.name))
+    homework = plan.draw_variants(homework, options.student, options.secret, code.variants)
+    others = plan.tasks_of_other_variants(homework, code.variants)
+    if others:
+        problem = (
+            "This is the assignment of another student: the checks expect your variant of "
+            + ", ".join(others)
+        )
+        code = replace(code, problems=(*code.problems, problem))
+    return code, homework
 
 
 def check_steps(
-    read: SubmittedCode, homework: Homework, conditions: GradingOptions
+    code: SubmittedCode, homework: Homework, options: GradingOptions
 ) -> Iterator[Result]:
-    """Yield the Result of tasks that are read already, as it grows."""
-    heard: list[dict[str, Any]] = []
-    for line in heard_steps(read, homework, conditions):
-        heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
-        if "ended" in line:
-            yield _result(heard, read, homework, conditions)
-    yield _result(heard, read, homework, conditions)
+    """Yield the Result of code that is already read, after each check."""
+    events: list[Event] = []
+    for event in iter_events(code, homework, options):
+        if event.get("differs"):
+            event = event | {"drawing": _draw_difference(event)}
+        events.append(event)
+        if "ended" in event:
+            yield _result(events, code, homework, options)
+    yield _result(events, code, homework, options)
 
 
-def heard_steps(
-    read: SubmittedCode, homework: Homework, conditions: GradingOptions, **more: Any
-) -> Iterator[Any]:
-    """Yield what the checks write down as they run, and first their digest; `more` stands in the job."""
-    if conditions.hidden is not None and not conditions.hidden.is_dir():
-        raise InputError(f"expected a folder with hidden checks, got {conditions.hidden}")
-    tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
+def iter_events(
+    code: SubmittedCode, homework: Homework, options: GradingOptions, **more: Any
+) -> Iterator[Event]:
+    """Run the checks, and yield their events as they come; the first has the digest of the checks.
+
+    `more` is added to the job that the checks read, as `viva` does.
+    """
+    if options.hidden is not None and not options.hidden.is_dir():
+        raise InputError(f"expected a folder with hidden checks, got {options.hidden}")
+    tiers.choose(options.tier)  # raises Unavailable: no other tier replaces it
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
-        files = _reworded(files_of(homework, conditions.hidden), homework, folder)
+        files = _apply_variants(files_of(homework, options.hidden), homework, folder)
         yield {"specification": specification(files)}
-        job = _job(folder, read, homework, conditions, **more)
-        for line in running.run(folder, job, files, ALL_CHECKS_TIMEOUT_SECONDS):
-            if "unavailable" in line:
-                raise Unavailable(line["unavailable"])
-            yield line
+        job = _write_job(folder, code, homework, options, **more)
+        for event in running.run(folder, job, files, ALL_CHECKS_TIMEOUT_SECONDS):
+            if "unavailable" in event:
+                raise Unavailable(event["unavailable"])
+            yield event
 
 
 def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
-    """Return the files with the checks of a homework, in its order, the hidden ones after each task's own."""
-    homes = [SPECIFICATION if task.own is None else task.own.parent for task in homework.tasks]
-    files = [
-        folder / f"test_{task.id}.py"
-        for task, home in zip(homework.tasks, homes, strict=True)
-        for folder in (home, *([] if hidden is None else [hidden.resolve()]))
-    ]
-    if present := [file for file in files if file.is_file()]:
-        return present
-    raise InputError(f"expected checks for {homework.name} in {homes[0]}, got none")
+    """Return the files with the checks of a homework: of each task the public and the hidden ones."""
+    files = []
+    for task in homework.tasks:
+        name = f"test_{task.id}.py"
+        files.append(_folder_of_checks(task) / name)
+        if hidden is not None:
+            files.append(hidden.resolve() / name)
+    present = [path for path in files if path.is_file()]
+    if not present:
+        folder = _folder_of_checks(homework.tasks[0])
+        raise InputError(f"expected checks for {homework.name} in {folder}, got none")
+    return present
 
 
-def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[Path]:
-    """Return the files with the checks; those of variants are written into a folder."""
-    named, asked = {f"test_{task.id}.py": task for task in homework.tasks if task.variant}, []
-    for file in files:
-        task = named.get(file.name) if file.parent == SPECIFICATION else None
-        asked.append(folder / file.name if task else file)
-        if task:
-            text = rewording.reword(task.id, task.variant, file.read_text(encoding="utf8"))
-            asked[-1].write_text(text, encoding="utf8")
-    return asked
+def _folder_of_checks(task: Task) -> Path:
+    """Return the folder of a task's checks: hdrlab's, or the one of the instructor's own task."""
+    return SPECIFICATION if task.own is None else task.own.parent
 
 
-def _job(
-    folder: Path, read: SubmittedCode, homework: Homework, conditions: GradingOptions, **more: Any
+def _apply_variants(files: Sequence[Path], homework: Homework, folder: Path) -> list[Path]:
+    """Return the files with the checks; those of tasks with a variant are written into a folder."""
+    with_variant = {f"test_{task.id}.py": task for task in homework.tasks if task.variant}
+    applied = []
+    for path in files:
+        task = with_variant.get(path.name)
+        if task is None or path.parent != SPECIFICATION:
+            applied.append(path)
+            continue
+        text = rewording.reword(task.id, task.variant, path.read_text(encoding="utf8"))
+        copy = folder / path.name
+        copy.write_text(text, encoding="utf8")
+        applied.append(copy)
+    return applied
+
+
+def _write_job(
+    folder: Path, code: SubmittedCode, homework: Homework, options: GradingOptions, **more: Any
 ) -> Path:
+    """Write the job that the process with the checks reads, and return its file."""
+    events = folder / "lines"
+    events.touch()
     job = {
-        "sources": read.sources,
-        "modules": read.modules,
-        "tier": conditions.tier,
-        "seeds": _seeds(homework, conditions),
-        "timeout": conditions.timeout,
-        "draw": conditions.draw,
-        "hidden": "" if conditions.hidden is None else str(conditions.hidden.resolve()),
+        "sources": code.sources,
+        "modules": code.modules,
+        "tier": options.tier,
+        "seeds": _seeds(homework, options),
+        "timeout": options.timeout,
+        "draw": options.draw,
+        "hidden": "" if options.hidden is None else str(options.hidden.resolve()),
         "tasks": homework.tasks,
-        "out": str(folder / "lines"),
+        "out": str(events),
         "grader": os.getpid(),
         "by": "hdrlab.course.checks.plugin:GradingPlugin",
     }
-    (folder / "lines").touch()
-    file = folder / "job.json"
-    file.write_text(json.dumps(job | more), encoding="utf8")
-    return file
+    path = folder / "job.json"
+    path.write_text(json.dumps(job | more), encoding="utf8")
+    return path
 
 
-def _seeds(homework: Homework, conditions: GradingOptions) -> dict[str, str]:
-    """Return each task's seed, as text: it has more bits than JSON's numbers."""
-    student = conditions.student
-    secret = conditions.secret
-    return {
-        one.id: str(plan.seed(secret, student, one.id) if student else 0) for one in homework.tasks
-    }
+def _seeds(homework: Homework, options: GradingOptions) -> dict[str, str]:
+    """Return each task's seed as text, because it has more bits than a number in JSON."""
+    seeds = {}
+    for task in homework.tasks:
+        seed = 0
+        if options.student:
+            seed = plan.seed(options.secret, options.student, task.id)
+        seeds[task.id] = str(seed)
+    return seeds
 
 
-def _seed_id(homework: Homework, conditions: GradingOptions) -> str:
-    """Return a digest of the seeds, or "" where anybody could draw the same inputs."""
-    if not (conditions.student and conditions.secret):
+def _seed_id(homework: Homework, options: GradingOptions) -> str:
+    """Return a digest of the seeds, or "" if anybody could draw the same inputs."""
+    if not (options.student and options.secret):
         return ""
-    return hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16]
-
-
-def _result(
-    heard: Sequence[Any], read: SubmittedCode, homework: Homework, conditions: GradingOptions
-) -> Result:
-    return Result(
-        student=conditions.student,
-        homework=homework.name,
-        title=homework.title,
-        tier=conditions.tier,
-        checks=tuple(_checks(heard, homework)),
-        misconceptions={
-            line["recognised"]: line["sentence"] for line in heard if "recognised" in line
-        },
-        problems=read.problems,
-        submission=read.hash,
-        specification=heard[0]["specification"],
-        seed=_seed_id(homework, conditions),
-        versions=VERSIONS,
-        at_most=homework.at_most,
-    )
-
-
-def _drawn(line: dict[str, Any]) -> Drawing:
-    """Return the pictures of a difference whose arrays came as text.
-
-    They are drawn here and not beside the checks: a notebook has matplotlib at hand, which takes
-    its time.
-    """
-    from hdrlab.show.plots import differences
-
-    differs, task = (
-        line["differs"],
-        Path(line["ended"].partition("::")[0]).stem.removeprefix("test_"),
-    )
-    both = [np.frombuffer(base64.b64decode(differs[name]), "<f8") for name in ("expected", "came")]
-    draw = differences.image if differs["kind"] == "image" else differences.curve
-    try:
-        return Drawing(*draw(*(one.reshape(differs["shape"]) for one in both), what=task)[:3])
-    except ValueError:  # neither an image nor a curve after all
-        return Drawing()
+    return hashlib.sha256(json.dumps(_seeds(homework, options)).encode()).hexdigest()[:16]
 
 
 def specification(files: Sequence[Path]) -> str:
     """Return a digest of the checks."""
     digest = hashlib.sha256()
-    for file in files:
-        digest.update(file.name.encode() + b"\0" + file.read_bytes())
+    for path in files:
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
 
-def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
-    """Yield each promise: it holds where it holds for all of its cases."""
-    cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
-    for line in heard:
-        if "check" in line:
-            cases.setdefault((line["task"], line["name"], line["hidden"]), []).append(line)
-    ended = {
-        line["ended"]: line for line in heard if "ended" in line and line["outcome"] == "holds"
-    }
-    ended |= {
-        line["ended"]: line for line in heard if "ended" in line and line["outcome"] != "holds"
-    }
-    named = {line["recognised"]: line for line in heard if "recognised" in line}
+def _result(
+    events: Sequence[Event], code: SubmittedCode, homework: Homework, options: GradingOptions
+) -> Result:
+    """Return the Result of the events that have come so far."""
+    mistakes = {event["recognised"]: event["sentence"] for event in events if "recognised" in event}
+    return Result(
+        student=options.student,
+        homework=homework.name,
+        title=homework.title,
+        tier=options.tier,
+        checks=tuple(_checks(events, homework)),
+        misconceptions=mistakes,
+        problems=code.problems,
+        submission=code.hash,
+        specification=events[0]["specification"],
+        seed=_seed_id(homework, options),
+        versions=VERSIONS,
+        at_most=homework.at_most,
+    )
+
+
+def _draw_difference(event: Event) -> Drawing:
+    """Return the pictures of a difference between an expected and a returned array.
+
+    They are drawn here, not in the process of the checks, because importing matplotlib takes time
+    and a notebook has it already.
+    """
+    from hdrlab.show.plots import differences
+
+    difference = event["differs"]
+    task = Path(event["ended"].partition("::")[0]).stem.removeprefix("test_")
+    draw = differences.image if difference["kind"] == "image" else differences.curve
+    expected = _decode_array(difference["expected"], difference["shape"])
+    returned = _decode_array(difference["came"], difference["shape"])
+    try:
+        drawn = draw(expected, returned, what=task)
+    except ValueError:  # a student's values may be such that matplotlib cannot draw them
+        return Drawing()
+    return Drawing(*drawn[:3])
+
+
+def _decode_array(text: str, shape: Sequence[int]) -> F64:
+    """Return an array that came as text."""
+    return np.frombuffer(base64.b64decode(text), "<f8").reshape(shape)
+
+
+def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
+    """Yield the checks of all tasks with their points. A check holds if all of its cases hold."""
+    cases: dict[tuple[str, str, bool], list[Event]] = {}
+    for event in events:
+        if "check" in event:
+            cases.setdefault((event["task"], event["name"], event["hidden"]), []).append(event)
+    ends = _ends(events)
+    mistakes = {event["recognised"]: event for event in events if "recognised" in event}
     for task in homework.tasks:
-        own = [each for key, each in cases.items() if key[0] == task.id]
-        weights = [Fraction(each[0]["points"]) for each in own]
-        shares = scoring.split_points(Fraction(str(task.points)), weights) if own else []
-        checks = [_check(each, ended, whole) for each, whole in zip(own, shares, strict=True)]
-        needs = {each[0]["name"]: each[0]["needs"] for each in own}
-        once = named.get(task.id, {}).get("once", False)
-        yield from scoring.attribute_failures(checks, needs, named=task.id in named, once=once)
+        of_task = [events for (id, _, _), events in cases.items() if id == task.id]
+        if not of_task:
+            continue
+        weights = [Fraction(first["points"]) for first, *_ in of_task]
+        points = scoring.split_points(Fraction(str(task.points)), weights)
+        checks = [
+            _check(of_check, ends, max_points)
+            for of_check, max_points in zip(of_task, points, strict=True)
+        ]
+        needs = {first["name"]: first["needs"] for first, *_ in of_task}
+        yield from scoring.attribute_failures(
+            checks,
+            needs,
+            named=task.id in mistakes,
+            once=mistakes.get(task.id, {}).get("once", False),
+        )
 
 
-def _check(
-    each: Sequence[dict[str, Any]], ended: dict[str, dict[str, Any]], whole: Fraction
-) -> Check:
-    """Return a promise with the first of its cases that does not hold."""
-    endings = [ended.get(one["check"], SILENT) for one in each]
-    shown = next((one for one in endings if one["outcome"] != "holds"), endings[0])
+def _ends(events: Sequence[Event]) -> dict[str, Event]:
+    """Return how each case ended; a case that ended twice, holding once, does not hold."""
+    ends: dict[str, Event] = {}
+    for event in events:
+        if "ended" not in event:
+            continue
+        before = ends.get(event["ended"])
+        if before is None or before["outcome"] == "holds" or event["outcome"] != "holds":
+            ends[event["ended"]] = event
+    return ends
+
+
+def _check(cases: Sequence[Event], ends: dict[str, Event], max_points: Fraction) -> Check:
+    """Return a check with the end of its first case that does not hold; its points come later."""
+    ends_of_cases = [ends.get(case["check"], NO_ANSWER) for case in cases]
+    failures = [end for end in ends_of_cases if end["outcome"] != "holds"]
+    shown = failures[0] if failures else ends_of_cases[0]
+    case = cases[0]
     return Check(
-        task=each[0]["task"],
-        name=each[0]["name"],
-        promise=each[0]["promise"],
+        task=case["task"],
+        name=case["name"],
+        promise=case["promise"],
         points=Fraction(),
-        max_points=whole,
+        max_points=max_points,
         outcome=shown["outcome"],
-        message=sanitize_text(shown["message"], MESSAGE),
-        hints=tuple(each[0]["hints"]),
+        message=sanitize_text(shown["message"], MAX_MESSAGE_LENGTH),
+        hints=tuple(case["hints"]),
         drawing=shown.get("drawing", Drawing()),
-        said=sanitize_text(shown["said"], SAID),
-        hidden=each[0]["hidden"],
+        said=sanitize_text(shown["said"], MAX_PRINTED_LENGTH),
+        hidden=case["hidden"],
         kind=shown.get("kind", ""),
     )

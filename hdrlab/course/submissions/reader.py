@@ -1,8 +1,9 @@
-"""What a student handed in, read and never run: the cells of the tasks, with what they need of other cells.
+"""Read one submission without running it: find the code of each task in a notebook or Python file.
 
-A notebook or a Python file is text. Its cells are found, and `closure` finds in them what each task
-needs. An archive is opened for the one file in it. `read` does so in a process with limits:
-whatever is handed in costs the grader a few seconds at most.
+A notebook or a Python file is text. hdrlab finds its code cells, and `closure` finds in them
+everything that each task needs. From an archive, hdrlab reads the one notebook or Python file in
+it. All this happens in a process with limits, so that a malicious file costs the grader a few
+seconds at most.
 """
 
 import hashlib
@@ -12,9 +13,10 @@ import re
 import tempfile
 import tokenize
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from hdrlab.course import materials
 from hdrlab.course.sandbox import subprocess_runner
@@ -24,29 +26,38 @@ from hdrlab.course.submissions.archives import unpack
 from hdrlab.course.submissions.archives.members import Limits, Refused
 from hdrlab.errors import InputError
 
-READ, PACKED = (".ipynb", ".py"), (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
-LARGEST = 50_000_000  # bytes: a notebook with pictures has a few
-MOST_CODE = 1_000_000  # characters in all cells
-MOST_SOURCE = 900_000  # bytes of a task with all that it needs, on its way to the sandbox
-UNPACKED = Limits(total=1 << 28)  # of an archive: a notebook, and the photographs that it reads
-SECONDS, MEMORY = (
-    2,
-    500 << 20,
-)  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
-UNPACKING = 3  # seconds more for an archive
-TRIES = 3  # of a process that somebody else ends
-PATIENCE = 25.0  # seconds by the clock: it is read twice, and costs 300 s at most with its checks
-TOLD = 12  # problems that are told
-VARIANT = re.compile(
-    r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"'
-)  # as a sheet names it in its call of use_plan
+CODE_SUFFIXES = (".ipynb", ".py")
+ARCHIVE_SUFFIXES = (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
+MAX_FILE_BYTES = 50_000_000  # a notebook with images has a few million
+MAX_CODE_CHARACTERS = 1_000_000  # in all cells
+MAX_SOURCE_CHARACTERS = 900_000  # of a task with everything that it needs
+# an archive may hold the notebook and the photos that it reads
+ARCHIVE_LIMITS = Limits(total=256 * 2**20)
+READING_CPU_SECONDS = 2  # a finished homework takes 0.1 s
+UNPACKING_CPU_SECONDS = 3  # in addition, for an archive
+READING_MEMORY_BYTES = 500 * 2**20
+READING_TIMEOUT_SECONDS = 25.0
+MAX_ATTEMPTS = 3  # for a process that something else kills
+MAX_SHOWN_PROBLEMS = 12
+MAX_PROBLEM_LENGTH = 300
+MAX_NAME_LENGTH = 80
+MAX_SHOWN_NAMES = 5
+# "exclusion": "compared/above/four", in a sheet's call of use_plan
+VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"')
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
-class SubmittedCode(NamedTuple):
-    """The text of each task's function with all that it needs, what is wrong, a digest, and the imports.
+@dataclass(frozen=True)
+class SubmittedCode:
+    """The code of a submission.
 
-    `variants` are what its sheet says that tasks ask, None of a file without a sheet's `use_plan`.
+    Attributes
+    ----------
+    sources : of each task, its function's text with everything that it needs
+    problems : what is wrong with the submission, as sentences
+    hash : SHA-256 of the file
+    modules : the modules of NumPy and SciPy that the sources import
+    variants : the variants of tasks that its sheet names; None if the file has no `use_plan`
     """
 
     sources: dict[str, str]
@@ -59,97 +70,166 @@ class SubmittedCode(NamedTuple):
 def read(
     path: Path, homework: str, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
 ) -> SubmittedCode:
-    """Return what a notebook, a Python file or an archive of one holds, read in a process with limits.
+    """Return the code of a notebook, a Python file or an archive of one, read in a process with limits.
+
+    Parameters
+    ----------
+    path : path
+        The file that was handed in.
+    homework : str
+        Name of the homework; it tells which file of an archive is meant.
+    tasks : sequence of str
+        Ids of the tasks, which are the names of their functions.
+    given : sequence of Cell
+        Code cells that the assignment gives; they replace the student's copies.
 
     Raises
     ------
-    ValueError
-        Where that process was ended from outside, again and again, of which nothing can be said.
+    InputError
+        If something outside kills that process again and again, so that nothing is known about the
+        submission.
     """
-    limits = {"CPU": SECONDS + UNPACKING * (path.suffix.lower() in PACKED), "AS": MEMORY}
-    for tried in range(1, TRIES + 1):
+    cpu_seconds = READING_CPU_SECONDS
+    if path.suffix.lower() in ARCHIVE_SUFFIXES:
+        cpu_seconds += UNPACKING_CPU_SECONDS
+    limits = {"CPU": cpu_seconds, "AS": READING_MEMORY_BYTES}
+    attempts = 1
+    while True:
         try:
-            with tempfile.TemporaryDirectory(
-                prefix="hdrlab-read-", ignore_cleanup_errors=True
-            ) as scratch:
-                order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
-                said = json.loads(
-                    subprocess_runner.run(_read, order, timeout=PATIENCE, limits=limits)
-                )
-            break
+            return _read_in_subprocess(path, homework, tasks, given, limits)
         except subprocess_runner.ProcessFailed as error:
             if error.is_own_fault:
-                what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, as no homework does"
-                return SubmittedCode({}, (f"{sanitize_line(path.name, 80)} {what}",), "")
-            if tried == TRIES or not error.was_killed:
-                raise InputError(f"it could not be read: {error}") from None
-    return SubmittedCode(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
+                name = sanitize_line(path.name, MAX_NAME_LENGTH)
+                megabytes = READING_MEMORY_BYTES // 2**20
+                problem = (
+                    f"{name} takes more than {cpu_seconds} s or {megabytes} MB to read; "
+                    "no homework needs that much"
+                )
+                return SubmittedCode({}, (problem,), "")
+            if attempts == MAX_ATTEMPTS or not error.was_killed:
+                raise InputError(f"the submission could not be read: {error}") from None
+            attempts += 1
 
 
-def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) -> bytes:
+def _read_in_subprocess(
+    path: Path,
+    homework: str,
+    tasks: Sequence[str],
+    given: Sequence[closure.Cell],
+    limits: dict[str, int],
+) -> SubmittedCode:
+    """Read a submission in a process with limits, and return its code."""
+    with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
+        order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
+        answer = json.loads(
+            subprocess_runner.run(
+                _read_as_json, order, timeout=READING_TIMEOUT_SECONDS, limits=limits
+            )
+        )
+    return SubmittedCode(
+        sources=answer["sources"],
+        problems=tuple(answer["problems"]),
+        hash=answer["hash"],
+        modules=tuple(answer["modules"]),
+        variants=answer["variants"],
+    )
+
+
+def _read_as_json(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) -> bytes:
+    """Read a submission, and return its code as JSON: what the process with limits runs."""
     path, scratch, homework, tasks, given = order
-    opened_path, refused = opened(path, scratch, homework)
-    found = SubmittedCode({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
-    return json.dumps(
-        found._replace(modules=tuple(names.imported_numpy_modules(found.sources.values())))
-    ).encode()
+    code_path, refusal = extract_code_file(path, scratch, homework)
+    code = SubmittedCode({}, (refusal,), "") if refusal else tasks_of(code_path, tasks, given)
+    modules = names.imported_numpy_modules(code.sources.values())
+    answer = {
+        "sources": code.sources,
+        "problems": code.problems,
+        "hash": code.hash,
+        "modules": list(modules),
+        "variants": code.variants,
+    }
+    return json.dumps(answer).encode()
 
 
-def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
-    """Return the notebook or Python file of a submission, and why its archive was refused, or ""."""
-    if path.suffix.lower() not in PACKED or not path.is_file():
+def extract_code_file(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
+    """Return the notebook or Python file of a submission, and why its archive was refused, or "".
+
+    An archive is unpacked into a folder of `scratch`.
+    """
+    if path.suffix.lower() not in ARCHIVE_SUFFIXES or not path.is_file():
         return path, ""
     try:
-        members = unpack.unpack(path, scratch / "files", UNPACKED)
+        members = unpack.unpack(path, scratch / "files", ARCHIVE_LIMITS)
     except Refused as reason:
         return path, f"The archive is refused: {reason}."
-    fitting = [member for member, _ in members if member.suffix.lower() in READ]
-    named = [member for member in fitting if homework in member.name.lower()] or fitting
-    if len(named) != 1:
-        told = ", ".join(sanitize_line(member.name, 80) for member in named[:5]) or "none"
-        return path, f"Expected one notebook or Python file in the archive, got {told}."
-    return scratch / "files" / named[0], ""
+    code_files = [member for member, _ in members if member.suffix.lower() in CODE_SUFFIXES]
+    of_homework = [member for member in code_files if homework in member.name.lower()]
+    candidates = of_homework or code_files
+    if len(candidates) != 1:
+        shown = [
+            sanitize_line(member.name, MAX_NAME_LENGTH) for member in candidates[:MAX_SHOWN_NAMES]
+        ]
+        listed = ", ".join(shown) or "none"
+        return path, f"Expected one notebook or Python file in the archive, got {listed}."
+    return scratch / "files" / candidates[0], ""
 
 
 def tasks_of(
     path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cell] = ()
 ) -> SubmittedCode:
-    """Return what a file holds of the tasks; what cannot be read is told, and the rest is still there.
+    """Return the code of each task in a file, with a problem for everything that cannot be read.
 
     Parameters
     ----------
     path : path
-        A notebook, or a Python file in the percent form.
+        A notebook, or a Python file in the percent format.
     tasks : sequence of str
-        Their ids, which are the names of their functions.
+        Ids of the tasks, which are the names of their functions.
     given : sequence of Cell
-        The handout's own cells that are given; they take the place of the student's copies.
+        Code cells that the assignment gives; they replace the student's copies.
     """
-    data, problems = _bytes_of(Path(path))
-    cells, told = cells_of(data, Path(path).name) if data else ([], [])
-    sources, said = (
-        closure.extract_sources(cells, tasks, given)
-        if cells or not (problems or told)
-        else ({}, [])
-    )
-    for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
-        del sources[task]
-        said.append(f"{task} needs more than {MOST_SOURCE:,} characters of code")
-    problems = [sanitize_line(one, 300) for one in [*problems, *told, *said]]
-    if len(problems) > TOLD:
-        problems[TOLD:] = [f"... and {len(problems) - TOLD} more of the kind"]
-    sheets = [cell.text for cell in cells if "use_plan(" in cell.text]
-    variants = dict(VARIANT.findall("".join(sheets))) if sheets else None
+    path = Path(path)
+    data, problems = _bytes_of(path)
+    cells: list[closure.Cell] = []
+    if data:
+        cells, cell_problems = cells_of(data, path.name)
+        problems += cell_problems
+    sources: dict[str, str] = {}
+    if cells or not problems:
+        sources, source_problems = closure.extract_sources(cells, tasks, given)
+        problems += source_problems
+    for task, text in list(sources.items()):
+        if len(json.dumps(text)) > MAX_SOURCE_CHARACTERS:
+            del sources[task]
+            problems.append(f"{task} needs more than {MAX_SOURCE_CHARACTERS:,} characters of code")
+    shown = [
+        sanitize_line(problem, MAX_PROBLEM_LENGTH) for problem in problems[:MAX_SHOWN_PROBLEMS]
+    ]
+    if len(problems) > MAX_SHOWN_PROBLEMS:
+        shown.append(f"... and {len(problems) - MAX_SHOWN_PROBLEMS} more problems of this kind")
     return SubmittedCode(
-        sources, tuple(problems), hashlib.sha256(data).hexdigest(), variants=variants
+        sources=sources,
+        problems=tuple(shown),
+        hash=hashlib.sha256(data).hexdigest(),
+        variants=_variants_on_sheet(cells),
     )
+
+
+def _variants_on_sheet(cells: Sequence[closure.Cell]) -> dict[str, str] | None:
+    """Return the variants by task that calls of `use_plan` name; None if there is no such call."""
+    plan_cells = [cell.text for cell in cells if "use_plan(" in cell.text]
+    if not plan_cells:
+        return None
+    return dict(VARIANT.findall("".join(plan_cells)))
 
 
 def _bytes_of(path: Path) -> tuple[bytes, list[str]]:
+    """Return the bytes of a file, and what is wrong with it."""
     if not path.is_file():  # a folder, a device, a pipe that never ends
         return b"", [f"{path.name} is not a file"]
-    if path.stat().st_size > LARGEST:
-        return b"", [f"{path.name} has more than {LARGEST // 1_000_000} MB; clear its outputs"]
+    if path.stat().st_size > MAX_FILE_BYTES:
+        megabytes = MAX_FILE_BYTES // 1_000_000
+        return b"", [f"{path.name} is larger than {megabytes} MB; clear its outputs"]
     data = path.read_bytes()
     return data, [] if data.strip() else [f"{path.name} is empty"]
 
@@ -157,75 +237,116 @@ def _bytes_of(path: Path) -> tuple[bytes, list[str]]:
 def cells_of(data: bytes, name: str) -> tuple[list[closure.Cell], list[str]]:
     """Return the code cells of a file's bytes, and what is wrong with it, in words."""
     try:
-        text = _decoded(data)
+        text = _decode(data)
     except (UnicodeError, LookupError, SyntaxError):
         return [], [f"{name} is neither a notebook nor Python text; save it in UTF-8"]
-    looks_like = text.lstrip()[:1] == "{"
-    cells, problems = _notebook(text, name) if looks_like else (_percent(text), [])
-    if name.lower().endswith(".ipynb") and not looks_like:
-        problems = [f"{name} is not a notebook, and was read as Python text"]
-    if sum(len(cell.text) for cell in cells) > MOST_CODE:
-        return [], [f"{name} holds more than {MOST_CODE:,} characters of code"]
+    if text.lstrip()[:1] == "{":
+        cells, problems = _notebook_cells(text, name)
+    else:
+        cells = _percent_cells(text)
+        problems = []
+        if name.lower().endswith(".ipynb"):
+            problems = [f"{name} is not a notebook; hdrlab read it as Python text"]
+    if sum(len(cell.text) for cell in cells) > MAX_CODE_CHARACTERS:
+        return [], [f"{name} has more than {MAX_CODE_CHARACTERS:,} characters of code"]
     return cells, problems
 
 
-def _decoded(data: bytes) -> str:
-    """Return a file's text as its author meant it: by its byte order mark, as Python does, or UTF-8."""
+def _decode(data: bytes) -> str:
+    """Return the text of a file: by its byte order mark, its coding comment as in Python, or UTF-8."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16")
-    if data.lstrip()[:1] == b"{":  # JSON, where a comment about coding would be something else
+    if data.lstrip()[:1] == b"{":  # in JSON, the word "coding" is no coding comment
         return data.decode("utf-8")
-    return data.decode(tokenize.detect_encoding(io.BytesIO(data).readline)[0])
+    encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+    return data.decode(encoding)
 
 
-def _notebook(text: str, name: str) -> tuple[list[closure.Cell], list[str]]:
+def _notebook_cells(text: str, name: str) -> tuple[list[closure.Cell], list[str]]:
+    """Return the code cells of a notebook of version 3 or 4, and what is wrong with it."""
     try:
-        read = json.loads(text)
+        notebook = json.loads(text)
     except (ValueError, RecursionError):
         return [], [f"{name} cannot be read as a notebook: it is cut short or damaged"]
-    listed = read.get("cells", read.get("worksheets")) if isinstance(read, dict) else None
-    if not isinstance(listed, list):
-        return [], [f"{name} has no cells; a notebook of version 4 is expected"]
-    if "cells" not in read:  # version 3 has sheets of cells
-        sheets = [one.get("cells") for one in listed if isinstance(one, dict)]
-        listed = [cell for sheet in sheets if isinstance(sheet, list) for cell in sheet]
-    code = [(n, one) for n, one in enumerate(listed, 1) if isinstance(one, dict)]
-    return [_cell(n, one) for n, one in code if one.get("cell_type") == "code"], []
+    cells = _cells_as_json(notebook)
+    if cells is None:
+        return [], [f"{name} has no cells; expected a notebook of version 4"]
+    code_cells = [
+        _code_cell(number, cell)
+        for number, cell in enumerate(cells, 1)
+        if isinstance(cell, dict) and cell.get("cell_type") == "code"
+    ]
+    return code_cells, []
 
 
-def _cell(n: int, read: dict[str, Any]) -> closure.Cell:
-    """Return a cell out of JSON, of which nothing is believed."""
-    source = read.get("source", read.get("input", ""))  # the latter in version 3
+def _cells_as_json(notebook: Any) -> list[Any] | None:
+    """Return the cells of a notebook as JSON; None if this is no notebook."""
+    if not isinstance(notebook, dict):
+        return None
+    if "cells" in notebook:
+        cells = notebook["cells"]
+        return cells if isinstance(cells, list) else None
+    worksheets = notebook.get("worksheets")  # of version 3
+    if not isinstance(worksheets, list):
+        return None
+    cells = []
+    for worksheet in worksheets:
+        if isinstance(worksheet, dict) and isinstance(worksheet.get("cells"), list):
+            cells += worksheet["cells"]
+    return cells
+
+
+def _code_cell(number: int, cell: dict[str, Any]) -> closure.Cell:
+    """Return a code cell from JSON in which any value may have any type."""
+    source = cell.get("source", cell.get("input", ""))  # version 3 has "input"
     lines = source if isinstance(source, list) else [source]
-    text, metadata = "".join(one for one in lines if isinstance(one, str)), read.get("metadata")
-    marked = metadata.get("hdrlab") if isinstance(metadata, dict) else None
-    marked = marked if isinstance(marked, dict) else {}
-    task = marked.get("task")
+    text = "".join(line for line in lines if isinstance(line, str))
+    metadata = cell.get("metadata")
+    marks = metadata.get("hdrlab") if isinstance(metadata, dict) else None
+    if not isinstance(marks, dict):
+        marks = {}
+    task = marks.get("task")
     return closure.Cell(
-        text, task if isinstance(task, str) else "", marked.get("given") is True, f"cell {n}"
+        text=text,
+        task=task if isinstance(task, str) else "",
+        given=marks.get("given") is True,
+        where=f"cell {number}",
     )
 
 
-def _percent(text: str) -> list[closure.Cell]:
-    """Return the cells of a Python file; one without fences is one cell."""
+def _percent_cells(text: str) -> list[closure.Cell]:
+    """Return the code cells of a Python file; a file without `# %%` is one cell."""
     fences = list(FENCE.finditer(text))
-    ends = [*(one.start() for one in fences), len(text)]
-    cells = [closure.Cell(text[: ends[0]], where="the file's beginning")]
-    line, counted = 1, 0
-    for fence, start, end in zip(fences, (one.end() for one in fences), ends[1:], strict=True):
-        if not fence["kind"]:
-            marked = re.search(r'task="(\w+)"', fence["rest"])
-            task, given = marked[1] if marked else "", "given=" in fence["rest"]
-            line, counted = line + text.count("\n", counted, start), start
-            cells.append(closure.Cell(text[start:end], task, given, f"line {line}"))
+    starts = [fence.end() for fence in fences]
+    ends = [*(fence.start() for fence in fences), len(text)]
+    cells = [closure.Cell(text[: ends[0]], where="the beginning of the file")]
+    line = 1
+    counted = 0  # characters of the text whose lines are counted
+    for fence, start, end in zip(fences, starts, ends[1:], strict=True):
+        if fence["kind"]:  # text, not code
+            continue
+        line += text.count("\n", counted, start)
+        counted = start
+        task = re.search(r'task="(\w+)"', fence["rest"])
+        cells.append(
+            closure.Cell(
+                text=text[start:end],
+                task=task[1] if task else "",
+                given="given=" in fence["rest"],
+                where=f"line {line}",
+            )
+        )
     return [cell for cell in cells if cell.text.strip()]
 
 
 @cache
 def assignment_cells(homework: str) -> tuple[closure.Cell, ...]:
     """Return the code cells of a homework's assignment that comes with hdrlab; () if there is none."""
-    file = materials.folder("assignments") / f"{homework}.ipynb"
-    return tuple(cells_of(file.read_bytes(), file.name)[0]) if file.is_file() else ()
+    path = materials.folder("assignments") / f"{homework}.ipynb"
+    if not path.is_file():
+        return ()
+    cells, _ = cells_of(path.read_bytes(), path.name)
+    return tuple(cells)
 
 
 def given_cells(homework: str) -> tuple[closure.Cell, ...]:
