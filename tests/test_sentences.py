@@ -209,7 +209,7 @@ SENTENCES = {
         "With thousands of pixels it also represents `mix` well": lambda n: (
             share(n, "mix", 4000) < 1
         ),
-        "`gsolve` gains for `srgb` and `wig` and loses for `film`": lambda n: (
+        "`gsolve` gets better for `srgb` and `wig` and worse for `film`": lambda n: (
             gain(n, "film") < 1 < min(gain(n, "srgb"), gain(n, "wig"))
         ),
         "With a thousand pixels the result for `film` is good from 0.002 to 0.1": lambda n: all(
