@@ -57,7 +57,7 @@ def monotone(tonemap):
     """One curve for all pixels: a brighter pixel is never darker on the display."""
     for L in (
         scene(),
-        RADIANCES["zeros among it"],
+        RADIANCES["a scene with zeros"],
         RADIANCES["the range of float32"],
         hot_pixel(scene()),
     ):

@@ -152,7 +152,7 @@ def test_a_full_ballot_takes_no_more_and_says_why(served, page):
         marks.nth(k).check(force=True)
         page.get_by_text(f"{k + 1} of 2 votes saved at").wait_for()
     assert page.locator("input[name=mark]:disabled").count() == marks.count() - 2
-    page.get_by_text("Take one back").wait_for()
+    page.get_by_text("Remove one").wait_for()
 
 
 def test_a_vote_that_is_not_saved_is_taken_back_on_the_page(served, page):

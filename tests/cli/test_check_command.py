@@ -36,7 +36,7 @@ def typed(tmp_path, monkeypatch, capsys):
 
 def test_check_says_promise_by_promise_what_holds(typed):
     code, out, _ = typed("check", "hw2.py", "--plan", "plan.toml", "--task", "hat")
-    assert code == 0 and "✗" in out and "It looks as if: " in out and "of 8 points" in out
+    assert code == 0 and "✗" in out and "Likely mistake: " in out and "of 8 points" in out
     assert "Hint 1" not in out
 
 

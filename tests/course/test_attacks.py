@@ -20,7 +20,7 @@ from hdrlab.course.sandbox.inside import system
 pytestmark = pytest.mark.grading
 
 ENDS = {  # what is said of the first check
-    "a01_everything_equals_it": "no array: it contains an object of the class Agreeable",
+    "a01_everything_equals_it": "not an array: it contains an object of the class Agreeable",
     "a01_agreeable_array": "expected .*, got 7",
     "a02_nan": "expected finite numbers, got 16 NaN",
     "a02_infinity": "expected finite numbers, got 16 NaN or infinite",

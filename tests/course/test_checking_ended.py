@@ -63,7 +63,7 @@ def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printe
         (NoAnswer("", "missing"), "no answer", "missing", ""),
         (NoAnswer("too long", "late"), "no answer", "late", "too long"),
         (AnswerMismatch("n" * 1501), "fails", "", "n" * 1500),
-        (AssertionError(), "fails", "", "The promise does not hold"),
+        (AssertionError(), "fails", "", "The check failed"),
         (AssertionError("a\n +  where b"), "fails", "", "a"),
         (
             ValueError("of <f at 0x7f>"),

@@ -38,7 +38,7 @@ def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_i
 @pytest.mark.parametrize(
     ("came", "said"),
     [
-        (None, "the answer: expected numbers, and nothing came (None)"),
+        (None, "the answer: expected numbers, got None; return the result"),
         ("abc", "the answer: expected one array of numbers, got str of 3"),
         (b"ab", "the answer: expected one array of numbers, got bytes of 2"),
         ({"a": 1}, "the answer: expected one array of numbers, got something else"),
@@ -117,10 +117,10 @@ def test_the_same_shape_is_the_same_array_and_nothing_is_noted(notes):
 
 def test_of_several_parts_as_many_as_are_expected_are_taken():
     assert parts((1, 2, 3), 2) == (1, 2) and parts([1, 2], 2) == (1, 2)
-    assert refused(parts, (1,), 2) == "the answer: expected 2 things, got tuple of 1"
-    assert refused(parts, "abc", 2) == "the answer: expected 2 things, got str of 3"
-    assert refused(parts, None, 1) == "the answer: expected 1 things, got nothing (None)"
-    assert refused(parts, np.ones(3), 2, what="w") == "w: expected 2 things, got one array"
+    assert refused(parts, (1,), 2) == "the answer: expected 2 parts, got tuple of 1"
+    assert refused(parts, "abc", 2) == "the answer: expected 2 parts, got str of 3"
+    assert refused(parts, None, 1) == "the answer: expected 1 parts, got nothing (None)"
+    assert refused(parts, np.ones(3), 2, what="w") == "w: expected 2 parts, got one array"
 
 
 def test_states_are_what_a_generator_yielded_and_at_least_one():

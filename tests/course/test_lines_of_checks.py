@@ -177,7 +177,7 @@ def test_a_check_says_of_its_ending_what_was_written_down(heard):
 def test_a_check_that_was_never_run_was_not_answered(heard):
     (found,) = heard(check("hold"))
     (one,) = found.checks
-    assert (one.outcome, one.message, one.said) == ("no answer", "This check was not answered", "")
+    assert (one.outcome, one.said) == ("no answer", "") and one.message
     assert (one.points, one.kind) == (0, "")
 
 

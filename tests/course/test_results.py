@@ -142,13 +142,11 @@ def test_all_that_is_written_is_for_its_owners_eyes(hostile, tmp_path):
 
 
 def test_a_promise_that_holds_and_earns_nothing_says_why(hostile):
-    held = CHECK._replace(
-        points=Fraction(), message="It holds, and earns its points where this holds, too: B"
-    )
+    held = CHECK._replace(points=Fraction(), message="It only earns points if this passes, too: B")
     result = hostile._replace(checks=(held,))
-    assert "where this holds, too: B" in feedback.text(
+    assert "if this passes, too: B" in feedback.text(
         result
-    ) and "where this holds, too: B" in feedback.page(result)
+    ) and "if this passes, too: B" in feedback.page(result)
 
 
 def test_gradescope_gets_what_its_schema_asks(hostile):

@@ -63,7 +63,7 @@ def test_what_needs_a_failed_promise_follows_from_it_or_holds_without_points():
         checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"}
     )
     assert [one.follows for one in found] == ["", "Promise a", "", "Promise a"]
-    assert earned(found) == [0, 0, 0, 0] and "where this holds, too: Promise a" in found[2].message
+    assert earned(found) == [0, 0, 0, 0] and "too: Promise a" in found[2].message
 
 
 def test_calls_that_end_in_the_same_words_are_told_once():

@@ -182,7 +182,11 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
 @pytest.mark.parametrize(
     ("came", "said"),
     [
-        *((None, "nothing came"), ("text", "one array of numbers"), ({}, "one array of numbers")),
+        *(
+            (None, "expected numbers, got None"),
+            ("text", "one array of numbers"),
+            ({}, "one array of numbers"),
+        ),
         *(
             ([[1], [2, 3]], "one array of numbers"),
             (np.array([1j]), "real numbers, got dtype complex128"),

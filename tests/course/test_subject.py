@@ -164,7 +164,7 @@ def test_what_was_raised_is_told_with_its_line(told, said, opened):
 def test_what_does_not_travel_is_told_by_what_it_is(opened):
     subject, _ = opened((0, ("refused", ("", "a set" + "n" * 400))))
     with subject:
-        said = "f answered with something that is no array: it contains a set" + "n" * 295
+        said = "f returned something that is not an array: it contains a set" + "n" * 295
         assert silence(subject) == ("refused", said) and subject.calls[0].answer is None
 
 

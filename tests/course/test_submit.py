@@ -282,7 +282,7 @@ def test_figures_stand_where_they_belong(home):
         name: next(k for k, text in enumerate(page.order) if start in text)
         for name, start in [
             ("bracket", "1/250 s"),
-            ("curves", "The response:"),
+            ("curves", "The response curve:"),
             ("map", "stops from the median"),
         ]
     }
@@ -319,7 +319,7 @@ def test_a_picture_out_of_the_project_is_left_out_and_that_is_said(home, tmp_pat
     written = reports.write_report(project.look(home))
     pictures = Page(written.page.read_text()).pictures
     assert sum("left out" in note for note in written.notes) >= 4
-    assert sum("says nothing to those" in note for note in written.notes) == 1
+    assert sum("no description" in note for note in written.notes) == 1
     assert len(pictures) == 7  # six figures, and the window
 
 

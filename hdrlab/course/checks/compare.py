@@ -65,7 +65,7 @@ def require(condition: Any, message: str, **details: Any) -> None:
 
 def numbers(came: Any, *, what: str = "the answer") -> Array:
     """Return an answer as an array of real numbers, or raise AnswerMismatch."""
-    require(came is not None, f"{what}: expected numbers, and nothing came (None)")
+    require(came is not None, f"{what}: expected numbers, got None; return the result")
     if isinstance(came, tuple | list):
         came = as_listed(came, what)
     is_one_array = not isinstance(came, tuple | list | str | bytes | dict)
@@ -102,7 +102,7 @@ def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> 
 def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
     """Return the first `count` parts of an answer in several parts, or raise AnswerMismatch."""
     has_parts = isinstance(came, tuple | list) and len(came) >= count
-    require(has_parts, f"{what}: expected {count} things, got {_describe(came)}")
+    require(has_parts, f"{what}: expected {count} parts, got {_describe(came)}")
     return tuple(came[:count])
 
 

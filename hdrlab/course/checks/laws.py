@@ -24,12 +24,12 @@ def hot_pixel(L, value=1e12):
 
 RADIANCES = {
     "a scene": scene(),
-    "zeros among it": np.where(np.arange(128) % 3 == 0, 0, scene()),
+    "a scene with zeros": np.where(np.arange(128) % 3 == 0, 0, scene()),
     "all zeros": np.zeros((16, 20)),
     "one lamp in the dark": hot_pixel(np.zeros((16, 20)), 3.0),
     "1e-12": np.full((16, 20), 1e-12),
     "1e12": np.full((16, 20), 1e12),
-    "1e-12 beside 1e12": np.where(np.arange(20) < 10, 1e-12, 1e12) * np.ones((16, 1)),
+    "1e-12 next to 1e12": np.where(np.arange(20) < 10, 1e-12, 1e12) * np.ones((16, 1)),
     "the range of float32": np.geomspace(1e-45, 3e38, 320).reshape(16, 20),
     "one hot pixel": hot_pixel(scene()),
     "a constant": np.full((33, 17), 3.7),
@@ -49,7 +49,7 @@ def stays_in_range(tonemap):
             Ld = tonemap(L)
         assert Ld.shape == L.shape and Ld.dtype == np.float32, name
         assert np.all((Ld >= 0) & (Ld <= 1)), (
-            f"{name}: {np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))} values"
+            f"{name}: {np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))} values outside 0 ... 1"
         )
 
 
@@ -71,13 +71,13 @@ def shows_the_scene(tonemap):
     L = scene()
     Ld = np.clip(tonemap(L), 0, 1)
     assert np.mean((Ld > 0.01) & (Ld < 0.99)) >= 0.5, (
-        "more than half of the picture is black or white"
+        "more than half of the image is black or white"
     )
     means = [A.reshape(6, 16, 8, 16).mean(axis=(1, 3)).ravel() for A in (np.log(L), Ld)]
-    assert np.ptp(means[1]) > 0.05, "all regions of the picture are alike"
+    assert np.ptp(means[1]) > 0.05, "all regions of the image are equally bright"
     ranks = [np.argsort(np.argsort(m)) for m in means]
     assert abs(np.corrcoef(ranks[0], ranks[1])[0, 1]) > 0.5, (
-        "the picture has little to do with the scene"
+        "bright and dark regions of the image do not match those of the scene"
     )
 
 
@@ -91,7 +91,7 @@ def keeps_the_light_the_right_way_up(tonemap):
 
 def exposure(tonemap):
     """The unit of L cancels: a power of two to the last bits, any other factor to a twentieth of a level."""
-    for L, Ld in [(L, tonemap(L)) for L in (scene(), RADIANCES["zeros among it"])]:
+    for L, Ld in [(L, tonemap(L)) for L in (scene(), RADIANCES["a scene with zeros"])]:
         for factor, atol in ((2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 2e-4), (5.1e7, 2e-4)):
             assert np.allclose(tonemap(L * np.float32(factor)), Ld, atol=atol), factor
 

@@ -204,7 +204,7 @@ def _message(raised: BaseException) -> str:
     ):
         return f"{said[:MAX_MESSAGE_CHARACTERS]}\nYours: {describe(raised.came)}"
     if isinstance(raised, AssertionError):
-        empty = "" if isinstance(raised, NoAnswer) else "The promise does not hold"
+        empty = "" if isinstance(raised, NoAnswer) else "The check failed"
         return (said or empty)[:MAX_MESSAGE_CHARACTERS]
     return f"The answer could not be compared: {type(raised).__name__}: {said}"[
         :MAX_MESSAGE_CHARACTERS

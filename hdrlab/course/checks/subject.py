@@ -338,7 +338,7 @@ def _raise_no_answer(task: str, answer: Answer) -> NoReturn:
     """Raise the NoAnswer of a call that raised an exception, or whose answer was refused."""
     if answer.kind == "refused":
         content = sanitize.sanitize_text(answer.value, MAX_REFUSED_CONTENT_CHARACTERS)
-        message = f"{task} answered with something that is no array: it contains {content}"
+        message = f"{task} returned something that is not an array: it contains {content}"
         raise NoAnswer(message, "refused")
     error = sanitize.sanitize_text(answer.value["error"], MAX_ERROR_CHARACTERS)
     error_message = sanitize.sanitize_text(answer.value["message"], MAX_ERROR_CHARACTERS)

@@ -19,7 +19,7 @@ from hdrlab.errors import InputError
 
 GRADEBOOK = ("student", "name", "team", "voted", "artifact", "votes", "place", "shared with")
 METHOD = (
-    "Each voter marks up to {marks} artifacts of other teams, and every mark is one vote. "
+    "Each voter chooses up to {marks} artifacts of other teams, and every choice is one vote. "
     "Equal votes share a place, and the place after them counts them all: 1, 2, 2, 4. Ties are not broken."
 )
 
@@ -48,7 +48,7 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
     set_up = store.settings(db)
     chosen = sorted(set(chosen))
     if not set_up.is_open(now):
-        raise NotAccepted("The vote is closed. Your ballot of before counts.")
+        raise NotAccepted("The vote is closed. Your last ballot counts.")
     update = "ON CONFLICT (voter) DO UPDATE SET cast_at = excluded.cast_at"
     db.execute("SAVEPOINT ballot")
     try:
@@ -58,8 +58,8 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
     except sqlite3.IntegrityError as error:
         db.execute("ROLLBACK TO ballot")
         many = f"A ballot has {set_up.marks} votes."
-        reasons = {"own team": "Nobody votes for the own team.", "too many": many}
-        raise NotAccepted(reasons.get(str(error), "There is no such artifact.")) from None
+        reasons = {"own team": "You cannot vote for your own team.", "too many": many}
+        raise NotAccepted(reasons.get(str(error), "This artifact does not exist.")) from None
     finally:
         db.execute("RELEASE ballot")
     return len(chosen)

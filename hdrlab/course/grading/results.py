@@ -111,9 +111,9 @@ class Result(NamedTuple):
     def why_practice(self) -> str:
         """Why the score is not for credit, in a sentence, or ""."""
         if self.tier not in CREDIT:
-            return "What was handed in ran without a sandbox, so this score is not for credit."
+            return "Your submission ran without a sandbox, so this score is not for credit."
         if not self.seed:
-            return "Its inputs were drawn without a secret: anybody can look them up. It is not for credit."
+            return "The inputs were drawn without a secret, so this score is not for credit."
         return ""
 
     @property

@@ -67,7 +67,7 @@ def attribute_failures(
             root = next(iter(broken.values())) if named else _root(check, broken, needs)
             check = check._replace(follows="" if root.name == check.name else root.promise)
         elif check.outcome == "holds" and missing:
-            says = f"It holds, and earns its points where this holds, too: {missing.promise}"
+            says = f"This check passes, but it only earns points if this one passes, too: {missing.promise}"
             check = check._replace(message=says)
         found.append(check._replace(points=check.max_points - lost))
     return found

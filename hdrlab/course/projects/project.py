@@ -27,7 +27,7 @@ ABOUT = "project.toml"
 PAGE = "report.html"
 WORDS = ("report.md", "report.ipynb")
 MANIFEST = "submission.json"  # of an archive
-EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbour"\ncaption = "Seven frames, by hand."\n'
+EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbor"\ncaption = "Seven hand-held frames."\n'
 
 
 class About(NamedTuple):

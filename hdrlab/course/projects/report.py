@@ -62,7 +62,7 @@ def write_report(project: Project) -> Written:
     notes = list(said.notes)
     found = dict(_figures(project, notes))
     parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
-    notes += [f"the words have no section about: {name}" for name in said.missing()]
+    notes += [f"the report has no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name
     shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
     text = templates.render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
@@ -76,10 +76,10 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
             "artifact",
             project.artifact,
             _artifact,
-            "artifact.jpg, the picture that you made of the map",
+            "artifact.jpg, your tone-mapped image",
         ),
         ("bracket", project.photographs, _bracket, f"photographs in the folder {ALBUMS[0]}"),
-        ("curves", project.curve, _curves, "response.csv, the curve that you found"),
+        ("curves", project.curve, _curves, "response.csv, the response curve that you recovered"),
         ("map", project.map, _map, "map.hdr, your radiance map"),
     )
     for name, source, make, wanted in makers:
@@ -94,7 +94,7 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
 
 def _artifact(path: Path) -> figures.Illustration:
     return figures.photograph(
-        to_256(photos.read_photo(path)), 1600, "The artifact: the map as a picture"
+        to_256(photos.read_photo(path)), 1600, "The artifact: the tone-mapped image"
     )
 
 

@@ -151,7 +151,7 @@ def _missing_imports(project: Project) -> list[str]:
 def check_report(project: Project) -> PartReview:
     """Check that the report is up to date, has all sections, and loads nothing from the web."""
     if project.page is None:
-        problem = f"There is no {PAGE}. Run `hdrlab report`, which makes it of report.md."
+        problem = f"There is no {PAGE}. Run `hdrlab report`, which makes it from report.md."
         return PartReview(problems=(problem,))
     problems = []
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:

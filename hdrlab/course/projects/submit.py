@@ -90,7 +90,7 @@ def write(
         For a project without an artifact.
     """
     if project.artifact is None:
-        raise InputError("there is no artifact; save your best picture as artifact.jpg")
+        raise InputError("there is no artifact; save your best tone-mapped image as artifact.jpg")
     digests = {file.name: hashlib.sha256(file.data).hexdigest() for file in packed_files}
     manifest = {
         "version": MANIFEST_VERSION,

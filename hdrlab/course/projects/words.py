@@ -88,7 +88,7 @@ def notebook(text: str) -> tuple[str, Pictures]:
                 if kind in data:
                     name = f"cell-{number}-{len(pictures)}"
                     pictures[name] = base64.b64decode("".join(data[kind]))
-                    alt = "".join(data.get("text/plain", f"Picture of cell {number}"))
+                    alt = "".join(data.get("text/plain", f"Image of cell {number}"))
                     said = re.sub(r"[^\w .,:()-]", " ", sanitize_line(alt, 120))
                     parts.append(f"![{said}]({name})")
                     break
@@ -149,13 +149,13 @@ def _drawing(folder: Path, pictures: Pictures, notes: list[str]) -> Callable[...
             image = _decoded(source, folder, pictures)
         except Exception as error:  # on damaged pictures the codecs raise what they like
             notes.append(
-                f"the picture {sanitize_line(source, 60)!r} is left out: {sanitize_line(str(error), 160)}"
+                f"the image {sanitize_line(source, 60)!r} is left out: {sanitize_line(str(error), 160)}"
             )
             return str(escape(f"[{alt or sanitize_line(source, 60)}]"))
         if not alt:
-            said = "says nothing to those who do not see it; the words go here: ![words]"
+            said = "has no description for readers who cannot see it; add one: ![description]"
             notes.append(
-                f"the picture {sanitize_line(source, 60)!r} {said}({sanitize_line(source, 40)})"
+                f"the image {sanitize_line(source, 60)!r} {said}({sanitize_line(source, 40)})"
             )
         shown = figures.photograph(image, SIDE, alt)
         return f'<img src="{shown.src}" alt="{escape(alt)}" width="{shown.width}" height="{shown.height}">'
@@ -169,5 +169,5 @@ def _decoded(source: str, folder: Path, pictures: Pictures) -> figures.Image:
         return web.decode_picture(pictures[source])
     path = (folder / source).resolve()
     if "://" in source or not path.is_relative_to(folder.resolve()) or not path.is_file():
-        raise InputError("expected a picture in the project's folder")
+        raise InputError("expected an image in the project's folder")
     return to_256(photos.read_photo(path))

@@ -43,7 +43,7 @@ def _gradescope_test(result: results.Result, check: results.Check) -> dict[str, 
         message = check.message
         mistake = result.misconceptions.get(check.task)
         if message and mistake:
-            message = f"{message}\nIt looks as if: {mistake}"
+            message = f"{message}\nLikely mistake: {mistake}"
     return {
         "name": f"{check.task}: {check.promise}",
         "score": score,

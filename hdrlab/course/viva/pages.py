@@ -106,11 +106,11 @@ def introduction(questions: Sequence[Question], passed: Sequence[str], title: st
             f"that pass all checks: {functions}."
         )
     paragraphs.append(
-        "Each question shows a function of yours. Unless the question says otherwise, one thing in "
-        "it was changed, and the changed function was run. Exactly one option is what it returned: "
-        "put its letter into the cell below. This is for practice: with four options, anybody who "
-        "tries all of them finds the right one. The questions show whether somebody understands the "
-        "code. They do not show who wrote it."
+        "Each question shows one of your functions. Unless the question says otherwise, it "
+        "contains one change, and the changed function was run. Exactly one option is what it "
+        "returned: put its letter into the cell below. This is for practice: with four options, "
+        "you can find the right one by trying all of them. The questions show whether you "
+        "understand the code. They do not show who wrote it."
     )
     return "\n\n".join(paragraphs)
 

@@ -16,7 +16,7 @@ def check(number, letter):  # type: ignore[no-untyped-def]  # its text stands in
     if hashlib.sha256(f"{number}{letter}".encode()).hexdigest() == KEY[number - 1]:
         text = "right\n" + base64.b64decode(WHY[number - 1]).decode()
     else:
-        text = "not this one: read the code again, and change one thing at a time"
+        text = "not this one: read the code again, and follow it step by step"
     sys.stdout.write(text + "\n")
 
 

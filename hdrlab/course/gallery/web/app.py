@@ -27,9 +27,7 @@ from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_ori
 KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
 FOREVER = "private, max-age=31536000, immutable"
 BALLOTS = Rate(30, 1)  # of a voter
-SPENT = (
-    "This link has been used. It works once; ask your course for a new one if you lost your way in."
-)
+SPENT = "This link has been used. It works once. If you cannot get in, ask your instructor for a new one."
 
 
 class Gallery(Front):
@@ -63,12 +61,12 @@ class Gallery(Front):
         voter, shown = self.voter(request)
         if not self.rates.take("ballots", voter.id, BALLOTS):
             raise Refusal(
-                429, "Too many changes at once. Your ballot of before counts; try again later."
+                429, "Too many changes at once. Your last ballot counts. Try again later."
             )
         fields = await form(request)
         keys = [value for name, value in fields if name == "key"]
         if keys != [tokens.form_key(shown)]:
-            raise Refusal(403, "This form is too old, or not yours. Open the gallery again.")
+            raise Refusal(403, "This form is too old, or it is not yours. Open the gallery again.")
         marked = [value for name, value in fields if name == "mark"]
         try:
             count = await self.writer.do(
@@ -150,7 +148,7 @@ class Gallery(Front):
         hung = store.artifacts(self.db)
         if set_up.is_open(self.clock()):
             closes = store.format_time(set_up.closes)
-            raise Refusal(403, f"The results are shown when the vote has closed: {closes}.")
+            raise Refusal(403, f"The results are shown after the vote has closed: {closes}.")
         cast = [one for one in ballots.every(self.db).values() if one]
         rows = [(row, hung[row.artifact]) for row in ballots.standings(hung, cast)]
         method = ballots.METHOD.format(marks=set_up.marks)

@@ -22,7 +22,7 @@ KEPT_FILES = 400
 KEPT_CARDS = 4000
 REQUESTS = guard.Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
 FAILURES = guard.Rate(30, 0.5)  # of an address, with links or sessions that are none
-HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
+HINTS = {404: "This page does not exist.", 405: "This page does not accept this request."}
 
 
 class Front:
@@ -73,7 +73,7 @@ class Front:
                 401, "To see the gallery, open the personal link that your course sent you."
             )
         if not self.rates.take("requests", voter.id, REQUESTS):
-            raise guard.Refusal(429, "That was a lot at once. Wait a moment, and try again.")
+            raise guard.Refusal(429, "Too many requests at once. Wait a moment, and try again.")
         return voter, shown
 
     def failed(self, request: Request) -> None:
@@ -83,7 +83,7 @@ class Front:
         """
         if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
             raise guard.Refusal(
-                429, "Too many tries from this address. Wait a minute, and try again."
+                429, "Too many attempts from this address. Wait a minute, and try again."
             )
 
     async def refused(self, request: Request, error: Exception) -> Response:
@@ -93,7 +93,7 @@ class Front:
             why = error.said
         else:
             status = error.status_code if isinstance(error, HTTPException) else 500
-            why = HINTS.get(status, "Something went wrong here. Your ballot of before counts.")
+            why = HINTS.get(status, "Something went wrong. Your last ballot counts.")
         if "application/json" in request.headers.get("accept", ""):
             return JSONResponse({"error": why}, status)
         return self.page("word.html", status, why=why, known=status != 401)

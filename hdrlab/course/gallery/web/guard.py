@@ -96,7 +96,7 @@ async def form(request: Request) -> list[tuple[str, str]]:
         request.headers.get("content-type", "").split(";")[0].strip()
         != "application/x-www-form-urlencoded"
     ):
-        raise Refusal(415, "This is no form of the gallery.")
+        raise Refusal(415, "This is not a form of the gallery.")
     try:
         async with asyncio.timeout(PATIENCE):
             body = await _body(request)

@@ -39,7 +39,7 @@ async function save() {
     const found = await answer.json();
     if (!answer.ok) throw new Error(found.error);
     saved = now;
-    const full = found.votes >= most ? " Take one back to give it to another." : "";
+    const full = found.votes >= most ? " Remove one to vote for another artifact." : "";
     if (mine === turn) say(`${found.votes} of ${most} votes saved at ${found.when}.${full}`);
   } catch (error) {
     if (mine !== turn) return; // a later one is on its way
