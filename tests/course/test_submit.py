@@ -283,7 +283,7 @@ def test_figures_stand_where_they_belong(home):
         for name, start in [
             ("bracket", "1/250 s"),
             ("curves", "The response curve:"),
-            ("map", "stops from the median"),
+            ("map", "the median luminance"),
         ]
     }
     assert at["Description"] < place["bracket"] < at["What we learnt"]
