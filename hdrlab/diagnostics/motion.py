@@ -168,6 +168,7 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
 
 def sum_blocks(values: Array) -> F32:
     """Return the sums over blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
-    h, w = values.shape[1] // BLOCK, values.shape[2] // BLOCK
+    h = values.shape[1] // BLOCK
+    w = values.shape[2] // BLOCK
     rows = values[:, : h * BLOCK].reshape(len(values), h, BLOCK, -1).sum(axis=2, dtype=np.float32)
     return np.asarray(sum(rows[..., k : w * BLOCK : BLOCK] for k in range(BLOCK)), np.float32)
