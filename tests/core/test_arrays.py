@@ -8,7 +8,7 @@ from PIL import Image
 from hdrlab.core import arrays
 
 
-def test_an_array_of_photographs_passes_as_it_is():
+def test_as_stack_returns_a_valid_array_without_a_copy():
     images = np.zeros((2, 3, 4, 3), np.uint16)
     assert arrays.as_stack(images) is images
 
@@ -45,7 +45,7 @@ def test_a_list_of_photographs_becomes_one_array(shape):
         ),
     ],
 )
-def test_what_is_no_stack_of_photographs_is_refused(images, said):
+def test_invalid_stacks_raise_an_error(images, said):
     with pytest.raises(ValueError, match=said):
         arrays.as_stack(images)
 
@@ -56,18 +56,18 @@ def test_times_become_float64():
 
 
 @pytest.mark.parametrize("times", [[1], [1, 2, 3], [[1, 2]], 1, []])
-def test_as_many_times_as_images_are_wanted(times):
+def test_a_wrong_number_of_times_raises_an_error(times):
     with pytest.raises(ValueError, match="2 exposure times, one per image.*shape"):
         arrays.as_times(times, 2)
 
 
 @pytest.mark.parametrize("bad", [0, -1, np.nan, np.inf])
-def test_a_time_that_is_not_positive_and_finite_is_refused(bad):
+def test_times_must_be_positive_and_finite(bad):
     with pytest.raises(ValueError, match=r"positive exposure times in seconds.*\[1.0, "):
         arrays.as_times([1, bad], 2)
 
 
-def test_a_mask_is_one_per_image_and_none_passes():
+def test_a_mask_has_the_shape_of_the_images_or_is_none():
     images = np.zeros((2, 3, 4, 3), np.uint8)
     assert arrays.as_mask(None, images) is None
     assert arrays.as_mask(np.ones((2, 3, 4)), images).dtype == bool
@@ -86,14 +86,14 @@ def test_radiance_and_luminance_become_float32_without_a_copy_where_they_are(che
 
 
 @pytest.mark.parametrize("check", [arrays.as_radiance, arrays.as_luminance])
-def test_values_that_are_no_light_are_counted(check):
+def test_the_error_counts_nan_infinite_and_negative_values(check):
     E = np.ones((4, 5))
     E[0, :2], E[1, :3], E[2, 0] = np.nan, np.inf, -1
     with pytest.raises(ValueError, match="2 NaN, 3 infinite and 1 negative"):
         check(E)
 
 
-def test_minus_zero_is_no_negative_light():
+def test_minus_zero_is_accepted_as_radiance():
     assert arrays.as_radiance(np.float32([[-0.0, 1.0]])).tolist() == [[0.0, 1.0]]
 
 
@@ -117,7 +117,7 @@ def test_luminance_of_another_shape_is_refused(shape):
 @pytest.mark.parametrize(
     "values", [np.full((4, 5), "x"), np.ones((4, 5), complex), np.ones((4, 5), bool)]
 )
-def test_radiance_that_is_no_number_is_refused(values):
+def test_radiance_of_a_non_numeric_type_raises_an_error(values):
     with pytest.raises(ValueError, match="radiance as numbers"):
         arrays.as_radiance(values)
 
@@ -130,18 +130,18 @@ def test_levels_are_those_of_the_type():
 
 
 @given(st.integers(0, 255))
-def test_a_table_of_256_levels_read_at_65536_keeps_its_own(z):
+def test_a_table_of_256_levels_keeps_its_values_at_65536_levels(z):
     table = np.sin(np.arange(256))
     read = arrays.as_table(np.stack([table, 2 * table], axis=-1), 65536)
     assert read.shape == (65536, 2) and np.allclose(read[257 * z], [table[z], 2 * table[z]])
 
 
-def test_a_table_between_its_levels_is_a_straight_line():
+def test_a_table_is_interpolated_linearly_between_its_levels():
     assert np.allclose(arrays.as_table([0, 1], 5), [0, 0.25, 0.5, 0.75, 1])
 
 
 @pytest.mark.parametrize("table", [[1], 3, [1, np.nan], [1, np.inf], np.ones((2, 2, 2))])
-def test_what_is_no_table_is_refused(table):
+def test_invalid_tables_raise_an_error(table):
     with pytest.raises(ValueError, match="finite table over pixel levels"):
         arrays.as_table(table, 256)
 
@@ -153,7 +153,7 @@ def test_a_description_holds_shape_type_and_range():
     assert "(1,)" in arrays.describe(["a"])
 
 
-def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
+def test_equal_times_raise_an_error_if_they_must_differ():
     assert arrays.as_times([1, 1], 2).tolist() == [1, 1]
     assert arrays.as_times([1, 1, 2], 3, distinct=2).tolist() == [1, 1, 2]
     with pytest.raises(ValueError, match=r"at least 2 different exposure times.*\[1.0, 1.0\] s"):
@@ -163,7 +163,7 @@ def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
 RISING = np.log(np.arange(1, 257.0))
 
 
-def test_one_response_serves_all_channels_and_65536_levels():
+def test_one_response_is_expanded_to_all_channels_and_65536_levels():
     assert arrays.as_response(RISING, 256, 3).shape == (256, 3)
     table = arrays.as_response(RISING, 65536, 1)
     assert np.array_equal(table[::257, 0], RISING)
@@ -181,12 +181,12 @@ def test_one_response_serves_all_channels_and_65536_levels():
     ],
     ids=["falls", "flat", "beyond float32", "200 levels", "3 for gray", "2 for colour"],
 )
-def test_what_is_no_response_of_the_photographs_is_refused(g, channels):
+def test_invalid_responses_raise_an_error(g, channels):
     with pytest.raises(ValueError, match="expected"):
         arrays.as_response(g, 256, channels)
 
 
-def test_a_palette_of_colours_is_no_photograph():
+def test_a_palette_image_raises_an_error():
     with pytest.raises(ValueError, match="palette"):
         arrays.as_stack([Image.new("P", (4, 3))])
     with pytest.raises(ValueError, match="palette"):

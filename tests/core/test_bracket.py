@@ -13,7 +13,7 @@ IMAGES = np.random.default_rng(0).integers(0, 256, (3, 4, 5), np.uint8)
 
 
 @pytest.mark.parametrize("order", list(permutations(range(3))))
-def test_any_order_of_frames_is_the_same_bracket(order):
+def test_frames_in_any_order_give_the_same_bracket(order):
     order, masks = list(order), IMAGES > 20
     made = bracket(
         IMAGES[order], np.array([1.0, 2, 4])[order], [f"{j}.jpg" for j in order], valid=masks[order]
@@ -23,22 +23,22 @@ def test_any_order_of_frames_is_the_same_bracket(order):
 
 
 @pytest.mark.parametrize("order", list(permutations(range(3))))
-def test_frames_of_one_time_have_an_order_of_their_own(order):
+def test_frames_of_equal_times_are_sorted_independently_of_their_order(order):
     images, times = IMAGES[list(order)], np.array([1.0, 1, 1])
     assert np.array_equal(
         images[short_to_long(images, times)], IMAGES[short_to_long(IMAGES, times)]
     )
 
 
-def test_frames_are_named_by_their_place_unless_they_have_names():
+def test_frames_without_names_are_numbered():
     assert bracket(IMAGES, [4, 2, 1]).names == ("frame 3", "frame 2", "frame 1")
 
 
-def test_a_sorted_bracket_holds_the_images_themselves():
+def test_a_sorted_bracket_does_not_copy_the_images():
     assert np.shares_memory(bracket(IMAGES, [1, 2, 4]).images, IMAGES)
 
 
-def test_the_lists_that_were_given_stay_as_they_are():
+def test_bracket_does_not_change_its_arguments():
     images, times = IMAGES.copy(), np.array([4.0, 2, 1])
     bracket(images, times)
     assert np.array_equal(images, IMAGES) and times.tolist() == [4, 2, 1]
@@ -54,7 +54,7 @@ def test_the_lists_that_were_given_stay_as_they_are():
         ({"images": IMAGES.astype(float)}, "uint8 or uint16"),
     ],
 )
-def test_what_does_not_fit_together_is_refused(given, said):
+def test_arguments_that_do_not_fit_together_raise_an_error(given, said):
     with pytest.raises(ValueError, match=said):
         bracket(**({"images": IMAGES, "times": [1, 2, 3]} | given))
 
@@ -81,7 +81,7 @@ def test_old_code_may_still_unpack_a_bracket_but_is_warned():
         assert made._replace(linear=True).linear
 
 
-def test_the_last_state_is_the_answer_and_none_is_an_error():
+def test_last_returns_the_last_state_and_raises_an_error_if_there_is_none():
     assert last(iter("abc")) == "c"
     with pytest.raises(ValueError, match="at least one state"):
         last([])

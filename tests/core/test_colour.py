@@ -22,7 +22,7 @@ def keeping_hue(E, L, Ld, *, saturation=1.0):
 BOTH = pytest.mark.parametrize("recolour", [colour.recolour, keeping_hue])
 
 
-def test_luminance_weighs_the_channels_and_passes_gray():
+def test_luminance_weights_the_channels_and_returns_gray_unchanged():
     assert colour.luminance(np.array([[[1.0, 2.0, 3.0]]]))[0, 0] == pytest.approx(
         0.2126 + 2 * 0.7152 + 3 * 0.0722
     )
@@ -30,7 +30,7 @@ def test_luminance_weighs_the_channels_and_passes_gray():
     assert np.allclose(colour.luminance(np.full((2, 2, 3), 7.5)), 7.5)
 
 
-def test_recolour_keeps_the_ratios_of_channels_where_none_is_clipped():
+def test_recolour_keeps_channel_ratios_unless_a_channel_is_clipped():
     dim = np.float32(0.05) * Ld
     C = colour.recolour(E, L, dim)
     assert np.allclose(C, E / L[..., None] * dim[..., None], rtol=1e-5)
@@ -38,14 +38,14 @@ def test_recolour_keeps_the_ratios_of_channels_where_none_is_clipped():
 
 
 @pytest.mark.parametrize("saturation", [0.4, 0.7, 1.5])
-def test_recolour_is_its_formula_for_any_saturation(saturation):
+def test_recolour_follows_the_formula_for_any_saturation(saturation):
     formula = (E.astype(float) / L[..., None]) ** saturation * Ld[..., None]
     assert np.allclose(
         colour.recolour(E, L, Ld, saturation=saturation), np.clip(formula, 0, 1), atol=1e-5
     )
 
 
-def test_a_channel_beyond_the_display_is_clipped_and_the_others_are_not_touched():
+def test_a_channel_beyond_the_display_is_clipped_without_changing_the_others():
     E = np.array([[[1.0, 0.1, 0.2]]])
     L = colour.luminance(E)
     C = colour.recolour(E, L, np.array([[0.6]]))[0, 0]
@@ -54,7 +54,7 @@ def test_a_channel_beyond_the_display_is_clipped_and_the_others_are_not_touched(
 
 @given(rgb=st.tuples(*[st.floats(0, 1e6)] * 3), ld=st.floats(0, 1), saturation=st.floats(0, 3))
 @settings(max_examples=200, deadline=None)
-def test_the_way_of_hue_stays_in_gamut_and_adds_no_light_for_any_colour(rgb, ld, saturation):
+def test_gamut_hue_stays_in_gamut_and_adds_no_light(rgb, ld, saturation):
     E = np.array([[rgb]])
     C = keeping_hue(E, colour.luminance(E), np.array([[ld]]), saturation=saturation)
     assert np.all((C >= 0) & (C <= 1))
@@ -62,7 +62,7 @@ def test_the_way_of_hue_stays_in_gamut_and_adds_no_light_for_any_colour(rgb, ld,
         assert colour.luminance(C)[0, 0] <= ld + 2e-6
 
 
-def test_the_way_of_hue_keeps_the_hue_that_clipping_turns():
+def test_gamut_hue_keeps_the_hue_that_clipping_would_change():
     E = np.array([[[1.0, 0.5, 0.0]]])
     L, Ld = colour.luminance(E), np.array([[0.9]])
 
@@ -75,7 +75,7 @@ def test_the_way_of_hue_keeps_the_hue_that_clipping_turns():
 
 
 @pytest.mark.parametrize("room", [0.3, 0.49, 0.51, 0.75, 0.99])
-def test_by_way_of_hue_a_colour_is_paler_the_more_of_the_room_up_to_1_it_takes_and_whole_below_half(
+def test_gamut_hue_desaturates_smoothly_only_near_the_gamut_boundary(
     room,
 ):
     E = np.array([[[1.2, 1.0, 0.9]]])
@@ -86,13 +86,13 @@ def test_by_way_of_hue_a_colour_is_paler_the_more_of_the_room_up_to_1_it_takes_a
     assert np.allclose(keeping_hue(E, L, Ld), paler if room > 0.5 else exact, atol=1e-6)
 
 
-def test_both_ways_agree_where_the_colour_fits():
+def test_ratio_and_hue_agree_for_colors_in_gamut():
     dim = np.float32(0.03) * Ld
     assert np.allclose(colour.recolour(E, L, dim), keeping_hue(E, L, dim), rtol=1e-4, atol=1e-6)
 
 
 @BOTH
-def test_no_saturation_is_gray_and_gray_passes(recolour):
+def test_saturation_0_gives_gray_and_gray_is_unchanged(recolour):
     assert np.allclose(recolour(E, L, Ld, saturation=0), Ld[..., None], atol=1e-6)
     assert np.array_equal(recolour(L, L, Ld), Ld)
     assert np.allclose(recolour(np.dstack([L] * 3), L, Ld), Ld[..., None], rtol=1e-5)
@@ -102,7 +102,7 @@ def test_no_saturation_is_gray_and_gray_passes(recolour):
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("level", [0, 1e-45, 1e-38, 1e-12, 1e12, 1e37])
 @pytest.mark.parametrize("saturation", [0.5, 1, 2])
-def test_no_light_and_any_light_stay_in_the_display(recolour, level, saturation):
+def test_black_and_extreme_radiance_stay_within_the_display(recolour, level, saturation):
     E = np.array([[[0, 0, 0], [1, 1, 1], [1, 0, 0], [0, 0, 1]]]) * level
     C = recolour(E, colour.luminance(E), np.array([[0.3, 0.3, 0.3, 1.0]]), saturation=saturation)
     assert np.all((C >= 0) & (C <= 1))
@@ -112,7 +112,7 @@ def test_no_light_and_any_light_stay_in_the_display(recolour, level, saturation)
 
 
 @pytest.mark.parametrize("verb", [colour.recolour, colour.render])
-def test_what_does_not_fit_together_is_refused(verb):
+def test_shapes_nan_and_saturation_are_validated(verb):
     with pytest.raises(ValueError, match=r"L and Ld of shape \(40, 50\)"):
         verb(E, L[:-1], Ld)
     with pytest.raises(ValueError, match="1 NaN"):
@@ -121,7 +121,7 @@ def test_what_does_not_fit_together_is_refused(verb):
         verb(E, L, Ld, saturation=-1)
 
 
-def test_srgb_is_the_standard_in_its_named_values_and_back():
+def test_srgb_matches_the_standard_and_round_trips():
     assert np.allclose(
         colour.encode_srgb([0, 0.0031308, 0.18, 0.5, 1]),
         [0, 0.04045, 0.46135, 0.735357, 1],
@@ -140,7 +140,7 @@ def test_srgb_agrees_with_another_library():
     assert np.allclose(colour.decode_srgb(np.linspace(0, 1, 256)), xyz[0, :, 1], atol=1e-5)
 
 
-def test_to_8bit_is_the_formula_to_a_thirtieth_of_a_code():
+def test_to_8bit_matches_the_formula_within_a_thirtieth_of_a_code():
     x = np.concatenate(
         [
             np.linspace(0, 0.02, 200_000),
@@ -154,26 +154,26 @@ def test_to_8bit_is_the_formula_to_a_thirtieth_of_a_code():
     assert np.mean(codes != np.floor(exact + 0.5)) < 0.02
 
 
-def test_every_code_comes_back_through_linear_light():
+def test_every_8_bit_code_survives_a_round_trip_through_linear_light():
     codes = np.arange(256, dtype=np.uint8)[None]
     assert np.array_equal(colour.to_8bit(colour.decode_srgb(codes / 255)), codes)
 
 
-def test_to_8bit_takes_what_is_beyond_white_as_white_and_refuses_nan():
+def test_to_8bit_clips_above_white_and_raises_an_error_for_nan():
     assert colour.to_8bit(np.array([[1.0, 1.5, 1e30]])).tolist() == [[255, 255, 255]]
     with pytest.raises(ValueError, match="1 NaN"):
         colour.to_8bit(np.array([[0.5, np.nan]]))
 
 
 @pytest.mark.parametrize("saturation", [1.0, 0.6])
-def test_render_is_recolour_and_to_8bit(saturation):
+def test_render_equals_recolour_followed_by_to_8bit(saturation):
     picture = colour.render(E, L, Ld, saturation=saturation)
     assert picture.dtype == np.uint8
     assert np.array_equal(picture, colour.to_8bit(colour.recolour(E, L, Ld, saturation=saturation)))
     assert np.array_equal(colour.render(L, L, Ld), colour.to_8bit(Ld))
 
 
-def test_render_takes_either_way_of_colour_by_its_name():
+def test_render_accepts_ratio_and_hue():
     for way, verb in (("ratio", colour.recolour), ("hue", keeping_hue)):
         for saturation in (1.0, 0.6):
             picture = colour.render(E, L, Ld, saturation=saturation, way=way)
@@ -187,7 +187,7 @@ def test_render_takes_either_way_of_colour_by_its_name():
 
 
 @pytest.mark.parametrize("saturation", [0.3, 1.0])
-def test_no_hue_shifts_by_way_of_hue_and_none_by_ratio_where_nothing_is_clipped(saturation):
+def test_hue_is_kept_by_gamut_hue_always_and_by_ratio_without_clipping(saturation):
     """Hue as the direction away from gray: by the way of hue for any saturation to 1, by ratio for its 1."""
 
     def direction(C):
@@ -206,7 +206,7 @@ def test_no_hue_shifts_by_way_of_hue_and_none_by_ratio_where_nothing_is_clipped(
     assert kept > 0.9999 and clipped < 0.9
 
 
-def test_render_shows_a_gray_ramp_as_opencv_would_encode_it():
+def test_to_8bit_encodes_a_gray_ramp_like_opencv():
     ramp = np.linspace(0, 1, 512, dtype=np.float32)[None]
     theirs = (
         cv2.cvtColor(cv2.cvtColor(np.dstack([ramp] * 3), cv2.COLOR_LRGB2Luv), cv2.COLOR_Luv2RGB)[

@@ -11,13 +11,13 @@ SDR = RNG.uniform(0, 1, (20, 30, 3))
 HDR = RNG.uniform(0, 8, (20, 30, 3))
 
 
-def test_a_gain_counts_stops():
+def test_log_gain_is_in_stops():
     sdr, hdr = np.array([0.25, 0.25, 1]), np.array([0.25, 0.5, 8])
     assert np.allclose(gainmap.log_gain(sdr, hdr, k=(0, 0)), [0, 1, 3])
     assert gainmap.log_gain(np.array(0.0), np.array(0.0)) == 0  # black has no gain
 
 
-def test_the_map_is_0_at_the_least_gain_and_1_at_the_largest_and_no_more_beyond():
+def test_the_gain_map_runs_from_0_at_the_smallest_gain_to_1_at_the_largest_and_is_clipped():
     sdr, hdr = np.full(5, 1.0), 2.0 ** np.array([-3, -1, 0, 3, 5])
     assert np.allclose(gainmap.gain_map(sdr, hdr, -1, 3, k=(0, 0)), [0, 0, 0.25, 1, 1])
     assert np.allclose(gainmap.gain_map(sdr, hdr, -1, 3, gamma=2, k=(0, 0)), [0, 0, 0.0625, 1, 1])
@@ -25,13 +25,13 @@ def test_the_map_is_0_at_the_least_gain_and_1_at_the_largest_and_no_more_beyond(
 
 @pytest.mark.parametrize("gamma", [0.5, 1.0, 2.2])
 @pytest.mark.parametrize("k", [(1 / 64, 1 / 64), (1e-3, 1e-2)])
-def test_gains_applied_again_give_the_bright_picture(gamma, k):
+def test_applying_the_gain_map_restores_the_hdr_image(gamma, k):
     low, high = (f(gainmap.log_gain(SDR, HDR, k=k), axis=(0, 1)) for f in (np.min, np.max))
     g = gainmap.gain_map(SDR, HDR, low, high, gamma=gamma, k=k)
     assert np.allclose(gainmap.apply_gain(SDR, g, low, high, gamma=gamma, k=k), HDR)
 
 
-def test_without_weight_the_picture_stays_and_black_stays_black_with_any():
+def test_weight_0_keeps_the_sdr_image_and_black_stays_black():
     g = RNG.uniform(0, 1, SDR.shape)
     assert np.allclose(gainmap.apply_gain(SDR, g, -2, 3, W=0), SDR)
     low, high = -2.0, 3.0
@@ -43,7 +43,7 @@ def test_without_weight_the_picture_stays_and_black_stays_black_with_any():
 
 
 @given(st.floats(0.1, 100), st.floats(1.1, 100))
-def test_a_screen_shows_no_more_than_all_of_the_gain_and_more_the_brighter_it_is(screen, headroom):
+def test_the_weight_rises_with_the_screen_headroom_and_is_at_most_1(screen, headroom):
     W = gainmap.weight(screen, headroom)
     assert 0 <= W <= 1 and W <= gainmap.weight(2 * screen, headroom)
     assert gainmap.weight(headroom, headroom) == 1 and gainmap.weight(1, headroom) == 0

@@ -21,7 +21,7 @@ def saturation(E):
     return (most - least) / np.maximum(most, 1e-30)
 
 
-def test_radiance_is_left_as_it_is():
+def test_valid_radiance_is_not_changed():
     E = np.random.default_rng(0).random((5, 6, 3), np.float32)
     for one in (E, E[..., 0], np.zeros((2, 3))):
         found = gamut.sanitize(one)
@@ -31,7 +31,7 @@ def test_radiance_is_left_as_it_is():
 
 
 @given(st.tuples(values, values, values))
-def test_a_negative_channel_leaves_no_channel_below_0_and_keeps_the_luminance_it_can(rgb):
+def test_sanitize_removes_negative_channels_and_keeps_luminance_where_possible(rgb):
     E = np.array([[rgb]], np.float32)
     found = gamut.sanitize(E).E
     assert np.all(found >= 0) and np.all(np.isfinite(found))
@@ -46,7 +46,7 @@ def test_a_negative_channel_leaves_no_channel_below_0_and_keeps_the_luminance_it
 
 
 @given(st.tuples(values, values, values))
-def test_hue_the_direction_away_from_gray_stays(rgb):
+def test_desaturate_keeps_the_hue(rgb):
     E = np.array([[rgb]], np.float32)
     for power in (1, 2):
         found = gamut.desaturate(E, power=power)[0, 0].astype(float)
@@ -71,7 +71,7 @@ def luminance_of(E):
     return float((E @ LUMINANCE)[0, 0])
 
 
-def test_a_little_below_0_costs_a_little_colour_and_a_lot_nearly_all():
+def test_slightly_negative_channels_lose_little_saturation_and_strongly_negative_ones_much():
     slightly, deeply = np.float32([[[1.0, 0.5, -0.001]]]), np.float32([[[0.3, -0.1, 0.2]]])
     assert (
         saturation(gamut.sanitize(slightly).E)[0, 0] > 0.99
@@ -80,7 +80,7 @@ def test_a_little_below_0_costs_a_little_colour_and_a_lot_nearly_all():
     assert saturation(np.maximum(deeply, 0))[0, 0] == 1
 
 
-def test_noise_around_black_does_not_teem_with_colours():
+def test_noise_around_black_is_not_strongly_colored():
     noise = 1e-3 * np.random.default_rng(2).standard_normal((60, 80, 3)).astype(np.float32) + 1e-4
     below = noise.min(axis=-1) < 0
     found = gamut.sanitize(noise)
@@ -111,7 +111,7 @@ def test_an_unknown_pixel_is_the_mean_of_its_known_neighbours_in_all_channels():
     assert np.array_equal(found.E[known], E[known])
 
 
-def test_where_nothing_is_known_it_is_black_and_infinity_is_the_largest_value():
+def test_unknown_regions_become_black_and_infinity_becomes_the_largest_finite_value():
     E = np.full((7, 7), np.nan, np.float32)
     E[0, 0] = 5
     found = gamut.sanitize(E)
@@ -125,7 +125,7 @@ def test_where_nothing_is_known_it_is_black_and_infinity_is_the_largest_value():
 
 @pytest.mark.filterwarnings("error")
 @given(st.lists(st.floats(width=32, allow_nan=True, allow_infinity=True), min_size=12, max_size=12))
-def test_anything_becomes_radiance(numbers):
+def test_sanitize_returns_finite_nonnegative_radiance_for_any_floats(numbers):
     for shape in ((2, 2, 3), (3, 4)):
         E = gamut.sanitize(np.array(numbers, np.float32).reshape(shape)).E
         assert np.all(np.isfinite(E)) and np.all(E >= 0) and E.shape == shape
@@ -134,7 +134,7 @@ def test_anything_becomes_radiance(numbers):
 @pytest.mark.parametrize(
     "E", [np.zeros(3), np.zeros((2, 3, 4)), np.zeros((0, 2)), np.full((2, 2), "x")]
 )
-def test_what_is_no_picture_is_refused(E):
+def test_invalid_images_raise_an_error(E):
     with pytest.raises(ValueError, match="radiance"):
         gamut.sanitize(E)
 
@@ -160,7 +160,7 @@ def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
 
 
 @pytest.mark.parametrize("primaries", [REC2020, ACES])
-def test_white_stays_white_and_the_way_back_undoes_the_way_there(primaries):
+def test_conversion_between_primaries_keeps_white_and_round_trips(primaries):
     there, back = gamut.conversion_matrix(primaries), gamut.conversion_matrix(gamut.SRGB, primaries)
     assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(
         there @ back, np.eye(3), atol=1e-9
@@ -214,7 +214,7 @@ def test_a_chart_in_aces_primaries_has_the_colours_that_are_printed_on_it(shared
     assert off < 0.08 < taken_as_srgb
 
 
-def test_the_dark_of_a_real_photograph_is_no_longer_magenta(shared):
+def test_sanitize_removes_the_magenta_from_the_shadows_of_a_real_map(shared):
     path = shared("openexr") / "Desk.exr"
     raw, found = read_exr(path), read_sanitized(path)
     below = raw.min(axis=-1) < 0

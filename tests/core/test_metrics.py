@@ -50,14 +50,14 @@ def test_responses_whose_channels_do_not_fit_are_refused():
         metrics.response_rmse(np.stack([LINEAR] * 3, axis=-1), np.stack([LINEAR] * 2, axis=-1))
 
 
-def test_a_pixel_is_seen_well_where_one_frame_has_all_its_channels_within_10_to_250():
+def test_a_pixel_is_well_exposed_if_all_channels_of_one_frame_are_within_10_to_250():
     images = np.array(
         [[[[9, 100, 100], [0, 0, 0], [10, 250, 128]]], [[[251, 200, 200], [10, 10, 10], [0, 0, 0]]]]
     )
     assert metrics.well_exposed(images.astype(np.uint8)).tolist() == [[False, True, True]]
 
 
-def test_a_frame_that_does_not_show_a_pixel_does_not_see_it_well():
+def test_masked_pixels_are_not_well_exposed():
     images = np.full((2, 1, 2), 100, np.uint8)
     valid = np.array([[[True, False]], [[False, False]]])
     assert metrics.well_exposed(images, valid).tolist() == [[True, False]]
@@ -77,7 +77,7 @@ def test_a_pixel_twice_too_bright_is_off_by_one_and_the_median_pixel_by_nothing(
     assert np.allclose(off[3, 4], 1, atol=1e-5) and np.median(off) == 0
 
 
-def test_pixels_that_were_not_seen_well_do_not_set_the_unit():
+def test_badly_exposed_pixels_do_not_affect_the_unit():
     E, well = truth(), np.zeros((20, 30), bool)
     well[:5] = True
     wrong = np.where(well[..., None], E, 7 * E)

@@ -54,7 +54,7 @@ def test_ranks_rise_with_the_light_in_every_frame(count):
     assert Z.shape == (count, 3) and np.all(np.diff(Z, axis=0) >= 0)
 
 
-def test_ranks_ignore_where_the_pixels_lie():
+def test_samples_by_rank_do_not_depend_on_pixel_positions():
     images = frames()
     moved = np.stack([np.roll(image, (j, -2 * j), axis=(0, 1)) for j, image in enumerate(images)])
     assert np.array_equal(by_rank(images, 60), by_rank(moved, 60))

@@ -15,14 +15,14 @@ def count(request, monkeypatch):
     return request.param
 
 
-def test_answers_come_in_the_order_of_the_items():
+def test_results_come_in_the_order_of_the_items():
     assert list(threads.map_in_threads(lambda n: n * n, iter(range(50)))) == [
         n * n for n in range(50)
     ]
     assert list(threads.map_in_threads(abs, [])) == []
 
 
-def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
+def test_an_error_is_raised_in_order_and_waiting_items_are_not_started():
     begun = []
 
     def work(n):
@@ -36,7 +36,7 @@ def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
     assert len(begun) < 10
 
 
-def test_no_more_is_begun_than_is_asked_for(count):
+def test_at_most_one_item_per_thread_is_started_ahead(count):
     taken = []
     answers = threads.map_in_threads(abs, (taken.append(n) or n for n in range(50)))
     next(answers)
@@ -44,7 +44,7 @@ def test_no_more_is_begun_than_is_asked_for(count):
     answers.close()
 
 
-def test_a_small_picture_has_no_threads_and_what_numpy_is_told_of_errors_holds_in_them(count):
+def test_small_images_use_no_threads_and_numpy_error_settings_hold_in_threads(count):
     own = threading.get_ident()
     for pixels, alone in ((100, True), (threads.PIXELS, count == 1)):
         with np.errstate(divide="raise"), pytest.raises(FloatingPointError):

@@ -7,7 +7,7 @@ from hypothesis import given, strategies as st
 from hdrlab.core import transfer
 
 
-def test_a_photograph_is_taken_to_itself():
+def test_the_transfer_of_a_photo_to_itself_is_the_identity():
     h = np.random.default_rng(0).integers(1, 50, 256)
     T = transfer.brightness_transfer(h, h)
     assert np.allclose(T[1:-1], np.arange(1, 255)) and np.isnan(T[[0, -1]]).all()
@@ -15,7 +15,9 @@ def test_a_photograph_is_taken_to_itself():
 
 
 @given(k=st.integers(2, 6))
-def test_of_even_light_the_middles_of_steps_lie_on_the_line_and_their_edges_beside_it(k):
+def test_for_uniform_light_the_transfer_of_a_linear_camera_is_a_line_and_the_literal_one_is_offset(
+    k,
+):
     """A linear camera, light evenly spread: T = k m, where the literal one has k m + (k - 1) / 2."""
     light = (np.arange(200_000) + 0.5) / 200_000 * 240
     h = [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1 / k, 1)]
@@ -25,7 +27,7 @@ def test_of_even_light_the_middles_of_steps_lie_on_the_line_and_their_edges_besi
 
 
 @given(st.integers(0, 99), st.booleans())
-def test_a_transfer_never_falls_and_does_not_ask_how_many_pixels_there_are(seed, sparse):
+def test_a_transfer_never_falls_and_does_not_depend_on_the_pixel_count(seed, sparse):
     rng = np.random.default_rng(seed)
     h_A, h_B = rng.integers(0, 2 if sparse else 90, (2, 256)) + np.eye(256, dtype=int)[[9, 200]]
     for way in (transfer.literal_transfer, transfer.brightness_transfer):
@@ -34,7 +36,7 @@ def test_a_transfer_never_falls_and_does_not_ask_how_many_pixels_there_are(seed,
         assert np.allclose(way(3 * h_A, h_B), T, equal_nan=True)
 
 
-def test_levels_beyond_all_pixels_of_a_photograph_have_no_place_in_another():
+def test_levels_that_no_pixel_has_are_transferred_to_nan():
     h_A, h_B = np.zeros((2, 256), int)
     h_A[40:90], h_B[80:180] = 10, 5
     T = transfer.brightness_transfer(h_A, h_B)
@@ -43,7 +45,7 @@ def test_levels_beyond_all_pixels_of_a_photograph_have_no_place_in_another():
 
 
 @pytest.mark.parametrize("bad", [np.zeros(256), -np.ones(256), np.ones(16), np.ones((2, 256))])
-def test_what_is_no_histogram_is_refused(bad):
+def test_invalid_histograms_raise_an_error(bad):
     for way in (transfer.literal_transfer, transfer.brightness_transfer):
         with pytest.raises(ValueError, match="expected"):
             way(bad, np.ones(256))

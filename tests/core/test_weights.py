@@ -17,7 +17,7 @@ def test_a_weight_is_symmetric_within_0_and_1_and_0_at_both_ends_alone(table, n)
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_16_bits_weigh_like_8_at_the_levels_they_share(table):
+def test_weights_of_16_bits_equal_those_of_8_at_common_levels(table):
     ratio = table(65536)[257:-257:257] / table(256)[1:-1]
     assert np.allclose(ratio, ratio[0], rtol=1e-9)
 
@@ -46,7 +46,7 @@ def test_a_level_at_the_cut_itself_stays():
     assert weights.cut(np.ones(5), above=0.75, below=0.25).tolist() == [0, 1, 1, 1, 0]
 
 
-def test_a_cut_leaves_its_table_alone():
+def test_cut_does_not_change_its_argument():
     w = weights.hat()
     weights.cut(w, above=0.5)
     assert np.array_equal(w, weights.hat())
@@ -60,7 +60,7 @@ def test_a_cut_that_leaves_nothing_is_refused(above, below):
         weights.cut(weights.hat(), above=above, below=below)
 
 
-def test_levelling_falls_outward_from_the_middle_leaves_a_rising_curve_alone():
+def test_make_monotone_levels_falls_and_keeps_a_rising_curve():
     g = np.array([-3.0, -1, -2, 0, 2, 1, 3])  # the middle is index 3
     assert weights.make_monotone(g).tolist() == [-3, -2, -2, 0, 2, 2, 3]
     assert np.array_equal(weights.make_monotone(np.sort(g)), np.sort(g))
@@ -72,7 +72,7 @@ def test_the_second_differences_of_a_line_are_0_and_those_of_a_parabola_its_weig
     assert np.allclose(weights.second_differences(w, 10) @ z**2, [20, 60, 40])
 
 
-def test_the_weight_below_the_top_knows_how_steep_the_response_is_up_to_the_top():
+def test_snr_weights_near_the_top_use_the_slope_up_to_the_top():
     """Of f = z^2 the slope from a to b is a + b: 250 + 255 for level 254, whose window ends at 255."""
     w = weights.snr(2 * np.log(np.maximum(np.arange(256), 1e-3) / 255))
     slope = {254: 250 + 255, 253: 249 + 255, 128: 124 + 132}

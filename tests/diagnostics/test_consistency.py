@@ -24,7 +24,7 @@ def medians(taken, times, g=G):
     return consistency.measure_level_exposures(taken.images, times, E)
 
 
-def test_a_perfect_bracket_has_no_spread(bracket):
+def test_a_bracket_without_noise_has_no_spread(bracket):
     E, taken = bracket
     true = consistency.measure_level_exposures(taken.images, taken.times, E)
     assert (
@@ -54,7 +54,7 @@ def test_the_spread_grows_with_the_error_of_a_time(bracket):
 
 @pytest.mark.parametrize("frame", range(5))
 @pytest.mark.parametrize("stops", [-0.7, 0.7])
-def test_the_frame_whose_time_is_wrong_departs_to_its_side_and_no_other_but_its_neighbours(
+def test_a_wrong_exposure_time_shows_as_a_deviation_of_its_frame_and_at_most_its_neighbours(
     bracket, frame, stops
 ):
     _, taken = bracket
@@ -117,7 +117,7 @@ def test_pixels_that_a_frame_does_not_show_and_pixels_of_0_are_left_out():
     assert np.isfinite(consistency.measure_level_exposures(images, [1, 2], E)[1, 0, 180])
 
 
-def test_frames_that_share_no_level_have_no_spread_and_no_deviation():
+def test_spread_and_deviations_are_nan_if_frames_share_no_level():
     images = np.stack([np.full((10, 10), z, np.uint8) for z in (60, 200)])
     found = consistency.measure_level_exposures(images, [1, 4], np.ones((10, 10)))
     assert (
@@ -135,7 +135,7 @@ def test_frames_that_share_no_level_have_no_spread_and_no_deviation():
         ({"valid": np.ones((4, 5))}, r"mask of shape \(2, 4, 5\)"),
     ],
 )
-def test_what_does_not_fit_together_is_refused(given, said):
+def test_arrays_that_do_not_fit_together_raise_an_error(given, said):
     knobs = {"images": np.zeros((2, 4, 5), np.uint8), "times": [1, 2], "E": np.ones((4, 5))} | given
     with pytest.raises(ValueError, match=said):
         consistency.measure_level_exposures(**knobs)
@@ -170,6 +170,6 @@ def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
     assert np.argmax(off) == 2 and off[2] - np.delete(off, 2).mean() > 0.2
 
 
-def test_residuals_want_a_response_of_as_many_channels():
+def test_residuals_require_a_response_with_the_same_channels():
     with pytest.raises(ValueError, match="response"):
         consistency.measure_residuals(np.zeros((3, 1, 256)), np.stack([G] * 3, axis=1))

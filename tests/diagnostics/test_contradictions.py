@@ -56,7 +56,7 @@ def test_masked_pixels_do_not_count(taken):
     assert not masked.local
 
 
-def test_an_error_that_all_photos_share_costs_nothing(taken):
+def test_an_error_shared_by_all_photos_has_no_cost(taken):
     assert contradictions.measure_cost(taken.images, np.ones(5)) == pytest.approx(0, abs=1e-6)
     assert contradictions.measure_cost(taken.images, np.array([0, 0, 1, 0, 0])) > 0.1
 
@@ -70,7 +70,7 @@ def test_an_error_that_all_photos_share_costs_nothing(taken):
         ([False, False], (0, 0)),
     ],
 )
-def test_the_longest_run_is_found_and_the_first_of_equal_ones(informative, run):
+def test_find_longest_run_returns_the_first_of_the_longest_runs(informative, run):
     assert contradictions.find_longest_run(np.array(informative)) == run
 
 
@@ -83,7 +83,7 @@ def test_estimated_times_scale_with_the_stated_ones(taken):
     assert np.allclose(second.times, 1000 * first.times, rtol=1e-6)
 
 
-def test_an_even_wall_is_flat_and_a_clipped_one_has_no_patches():
+def test_a_uniform_wall_is_flat_and_clipped_patches_are_not_measured():
     images = np.stack([np.full((60, 90), value, np.uint8) for value in (80, 255)])
     found = flat_patches.find_flat_patches(images)
     assert found.flat.all()

@@ -40,13 +40,13 @@ def bands(axis, cycles=3, size=0.2):
     return motion.measure_motion(Z, times, G, W).band_stops
 
 
-def test_the_share_of_the_picture_that_moved_is_measured():
+def test_a_larger_motion_has_a_larger_moving_fraction():
     assert share(0) == 0
     assert motion.MOVED < share(15) < share(30) < 0.5
 
 
 @pytest.mark.quick
-def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
+def test_gray_photos_are_subsampled_like_color_photos(monkeypatch):
     ball = movers.ball((60, 90), (30, 45), 12, 2.0)
     gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
     wide = gray.repeat(2, axis=1).repeat(2, axis=2)
@@ -56,13 +56,13 @@ def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
     )
 
 
-def test_what_a_photograph_does_not_show_does_not_count():
+def test_masked_pixels_do_not_count_as_motion():
     shown = np.ones((3, 60, 90), bool)
     shown[1:] = False
     assert share(30, valid=shown) == 0
 
 
-def test_a_frame_whose_time_is_wrong_is_no_motion():
+def test_a_wrong_exposure_time_is_not_reported_as_motion():
     assert share(0, times=[0.25, 0.7, 1.0]) == 0
 
 

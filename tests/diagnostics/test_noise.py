@@ -34,21 +34,23 @@ def merged(images, times, g):
 @pytest.mark.parametrize(
     ("response", "bits"), [("linear", 16), ("gamma", 8), ("film", 8), ("srgb", 16)]
 )
-def test_the_electrons_of_a_pixel_are_found_whatever_the_response(response, bits, well, room):
+def test_full_well_capacity_is_estimated_within_8_percent_for_any_response(
+    response, bits, well, room
+):
     images, times, g, whole = shot(room[..., 1], response, bits, well)
     found = estimate_noise(images, times, g, merged(images, times, g))
     assert found.N * whole == pytest.approx(well, rel=0.08)
 
 
 @pytest.mark.parametrize("read", [4.0, 8.0, 16.0])
-def test_the_read_noise_is_found(read, room):
+def test_read_noise_is_estimated_within_12_percent(read, room):
     images, times, g, _ = shot(room[..., 1], "linear", 16, read=read)
     assert estimate_noise(images, times, g, merged(images, times, g)).R == pytest.approx(
         read, rel=0.12
     )
 
 
-def test_a_response_that_is_not_right_is_told_from_photons(room):
+def test_a_wrong_response_raises_rho_and_not_the_photon_noise(room):
     images, times, g, whole = shot(room[..., 1], "linear", 16, well=40_000, read=3.0)
     wrong = 1.04 * g
     found = estimate_noise(images, times, wrong, merged(images, times, wrong))
@@ -56,7 +58,7 @@ def test_a_response_that_is_not_right_is_told_from_photons(room):
     assert estimate_noise(images, times, g, merged(images, times, g)).rho < 0.005
 
 
-def test_each_channel_has_its_own_noise(room):
+def test_noise_is_estimated_for_each_channel_separately(room):
     images, times, g, whole = shot(room, "gamma", well=10_000)
     few = shot(room, "gamma", well=2_500)[0]
     images[..., 2] = few[..., 2]
@@ -66,7 +68,7 @@ def test_each_channel_has_its_own_noise(room):
 
 
 @pytest.mark.parametrize("response", ["linear", "gamma", "film"])
-def test_with_the_noise_that_was_found_95_of_100_pixels_lie_within(response, room):
+def test_95_percent_of_pixels_lie_within_the_estimated_interval(response, room):
     images, times, g, whole = shot(room, response, well=5_000)
     found = merge_with_deviation(
         images, times, g, *estimate_noise(images, times, g, merged(images, times, g))
@@ -77,14 +79,14 @@ def test_with_the_noise_that_was_found_95_of_100_pixels_lie_within(response, roo
     )
 
 
-def test_what_moved_in_a_corner_does_not_count_as_noise(room):
+def test_motion_in_a_corner_does_not_change_the_estimated_noise(room):
     images, times, g, whole = shot(room[..., 1], "gamma")
     images[2, -40:, -40:] = images[2, :40, :40]
     found = estimate_noise(images, times, g, merged(images, times, g))
     assert found.N * whole == pytest.approx(8_000, rel=0.1)
 
 
-def test_a_time_that_is_wrong_does_not_count_as_photons_but_as_an_error_of_the_light(room):
+def test_a_wrong_exposure_time_raises_rho_and_not_the_photon_noise(room):
     images, times, g, whole = shot(room[..., 1], "gamma")
     times = times * np.array([1, 1, 1.15, 1, 1])
     found = estimate_noise(images, times, g, merged(images, times, g))
@@ -101,7 +103,7 @@ def test_the_order_of_the_frames_changes_nothing(room):
     assert np.allclose(np.concatenate(one), np.concatenate(other), rtol=1e-3, atol=1e-5)
 
 
-def test_too_small_a_bracket_is_refused_and_says_what_it_lacks():
+def test_a_bracket_without_enough_flat_pixels_raises_an_error():
     images, times, g, _ = shot(np.full((12, 12), 0.1, np.float32))
     with pytest.raises(ValueError, match="noise: 0 groups"):
         estimate_noise(images, times, g, np.full((12, 12), 0.1))
@@ -109,7 +111,7 @@ def test_too_small_a_bracket_is_refused_and_says_what_it_lacks():
         estimate_noise(images, times, g, np.ones((12, 13)))
 
 
-def test_the_inputs_are_left_alone_and_what_is_no_light_is_refused(room):
+def test_inputs_are_not_changed_and_invalid_radiance_raises_an_error(room):
     images, times, g, _ = shot(room[:128, :192, 1])
     E = merged(images, times, g)
     before = [np.copy(one) for one in (images, times, g, E)]
@@ -123,7 +125,7 @@ def test_the_inputs_are_left_alone_and_what_is_no_light_is_refused(room):
             estimate_noise(images, times, g, E)
 
 
-def test_a_pixel_has_no_say_in_how_flat_its_place_is():
+def test_slope_ignores_the_pixel_itself():
     E = np.ones((9, 9))
     E[4, 4] = 3
     assert slope(E)[2, 2] == 0 and slope(E)[2, 0] == slope(E)[0, 2] == 2
@@ -137,7 +139,7 @@ def test_the_flattest_of_each_light_are_chosen():
     assert len(np.concatenate(groups)) == pytest.approx(0.4 * 8_000, rel=0.03)
 
 
-def test_a_few_that_moved_do_not_spoil_the_scatter():
+def test_scatter_ignores_outliers():
     y = np.random.default_rng(1).normal(5, 2, 20_000)
     assert scatter(y) == pytest.approx((4, 25), rel=0.03)
     y[:100] += 500

@@ -27,7 +27,7 @@ class Patches:
         (3, {"": 1, "0": 0}, ((), ())),
     ],
 )
-def test_frames_go_while_a_third_at_most_contradicts_others_that_agree_without_them(
+def test_at_most_a_third_of_the_frames_is_left_out_and_only_if_the_others_then_agree(
     count, misfits, found, monkeypatch
 ):
     def misfit(patches, B):

@@ -23,7 +23,7 @@ def corrections(H, fit):
     return fit(H, B, response_steps.free_directions(B, known=True), g=g[None]).x / np.log(2)
 
 
-def test_a_tenth_of_the_patches_moves_the_steps_by_least_squares_and_hardly_the_robust_fit():
+def test_a_tenth_of_outliers_shifts_the_robust_fit_much_less_than_least_squares():
     def plain(H, B, Q, g):
         return response_steps.solve_steps(
             response_steps.weight_pairs(H), B, Q, g=g, sd=np.log(2) / 6, smoothness=1.0
@@ -37,7 +37,7 @@ def test_a_tenth_of_the_patches_moves_the_steps_by_least_squares_and_hardly_the_
     assert moved > 0.08 and held < moved / 3
 
 
-def test_least_squares_over_the_pairs_that_occur_are_those_over_one_equation_for_each():
+def test_the_normal_equations_agree_with_lstsq_on_one_equation_per_patch():
     H, sd, C = pair_tables(0.1), np.log(2) / 6, response_steps.WEIGHTED_CURVATURES
     V, Q = response_steps.weight_pairs(H), response_steps.free_directions(B)
     found = response_steps.solve_steps(V, B, Q, sd=sd, smoothness=1.0)

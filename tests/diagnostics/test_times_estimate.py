@@ -72,7 +72,7 @@ def tone_mapped(images, strength=0.4, sigma=20):
 # Patches
 
 
-def test_a_patch_is_the_mean_of_its_pixels_and_flat_where_these_are_alike():
+def test_a_patch_holds_the_mean_of_its_pixels_and_is_flat_if_they_are_similar():
     images = np.full((2, 14, 21), 100, np.uint8)
     images[1] = 150
     images[0, :7, :7] += np.arange(49, dtype=np.uint8).reshape(7, 7) % 12
@@ -92,7 +92,7 @@ def test_a_patch_is_the_mean_of_its_pixels_and_flat_where_these_are_alike():
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
+def test_patches_of_8_and_16_bits_agree_and_masked_patches_are_left_out(dtype):
     levels = np.random.default_rng(0).integers(60, 66, (3, 30, 40, 3))
     images = (levels * (257 if dtype == np.uint16 else 1)).astype(dtype)
     valid = np.ones((3, 30, 40), bool)
@@ -103,7 +103,7 @@ def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
     assert np.abs(np.moveaxis(found.Z, 1, -1) - expected).max() <= (dtype == np.uint16)
 
 
-def test_a_pair_of_neighbours_has_its_own_flat_patches():
+def test_each_pair_of_neighbours_has_its_own_flat_patches():
     images = np.full((3, 7, 14), 100, np.uint8)
     images[1], images[2] = 150, 200
     images[2, :7, :7] = (
@@ -115,13 +115,13 @@ def test_a_pair_of_neighbours_has_its_own_flat_patches():
     ]
 
 
-def test_where_most_of_a_pair_darkens_the_patches_that_brighten_are_those_that_moved():
+def test_patches_that_change_against_the_majority_are_not_static():
     Z = np.full((2, 1, 4, 5), 120, np.uint8)
     Z[1], Z[1, 0, 0, :2] = 60, 180
     assert np.array_equal(flat_patches.find_static(Z)[0], Z[1, 0] == 60)
 
 
-def test_levels_of_equal_rank_take_the_place_of_patches():
+def test_levels_of_equal_rank_can_replace_patches():
     levels = np.random.default_rng(0).integers(20, 100, (40, 60))
     images = np.stack([levels, 2 * levels]).astype(np.uint8)
     Z = flat_patches.rank_levels(images)
@@ -179,7 +179,7 @@ def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken,
     assert abs(found.stops[frame] + np.log2(factors[frame])) < 0.15
 
 
-def test_of_three_photographs_a_correction_is_doubted_for_it_may_be_another_time(taken):
+def test_correcting_one_of_three_times_gives_a_warning(taken):
     three = taken(3)
     found = pipeline.assemble(replace(three, times=three.times * [1, 1, 1.3]))
     assert any("exposure times" in doubt for doubt in found.doubts)
@@ -188,13 +188,13 @@ def test_of_three_photographs_a_correction_is_doubted_for_it_may_be_another_time
     assert exposure_times.doubts(rounded) == ()  # as cameras round 1/32 s to 1/30
 
 
-def test_a_wrong_time_is_told_also_where_the_frames_that_share_levels_agree_well(taken):
+def test_a_wrong_time_is_reported_even_if_the_spread_is_small_but_not_if_it_is_tiny(taken):
     off = Contradictions(stops=np.array([0, 0.33, 0.0]), regions=np.full(2, np.nan), cost=0.06)
     assert "b by +0.33" in warn_of_contradictions(off, "abc", 0.02)
     assert warn_of_contradictions(off, "abc", 0.002) == ""
 
 
-def test_of_a_linear_camera_the_span_is_recovered_as_well(taken):
+def test_for_a_linear_camera_the_span_of_times_is_recovered_too(taken):
     bracket = taken(5, "linear")
     images = bracket.images
     true = bracket.times
@@ -223,7 +223,7 @@ def test_the_gauge_keeps_the_mean_and_the_span_of_the_stated_times(taken):
 
 
 @pytest.mark.parametrize("count", [3, 5, 7])
-def test_exact_times_are_left_as_they_are(taken, count):
+def test_exact_times_are_not_changed(taken, count):
     bracket = taken(count)
     images = bracket.images
     true = bracket.times
@@ -242,7 +242,7 @@ def test_an_estimate_is_shrunk_to_the_stated_times(taken):
 
 
 @pytest.mark.parametrize("verdict", [0.02, np.nan])
-def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
+def test_an_estimate_that_raises_the_spread_is_not_accepted(taken, verdict):
     bracket = taken(5)
     images = bracket.images
     true = bracket.times
@@ -271,7 +271,7 @@ def test_times_are_not_estimated_from_two_photographs_or_without_flat_patches(ta
 @pytest.mark.parametrize(
     ("times", "said"), [([1, 2], "expected 3 exposure times"), ([1, 4, 2], "from short to long")]
 )
-def test_what_does_not_fit_together_is_refused(verb, times, said):
+def test_times_of_wrong_number_or_order_raise_an_error(verb, times, said):
     with pytest.raises(ValueError, match=said):
         verb(np.full((3, 20, 20), 100, np.uint8), times)
 
@@ -298,14 +298,14 @@ def test_the_frame_whose_time_is_wrong_is_named_with_its_factor(taken, frame, st
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 7])
-def test_true_times_are_not_contradicted(taken, count):
+def test_true_times_give_no_contradiction(taken, count):
     taken = taken(count)
     found = find_contradictions(taken.images, taken.times)
     assert np.nanmax(np.abs(found.stops)) < 0.02 and np.nanmax(found.regions) < 0.01
     assert warn_of_contradictions(found, taken.names) == ""
 
 
-def test_of_three_frames_the_doubt_names_one_and_says_that_it_may_be_another(taken):
+def test_the_warning_for_three_frames_names_one_and_mentions_the_alternatives(taken):
     bracket = taken(3)
     images = bracket.images
     times = bracket.times
@@ -315,7 +315,7 @@ def test_of_three_frames_the_doubt_names_one_and_says_that_it_may_be_another(tak
 
 
 @pytest.mark.parametrize("count", [3, 5])
-def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
+def test_local_tone_mapping_is_not_confused_with_wrong_times(taken, count):
     bracket = taken(count)
     images = bracket.images
     times = bracket.times
@@ -350,7 +350,7 @@ def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_fra
     assert find_contradictions(tone_mapped(images, 0.2), times).local
 
 
-def test_what_is_slight_counts_only_where_it_is_sure():
+def test_a_slight_local_difference_counts_only_if_it_is_significant():
     stops = np.zeros(3)
     for regions, signs, local in (
         (0.03, 5, True),
@@ -366,7 +366,7 @@ def test_what_is_slight_counts_only_where_it_is_sure():
         )
 
 
-def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping():
+def test_vignetting_that_changes_with_the_aperture_is_not_called_local_tone_mapping():
     room = scenes.room((280, 420))
     y, x = (np.linspace(-1, 1, n) for n in room.shape[:2])
     falloff = (y[:, None] ** 2 + x**2)[..., None].astype(np.float32)
@@ -402,7 +402,7 @@ def test_a_gray_bracket_has_no_white_balance(taken):
     assert find_contradictions(images[..., 1], times * [1, 1, 2, 1, 1]).tints.max() == 0
 
 
-def test_an_error_counts_by_what_it_costs_in_the_map(taken):
+def test_a_wrong_time_is_reported_only_if_it_changes_the_map(taken):
     bracket = taken(5)
     images = bracket.images
     times = bracket.times
@@ -412,7 +412,7 @@ def test_an_error_counts_by_what_it_costs_in_the_map(taken):
     assert find_contradictions(dark, times * [1.6, 1, 1, 1, 1]).wrong == ()
 
 
-def test_a_bracket_without_flat_patches_is_asked_by_its_histograms():
+def test_without_flat_patches_the_histograms_are_compared():
     E = np.exp(np.random.default_rng(0).normal(0, 1.2, (120, 160))).astype(np.float32)
     bracket = camera.shoot(E, camera.times_around(E, 5, stops=1.5))
     images = bracket.images
@@ -436,14 +436,14 @@ def test_a_frame_of_another_scene_is_named_as_the_one_to_leave_out(taken, frame)
 
 
 @pytest.mark.parametrize("count", [3, 5, 7])
-def test_no_frame_of_a_sound_bracket_is_to_be_left_out(taken, count):
+def test_no_frame_of_a_consistent_bracket_is_left_out(taken, count):
     bracket = taken(count)
     images = bracket.images
     times = bracket.times
     assert find_outlying_frames(images, times) == ((), ())
 
 
-def test_of_a_bracket_in_which_two_halves_contradict_each_other_none_is_left_out(taken):
+def test_no_frame_is_left_out_if_two_halves_of_a_bracket_contradict_each_other(taken):
     bracket = taken(5)
     images = bracket.images
     times = bracket.times
@@ -459,7 +459,7 @@ def test_where_either_of_two_frames_may_be_the_wrong_one_both_are_named():
     assert {*frames, *rivals} == {1, 3}
 
 
-def test_frames_that_no_patch_ties_to_others_are_left_open():
+def test_frames_without_common_patches_have_no_estimate():
     images = np.stack([np.full((70, 70), z, np.uint8) for z in (40, 120, 255)])
     found = find_contradictions(images, [1, 2, 4])
     assert np.isnan(found.stops).all() and np.isnan(found.regions).all()
@@ -469,7 +469,7 @@ def test_frames_that_no_patch_ties_to_others_are_left_open():
     )
 
 
-def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
+def test_remove_trend_keeps_the_error_of_a_single_frame():
     B = np.arange(5.0)
     assert np.allclose(
         response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5]
@@ -480,7 +480,7 @@ def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
     assert np.allclose(response_steps.remove_trend(both - np.arange(6.0), np.arange(6.0)), both)
 
 
-def test_an_estimate_must_better_the_held_out_pixels_by_the_share_that_is_asked_for(taken):
+def test_an_estimate_is_accepted_only_if_held_out_pixels_improve_by_the_given_gain(taken):
     bracket = taken(4)
     images = bracket.images
     true = bracket.times
@@ -504,7 +504,7 @@ def test_the_pipeline_estimates_times_between_alignment_and_response(taken):
     assert states[-1].doubts == () and not np.array_equal(states[-1].bracket.times, rough.times)
 
 
-def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
+def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_warning(taken):
     wrong = replace(taken(5), times=taken(5).times * [1, 1, 2, 1, 1])
     stated = pipeline.assemble(wrong, times="stated")
     assert any("left out" in one and wrong.names[2] in one for one in stated.notes)
@@ -514,7 +514,7 @@ def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
     )
 
 
-def test_other_words_than_correct_stated_and_estimate_are_refused(taken):
+def test_an_unknown_value_of_times_raises_an_error(taken):
     with pytest.raises(ValueError, match="times .*correct, stated, estimate.*guess"):
         pipeline.assemble(taken(3), times="guess")
 
@@ -549,7 +549,7 @@ def test_the_command_corrects_times_unless_they_are_to_stay(rough, tmp_path, cap
 
 
 @pytest.mark.parametrize("arguments", WAYS)
-def test_a_calibration_estimates_times_in_the_same_words(rough, capsys, arguments):
+def test_calibrate_accepts_the_same_times_options(rough, capsys, arguments):
     with pytest.raises(SystemExit) as stop:
         cli.run(["calibrate", *rough, "--align", "none", "--times", *arguments])
     said = capsys.readouterr()
@@ -581,7 +581,7 @@ def test_real_photographs_agree_better_with_estimated_times_or_keep_those_stated
     assert np.array_equal(found.bracket.times, taken.times) != changed
 
 
-def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(photographs):
+def test_wrong_times_of_a_phone_are_not_called_local_tone_mapping(photographs):
     taken = photographs("tripod_phone")
     taken = pipeline.align_bracket(taken, "mtb").bracket
     found = find_contradictions(taken.images, taken.times)
@@ -592,7 +592,7 @@ def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(phot
     assert other.accepted and other.bias_after < 0.1 * other.bias_before
 
 
-def test_a_fit_to_half_of_the_patches_is_asked_of_the_other_half():
+def test_cross_validation_predicts_held_out_patches():
     half = flat_patches.checkerboard((24, 24))
     light = np.random.default_rng(0).uniform(12, 30, (24, 24))
     ratio = np.where(half, 2.0, 2.0**1.3)  # the stated times are true of one half alone

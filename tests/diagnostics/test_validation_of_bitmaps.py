@@ -48,7 +48,7 @@ def test_identical_frames_stay_and_agree_entirely():
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=20, deadline=None)
-def test_an_offset_is_never_worse_than_none_by_its_own_measure(seed):
+def test_the_found_offset_never_has_a_larger_error_than_no_offset(seed):
     images = np.random.default_rng(seed).integers(0, 256, (3, 40, 70), dtype=np.uint8)
     for one in validations(images):
         assert one.after <= one.before
@@ -56,7 +56,7 @@ def test_an_offset_is_never_worse_than_none_by_its_own_measure(seed):
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (10, 10), (17, 63), (16, 64)])
-def test_small_frames_are_no_error(shape):
+def test_small_frames_are_aligned_without_an_error(shape):
     images = np.random.default_rng(0).integers(0, 256, (3, *shape), dtype=np.uint8)
     offsets = offsets_of(images)
     assert offsets.shape == (3, 2) and np.all(np.abs(offsets) < np.array(shape))
@@ -103,7 +103,7 @@ def test_frames_without_any_texture_are_reported():
     assert not any(one.informative for one in validations(images))
 
 
-def test_stripes_which_do_not_tell_how_far_along_them_are_reported():
+def test_stripes_are_reported_because_shifts_along_them_are_ambiguous():
     stripes = gaussian_filter1d(np.random.default_rng(0).standard_normal(300), 4)
     stripes = np.tile(stripes / np.abs(stripes).max(), (200, 1))
     images = np.stack([60 + 40 * stripes, 120 + 80 * stripes]).astype(np.uint8)
@@ -121,7 +121,7 @@ def test_a_rotation_is_reported(texture, degrees):
 
 
 @pytest.mark.parametrize("period", [8, 2.6666666666666665])
-def test_a_picture_that_repeats_itself_is_reported_in_words_that_are_true(period):
+def test_a_periodic_image_is_reported_with_the_period_it_has(period):
     y, x = np.indices((208, 308)) * 2 * np.pi / period
     waves = 120 + 90 * np.sin(x + 0.3) * np.sin(y + 0.7)
     (one,) = validations(np.stack([waves[8:], waves[6:-2]]).astype(np.uint8))
@@ -142,7 +142,7 @@ def test_textures_so_fine_that_nothing_corresponds_are_reported():
     assert one.confidence < 0.1 and "fit nearly as well" in one.failure
 
 
-def test_an_offset_that_is_right_is_not_doubted():
+def test_correct_offsets_give_no_warning():
     for offset in ((0, 0), (1, 0), (13, -22), (-40, 17)):
         (one,) = validations(bracket([(0, 0), offset], [1, 4]))
         assert one.reliable and one.confidence > 0.6 and one.failure == ""
@@ -171,7 +171,7 @@ def motion(fixed, moving):
     return np.median((end - start)[inliers.ravel() > 0], axis=0)[::-1]
 
 
-def test_the_arch_is_aligned_to_a_pixel_of_what_its_features_say(shared):
+def test_the_arch_is_aligned_within_a_pixel_of_feature_matching(shared):
     images = photographs(shared("stlouis_arch"))
     seen = [features(image[1000:, :, 1]) for image in images]
     for one in validations(images):
@@ -194,7 +194,7 @@ def test_a_walk_around_the_crusader_is_reported_pair_by_pair(shared):
     assert any(one.apart for one in found)
 
 
-def test_a_phone_that_turned_is_reported_and_one_that_did_not_is_aligned(shared):
+def test_rotated_phone_photos_are_reported_and_the_others_are_aligned(shared):
     found = validations(photographs(shared("tripod_phone")))
     assert all(one.after < one.before / 2 for one in found)
     turned = [one for one in found if not one.reliable]

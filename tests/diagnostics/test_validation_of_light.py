@@ -44,7 +44,7 @@ def validation(images, **knobs):
     return one
 
 
-def test_a_right_move_is_not_doubted_and_tells_what_it_is(room):
+def test_a_correct_homography_gives_no_warning_and_reports_rotation_and_offset(room):
     taken, truth = shoot(room, [warp.turn(SHAPE, 2, (5.5, -3.25)), np.eye(3)])
     one = validation(taken.images, times=taken.times, g=true_g())
     assert one.reliable and one.confidence > 0.6 and one.after < one.before / 4
@@ -63,14 +63,14 @@ def test_a_black_or_white_frame_is_reported_and_stays(room, level):
     assert np.array_equal(register(images, "cerman", g=true_g()).homographies, [np.eye(3)] * 2)
 
 
-def test_photographs_that_have_nothing_in_common_are_reported_and_stay(room):
+def test_unrelated_photos_are_reported_and_not_moved(room):
     other = np.random.default_rng(0).integers(20, 230, (2, *SHAPE), np.uint8)
     one = validation(other, times=[1, 1], g=true_g())
     assert one.confidence < LOST and "fit nearly as well" in one.failure
 
 
 @pytest.mark.parametrize("period", [7, 12])
-def test_a_picture_that_repeats_itself_is_reported(period):
+def test_a_periodic_image_is_reported(period):
     y, x = np.indices((170, 240)) * 2 * np.pi / period
     E = np.repeat((10 ** (0.3 * np.sin(x) * np.sin(y)))[..., None], 3, axis=2).astype(np.float32)
     taken, _ = shoot(E, [[9, -14], [0, 0]])
@@ -78,7 +78,7 @@ def test_a_picture_that_repeats_itself_is_reported(period):
     assert not one.reliable
 
 
-def test_a_scene_of_which_a_quarter_moved_is_reported(room):
+def test_motion_in_a_quarter_of_the_scene_is_reported(room):
     taken, _ = shoot(room, [np.eye(3), np.eye(3)])
     images = taken.images.copy()
     images[0, :55, :80] = np.roll(images[0], (5, 3), axis=(0, 1))[:55, :80]
@@ -87,27 +87,27 @@ def test_a_scene_of_which_a_quarter_moved_is_reported(room):
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=4)
-def test_a_move_is_never_worse_than_none_by_its_own_measure(seed):
+def test_the_found_homography_never_has_a_larger_error_than_none(seed):
     images = np.random.default_rng(seed).integers(0, 256, (2, 70, 90), dtype=np.uint8)
     one = validation(images, g=true_g())
     assert one.after <= one.before and (np.array_equal(one.H, np.eye(3)) or one.after < one.before)
 
 
 @pytest.mark.parametrize("response", ["film", "srgb", "linear"])
-def test_neither_times_nor_response_need_be_known_for_a_pixel(response):
+def test_alignment_within_a_pixel_needs_neither_times_nor_response(response):
     E = (10 ** (2.0 * astronaut()[60:240, 120:360] / 255)).astype(np.float32)
     taken, truth = shoot(E, [warp.turn(E.shape, 1.5, (5.5, -3)), np.eye(3)], response=response)
     assert off(register(taken.images, "cerman").homographies, truth, E.shape) < 1
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (10, 10), (33, 63)])
-def test_small_frames_are_no_error(shape):
+def test_small_frames_are_aligned_without_an_error(shape):
     images = np.random.default_rng(0).integers(0, 256, (3, *shape), dtype=np.uint8)
     for method in ("mtb", "cerman"):
         assert register(images, method).homographies.shape == (3, 3, 3)
 
 
-def test_one_frame_has_nothing_to_be_aligned_with():
+def test_a_single_frame_is_not_moved():
     images = np.zeros((1, 40, 50), np.uint8)
     for method in ("mtb", "cerman", "auto"):
         found = register(images, method)
@@ -124,7 +124,7 @@ def test_one_frame_has_nothing_to_be_aligned_with():
         (np.zeros((2, 8, 8), np.uint8), {"g": [np.nan] * 256}, "finite table"),
     ],
 )
-def test_what_cannot_be_aligned_is_refused(images, knobs, said):
+def test_invalid_images_times_or_responses_raise_an_error(images, knobs, said):
     for method in ("cerman", "homography", "auto"):
         with pytest.raises(ValueError, match=said):
             register(images, method, **knobs)

@@ -15,7 +15,7 @@ def noise(shape, seed=0):
 
 
 @pytest.mark.parametrize("height", [1, 2, 31, 32, 33, 95, 200])
-def test_bands_answer_what_the_whole_picture_answers(height):
+def test_computing_in_bands_gives_the_same_result_as_the_whole_image(height):
     u = noise((height, 9))
 
     def neighbours(u):
@@ -33,7 +33,7 @@ def test_bands_take_planes_and_several_pictures():
     )
 
 
-def test_pyramids_of_several_bands_and_planes_are_the_lesson_s():
+def test_pyramids_of_several_bands_and_planes_equal_those_of_the_lesson():
     rng = np.random.default_rng(2)
     picture = rng.uniform(0, 1, (2, 300, 261)).astype(np.float32)
     for found, expected in zip(
@@ -44,11 +44,11 @@ def test_pyramids_of_several_bands_and_planes_are_the_lesson_s():
     np.testing.assert_allclose(fine, lesson.interpolate(picture[0], (600, 522)), atol=1e-6)
 
 
-def test_pictures_without_rows_are_refused():
+def test_images_without_rows_raise_an_error():
     with pytest.raises(InputError, match="row"):
         bands.banded(np.negative, np.empty((0, 4)))
 
 
-def test_a_part_that_the_lesson_does_not_call_is_refused():
+def test_replacing_a_function_that_the_lesson_does_not_call_raises_an_error():
     with pytest.raises(InputError, match="gausian_filter"):
         with_parts(__name__, chiu.scale, gausian_filter=np.negative)

@@ -35,7 +35,7 @@ def spatial_weights(win_size, sigma, *, dtype=float):
 
 
 @pytest.mark.parametrize(("sigma_s", "sigma_r"), [(1.5, 0.2), (3, 0.4), (5, 1.0)])
-def test_the_definition_is_scikit_images_within_a_thousandth(sigma_s, sigma_r, monkeypatch):
+def test_the_lesson_agrees_with_scikit_image_within_a_thousandth(sigma_s, sigma_r, monkeypatch):
     """Away from the edge, beyond which scikit-image takes a constant for picture."""
     monkeypatch.setattr("skimage.restoration._denoise._compute_spatial_lut", spatial_weights)
     v, r = room().astype(np.float64), int(np.ceil(3 * sigma_s))
@@ -48,7 +48,7 @@ def test_the_definition_is_scikit_images_within_a_thousandth(sigma_s, sigma_r, m
 
 
 @pytest.mark.parametrize("sigma_s", [1, 2.9, 4, 6, 8.5, 12])
-def test_the_grid_is_the_definition_within_a_hundredth_of_sigma_r(sigma_s):
+def test_the_grid_agrees_with_the_definition_within_a_hundredth_of_sigma_r(sigma_s):
     """Root mean square; 0.004 decades for the sigma_r of tone mapping."""
     v = room()
     fast, exact = (f(v, sigma_s=sigma_s, sigma_r=0.4) for f in (fast_bilateral, by_definition))
@@ -72,7 +72,7 @@ def test_on_photographs_the_base_is_within_five_thousandths_of_a_decade(shared, 
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])
-def test_a_constant_stays_and_all_neighbours_weigh_in_full(method):
+def test_a_constant_is_not_changed_and_k_counts_all_neighbours(method):
     found = method(np.full((61, 73), 3.7), sigma_s=5, sigma_r=0.4)
     assert np.allclose(found.mean, 3.7, atol=0.02 * 0.4)
     assert found.k[30, 36] == pytest.approx(2 * np.pi * 5**2, rel=0.02)
@@ -83,7 +83,7 @@ def test_a_constant_stays_and_all_neighbours_weigh_in_full(method):
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])
 @pytest.mark.parametrize("sigma_s", [2, 7])
-def test_a_pixel_unlike_all_others_is_its_own_mean_and_says_so(method, sigma_s):
+def test_an_isolated_pixel_keeps_its_value_and_k_is_1(method, sigma_s):
     v = np.zeros((50, 60))
     v[20, 33] = 5
     found = method(v, sigma_s=sigma_s, sigma_r=0.4)
@@ -95,14 +95,14 @@ def test_a_pixel_unlike_all_others_is_its_own_mean_and_says_so(method, sigma_s):
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])
-def test_a_great_sigma_r_is_the_gaussian(method):
+def test_a_large_sigma_r_gives_the_gaussian_blur(method):
     v = room((60, 80))
     plain = gaussian_filter(v.astype(np.float64), 4, truncate=3, mode="constant")
     weight = gaussian_filter(np.ones(v.shape), 4, truncate=3, mode="constant")
     assert rms(method(v, sigma_s=4, sigma_r=100).mean, plain / weight) < 0.02
 
 
-def test_a_hard_edge_stays_and_texture_goes():
+def test_a_hard_edge_is_kept_and_texture_is_removed():
     rng = np.random.default_rng(1)
     v = np.where(np.arange(80) < 40, 0.0, 3.0) + 0.1 * rng.standard_normal((60, 80))
     mean = fast_bilateral(v, sigma_s=6, sigma_r=0.4).mean
@@ -116,7 +116,7 @@ def test_a_hard_edge_stays_and_texture_goes():
     sigma_s=st.floats(0.02, 30),
     sigma_r=st.floats(0.1, 10),
 )
-def test_any_shape_and_width_stays_within_the_signals_own_range(height, width, sigma_s, sigma_r):
+def test_the_result_stays_within_the_range_of_the_signal(height, width, sigma_s, sigma_r):
     v = room((height, width))
     found = fast_bilateral(v, sigma_s=sigma_s, sigma_r=sigma_r)
     assert found.mean.shape == found.k.shape == v.shape and found.mean.dtype == np.float32
@@ -132,7 +132,7 @@ def test_the_level_of_the_signal_does_not_matter():
 
 
 @pytest.mark.parametrize("method", [by_definition, fast_bilateral])
-def test_what_is_no_signal_is_refused(method):
+def test_invalid_signals_and_widths_raise_an_error(method):
     for v in (
         np.ones(4),
         np.ones((2, 2, 3)),
@@ -147,6 +147,6 @@ def test_what_is_no_signal_is_refused(method):
             method(np.ones((3, 3)), sigma_s=sigma_s, sigma_r=sigma_r)
 
 
-def test_a_signal_too_long_for_the_grid_is_refused():
+def test_a_signal_with_too_large_a_range_raises_an_error():
     with pytest.raises(ValueError, match="a range of at most 5 for"):
         fast_bilateral(np.array([[0, 6]]), sigma_s=1, sigma_r=0.01)

@@ -17,7 +17,7 @@ def radiance(shape, seed=0):
 
 @settings(max_examples=40, deadline=None)
 @given(height=st.integers(1, 70), width=st.integers(1, 70), sigma=st.floats(0.05, 3.99))
-def test_a_narrow_blur_is_the_plain_sum_to_float32(height, width, sigma):
+def test_a_narrow_blur_equals_the_plain_sum_in_float32(height, width, sigma):
     image = (
         radiance((height, width))
         if min(height, width) > 3
@@ -28,7 +28,7 @@ def test_a_narrow_blur_is_the_plain_sum_to_float32(height, width, sigma):
 
 
 @pytest.mark.parametrize("sigma", [4, 5.5, 7.99, 8, 12, 16, 33, 50])
-def test_a_wide_kernel_is_a_gaussian_to_a_five_hundredth_of_its_peak(sigma):
+def test_a_wide_kernel_differs_from_a_gaussian_by_less_than_a_five_hundredth_of_its_peak(sigma):
     point = np.zeros((420, 421), np.float32)
     point[203, 210] = 1
     plain = gaussian_filter(point.astype(np.float64), sigma)
@@ -51,7 +51,7 @@ def test_a_wide_blur_leaves_a_straight_ramp_as_it_is(sigma):
 
 
 @pytest.mark.parametrize("sigma", [4, 5.9, 11.3, 32.6])
-def test_six_decades_below_a_lamp_a_wide_blur_is_still_the_gaussian_to_a_seventh(sigma):
+def test_the_tail_of_a_wide_blur_is_right_within_15_percent_six_decades_below_a_lamp(sigma):
     """Relative to the light that arrives there, of which a sum cut at four sigma misses three quarters."""
     image = np.full((200, 260), 1e-3, np.float32)
     image[80:90, 100:120] = 1e3
@@ -68,6 +68,6 @@ def test_a_sigma_that_is_not_positive_and_finite_is_refused(sigma):
 
 
 @pytest.mark.parametrize("shape", [(4,), (0, 4), (4, 4, 3)])
-def test_an_array_that_is_no_picture_is_refused(shape):
+def test_invalid_images_raise_an_error(shape):
     with pytest.raises(InputError, match="image"):
         blur.gaussian(np.ones(shape), 1.0)

@@ -24,7 +24,7 @@ def samples(N=40, P=5, seed=0, **knobs):
 @pytest.mark.parametrize("w", [weights.hat(), weights.gaussian()], ids=["hat", "gaussian"])
 @pytest.mark.parametrize("smoothness", [1, 30, 300])
 @pytest.mark.parametrize("seed", [0, 1])
-def test_the_fast_solution_is_the_slides(seed, smoothness, w):
+def test_the_fast_solution_equals_the_lesson(seed, smoothness, w):
     Z, B = samples(seed=seed)
     fast, slow = debevec.gsolve(Z, B, smoothness, w), lesson.gsolve(Z, B, smoothness, w)
     assert np.allclose(fast.g, slow.g, rtol=0, atol=1e-8)
@@ -32,7 +32,7 @@ def test_the_fast_solution_is_the_slides(seed, smoothness, w):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_under_a_cut_the_fast_solution_is_the_slides_and_constant_above_it(seed):
+def test_with_cut_weights_the_fast_solution_equals_the_lesson_and_is_constant_above_the_cut(seed):
     Z, B = samples(seed=seed)
     fast, slow = debevec.gsolve(Z, B, 30, CUT).g, lesson.gsolve(Z, B, 30, CUT).g
     reached = (
@@ -58,7 +58,7 @@ def test_lE_is_where_the_samples_lie_on_the_curve(name):
     assert np.abs(error).max() < 0.03  # half a level in the middle of a curve
 
 
-def test_lE_of_a_sample_that_no_frame_saw_well_is_0_and_it_changes_nothing_else():
+def test_a_sample_without_weight_has_lE_0_and_does_not_change_the_others():
     Z, B = samples()
     seen = debevec.gsolve(Z, B, 30, CUT)
     more = debevec.gsolve(np.concatenate([Z, np.full((1, len(B)), 255)]), B, 30, CUT)
@@ -69,7 +69,7 @@ def test_lE_of_a_sample_that_no_frame_saw_well_is_0_and_it_changes_nothing_else(
     )
 
 
-def test_a_sample_of_one_frame_moves_no_curve():
+def test_samples_seen_in_one_frame_do_not_change_the_curve():
     Z, B = samples()
     g = debevec.gsolve(Z, B, 30, CUT).g
     alone = np.full((7, len(B)), 255)
@@ -98,7 +98,7 @@ def test_a_sample_of_one_frame_moves_no_curve():
         ({"B": [0, 0]}, "seen well in two exposures"),
     ],
 )
-def test_a_system_that_means_nothing_is_refused(given, said):
+def test_invalid_arguments_of_gsolve_raise_an_error(given, said):
     knobs = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | given
     with pytest.raises(ValueError, match=said):
         debevec.gsolve(**knobs)
@@ -128,7 +128,7 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         "float",
     ],
 )
-def test_a_bracket_that_tells_nothing_is_refused(images, times, said):
+def test_a_bracket_without_usable_samples_raises_an_error(images, times, said):
     with pytest.raises(ValueError, match=said):
         debevec.recover(images, times)
 
@@ -163,7 +163,7 @@ def test_the_noise_of_a_phone_leaves_the_response_within_one_percent(name, seed,
     assert rmse(debevec.recover(taken.images, taken.times), name) < 0.01
 
 
-def test_the_cut_is_what_makes_the_noisy_experiment_of_cerman_and_hlavac_come_out():
+def test_cut_weights_reproduce_the_noisy_experiment_of_cerman_and_hlavac():
     E = np.geomspace(1 / 4096, 1, 40_000, dtype=np.float32).reshape(200, 200)
     taken = camera.shoot(
         E, 4.0 ** np.arange(6), camera.Camera(response="cubic", gray_noise=1.0), rng=0
@@ -176,7 +176,7 @@ def test_the_cut_is_what_makes_the_noisy_experiment_of_cerman_and_hlavac_come_ou
     assert rmse(hat, "cubic") > 2 * rmse(cut, "cubic")
 
 
-def test_each_channel_has_the_curve_of_its_own_photographs(decades):
+def test_each_channel_is_recovered_independently(decades):
     E = decades((60, 80))
     times = camera.times_around(E, 5, stops=2)
     gray = [
@@ -201,7 +201,7 @@ def test_the_curve_rises_even_where_noise_would_make_it_fall(decades):
     assert np.any(np.diff(debevec.gsolve(Z, np.log(taken.times), 0.5, CUT).g) < 0)
 
 
-def test_what_the_mask_hides_does_not_bend_the_curve(decades):
+def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
     images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
@@ -218,7 +218,7 @@ def test_a_curve_has_256_levels_at_any_depth(dtype):
     assert debevec.recover(images, [1, 2]).shape == (256,)
 
 
-def test_a_system_that_the_samples_leave_open_is_refused():
+def test_an_underdetermined_system_raises_an_error():
     """Two samples connect no levels with each other, and without smoothness nothing else does."""
     with pytest.raises(InputError, match="levels, frames or smoothness"):
         debevec.gsolve([[100, 200], [10, 20]], [0.0, 1.0], 0, weights.hat())

@@ -24,7 +24,7 @@ def samples(N=500, P=4, seed=0, top=255):
 
 
 @given(seed=st.integers(0, 99), P=st.integers(2, 6), N=st.integers(1, 400))
-def test_the_matrix_makes_of_a_curve_what_the_two_means_make(seed, P, N):
+def test_the_matrix_product_equals_irradiance_and_update_of_the_lesson(seed, P, N):
     Z, t = samples(N, P, seed)
     f_inv = np.sort(np.random.default_rng(seed).uniform(0, 2, 256))
     looped = lesson.update(Z, t, lesson.irradiance(Z, t, f_inv, WEIGHTS))
@@ -32,7 +32,7 @@ def test_the_matrix_makes_of_a_curve_what_the_two_means_make(seed, P, N):
     assert np.allclose(product, looped, rtol=1e-10, equal_nan=True)
 
 
-def test_the_matrix_of_many_samples_is_the_sum_of_those_of_its_parts():
+def test_the_matrix_is_the_sum_of_the_matrices_of_its_parts():
     Z, t = samples(70_000)
     whole = robertson.Joint(Z, t, WEIGHTS)
     parts = [robertson.Joint(some, t, WEIGHTS) for some in np.array_split(Z, 7)]
@@ -77,7 +77,7 @@ def test_without_smoothness_frames_2_stops_apart_leave_the_start_in_the_curve(de
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_some_pixels_serve_as_well_as_all(name, seven_frames):
+def test_4000_samples_are_as_accurate_as_all_pixels(name, seven_frames):
     _, taken = seven_frames(name)
     truth = responses.true_g(name)
     some = laws.curve_error(smooth(taken.images, taken.times, samples=4000), truth)
@@ -85,7 +85,7 @@ def test_some_pixels_serve_as_well_as_all(name, seven_frames):
     assert some < every + 5e-4
 
 
-def test_the_usual_weights_let_noise_bend_the_curve_and_the_cut_heals_it(decades):
+def test_cut_weights_keep_noise_from_bending_the_curve(decades):
     E = decades(seed=1)
     knobs = dict(full_well=5000, read_noise=5, gray_noise=1.0)
     taken = camera.shoot(
@@ -98,7 +98,7 @@ def test_the_usual_weights_let_noise_bend_the_curve_and_the_cut_heals_it(decades
     assert cut < 0.005 and usual > 10 * cut
 
 
-def test_what_the_mask_hides_does_not_bend_the_curve(decades):
+def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
     images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
@@ -109,7 +109,7 @@ def test_what_the_mask_hides_does_not_bend_the_curve(decades):
         assert np.allclose(hidden, g, atol=1e-9)
 
 
-def test_all_pixels_of_colour_are_those_of_its_channels(decades):
+def test_each_channel_is_recovered_independently(decades):
     E = decades((40, 50))
     times = camera.times_around(E, 5, stops=1.5)
     gray = [
@@ -131,7 +131,7 @@ def test_all_pixels_of_colour_are_those_of_its_channels(decades):
         ({"times": [1, 0]}, "positive exposure times"),
     ],
 )
-def test_what_tells_nothing_is_refused(given, said):
+def test_brackets_without_two_exposures_raise_an_error(given, said):
     stack = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
     stacks = {"one": stack[:1], "black": stack * 0, "white": stack * 0 + 255}
     knobs = {"images": stack, "times": [1, 2]} | given
@@ -143,6 +143,6 @@ def test_what_tells_nothing_is_refused(given, said):
 
 
 @pytest.mark.parametrize("smoothness", [-1, np.nan, np.inf])
-def test_a_smoothness_that_is_none_is_refused(smoothness):
+def test_an_invalid_smoothness_raises_an_error(smoothness):
     with pytest.raises(ValueError, match="smoothness that is finite and not negative"):
         robertson.Smooth(smoothness)

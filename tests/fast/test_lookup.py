@@ -7,7 +7,7 @@ from hdrlab.fast import _lookup as lookup
 
 
 @pytest.mark.parametrize("n", [1, 2, 100])
-def test_it_is_interpolation_between_knots_and_level_beyond_them(n):
+def test_values_are_interpolated_between_knots_and_constant_beyond_them(n):
     rng = np.random.default_rng(n)
     knots, t = rng.standard_normal(n + 1), rng.uniform(-2, n + 2, (40, 50)).astype(np.float32)
     read = lookup.interpolate(lookup.tabulate(knots), t)

@@ -57,7 +57,7 @@ NAMES = [f"{module}.{name}" for module, name in PAIRS]
 
 
 @pytest.mark.parametrize(("module", "name"), PAIRS, ids=NAMES)
-def test_a_function_of_fast_has_a_lesson_with_the_same_parameters(module, name):
+def test_a_fast_function_has_a_lesson_with_the_same_parameters(module, name):
     slow, quick = lesson(module, name), getattr(import_module(f"hdrlab.fast.{module}"), name)
     assert slow is not None, f"fast.{module}.{name} has no lesson"
     ours, theirs = inspect.signature(quick).parameters, inspect.signature(slow).parameters
@@ -72,7 +72,7 @@ def test_a_function_of_fast_has_a_lesson_with_the_same_parameters(module, name):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("module", "name"), PAIRS, ids=NAMES)
-def test_a_function_of_fast_answers_what_its_lesson_answers(module, name, kind):
+def test_a_fast_function_returns_the_same_as_its_lesson(module, name, kind):
     make, tolerance = MAKERS[f"{module}.{name}"]
     given = make(kind, np.random.default_rng(7))
     if given is None:  # the maker says why such input has no meaning here
@@ -93,5 +93,5 @@ def test_a_pair_is_tried_on_most_kinds_of_input(module, name):
     assert sum(make(kind, np.random.default_rng(7)) is not None for kind in KINDS) >= 4
 
 
-def test_a_pair_is_listed_once_and_none_without_a_function():
+def test_every_fast_function_has_an_input_maker():
     assert sorted(MAKERS) == sorted(NAMES)

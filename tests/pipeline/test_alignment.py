@@ -39,7 +39,7 @@ def night(offsets, seed=0):
 
 @pytest.mark.parametrize("align", ["auto", "mtb"])
 @pytest.mark.parametrize("texture", [astronaut, coffee])
-def test_a_tripod_is_not_doubted_for_frames_that_are_nearly_black_or_white(texture, align):
+def test_nearly_black_or_white_frames_from_a_tripod_give_no_warning(texture, align):
     images = shoot(STILL, TIMES, texture=texture(), decades=3.0)
     assert np.mean(images[0] < 12) > 0.8 and np.mean(images[-1] > 243) > 0.8
     found = aligned(images, align)
@@ -48,12 +48,12 @@ def test_a_tripod_is_not_doubted_for_frames_that_are_nearly_black_or_white(textu
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_tripod_at_night_is_not_doubted(seed):
+def test_a_night_scene_from_a_tripod_gives_no_warning(seed):
     found = aligned(night([(0, 0)] * 4, seed))
     assert not found.offsets.any() and found.doubts == ()
 
 
-def test_a_frame_that_cannot_be_aligned_goes_with_its_neighbour_and_is_named():
+def test_a_frame_that_cannot_be_aligned_moves_with_its_neighbour_and_is_noted():
     images = shoot(HAND[1:4], [1, 4, 16])
     black = np.random.default_rng(0).integers(0, 3, images[:1].shape, dtype=np.uint8)
     found = aligned(np.concatenate([black, images]))
@@ -62,7 +62,7 @@ def test_a_frame_that_cannot_be_aligned_goes_with_its_neighbour_and_is_named():
     assert "frame 1 and frame 2" in note and found.doubts == ()
 
 
-def test_pairs_that_do_not_lie_on_each_other_are_one_doubt_that_says_what_to_do():
+def test_misaligned_pairs_give_one_warning_that_says_what_to_do():
     shots = [
         shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]())
         for j in range(3)
@@ -71,7 +71,7 @@ def test_pairs_that_do_not_lie_on_each_other_are_one_doubt_that_says_what_to_do(
     assert "and 1 more pair" in doubt and "leave one out" in doubt
 
 
-def test_the_range_of_the_search_grows_with_the_picture():
+def test_the_search_range_grows_with_the_image_size():
     E = np.kron(radiance(astronaut()), np.ones((2, 2, 1)))
     rng = np.random.default_rng(0)
     views = [0.2 * t * E[y : y + 700, x : x + 900] for t, y, x in ((1, 10, 5), (4, 110, 95))]
@@ -88,7 +88,7 @@ def test_the_range_of_the_search_grows_with_the_picture():
     )
 
 
-def test_a_verdict_is_the_same_at_every_size():
+def test_the_validation_gives_the_same_result_at_every_image_size():
     rng = np.random.default_rng(3)
     images = shoot([(0, 0), (0, 0)], [1, 4], noise=0.02)
     for times in (1, 2, 4):
@@ -99,12 +99,12 @@ def test_a_verdict_is_the_same_at_every_size():
         assert one.known and not one.apart and one.confidence > 0.9
 
 
-def test_a_single_photograph_stays_where_it_is():
+def test_a_single_photo_is_not_moved():
     found = register(np.full((1, 40, 50), 90, np.uint8), "mtb")
     assert np.array_equal(found.homographies, [np.eye(3)]) and len(found.pairs) == 0
 
 
-def test_photographs_that_turned_are_not_said_to_show_leaves_and_water_besides():
+def test_rotated_photos_are_reported_once_and_not_as_motion_too():
     room = scenes.room((280, 420))
     turned = [warp.turn(room.shape, degrees, (3, 2)) for degrees in (-1.5, 0, 1.2, -0.9)]
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), offsets=turned, rng=1)
@@ -133,7 +133,7 @@ def by_percentile(monkeypatch, **validations):
 
 
 @pytest.mark.quick
-def test_another_percentile_counts_where_the_median_fails_and_it_is_certain_and_lies_elsewhere(
+def test_another_percentile_is_used_if_the_median_fails_and_it_is_confident_and_differs(
     monkeypatch,
 ):
     lost = {"failure": "turned", "offset": (0, 0)}
@@ -165,7 +165,7 @@ def improved(monkeypatch, side, **searches):
 
 
 @pytest.mark.quick
-def test_the_simplest_search_that_serves_is_taken_and_none_that_leaves_little_in_common(
+def test_the_simplest_method_that_aligns_is_chosen_unless_it_leaves_little_overlap(
     monkeypatch,
 ):
     true, still = warp.as_homographies([(3, 5), (0, 0)])

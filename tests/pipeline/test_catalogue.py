@@ -28,7 +28,7 @@ def test_a_method_is_the_verb_of_its_module():
 
 
 @pytest.mark.parametrize("chapter", catalogue.VERBS)
-def test_the_fast_verb_is_taken_where_there_is_one(chapter):
+def test_the_fast_function_is_used_if_there_is_one(chapter):
     for name in catalogue.names(chapter):
         fast = find_spec(f"hdrlab.fast.{name}") and import_module(f"hdrlab.fast.{name}")
         own = import_module(f"hdrlab.{chapter}.{name}")
@@ -36,18 +36,18 @@ def test_the_fast_verb_is_taken_where_there_is_one(chapter):
         assert catalogue.method(chapter, name) is getattr(fast or own, verb, getattr(own, verb))
 
 
-def test_a_readers_own_function_is_taken_as_it_is():
+def test_a_callable_is_returned_unchanged():
     assert catalogue.method("response", len) is len
 
 
 @pytest.mark.parametrize("name", ["nobody", "", "__init__", "shift", "../core/arrays"])
-def test_an_unknown_name_is_refused_with_those_there_are(name):
+def test_an_unknown_method_raises_an_error_that_lists_the_methods(name):
     with pytest.raises(ValueError, match="align .*mtb"):
         catalogue.method("align", name)
 
 
 @pytest.mark.parametrize("chapter", catalogue.VERBS)
-def test_every_method_documents_every_knob(chapter):
+def test_every_method_documents_every_keyword(chapter):
     for name in catalogue.names(chapter):
         verb = getattr(import_module(f"hdrlab.{chapter}.{name}"), catalogue.VERBS[chapter])
         for knob in inspect.signature(verb).parameters.values():
@@ -58,7 +58,7 @@ def test_every_method_documents_every_knob(chapter):
                 )
 
 
-def test_a_setting_that_a_method_does_not_have_is_refused_with_those_it_has():
+def test_an_unknown_setting_raises_an_error_that_lists_the_settings():
     check_settings("align", "mtb", {"bits": 5})
     with pytest.raises(ValueError, match="a setting of mtb out of .*bits.*'bytes'"):
         check_settings("align", "mtb", {"bytes": 5})

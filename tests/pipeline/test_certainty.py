@@ -24,7 +24,7 @@ def assembly():
     return E, pipeline.assemble(taken, align="none")
 
 
-def test_95_of_100_pixels_lie_within_what_the_photographs_say_of_themselves(assembly):
+def test_95_percent_of_pixels_lie_within_the_deviation_estimated_from_the_photos(assembly):
     E, state = assembly
     found = pipeline.measure_deviation(state)
     known = np.isfinite(found.s)
@@ -34,7 +34,7 @@ def test_95_of_100_pixels_lie_within_what_the_photographs_say_of_themselves(asse
     assert found.notes == state.notes and found.doubts == state.doubts
 
 
-def test_what_is_not_measured_keeps_its_bound_and_is_not_sure(assembly):
+def test_unmeasured_pixels_keep_their_bound_and_have_an_infinite_deviation(assembly):
     _, state = assembly
     found = pipeline.measure_deviation(state)
     unknown = state.quality != Quality.MEASURED
@@ -43,7 +43,7 @@ def test_what_is_not_measured_keeps_its_bound_and_is_not_sure(assembly):
     assert found.E.dtype == found.s.dtype == np.float32 and state.s is None
 
 
-def test_where_something_moved_or_glare_was_removed_nothing_is_sure(assembly):
+def test_regions_with_motion_or_removed_glare_have_an_infinite_deviation(assembly):
     _, state = assembly
     labels, glare = np.zeros(state.quality.shape, np.int32), np.zeros(state.quality.shape, bool)
     labels[:40, :40], glare[-40:, -40:] = 2, True
@@ -52,7 +52,7 @@ def test_where_something_moved_or_glare_was_removed_nothing_is_sure(assembly):
         assert np.isinf(found.s[corner]).all() and np.array_equal(found.E[corner], state.E[corner])
 
 
-def test_strips_do_not_show(assembly, monkeypatch):
+def test_computing_in_strips_does_not_change_the_deviation(assembly, monkeypatch):
     _, state = assembly
     whole = pipeline.measure_deviation(state)
     monkeypatch.setattr(certainty, "ROWS_PER_STRIP", 7)
@@ -60,7 +60,7 @@ def test_strips_do_not_show(assembly, monkeypatch):
     assert np.array_equal(parts.E, whole.E) and np.array_equal(parts.s, whole.s)
 
 
-def test_a_photograph_is_not_asked_where_it_holds_no_picture(assembly):
+def test_masked_pixels_do_not_contribute_to_the_deviation(assembly):
     _, state = assembly
     images = state.bracket.images
     valid = np.ones(images.shape[:3], bool)
@@ -77,7 +77,7 @@ def test_a_photograph_is_not_asked_where_it_holds_no_picture(assembly):
     assert np.median(ratio[:, :60]) > 1.1 > np.median(ratio[:, 60:])
 
 
-def test_too_small_a_bracket_leaves_a_note_and_no_pixel_sure():
+def test_too_small_a_bracket_gives_a_note_and_infinite_deviations():
     E = scenes.room((24, 36))
     taken = camera.shoot(E, camera.times_around(E, 3), camera.Camera(full_well=4_000), rng=1)
     state = pipeline.assemble(taken, align="none")
@@ -87,7 +87,7 @@ def test_too_small_a_bracket_leaves_a_note_and_no_pixel_sure():
     assert "not known" in wording.certainty(found.E, found.s)
 
 
-def test_a_meter_reading_scales_both(assembly):
+def test_calibrate_scales_the_map_and_its_deviation(assembly):
     found = pipeline.measure_deviation(assembly[1])
     y, x = (int(one[0]) for one in np.nonzero(found.quality == 0))
     scaled = pipeline.calibrate(found, x, y, 100.0)
@@ -102,7 +102,9 @@ REAL = [
 
 
 @pytest.mark.parametrize(("folder", "mask", "least", "most"), REAL)
-def test_half_of_a_real_map_is_sure_to_so_many_stops(folder, mask, least, most, shared):
+def test_the_median_deviation_of_real_maps_is_within_known_bounds(
+    folder, mask, least, most, shared
+):
     taken = read_bracket((shared(folder),), "exif", mask, None)
     found = pipeline.measure_deviation(pipeline.assemble(taken))
     known = wording.deviation(found.E, found.s)

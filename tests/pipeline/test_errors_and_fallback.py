@@ -33,7 +33,7 @@ def worthless():
     return replace(pair, times=seconds * [1, 250])
 
 
-def test_a_map_from_a_response_that_no_camera_has_is_not_worth_a_picture(worthless):
+def test_a_response_that_no_camera_has_marks_the_map_as_fallback(worthless):
     found = pipeline.assemble(worthless, align="none", times="stated")
     assert found.fallback
     assert found.doubts

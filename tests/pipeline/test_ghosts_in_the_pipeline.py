@@ -34,13 +34,13 @@ def plain(moving):
     return pipeline.assemble(moving, align="none", ghosts="none")
 
 
-def test_what_moved_stays_where_that_is_asked_and_is_doubted(plain):
+def test_ghosts_none_keeps_ghosts_and_warns(plain):
     assert plain.moving is None and plain.glare is None and plain.stage == "compare"
     assert any("--ghosts regions" in doubt for doubt in plain.doubts)
 
 
 @pytest.mark.parametrize("way", ["regions", "reference"])
-def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
+def test_ghost_removal_is_a_stage_after_the_merge_with_a_note(moving, plain, way):
     states = list(pipeline.assemble_steps(moving, align="none", ghosts=way))
     assert [state.stage for state in states] == [
         "align",
@@ -58,7 +58,7 @@ def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
     assert found.spread == plain.spread  # the photographs are what they were
 
 
-def test_auto_removes_ghosts_where_something_moved_and_says_so(moving, plain):
+def test_auto_removes_ghosts_with_a_note_if_something_moved(moving, plain):
     auto, regions = (
         pipeline.assemble(moving, align="none", **way) for way in ({}, {"ghosts": "regions"})
     )
@@ -66,7 +66,7 @@ def test_auto_removes_ghosts_where_something_moved_and_says_so(moving, plain):
     assert any("something moved in" in note for note in auto.notes) and not auto.doubts
 
 
-def test_auto_leaves_a_still_map_bit_for_bit():
+def test_auto_does_not_change_the_map_of_a_still_scene():
     taken = camera.shoot(scenes.room(SHAPE), camera.times_around(scenes.room(SHAPE), 5), rng=1)
     auto, none = (pipeline.assemble(taken, align="none", ghosts=way) for way in ("auto", "none"))
     assert (
@@ -74,15 +74,13 @@ def test_auto_leaves_a_still_map_bit_for_bit():
     )
 
 
-def test_auto_leaves_a_map_that_contradicts_itself_nearly_everywhere_and_doubts_it(
-    moving, monkeypatch
-):
+def test_auto_keeps_a_map_with_widespread_contradictions_and_warns(moving, monkeypatch):
     monkeypatch.setattr("hdrlab.radiance.deghosting.ghosts.WIDESPREAD", 1)
     auto, none = (pipeline.assemble(moving, align="none", ghosts=way) for way in ("auto", "none"))
     assert np.array_equal(auto.E, none.E) and any("--ghosts regions" in one for one in auto.doubts)
 
 
-def test_flare_is_the_last_stage_before_they_are_compared():
+def test_flare_removal_is_the_last_stage_before_the_comparison():
     room = scenes.room(SHAPE)
     veiled = lens_flare.add_glare(room, GlareSpread(0.1, 2.5))
     times = 0.9 / veiled.max() * 4.0 ** np.arange(9)
@@ -94,20 +92,20 @@ def test_flare_is_the_last_stage_before_they_are_compared():
     assert np.median(found.E[found.glare]) < np.median(states[-3].E[found.glare])
 
 
-def test_wrong_times_are_not_called_motion(moving):
+def test_wrong_times_are_not_reported_as_motion(moving):
     wrong = replace(moving, times=moving.times * np.array([1, 1, 8, 9, 10]))
     found = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
     assert len(found.doubts) == 1 and "--times estimate" in found.doubts[0]
 
 
-def test_ways_that_there_are_not_are_refused(moving):
+def test_unknown_values_of_ghosts_and_flare_raise_an_error(moving):
     with pytest.raises(ValueError, match="ghosts .*none, auto, regions, reference.*'some'"):
         pipeline.assemble(moving, ghosts="some")
     with pytest.raises(ValueError, match="flare .*none, glare.*'sun'"):
         pipeline.assemble(moving, flare="sun")
 
 
-def test_the_command_says_what_moved_and_the_report_shows_it(moving, plain, tmp_path):
+def test_the_command_line_and_the_report_show_what_moved(moving, plain, tmp_path):
     for name, image in zip(moving.names, moving.images, strict=True):
         Image.fromarray(image).save(tmp_path / f"{name.replace(' ', '')}.png")
     lines = ["file,exposure_time_s"]

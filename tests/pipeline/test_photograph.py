@@ -27,29 +27,29 @@ def E(request):
     return PLACES[request.param]((160, 240))
 
 
-def test_a_place_comes_out_neither_dark_nor_pale_and_hardly_clipped(E):
+def test_a_developed_scene_is_well_exposed_and_hardly_clipped(E):
     found = statistics(develop(E))
     assert (
         95 < found.mean < 140 and found.contrast > 35 and found.white < 0.02 and found.black < 0.02
     )
 
 
-def test_blacks_are_black_and_whites_white(E):
+def test_a_developed_scene_uses_the_range_from_black_to_white(E):
     low, high = np.quantile(gray(develop(E)), [0.005, 0.998])
     assert low < 40 and high > 225
 
 
-def test_the_unit_of_the_map_cancels(E):
+def test_the_unit_of_the_map_does_not_matter(E):
     assert np.abs(develop(E).astype(int) - develop(1000 * E)).max() <= 1
 
 
-def test_a_smaller_copy_is_the_same_picture(E):
+def test_a_downscaled_map_is_developed_alike(E):
     small = E.reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
     half = develop(E).astype(float).reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
     assert np.median(np.abs(develop(small) - half)) < 4
 
 
-def test_colours_beyond_the_display_keep_their_hue_where_a_clipped_channel_turns_it():
+def test_colors_beyond_the_display_keep_their_hue():
     """A sky that brightens: by clipping its blue it turns to cyan, and by the default it does not."""
     sky = np.float32([0.25, 0.5, 1.0]) * np.geomspace(0.1, 10, 60 * 80, dtype=np.float32).reshape(
         60, 80, 1
@@ -62,7 +62,7 @@ def test_colours_beyond_the_display_keep_their_hue_where_a_clipped_channel_turns
     assert away["hue"] < 0.03 < 0.1 < away["ratio"]
 
 
-def test_the_way_of_hue_is_the_ratio_of_channels_where_the_colour_fits():
+def test_ratio_and_hue_agree_for_colors_in_gamut():
     E = np.float32([[[3.0, 2.0, 1.0], [0.2, 0.2, 0.2]]])
     L = colour.luminance(E)
     assert np.array_equal(
@@ -70,14 +70,14 @@ def test_the_way_of_hue_is_the_ratio_of_channels_where_the_colour_fits():
     )
 
 
-def test_more_light_of_one_colour_is_never_shown_darker():
+def test_more_light_of_one_color_is_never_shown_darker():
     for shade in ([1.0, 0.3, 0.02], [0.02, 0.05, 1.0], [0.5, 1.0, 0.3]):
         E = np.float32(shade) * np.ones((1, 256, 1), np.float32)
         shown = colour.render(E, colour.luminance(E), np.linspace(0, 1, 256)[None], way="hue")
         assert np.all(np.diff(gray(shown)[0]) >= -0.8)  # rounding to levels aside
 
 
-def test_light_is_compressed_and_detail_is_not():
+def test_compress_light_compresses_large_steps_and_keeps_detail():
     stripes = 0.05 * (np.arange(200) % 2)
     lL = (np.where(np.arange(200) < 100, 0, 4) + stripes + np.zeros((150, 1))).astype(np.float32)
     light = filter_light(lL)
@@ -88,7 +88,7 @@ def test_light_is_compressed_and_detail_is_not():
     )
 
 
-def test_a_grid_is_enlarged_along_straight_lines_and_past_its_end_stays():
+def test_interpolation_weights_are_linear_and_constant_beyond_the_grid():
     large = (
         interpolation_weights(5, 2, 3)
         @ np.float32([[0, 3, 6], [10, 13, 16]])
@@ -98,7 +98,7 @@ def test_a_grid_is_enlarged_along_straight_lines_and_past_its_end_stays():
     assert large[1, 0] == pytest.approx(10 / 3)
 
 
-def test_the_light_is_that_of_the_guided_filter_on_a_grid_whose_means_are_those_of_a_plain_filter():
+def test_filter_light_is_a_guided_filter_on_a_coarse_grid():
     lL = np.log10(PLACES["room"]((200, 300))).mean(axis=-1).astype(np.float32)
     few, width = lL[::2, ::2], 2 * 4 + 1
     mean = uniform_filter(few, width)
@@ -112,7 +112,7 @@ def test_the_light_is_that_of_the_guided_filter_on_a_grid_whose_means_are_those_
         )
 
 
-def test_the_settings_are_told_and_can_be_replaced():
+def test_the_settings_are_reported_and_can_be_overridden():
     made = develop_and_describe(GRAY)
     assert made.settings.startswith("photograph, share 0.") and "key 0.24" in made.settings
     assert "saturation" in made.settings and np.array_equal(made.picture, develop(GRAY))
@@ -125,7 +125,7 @@ def test_the_settings_are_told_and_can_be_replaced():
     assert "<lambda>" in develop_and_describe(GRAY, lambda L: np.zeros_like(L)).settings
 
 
-def test_a_dim_scene_in_a_narrow_range_is_left_as_it_is():
+def test_a_scene_of_narrow_range_is_not_compressed():
     even = np.float32([1, 1.1]) * np.ones((50, 40, 1), np.float32)
     assert choose_settings(even.reshape(50, 80))["share"] == 1
 
@@ -134,7 +134,7 @@ def test_a_dim_scene_in_a_narrow_range_is_left_as_it_is():
 @pytest.mark.parametrize(
     "E", [np.zeros((4, 5, 3)), np.ones((1, 1)), np.eye(3) * 1e30, np.full((2, 300, 3), 1e-30)]
 )
-def test_any_radiance_has_a_picture_and_black_is_black(E):
+def test_any_radiance_can_be_developed_and_black_stays_black(E):
     picture = develop(E)
     assert picture.shape == E.shape and np.all(picture[np.asarray(E) == 0] <= 13)
 
@@ -142,14 +142,14 @@ def test_any_radiance_has_a_picture_and_black_is_black(E):
 @pytest.mark.parametrize(
     "wrong", [{"share": 0}, {"key": 0}, {"white": -1}, {"black": 1}, {"key": "auto"}]
 )
-def test_settings_out_of_range_are_refused(wrong):
+def test_settings_out_of_range_raise_an_error(wrong):
     with pytest.raises(ValueError, match="share"):
         develop(GRAY, **wrong)
     with pytest.raises(ValueError, match="negative"):
         photograph(-GRAY, share=1, key=0.2, white=2, black=0)
 
 
-def test_the_logarithm_is_that_of_the_lesson():
+def test_find_logarithm_equals_the_logarithm_of_the_lesson():
     L = np.random.default_rng(5).lognormal(0, 4, (40, 60)).astype(np.float32)
     L[:3] = 0
     assert np.allclose(find_logarithm(L)(L), durand.logarithm(L), rtol=1e-6)

@@ -40,7 +40,7 @@ def hand_held(room):
 
 
 @pytest.mark.papers
-def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
+def test_each_stage_fills_in_more_fields_of_the_assembly(hand_held):
     states = list(assemble_steps(hand_held[0]))
     assert tuple(state.stage for state in states) == pipeline.STAGES
     for name, first in (("g", 2), ("E", 3), ("quality", 3), ("medians", 4)):
@@ -65,7 +65,7 @@ def test_assemble_takes_brackets_with_one_more_field(hand_held):
 
 
 @pytest.mark.papers
-def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held):
+def test_in_place_gives_the_same_map_without_a_copy_of_the_photos(hand_held):
     expected = assemble(hand_held[0])
     taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, in_place=True)
@@ -74,9 +74,7 @@ def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held
     assert np.shares_memory(found.bracket.images, taken.images)
 
 
-def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_memory_back(
-    hand_held, monkeypatch
-):
+def test_release_gives_the_same_map_and_frees_the_memory_of_the_photos(hand_held, monkeypatch):
     monkeypatch.setattr(quick, "PAGE_BYTES", 1 << 12)
     monkeypatch.setattr(quick, "RELEASED_ROWS", quick.BLOCK_ROWS)
     expected = assemble(hand_held[0])
@@ -92,7 +90,7 @@ def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_mem
     assert sys.platform != "linux" or np.mean(taken.images[3] == 0) > 0.7
 
 
-def test_photographs_whose_ghosts_are_removed_are_kept_to_the_end(hand_held):
+def test_release_keeps_the_photos_if_ghosts_are_removed(hand_held):
     taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, found = assemble_steps(taken, ghosts="regions", in_place=True, release=True)
     assert found.bracket.images.any()
@@ -117,7 +115,7 @@ def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     assert found.spread < 0.05
 
 
-def test_what_was_photographed_without_a_hand_is_left_where_it_is(room):
+def test_photos_from_a_tripod_are_not_moved(room):
     taken = camera.shoot(room, camera.times_around(room, 5))
     found = assemble(taken)
     assert not found.offsets.any() and found.E.shape == room.shape and found.doubts == ()
@@ -170,7 +168,7 @@ def test_every_weight_and_method_can_be_named(room, knob):
     assert assemble(taken, **knob).spread < 0.05
 
 
-def test_functions_of_the_readers_own_take_the_place_of_methods(room):
+def test_your_own_functions_can_replace_methods(room):
     taken = camera.shoot(room, camera.times_around(room, 3))
     offsets, g = np.array([[0, 0], [0, 0], [1, -2]]), responses.true_g("film")
     found = assemble(
@@ -191,7 +189,7 @@ def test_alignment_can_be_left_out_and_named(hand_held):
     assert np.array_equal(assemble(taken, align="mtb").offsets, found)
 
 
-def test_masks_move_with_their_photographs_and_hide_what_they_hide(hand_held):
+def test_masks_are_aligned_with_their_photos(hand_held):
     taken, _ = hand_held
     images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
     images[:, :9], valid[:, :9] = (0, 0, 255), False
@@ -219,7 +217,7 @@ def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction():
     assert consistency.measure_spread(blind) > pipeline.CONTRADICTION
 
 
-def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
+def test_assemble_does_not_change_its_bracket(hand_held):
     taken = hand_held[0]
     images = taken.images.copy()
     assemble(taken)
@@ -230,7 +228,7 @@ def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
 
 
 @pytest.mark.papers
-def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames(room):
+def test_wrong_times_give_a_warning_that_names_the_frames(room):
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1))
     wrong = replace(
         taken, times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
@@ -242,7 +240,7 @@ def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames
     assert assemble(taken, align="none").doubts == ()
 
 
-def test_photographs_that_share_no_level_are_doubted():
+def test_photos_without_common_levels_give_a_warning():
     images = np.stack([np.full((20, 20), z, np.uint8) for z in (60, 200)])
     images[:, :5] = np.array([100, 140])[:, None, None]
     images[0, :, :1] = np.arange(20, 120, 5)[:, None]  # a few pixels that tie the levels
@@ -252,7 +250,7 @@ def test_photographs_that_share_no_level_are_doubted():
 
 
 @pytest.mark.papers
-def test_photographs_of_two_scenes_are_a_doubt_about_their_alignment(room):
+def test_photos_of_two_scenes_give_a_warning_about_the_alignment(room):
     rng = np.random.default_rng(4)
     other = (10 ** rng.uniform(-1, 3, (32, 48, 1))).astype(np.float32).repeat(4, 0).repeat(
         4, 1
@@ -295,12 +293,12 @@ STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
         ),
     ],
 )
-def test_what_makes_no_map_is_refused(images, times, knobs, said):
+def test_invalid_brackets_and_options_raise_an_error(images, times, knobs, said):
     with pytest.raises(ValueError, match=said):
         assemble(bracket(images, times), **knobs)
 
 
-def test_an_unknown_operator_or_light_that_is_none_makes_no_picture(room):
+def test_develop_raises_an_error_for_unknown_operators_and_invalid_radiance(room):
     with pytest.raises(ValueError, match="tonemap .*curves.*reinhard.*magic"):
         develop(room, "magic")
     with pytest.raises(ValueError, match="1 NaN"):
@@ -372,7 +370,7 @@ def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assemb
 
 
 @pytest.mark.papers
-def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(shared):
+def test_photos_from_different_viewpoints_give_a_warning_that_says_what_to_do(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
     order = np.argsort(images.mean(axis=(1, 2, 3)))
@@ -382,7 +380,7 @@ def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(s
 
 
 @pytest.mark.papers
-def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
+def test_a_photo_that_contradicts_all_others_is_left_out_with_a_note(room):
     taken = camera.shoot(room, camera.times_around(room, 6, stops=1.5), rng=1)
     images = taken.images.copy()
     images[2] = images[2, ::-1, ::-1]  # another scene, of the same brightness
@@ -395,7 +393,7 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
 
 
 @pytest.mark.papers
-def test_of_two_photographs_that_may_both_be_the_wrong_one_neither_is_left_out_without_a_warning():
+def test_if_either_of_two_photos_may_be_wrong_a_warning_names_both():
     chapel = scenes.chapel((280, 420))
     taken = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)
     wrong = replace(taken, times=taken.times * [1, 1, 1, 2])

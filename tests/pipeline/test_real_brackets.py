@@ -41,31 +41,31 @@ SOUND = [
 
 
 @pytest.mark.parametrize(("folder", "options", "spread"), SOUND)
-def test_a_sound_bracket_comes_out_without_a_warning(assembled, folder, options, spread):
+def test_a_consistent_real_bracket_gives_no_warning(assembled, folder, options, spread):
     found = assembled(folder, **options)
     assert found.doubts == () and found.fallback == ""
     assert found.spread <= spread + 5e-4 and np.all(np.isfinite(found.E))
     assert found.moving is None or not found.moving.any()  # nothing is taken for motion
 
 
-def test_times_that_are_true_are_left_byte_for_byte(assembled, shared):
+def test_true_times_are_not_changed(assembled, shared):
     stated = read_bracket((shared("frobisher"),), "exif", None, None).times
     assert assembled("frobisher").bracket.times.tobytes() == stated.tobytes()
 
 
-def test_the_wrong_times_of_the_phone_give_way_to_relative_ones_with_a_doubt(assembled):
+def test_wrong_times_of_a_phone_are_replaced_by_relative_times_with_a_warning(assembled):
     found = assembled("tripod_phone")
     assert found.spread < 0.25 and found.E.any() and found.fallback == ""
     assert any("relative exposure times" in doubt for doubt in found.doubts)
 
 
 @pytest.mark.parametrize("options", [{"stops": 1}, {"times": "estimate"}])
-def test_a_walk_around_the_crusader_comes_out_with_doubts(assembled, options):
+def test_photos_from_different_viewpoints_give_warnings(assembled, options):
     found = assembled("crusader/frames", **options)
     assert found.doubts and np.all(np.isfinite(found.E)) and found.E.any()
 
 
 @pytest.mark.parametrize("folder", ["mertens_house", "crusader/frames"])
-def test_photographs_without_times_are_refused_with_the_ways_on(assembled, folder):
+def test_photos_without_times_raise_an_error_that_names_the_options(assembled, folder):
     with pytest.raises(ValueError, match=r"--times FILE.*--stops 2.*--times estimate"):
         assembled(folder)

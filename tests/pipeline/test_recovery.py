@@ -35,14 +35,14 @@ def taken(decades):
 
 
 @pytest.mark.parametrize("method", ["auto", *METHODS])
-def test_a_usual_response_serves_where_the_photographs_contradict_their_times(taken, method):
+def test_the_response_of_the_prior_is_used_if_the_photos_contradict_their_times(taken, method):
     wrong = replace(taken, times=taken.times * [1, 1, 1, 10_000])
     found = pipeline.assemble(wrong, align="none", response=method)
     assert any("check the exposure times" in doubt for doubt in found.doubts)
     assert found.fallback and np.all(np.isfinite(found.E)) and found.E.any()
 
 
-def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken, monkeypatch):
+def test_the_response_of_the_prior_is_used_if_a_method_finds_none(taken, monkeypatch):
     def refuse(*_, **__):
         raise InputError("expected the moon")
 
@@ -54,17 +54,17 @@ def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken,
 
 
 @pytest.mark.quick
-def test_linear_and_a_function_are_taken_as_they_are():
+def test_linear_and_callables_are_not_validated():
     assert recovery.find_validated_method("linear") is linear.recover
     assert recovery.find_validated_method(debevec.recover) is debevec.recover
 
 
-def test_a_validated_response_is_the_method_s_own(taken):
+def test_validation_does_not_change_the_response(taken):
     g = recovery.find_validated_method("debevec")(taken.images, taken.times)
     assert np.array_equal(g, debevec.recover(taken.images, taken.times))
 
 
-def test_a_level_that_one_frame_shows_alone_bridges_no_gap():
+def test_values_that_only_one_photo_shows_do_not_close_a_gap():
     assert recovery.find_widest_gap([[100, 200], [101, 201], [20, 255]]) == 99
     assert recovery.find_widest_gap([[100, 200], [101, 201], [150, 255], [150, 0]]) == 99
 
@@ -85,7 +85,7 @@ ENOUGH = 1.05 * 0.1 + 0.003
         ((np.inf, 0.1, 0.2, 0.2), 20, "three by space"),
     ],
 )
-def test_one_curve_is_taken_where_it_explains_nearly_as_much_and_debevec_s_where_few_levels_are_open(
+def test_auto_chooses_one_curve_if_its_spread_is_nearly_as_small(
     spreads, gap, name, taken, monkeypatch
 ):
     candidates = [

@@ -50,7 +50,7 @@ def error(g):
     return np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
 
 
-def test_a_gray_wall_in_three_photographs_comes_out_gray(three):
+def test_a_gray_wall_in_three_photos_stays_gray(three):
     separate = debevec.recover(three.images, three.times)
     found = pipeline.assemble(three, align="none", times="stated")
     assert part(separate) > 2 and part(found.g) < 1.001
@@ -58,7 +58,7 @@ def test_a_gray_wall_in_three_photographs_comes_out_gray(three):
     assert any("response: one curve by" in note for note in found.notes)
 
 
-def test_channels_with_responses_of_their_own_keep_them():
+def test_channels_with_different_responses_get_a_curve_each():
     E = scenes.room((180, 270))
     times = camera.times_around(E, 5)
     taken = [
@@ -72,7 +72,7 @@ def test_channels_with_responses_of_their_own_keep_them():
     assert np.array_equal(g, debevec.recover(mixed.images, mixed.times))
 
 
-def test_one_channel_of_another_response_is_enough_for_three_curves():
+def test_one_channel_with_a_different_response_is_enough_for_three_curves():
     E = scenes.room((180, 270))
     times = camera.times_around(E, 5)
     film = ["srgb", "srgb", lambda X: X**0.3]
@@ -110,7 +110,7 @@ def test_held_out_stripes_share_no_pixel_with_those_that_make_a_response(three):
 
 
 @pytest.mark.parametrize("level", [0, 255])
-def test_photographs_that_show_nothing_in_common_are_refused_with_what_to_do(level):
+def test_photos_without_common_values_raise_an_error_that_says_what_to_do(level):
     taken = bracket(np.full((3, 40, 60, 3), level, np.uint8), [0.1, 0.2, 0.4])
     with pytest.raises(ValueError, match="1 to 2 stops apart"):
         pipeline.assemble(taken)

@@ -28,7 +28,7 @@ STATE = Assembly(
     ("rivals", "relative", "doubted"),
     [((), False, False), ((1, 2), False, True), ((1, 2), True, False)],
 )
-def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_times_leave_it_open_which(
+def test_a_frame_that_contradicts_all_others_is_dropped_with_a_warning_only_if_it_is_ambiguous(
     rivals, relative, doubted, monkeypatch
 ):
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((3,), rivals))
@@ -47,7 +47,7 @@ def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_t
         ("auto", 199, None, ghosts.WIDESPREAD),
     ],
 )
-def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_itself_not_where_half_did(
+def test_ghosts_reference_uses_the_middle_photo_and_auto_stops_at_widespread_motion(
     way, moved, fixed, most, monkeypatch
 ):
     def remove(*_, **named):
@@ -67,7 +67,7 @@ def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_
 @pytest.mark.parametrize(
     ("spread", "other", "replaced"), [(0.5, 0.0, False), (0.51, 0.25, False), (0.51, 0.24, True)]
 )
-def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_than_half_of_that(
+def test_relative_times_replace_those_of_a_worthless_map_if_they_halve_the_limit_of_spread(
     spread, other, replaced, monkeypatch
 ):
     def correct(taken, response, stated_spread=None):
@@ -83,7 +83,7 @@ def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_t
     assert ["0.70 stops" in doubt for doubt in found.doubts] == [True] * replaced
 
 
-def test_photographs_that_get_darker_while_the_times_rise_are_named():
+def test_photos_that_get_darker_with_longer_times_are_named():
     ramp = np.linspace(20, 240, 400).reshape(20, 20)
     images = np.stack([ramp * share for share in (0.5, 0.7, 1, 0.6, 0.8)]).astype(np.uint8)
     with pytest.raises(ValueError, match=r"c \(3 s\) and d \(4 s\)"):

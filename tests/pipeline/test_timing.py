@@ -29,7 +29,7 @@ def taken(room):
     return camera.shoot(room, camera.times_around(room, 5, stops=2), rng=1)
 
 
-def test_photographs_so_many_stops_apart_make_the_map_of_their_times(taken):
+def test_spacing_by_stops_gives_the_same_map_as_the_true_times(taken):
     shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
     spaced = space_by_stops(shuffled, 2)
     assert spaced.times.tolist() == [1, 4, 16, 64, 256] and np.array_equal(
@@ -39,7 +39,7 @@ def test_photographs_so_many_stops_apart_make_the_map_of_their_times(taken):
     assert np.allclose(ratio, np.median(ratio), rtol=1e-2)
 
 
-def test_steps_may_differ_and_are_positive(taken):
+def test_steps_in_stops_may_differ_and_must_be_positive(taken):
     assert space_by_stops(taken, [1, 2, 1, 3]).times.tolist() == [1, 2, 8, 16, 128]
     with pytest.raises(ValueError, match="positive steps"):
         space_by_stops(taken, -1)
@@ -70,13 +70,13 @@ def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
         pipeline.assemble(replace(taken, times=np.full(5, 0.01)), times="stated")
 
 
-def test_one_exposure_many_times_is_refused(room):
+def test_a_burst_of_one_exposure_raises_an_error(room):
     burst = camera.shoot(room, [0.002] * 4, camera.Camera(full_well=20_000), rng=1)
     with pytest.raises(ValueError, match="at least two different exposures"):
         pipeline.assemble(burst)
 
 
-def test_times_in_the_wrong_order_are_refused_or_estimated_where_that_is_asked_for(taken):
+def test_times_in_the_wrong_order_raise_an_error_unless_they_are_estimated(taken):
     reversed_ = bracket(taken.images, taken.times[::-1])
     with pytest.raises(ValueError, match="frame 5 .* and frame 4 .*darker photo.*--times estimate"):
         complete_times(reversed_, "correct")
@@ -84,14 +84,14 @@ def test_times_in_the_wrong_order_are_refused_or_estimated_where_that_is_asked_f
     assert np.array_equal(found.images, taken.images) and "relative" in note
 
 
-def test_true_times_stay_byte_for_byte_and_say_nothing(taken):
+def test_true_times_are_not_changed_and_give_no_note(taken):
     found = pipeline.assemble(taken)
     assert found.bracket.times.tobytes() == taken.times.tobytes()
     assert not found.doubts and not found.fallback
     assert all(note.startswith("response: ") for note in found.notes)  # none about times
 
 
-def test_rough_times_are_corrected_unless_they_are_to_stay():
+def test_rough_times_are_corrected_unless_times_is_stated():
     room = scenes.room((280, 420))
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     rough = replace(taken, times=taken.times * [1, 1, 1.1, 1, 1])
@@ -120,9 +120,7 @@ def mistaken():
     return bracket(camera.shoot(room, times).images, times * [1, 2.2, 0.7, 1.3, 1], list("abcde"))
 
 
-def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions_which_follow_are_not(
-    mistaken, monkeypatch
-):
+def test_misaligned_photos_still_report_replaced_times_but_no_contradictions(mistaken, monkeypatch):
     def lie_apart(*given, **named):
         return replace(align_bracket(*given, **named), doubts=("a and b could not be aligned",))
 
@@ -134,7 +132,7 @@ def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions
     assert apart == ("a and b could not be aligned", said[0])
 
 
-def test_times_that_leave_no_two_photographs_to_compare_contradict_them_beyond_measure(mistaken):
+def test_times_that_leave_nothing_to_compare_are_reported_without_a_number(mistaken):
     (state, *_) = pipeline.assemble_steps(
         replace(mistaken, times=2.0 ** np.arange(5) / 64), align="none"
     )

@@ -25,7 +25,7 @@ def test_the_filter_is_the_mean_by_weights_in_space_and_range():
     assert np.allclose(filtered.k, k, rtol=1e-5)
 
 
-def test_a_flat_signal_stays_and_rests_on_fewer_pixels_at_its_edge():
+def test_a_flat_signal_is_not_changed_and_k_falls_toward_the_edge():
     filtered = bilateral(np.full((20, 30), 3.5), sigma_s=2, sigma_r=0.1)
     assert np.allclose(filtered.mean, 3.5)
     assert filtered.k[10, 15] == pytest.approx(2 * np.pi * 2**2, rel=0.02)

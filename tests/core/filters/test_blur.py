@@ -21,7 +21,7 @@ def test_a_blur_keeps_a_constant_the_total_and_the_sign(gaussian, sigma):
 
 @BOTH
 @pytest.mark.parametrize("sigma", [1, 6])
-def test_a_blur_does_not_care_which_way_up_the_picture_is(gaussian, sigma):
+def test_a_blur_commutes_with_transposing_and_flipping(gaussian, sigma):
     image = np.exp(np.random.default_rng(0).standard_normal((50, 72))).astype(np.float32)
     blurred = gaussian(image, sigma)
     assert np.allclose(gaussian(image.T, sigma).T, blurred, rtol=1e-5)

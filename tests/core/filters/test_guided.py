@@ -41,14 +41,14 @@ def test_the_filter_is_the_least_squares_of_each_window_averaged(rng, radius, ep
     )
 
 
-def test_a_picture_is_its_own_guide_where_none_is_given(rng):
+def test_the_image_is_its_own_guide_by_default(rng):
     I = rng.normal(size=(20, 30))  # noqa: E741
     knobs = {"radius": 3, "epsilon": 0.2}
     assert np.array_equal(guided.guided(I, **knobs), guided.guided(I, I, **knobs))
 
 
 @given(radius=st.integers(1, 40), epsilon=st.floats(1e-6, 1e3), level=st.floats(-5, 5))
-def test_a_flat_picture_stays_as_it_is(radius, epsilon, level):
+def test_a_flat_image_is_not_changed(radius, epsilon, level):
     assert np.allclose(guided.guided(np.full((9, 7), level), radius=radius, epsilon=epsilon), level)
 
 
@@ -70,7 +70,7 @@ def test_a_large_epsilon_leaves_two_means_and_a_small_one_the_picture(rng):
     assert np.allclose(guided.guided(I, radius=2, epsilon=1e-12), I, atol=1e-6)
 
 
-def test_a_step_stays_and_a_ripple_goes_but_for_beside_the_step():
+def test_a_step_is_kept_and_a_ripple_is_removed_except_beside_the_step():
     x = np.arange(200)
     plains, ripple = np.where(x < 100, 0.0, 2.0), 0.1 * np.sin(x / 2)
     left = guided.guided((plains + ripple) * np.ones((40, 1)), radius=8, epsilon=0.04)[20] - plains
@@ -99,12 +99,12 @@ def test_the_edge_of_another_guide_is_taken_over(rng):
         (np.ones((5, 5)), None, {"epsilon": np.inf}),
     ],
 )
-def test_what_has_no_line_is_refused(I, p, knobs):  # noqa: E741
+def test_invalid_images_and_parameters_raise_an_error(I, p, knobs):  # noqa: E741
     with pytest.raises(ValueError, match="expected"):
         guided.guided(I, p, **{"radius": 2, "epsilon": 0.1} | knobs)
 
 
-def test_opencv_finds_the_same_inside_where_no_window_is_cut():
+def test_the_filter_agrees_with_opencv_away_from_the_border():
     cv2 = pytest.importorskip("cv2")
     if not hasattr(cv2, "ximgproc"):
         pytest.skip("this OpenCV has no ximgproc (opencv-contrib-python-headless)")

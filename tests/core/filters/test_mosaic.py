@@ -41,14 +41,14 @@ def test_a_gradient_comes_back_inside():
     assert np.allclose(back[1:-1, 1:-1], E[1:-1, 1:-1])
 
 
-def test_inside_it_is_opencvs_bilinear_interpolation():
+def test_demosaicing_equals_opencvs_bilinear_interpolation_inside():
     Z = np.random.default_rng(3).integers(0, 65536, (40, 52), dtype=np.uint16)
     theirs = cv2.cvtColor(Z, cv2.COLOR_BayerRGGB2RGB)
     ours = mosaic.demosaic(Z, filters(Z.shape))
     assert np.abs(ours - theirs)[2:-2, 2:-2].max() <= 0.5  # they round
 
 
-def test_what_does_not_fit_together_is_refused():
+def test_invalid_mosaics_raise_an_error():
     for call in (
         lambda: mosaic.tile([0, 1], (4, 4)),
         lambda: mosaic.tile(mosaic.BAYER, (0, 4)),

@@ -56,7 +56,7 @@ def test_cosines_about_the_edges_are_the_eigenvectors(n):
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_a_picture_comes_back_from_its_laplacian_but_for_its_mean(shape, dtype):
+def test_solve_inverts_the_laplacian_except_for_the_mean(shape, dtype):
     u = np.random.default_rng(2).standard_normal(shape).astype(dtype)
     back = poisson.solve(poisson.laplacian(u))
     assert back.dtype == dtype and np.allclose(back, u - u.mean(), atol=1e-5)
@@ -86,7 +86,7 @@ def test_the_solution_is_that_of_a_sparse_direct_solver(shape):
     assert np.abs(poisson.solve(f.astype(np.float32)) - (held - held.mean())).max() < 1e-4
 
 
-def test_no_other_picture_has_nearer_gradients():
+def test_the_solution_has_the_closest_gradients_of_all_images():
     G, rng = field((20, 30)), np.random.default_rng(3)
     u = poisson.solve(poisson.divergence(G))
     inside = np.ones_like(G)
@@ -99,7 +99,7 @@ def test_no_other_picture_has_nearer_gradients():
         assert distance(u + 0.1 * rng.standard_normal(u.shape)) > distance(u)
 
 
-def test_a_mean_that_no_picture_has_is_left_out():
+def test_a_nonzero_mean_of_the_divergence_is_ignored():
     f = poisson.divergence(field((9, 14)))
     assert np.allclose(poisson.solve(f + 5), poisson.solve(f))
 
@@ -109,7 +109,7 @@ def test_the_mirror_image_has_the_mirrored_solution():
     assert np.allclose(poisson.solve(f[::-1, ::-1]), poisson.solve(f)[::-1, ::-1])
 
 
-def test_what_is_no_picture_is_refused():
+def test_invalid_images_raise_an_error():
     for wrong in (np.ones(4), np.ones((2, 3, 4)), np.ones((0, 3))):
         with pytest.raises(ValueError, match="picture"):
             poisson.solve(wrong)

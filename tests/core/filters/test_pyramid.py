@@ -70,14 +70,14 @@ def test_linear_interpolation_keeps_a_ramp_and_the_pixels_it_lies_on():
     assert np.allclose(fine, np.add.outer(1.5 * np.arange(17), 0.5 * np.arange(23)), atol=1e-5)
 
 
-def test_planes_are_taken_one_by_one():
+def test_planes_are_processed_independently():
     image = noise((3, 21, 34))
     for level, planes in enumerate(pyramid.laplacian(image, 4)):
         alone = [pyramid.laplacian(plane, 4)[level] for plane in image]
         assert np.allclose(planes, alone, atol=1e-6)
 
 
-def test_an_image_is_left_alone():
+def test_the_pyramid_does_not_change_its_argument():
     image = noise((20, 30))
     image.setflags(write=False)
     pyramid.laplacian(image, 3)

@@ -6,7 +6,7 @@ import pytest
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 
 
-def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_whole():
+def test_glare_equals_the_double_sum_and_conserves_light_inside_the_frame():
     """K is 0 in its middle and beyond the frame, and its sum is 1: against the double sum."""
     height, width, power, core = 5, 7, 2.0, 1.5
     E = np.random.default_rng(2).random((height, width)).astype(np.float32)
@@ -25,6 +25,6 @@ def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_wh
 @pytest.mark.parametrize(
     "spread", [(-0.1,), (1,), (np.nan,), (0.1, 0), (0.1, np.inf), (0.1, 2, 0), (0.1, 2, np.inf)]
 )
-def test_a_spread_that_no_lens_has_is_refused(spread):
+def test_an_invalid_glare_spread_raises_an_error(spread):
     with pytest.raises(ValueError, match="share"):
         validate_spread(GlareSpread(*spread))

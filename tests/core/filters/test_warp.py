@@ -61,7 +61,7 @@ def test_a_sample_stays_between_the_four_pixels_around_it():
     assert moved.max() <= 1000
 
 
-def test_beyond_the_border_the_last_pixels_go_on():
+def test_samples_beyond_the_border_repeat_the_edge_pixels():
     moved = warp.sample(PICTURE, warp.as_homographies([[0, 20]])[0], (9, 12))
     assert np.allclose(moved, PICTURE[:, -1:], atol=1e-6)
 
@@ -71,7 +71,7 @@ def test_the_common_rectangle_of_shifted_pictures_is_what_all_of_them_cover():
     assert (rows, columns) == (slice(2, 9), slice(0, 9))
 
 
-def test_a_picture_turned_over_its_own_middle_leaves_the_largest_rectangle_inside():
+def test_the_common_rectangle_of_a_rotated_image_is_the_largest_inside():
     shape = (40, 60)
     H = warp.turn(shape, 10)
     rows, columns = warp.common_rectangle([H], shape)
@@ -97,7 +97,7 @@ def test_a_picture_turned_over_its_own_middle_leaves_the_largest_rectangle_insid
         [np.diag([1, 1, 0])],
     ],
 )
-def test_what_is_no_invertible_homography_is_refused(homographies):
+def test_a_homography_that_is_not_invertible_raises_an_error(homographies):
     with pytest.raises(InputError):
         warp.as_homographies(homographies)
 
@@ -107,6 +107,6 @@ def test_as_many_homographies_as_images_are_required():
         warp.as_homographies([[0, 0], [1, 1]], 3)
 
 
-def test_homographies_that_leave_nothing_in_common_are_refused():
+def test_homographies_without_a_common_area_raise_an_error():
     with pytest.raises(ValueError, match="overlap"):
         warp.common_rectangle([[0, 0], [9, 0]], (9, 12))
