@@ -95,7 +95,7 @@ def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17) -> Axes:
         ax.plot(
             np.arange(1, len(share) + 1), decades, marker, color=colour, markersize=3, label=name
         )
-    ax.set(xlabel="number k of the singular value", ylabel="log10 of its share of the largest")
+    ax.set(xlabel="number k of the singular value", ylabel="log10 of σ over the largest")
     ax.set_ylim(np.log10(least) - 0.5, 0.5)
     return with_legend(ax, "lower left")
 
