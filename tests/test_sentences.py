@@ -618,19 +618,19 @@ def unanswered():
     """Return what the sliders of a notebook raise where they are moved after its last cell has run."""
     found = []
     for tuner in [one for one in widget._instances.values() if isinstance(one, Tuner)]:
+        start = list(tuner.at)
         for k, name in enumerate(tuner.names):
-            moved = [(at + (k == j)) % len(tuner.values[j]) for j, at in enumerate(tuner.at)]
-            try:
-                tuner._picture(moved)
-            except Exception as error:
-                found.append(f"{tuner.alt}, {name}: {error!r}")
+            tuner.at = [(at + (k == j)) % len(tuner.values[j]) for j, at in enumerate(start)]
+            if tuner.problem:
+                found.append(f"{tuner.alt}, {name}: {tuner.problem}")
+            tuner.at = start
     return found
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_each_sentence_stands_in_its_notebook(path):
     text = " ".join(" ".join("".join(cell["source"]) for cell in cells_of(path)).split())
-    assert [sentence for sentence in SENTENCES[path.stem[:2]] if sentence not in text] == []
+    assert [sentence for sentence in SENTENCES.get(path.stem[:2], {}) if sentence not in text] == []
 
 
 def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_cannot_be_judged_with_the_reason():
@@ -653,4 +653,4 @@ def test_a_slider_whose_function_has_lost_a_name_since_is_told(monkeypatch):
     )
     assert unanswered() == []
     names.clear()
-    assert unanswered() == ["A square, a: KeyError('level')"]
+    assert unanswered() == ["A square, a: KeyError: 'level'"]

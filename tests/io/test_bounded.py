@@ -193,6 +193,6 @@ def test_what_stands_in_a_list_of_times_is_told_in_few_letters(tmp_path):
     path = tmp_path / "times.txt"
     for line in ("a.jpg " + "9" * 5000, "a.jpg 1 " + "8" * 3000 + " 9 9", "a.jpg 3[" + "[" * 3000):
         path.write_text(line)
-        with pytest.raises(ValueError, match=r"times\.txt, line 1: expected") as said:
+        with pytest.raises(ValueError, match=r"times\.txt, line 1") as said:
             times.read_times(path)
         assert len(str(said.value)) < 500

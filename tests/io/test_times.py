@@ -1,13 +1,13 @@
 """Exposure times from lists and from EXIF, and which of them a bracket takes."""
 
 import math
-import re
 
 import pytest
 from hypothesis import given, strategies as st
 from PIL import Image
 from PIL.TiffImagePlugin import IFDRational
 
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.exif_exposure import Exposure, equivalent_seconds, read_exposure
 from hdrlab.io.times import are_inverse, bracket_times, read_times
 
@@ -167,46 +167,30 @@ def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_pa
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "times.txt: expected a list of exposure times, it is empty"),
-        ("# only a comment\n", "it is empty"),
-        (
-            "a.jpg 2\nb.jpg\n",
-            "times.txt, line 2: expected a file name and its time, such as 1/60, got b.jpg",
-        ),
-        (
-            "a.jpg 2\n\nb.jpg fast\n",
-            "line 3: expected a positive number such as 0.5 or 1/60, got fast",
-        ),
-        ("a.jpg 2\nb.jpg 0\n", "line 2: expected a positive number such as 0.5 or 1/60, got 0"),
-        ("a.jpg -2\n", "line 1: expected a positive number such as 0.5 or 1/60, got -2"),
-        ("a.jpg nan\n", "line 1: expected a positive number such as 0.5 or 1/60, got nan"),
-        ("a.jpg 2\na.jpg 4\n", "line 2: expected each file once, got a.jpg again"),
-        ("a.png 1 1 8 6 0\n", "line 1: expected neither gain nor ND filters"),
-        ("file,exposure_time_s\na.jpg\n", "line 2: expected 2 columns, got a.jpg"),
-        (
-            "file,exposure_time_s\na.jpg,\n",
-            "line 2: expected a positive number such as 0.5 or 1/60, got nothing",
-        ),
-        (
-            "file,exposure_time_s\na.jpg,1/0\n",
-            "line 2: expected a positive number such as 0.5 or 1/60, got 1/0",
-        ),
-        ("file,exposure_time_s\n", "it is empty"),
-        ("1/60\n1/30\n", "line 1: expected a file name and its time, such as 1/60, got 1/60"),
-        (
-            "file,exposure_time_s,iso\na.jpg,1,0\n",
-            "line 2: expected a positive number such as 0.5 or 1/60, got 0",
-        ),
-        (
-            "file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n",
-            "times.txt: b.jpg: no ISO speed",
-        ),
+        ("a.jpg 2\nb.jpg\n", "line 2.* b.jpg"),
+        ("a.jpg 2\n\nb.jpg fast\n", "line 3.* fast"),
+        ("a.jpg 2\nb.jpg 0\n", "line 2.* 0"),
+        ("a.jpg -2\n", "line 1.* -2"),
+        ("a.jpg nan\n", "line 1.* nan"),
+        ("a.jpg 2\na.jpg 4\n", "line 2.* a.jpg"),
+        ("a.png 1 1 8 6 0\n", "line 1.*ND filter"),
+        ("file,exposure_time_s\na.jpg\n", "line 2.*2 columns.* a.jpg"),
+        ("file,exposure_time_s\na.jpg,\n", "line 2.* nothing"),
+        ("file,exposure_time_s\na.jpg,1/0\n", "line 2.* 1/0"),
+        ("1/60\n1/30\n", "line 1.* 1/60"),
+        ("file,exposure_time_s,iso\na.jpg,1,0\n", "line 2.* 0"),
+        ("file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n", "b.jpg.*ISO"),
     ],
 )
-def test_a_list_that_is_wrong_names_file_line_and_what_was_expected(tmp_path, text, says):
-    with pytest.raises(ValueError, match=re.escape(says)) as caught:
+def test_a_wrong_list_of_times_names_the_file_the_line_and_the_value(tmp_path, text, says):
+    with pytest.raises(InputError, match=f"times.txt.*{says}"):
         read_times(wrote(tmp_path, text))
-    assert "times.txt" in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["", "# only a comment\n", "file,exposure_time_s\n"])
+def test_an_empty_list_of_times_is_refused_by_name(tmp_path, text):
+    with pytest.raises(FileFormatError, match="times.txt.*empty"):
+        read_times(wrote(tmp_path, text))
 
 
 def test_a_list_that_is_not_text_is_refused(tmp_path):
