@@ -67,15 +67,29 @@ def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
         ballots.cast(db, "ann", [eve], now=small.CLOSES.timestamp())
 
 
-def test_a_refused_ballot_leaves_the_one_before(tmp_path):
-    room = small.make(tmp_path)
+def refuse_ballot(folder, marks_of):
+    """Cast a ballot that must be refused, after one for eve, and return what ann's ballot holds then."""
+    room = small.make(folder)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
-        for wrong in ([room.artifacts["team1"]], ["nothing"], list(room.artifacts.values())):
-            with pytest.raises(ballots.NotAccepted):
-                ballots.cast(db, "ann", wrong, now=room.clock())
+        with pytest.raises(ballots.NotAccepted):
+            ballots.cast(db, "ann", marks_of(room.artifacts), now=room.clock())
     with closing(store.connect(room.folder)) as db:
-        assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
+        return {
+            name for name, key in room.artifacts.items() if key in ballots.read_ballot(db, "ann")[1]
+        }
+
+
+def test_nobody_can_vote_for_their_own_team(tmp_path):
+    assert refuse_ballot(tmp_path, lambda artifacts: [artifacts["team1"]]) == {"eve"}
+
+
+def test_nobody_can_vote_for_a_picture_that_does_not_exist(tmp_path):
+    assert refuse_ballot(tmp_path, lambda artifacts: ["nothing"]) == {"eve"}
+
+
+def test_nobody_has_more_votes_than_the_gallery_gives(tmp_path):
+    assert refuse_ballot(tmp_path, lambda artifacts: list(artifacts.values())) == {"eve"}
 
 
 def test_a_new_title_keeps_the_votes_and_a_new_picture_begins_without(tmp_path):

@@ -11,6 +11,7 @@ from PIL import Image
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
+from hdrlab.capture.responses import true_g
 from hdrlab.cli import common, main
 from hdrlab.errors import InputError
 from hdrlab.fast import debevec
@@ -37,6 +38,18 @@ def test_a_response_that_no_camera_has_marks_the_map_as_fallback(worthless):
     found = pipeline.assemble(worthless, align="none", times="stated")
     assert found.fallback
     assert found.doubts
+
+
+def test_a_map_whose_frames_disagree_by_stops_is_not_worth_a_picture(taken):
+    def recover_true_response(images, times, *, valid=None):
+        return np.repeat(true_g("film")[:, None], 3, axis=1)
+
+    wrong = replace(taken, times=taken.times * [1, 3, 1, 3])
+    for bracket, is_worthless in ((taken, False), (wrong, True)):
+        found = pipeline.assemble(
+            bracket, response=recover_true_response, align="none", times="stated"
+        )
+        assert bool(found.fallback) == is_worthless
 
 
 def test_the_photos_of_a_worthless_map_are_kept_for_the_fusion(worthless):
