@@ -8,7 +8,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course.checks import SPECIFICATION, pytest_process
+from hdrlab.course.sandbox.subprocess_runner import import_path
 
 
 @pytest.fixture
@@ -44,11 +45,11 @@ def followed(monkeypatch, tmp_path):
             told.now += seconds
 
         monkeypatch.setattr(
-            running, "time", SimpleNamespace(monotonic=lambda: told.now, sleep=sleep)
+            pytest_process, "time", SimpleNamespace(monotonic=lambda: told.now, sleep=sleep)
         )
-        monkeypatch.setattr(running.subprocess, "Popen", Process)
-        told.lines = running.run(
-            tmp_path, tmp_path / "job.json", [tmp_path / "test_a.py"], patience
+        monkeypatch.setattr(pytest_process.subprocess, "Popen", Process)
+        told.lines = pytest_process.run_pytest(
+            tmp_path, tmp_path / "job.json", [tmp_path / "test_a.py"], timeout=patience
         )
         return told
 
@@ -83,10 +84,7 @@ def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(
     ):
         assert word in told.words
     assert "PYTEST_ADDOPTS" not in environment and environment["OF_MINE"] == "1"
-    assert (
-        environment["TMPDIR"] == str(tmp_path)
-        and environment["PYTHONPATH"] == running.import_path()
-    )
+    assert environment["TMPDIR"] == str(tmp_path) and environment["PYTHONPATH"] == import_path()
     for name in (
         "PYTEST_DISABLE_PLUGIN_AUTOLOAD",
         "PYTHONDONTWRITEBYTECODE",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course.checks import SPECIFICATION
 from hdrlab.course.grading import grader
 from hdrlab.course.grading.results import Drawing
 from hdrlab.course.plan import GradingOptions
@@ -52,15 +52,13 @@ def heard(monkeypatch):
     jobs, chosen = [], []
 
     def heard(*lines, conditions=grader.FOR_CREDIT, homework=HOMEWORK, read=READ):
-        def run(folder, job, files, patience):
+        def run(folder, job, files, *, timeout):
             told = json.loads(job.read_text("utf8"))
             texts = {file: file.read_text("utf8") for file in files}
-            jobs.append(
-                (folder, job, files, patience, told, texts, (folder / "lines").read_bytes())
-            )
+            jobs.append((folder, job, files, timeout, told, texts, (folder / "lines").read_bytes()))
             yield from lines
 
-        monkeypatch.setattr(running, "run", run)
+        monkeypatch.setattr(grader, "run_pytest", run)
         monkeypatch.setattr(tiers, "choose", chosen.append)
         return list(grader.check_steps(read, homework, conditions))
 

@@ -23,7 +23,8 @@ import hdrlab
 from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
 from hdrlab.course import plan
-from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course.checks import SPECIFICATION
+from hdrlab.course.checks.pytest_process import run_pytest
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Drawing, Result
 from hdrlab.course.plan import GradingOptions, Homework, Task
@@ -119,7 +120,7 @@ def iter_events(
         files = _apply_variants(files_of(homework, options.hidden), homework, folder)
         yield {"specification": specification(files)}
         job = _write_job(folder, code, homework, options, **more)
-        for event in running.run(folder, job, files, ALL_CHECKS_TIMEOUT_SECONDS):
+        for event in run_pytest(folder, job, files, timeout=ALL_CHECKS_TIMEOUT_SECONDS):
             if "unavailable" in event:
                 raise Unavailable(event["unavailable"])
             yield event

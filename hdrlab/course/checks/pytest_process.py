@@ -1,0 +1,122 @@
+"""Run the specification by pytest in a process of its own, and read the results as they come.
+
+The student's code never runs in this process: the checks call it in a sandbox (see subject.py).
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from hdrlab.course.checks import SPECIFICATION
+from hdrlab.course.sandbox.subprocess_runner import import_path
+from hdrlab.errors import InputError
+
+POLL_SECONDS = 0.02
+# pytest's exit codes if all checks hold, and if some do not
+COMPLETED_EXIT_CODES = (0, 1)
+MAX_ERROR_LINES = 4
+# variables that could change a score, or run other code in the process
+REMOVED_VARIABLES = ("PYTEST_ADDOPTS", "PYTEST_PLUGINS", "PYTHONSTARTUP", "PYTHONINSPECT")
+
+
+def run_pytest(
+    folder: Path, job: Path, files: Sequence[Path], *, timeout: float
+) -> Iterator[dict[str, Any]]:
+    """Run checks, and yield the lines that the plugin writes as soon as it writes them.
+
+    When the time is over, this ends the process; the lines until then count.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder for this run, with the file "lines" that the plugin writes to.
+    job : Path
+        The file that tells the plugin what to check; see plugin.py.
+    files : sequence of Path
+        The files with the checks.
+    timeout : float
+        Seconds that the process may take.
+
+    Raises
+    ------
+    InputError
+        If something outside ended the process, or pytest could not run the checks.
+    """
+    empty_folder = folder / "empty"
+    empty_folder.mkdir()
+    output_path = folder / "output"
+    with output_path.open("wb") as output:
+        process = subprocess.Popen(
+            _command(job, empty_folder, files),
+            cwd=empty_folder,
+            env=_environment(folder),
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=output,
+        )
+        try:
+            yield from _read_lines(process, folder / "lines", timeout)
+        finally:
+            # None if the time is over, or the caller takes no more lines
+            exit_code = process.poll()
+            process.kill()
+            process.wait()
+    if exit_code is None or exit_code in COMPLETED_EXIT_CODES:
+        return
+    if exit_code < 0:
+        raise InputError(f"the checks were ended from outside, by signal {-exit_code}")
+    output_lines = output_path.read_text(errors="replace").strip().splitlines()
+    last_lines = " / ".join(output_lines[-MAX_ERROR_LINES:])
+    raise InputError(f"the checks could not be run: {last_lines}")
+
+
+def _read_lines(
+    process: "subprocess.Popen[bytes]", path: Path, timeout: float
+) -> Iterator[dict[str, Any]]:
+    """Yield the JSON objects that a process writes to a file, one a line, until it ends."""
+    deadline = time.monotonic() + timeout
+    # the start of a line whose end is not written yet
+    incomplete_line = ""
+    with path.open(encoding="utf8") as file:
+        while True:
+            # looked up before reading: a process that has ended writes nothing more
+            has_ended = process.poll() is not None
+            *lines, incomplete_line = (incomplete_line + file.read()).split("\n")
+            for line in lines:
+                yield json.loads(line)
+            if has_ended or time.monotonic() > deadline:
+                return
+            time.sleep(POLL_SECONDS)
+
+
+def _command(job: Path, empty_folder: Path, files: Sequence[Path]) -> list[str]:
+    """Return the pytest command, which uses no configuration, plugin or conftest of this machine."""
+    command = [sys.executable, "-P", "-m", "pytest", "-q", "-q"]
+    command += ["--noconftest", "--import-mode=importlib", "--tb=native"]
+    command += [f"--rootdir={empty_folder}", f"--confcutdir={empty_folder}"]
+    # an empty configuration file
+    command += ["-c", os.devnull]
+    command += ["-p", "no:cacheprovider"]
+    command += ["-p", "hdrlab.course.checks.plugin"]
+    command += ["-W", "ignore"]
+    command += ["-o", f"pythonpath={SPECIFICATION}"]
+    command += [f"--job={job}"]
+    return [*command, *[str(file) for file in files]]
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """Return this process's environment without what could change a score."""
+    environment = {
+        name: value for name, value in os.environ.items() if name not in REMOVED_VARIABLES
+    }
+    environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    environment["OPENBLAS_NUM_THREADS"] = "1"
+    environment["PYTHONPATH"] = import_path()
+    environment["TMPDIR"] = str(folder)
+    return environment
