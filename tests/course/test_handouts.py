@@ -162,7 +162,7 @@ def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
     sheet = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), ours).assignment
     (cell,) = [cell["source"] for cell in sheet["cells"] if "use_plan(" in cell["source"]]
     assert cell.endswith('use_plan("hw2", hat=20)')
-    monkeypatch.setattr(notebook, "_plan", {})
+    monkeypatch.setattr(notebook, "_planned", {})
     exec(cell[cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
     for name in ("hat", "hw2"):
         homework, tasks = notebook.find_tasks(name)
@@ -182,7 +182,7 @@ def test_a_sheet_of_choices_says_how_many_points_count_and_check_counts_no_more(
         and "the tasks give 170 points, of which 100 count at most" in text
     )
     (cell,) = [cell["source"] for cell in sheet["cells"] if "use_plan(" in cell["source"]]
-    monkeypatch.setattr(notebook, "_plan", {})
+    monkeypatch.setattr(notebook, "_planned", {})
     exec(cell[cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
     assert notebook.find_tasks("hw4")[0] == hw4 and hw4.points == 100
 
