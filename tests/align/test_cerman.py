@@ -51,7 +51,7 @@ def test_two_exposures_come_to_one_scale(room, response):
 
 
 @pytest.mark.parametrize("response", ["film", "srgb"])
-def test_without_times_the_ratio_comes_out_of_the_histograms(room, response):
+def test_without_times_the_exposure_ratio_is_estimated_from_histograms(room, response):
     times = camera.times_around(room, 2, stops=1.5)
     dark, bright = camera.shoot(
         room, times, camera.Camera(response=response), offsets=[[4, -6], [0, 0]]
@@ -61,7 +61,7 @@ def test_without_times_the_ratio_comes_out_of_the_histograms(room, response):
     )
 
 
-def test_what_either_photograph_does_not_measure_is_discarded_in_both(room):
+def test_pixels_that_one_photo_does_not_measure_are_discarded_in_both(room):
     taken = camera.shoot(room, camera.times_around(room, 2, stops=3))
     dark, bright = (image[..., 1] for image in taken.images)
     X = light.pair(bright, dark, *(np.exp(true_g()) * k for k in (1.0, 8.0)))[0]
@@ -83,7 +83,7 @@ def test_the_highest_peak_is_the_shift(dy, dx, seed):
     assert cerman.peaks(cerman.correlation(X), 1).tolist() == [[dy, dx]]
 
 
-def test_the_error_is_zero_where_light_is_equal_and_does_not_depend_on_its_unit(room):
+def test_the_error_is_zero_for_equal_light_and_does_not_depend_on_its_unit(room):
     L = room[..., 1] + np.float32(0.01)
     X, p = np.stack([L, L]), light.lattice(SHAPE)
     assert light.error(light.differences(X, np.eye(3), p)) == 0
@@ -145,7 +145,7 @@ def test_gray_and_colour_8_and_16_bits(room, bits, colours):
     assert off(cerman.align(taken.images, taken.times, g), truth) < 0.3
 
 
-def test_four_frames_are_chained_to_the_middle_one(room):
+def test_four_frames_are_aligned_to_the_middle_one(room):
     moves = hand_motion.shake(4, SHAPE, radius=6, degrees=1.5, rng=3)
     taken, truth = shoot(room, moves)
     found = cerman.align(taken.images, taken.times, true_g())
@@ -153,7 +153,7 @@ def test_four_frames_are_chained_to_the_middle_one(room):
     assert off(np.roll(found, -3, axis=0), np.roll(truth, -3, axis=0)) < 0.5
 
 
-def test_frames_in_another_order_get_the_same_moves_in_that_order(room):
+def test_the_order_of_frames_does_not_change_their_homographies(room):
     taken, _ = shoot(room, hand_motion.shake(3, SHAPE, radius=5, degrees=1, rng=2))
     order = [2, 0, 1]
     one = cerman.align(taken.images, taken.times, true_g())
@@ -161,19 +161,19 @@ def test_frames_in_another_order_get_the_same_moves_in_that_order(room):
     assert np.allclose(other, one[order])
 
 
-def test_frames_that_did_not_move_stay(room):
+def test_frames_from_a_tripod_are_not_moved(room):
     taken, _ = shoot(room, np.tile(np.eye(3), (2, 1, 1)))
     found = cerman.align(taken.images, taken.times, true_g())
     assert np.all(warp.corner_distance(found, np.eye(3), SHAPE) < 0.1)
 
 
-def test_one_frame_has_nothing_to_be_aligned_with(room):
+def test_a_single_frame_is_not_moved(room):
     taken, _ = shoot(room, [np.eye(3)])
     assert np.array_equal(cerman.align(taken.images, taken.times, true_g()), [np.eye(3)])
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (10, 10), (33, 63)])
-def test_small_frames_are_no_error(shape):
+def test_small_frames_are_aligned_without_an_error(shape):
     images = np.random.default_rng(0).integers(0, 256, (3, *shape), dtype=np.uint8)
     assert cerman.align(images, [1, 2, 4], true_g()).shape == (3, 3, 3)
 
@@ -186,13 +186,13 @@ def test_small_frames_are_no_error(shape):
         (np.zeros((2, 8, 8), np.uint8), [1]),
     ],
 )
-def test_what_cannot_be_aligned_is_refused(images, times):
+def test_invalid_images_and_times_raise_an_error(images, times):
     for verb in (cerman.align, lambda *given: list(cerman.align_steps(*given))):
         with pytest.raises(ValueError, match="expected"):
             verb(images, times, true_g())
 
 
-def test_where_nothing_is_known_of_a_pair_the_chain_goes_on_from_its_neighbour():
+def test_a_pair_without_a_result_does_not_break_the_chain_of_homographies():
     steps = [*warp.as_homographies([(1.5, 2), (10, 20.25), (100, 0)])]
     order = [3, 0, 2, 1]
 
@@ -204,7 +204,7 @@ def test_where_nothing_is_known_of_a_pair_the_chain_goes_on_from_its_neighbour()
     assert np.allclose(offsets(), [(0, 0), (-100, 0), (0, 0), (1.5, 2)])
 
 
-def test_where_a_shift_is_all_there_is_it_agrees_with_the_bitmaps(room):
+def test_for_pure_shifts_cerman_agrees_with_mtb(room):
     taken, _ = shoot(room, [[5, -8], [0, 0]])
     moves = cerman.align(taken.images, taken.times, true_g())
     assert np.abs(moves[:, :2, 2][:, ::-1] - mtb.align(taken.images)).max() < 0.3

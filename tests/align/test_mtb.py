@@ -34,7 +34,7 @@ def test_gray_is_green_or_the_slides_weighted_sum():
     assert np.array_equal(mtb.gray(image[..., 0]), image[..., 0])
 
 
-def test_white_stays_white_and_black_black_in_gray():
+def test_luma_of_white_is_255_and_of_black_0():
     for level in (0, 255):
         assert np.all(mtb.gray(np.full((4, 5, 3), level, np.uint8), luma=True) == level)
 
@@ -59,14 +59,14 @@ def test_half_the_pixels_are_above_the_threshold():
     assert np.allclose([state.fixed[0].mean(), state.moving[0].mean()], 0.5, atol=0.02)
 
 
-def test_in_a_tie_the_centre_stays():
+def test_in_a_tie_the_current_offset_is_kept():
     flat = np.zeros((2, 40, 60), bool)
     flat[1] = True
     errors = mtb.step(flat, flat, (3, -2))
     assert min(errors, key=errors.get) == (3, -2) and len(errors) == 9 and not any(errors.values())
 
 
-def test_a_step_compares_nine_and_the_sides_before_the_corners():
+def test_a_step_compares_nine_offsets_with_the_sides_before_the_corners():
     mask = np.random.default_rng(0).random((2, 60, 90)) < 0.5
     mask[1] = True
     errors = mtb.step(mask, np.roll(mask, (-1, 1), axis=(1, 2)), (0, 0))
@@ -100,7 +100,7 @@ def test_a_state_holds_the_bitmaps_of_its_level_with_thresholds_of_that_level():
             assert np.array_equal(bits[1], np.abs(Y.astype(int) - t) > 4)
 
 
-def test_what_is_done_to_a_state_does_not_reach_the_search():
+def test_changing_a_yielded_state_does_not_change_the_search():
     images = bracket([(0, 0), (9, -12), (3, 3)], [1, 4, 16])
     offsets = [state.offset for state in mtb.align_steps(images)]
     for state, offset in zip(mtb.align_steps(images), offsets, strict=True):
@@ -114,7 +114,7 @@ def test_what_is_done_to_a_state_does_not_reach_the_search():
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("channels", ["gray", "green", "luma"])
 @pytest.mark.parametrize("times", [(1, 4), (4, 1), (0.25, 1)])
-def test_known_offsets_are_found_two_stops_apart(channels, dtype, times):
+def test_known_offsets_are_found_in_photos_two_stops_apart(channels, dtype, times):
     images = bracket([(0, 0), (13, -22)], times, dtype=dtype)
     images = images[..., 0] if channels == "gray" else images
     offsets = mtb.align(images, luma=channels == "luma")
@@ -130,7 +130,7 @@ def test_the_range_is_two_to_the_bits_minus_one(offset):
 
 
 @pytest.mark.parametrize(("bits", "offset"), [(1, (1, -1)), (3, (7, 7)), (4, (-15, 11))])
-def test_fewer_bits_reach_less_far(bits, offset):
+def test_fewer_bits_search_a_smaller_range(bits, offset):
     images = bracket([offset, (0, 0)], [1, 4])
     assert mtb.align(images, bits=bits).tolist() == [list(offset), [0, 0]]
     assert all(
@@ -161,41 +161,41 @@ def test_aligned_and_shifted_frames_show_the_same_scene():
 # laws
 
 
-def test_identical_frames_stay():
+def test_identical_frames_are_not_moved():
     assert not mtb.align(np.repeat(bracket([(0, 0)], [1]), 3, axis=0)).any()
 
 
 @pytest.mark.parametrize("order", [(2, 0, 3, 1), (3, 2, 1, 0), (1, 3, 0, 2)])
-def test_frames_in_another_order_get_the_same_offsets_in_that_order(order):
+def test_the_order_of_frames_does_not_change_their_offsets(order):
     images = bracket([(0, 0), (4, -7), (-3, 12), (9, 9)], [0.25, 1, 4, 16])
     assert np.array_equal(mtb.align(images[list(order)]), mtb.align(images)[list(order)])
 
 
-def test_the_middle_frame_in_brightness_stays():
+def test_the_frame_of_middle_brightness_is_not_moved():
     images = bracket([(5, 5), (0, 0), (-3, 2)], [16, 1, 4])
     assert mtb.align(images)[2].tolist() == [0, 0]
 
 
-def test_one_frame_has_nothing_to_be_aligned_with():
+def test_a_single_frame_is_not_moved():
     images = bracket([(0, 0)], [1])
     assert mtb.align(images).tolist() == [[0, 0]] and list(mtb.align_steps(images)) == []
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (10, 10), (17, 63), (16, 64)])
-def test_small_frames_are_no_error(shape):
+def test_small_frames_are_aligned_without_an_error(shape):
     images = np.random.default_rng(0).integers(0, 256, (3, *shape), dtype=np.uint8)
     offsets = mtb.align(images)
     assert offsets.shape == (3, 2) and np.all(np.abs(offsets) <= 2 * np.array(shape))
 
 
-def test_the_chain_sums_the_pairs_from_the_middle():
+def test_chain_offsets_sums_the_pairs_from_the_middle_frame():
     steps = [(1, 2), (10, 20), (100, 0), (0, 5)]
     offsets = mtb.chain_offsets([4, 0, 3, 1, 2], steps)
     assert offsets.tolist() == [[10, 20], [-100, 0], [-100, -5], [0, 0], [11, 22]]
 
 
 @pytest.mark.parametrize("levels", [(60, 120, 240), (0, 0, 0), (255, 255, 255)])
-def test_frames_without_any_texture_stay(levels):
+def test_frames_without_texture_are_not_moved(levels):
     assert not mtb.align(np.stack([np.full((64, 80), level, np.uint8) for level in levels])).any()
 
 
@@ -208,13 +208,13 @@ def test_frames_without_any_texture_stay(levels):
         (np.zeros((2, 8, 8), np.uint8), 0),
     ],
 )
-def test_what_is_not_a_stack_of_photographs_is_refused(images, bits):
+def test_invalid_stacks_raise_an_error(images, bits):
     for verb in (mtb.align, lambda *a, **k: list(mtb.align_steps(*a, **k))):
         with pytest.raises(ValueError, match="expected"):
             verb(images, bits=bits)
 
 
-def test_the_search_goes_through_as_many_levels_as_it_is_told_bits():
+def test_the_search_uses_one_pyramid_level_per_bit():
     Y = np.random.default_rng(0).integers(0, 256, (512, 640), dtype=np.uint8)
     assert [state.level for state in mtb.search(Y, Y)] == [5, 4, 3, 2, 1, 0]
     assert [state.level for state in mtb.search(Y, Y, bits=2)] == [1, 0]
@@ -225,18 +225,18 @@ def histogram(codes):
     return np.bincount(np.asarray(codes, int), minlength=256)
 
 
-def test_the_percentile_is_the_median_where_the_median_divides_both_photographs():
+def test_the_percentile_is_the_median_if_the_median_divides_both_photos():
     dark, bright = histogram(np.arange(20, 120)), histogram(np.arange(120, 240))
     assert mtb.percentile(dark, bright) == 0.5
 
 
-def test_the_percentile_leaves_the_median_where_a_photograph_is_clipped_there():
+def test_the_percentile_differs_from_the_median_if_a_photo_is_clipped_there():
     clipped = histogram([255] * 60 + list(range(40, 200, 4)))  # 60 of 100 pixels are white
     q = mtb.percentile(clipped, histogram(np.arange(20, 120)))
     assert q == pytest.approx(0.4, abs=0.01)
     assert 0 < mtb.threshold(clipped, q) < 255
 
 
-def test_there_is_no_percentile_for_a_photograph_that_no_threshold_divides():
+def test_the_percentile_is_none_if_no_threshold_divides_the_photo():
     assert mtb.percentile(histogram([128] * 50)) is None  # noise decides every bit
     assert mtb.percentile(histogram([0] * 50 + [255] * 50)) is None

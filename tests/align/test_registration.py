@@ -42,7 +42,7 @@ def shoot(E, moves):
 # homographies
 
 
-def test_a_homography_goes_through_four_corners():
+def test_warp_through_finds_the_homography_of_four_corners():
     H = hand_motion.shake(2, SHAPE, degrees=9, zoom=0.1, tilt=0.1, rng=5)[0]
     assert np.allclose(
         warp.through(warp.corners(SHAPE), warp.apply(H, warp.corners(SHAPE))), H / H[2, 2]
@@ -54,7 +54,7 @@ def test_a_homography_of_a_level_is_that_of_the_next_in_its_pixels():
     assert np.allclose(homography.enlarge(H), warp.as_homographies([[2.5, -6]])[0])
 
 
-def test_points_that_do_not_agree_make_no_homography():
+def test_inconsistent_matches_give_no_homography():
     points = np.random.default_rng(0).uniform(0, 200, (2, 40, 2))
     H, agree = homography.consensus(points)
     assert np.array_equal(H, np.eye(3)) and not agree.any()
@@ -73,7 +73,7 @@ def test_a_step_ahead_with_a_tilted_camera_is_found():
     assert one.reliable and one.confidence > 0.6
 
 
-def test_where_there_is_no_point_the_photographs_stay_and_that_is_told():
+def test_photos_without_feature_points_are_not_moved_and_reported():
     images = np.stack([np.full((90, 120), level, np.uint8) for level in (60, 120)])
     (one,) = alignment.register(images, "homography").pairs
     assert np.array_equal(one.H, np.eye(3)) and not one.reliable
@@ -90,7 +90,7 @@ def test_where_there_is_no_point_the_photographs_stay_and_that_is_told():
         ([warp.turn(SHAPE, 2.5, (3.5, 1.2)), np.eye(3)], {"cerman"}),
     ],
 )
-def test_the_simplest_way_that_fits_is_taken(room, moves, ways):
+def test_auto_chooses_the_simplest_method_that_aligns(room, moves, ways):
     taken, _ = shoot(room, moves)
     choice = alignment.register(taken.images, times=taken.times, g=true_g())
     assert choice.method in ways
@@ -98,16 +98,14 @@ def test_the_simplest_way_that_fits_is_taken(room, moves, ways):
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=2)
-def test_photographs_of_nothing_in_common_stay_where_they_are(seed):
+def test_unrelated_photos_are_not_moved(seed):
     images = np.random.default_rng(seed).integers(0, 256, (2, 80, 90), dtype=np.uint8)
     choice = alignment.register(images, times=[1, 2], g=true_g())
     assert choice.method == "none" and np.array_equal(choice.homographies, [np.eye(3)] * 2)
 
 
 @pytest.mark.parametrize("moves", [[[0, 0], [0, 0], [0, 0]], [[5, -7], [0, 0], [-3, 6]]])
-def test_auto_costs_what_mtb_does_where_shifts_lay_the_photographs_on_each_other(
-    room, moves, monkeypatch
-):
+def test_auto_only_runs_mtb_if_shifts_align_the_photos(room, moves, monkeypatch):
     taken, _ = shoot(room, moves)
     monkeypatch.setattr(alignment, "improve", None)  # nothing is searched by light
     found = alignment.register(taken.images, "auto").homographies
@@ -121,7 +119,7 @@ def test_auto_is_never_worse_than_no_alignment(room):
         assert one.after <= one.before
 
 
-def test_a_noisy_picture_has_no_more_points_than_asked_for():
+def test_match_points_returns_at_most_max_points():
     noise = np.random.default_rng(0).uniform(0.1, 1, (1, 120, 160)).astype(np.float32)
     points = homography.match_points(np.repeat(noise, 2, axis=0), max_points=50)
     assert 10 < points.shape[1] <= 50
@@ -130,7 +128,7 @@ def test_a_noisy_picture_has_no_more_points_than_asked_for():
 # photographs that move
 
 
-def test_whole_pixels_are_cut_out_as_they_are():
+def test_shifts_by_whole_pixels_are_cropped_without_resampling():
     images = np.random.default_rng(0).integers(0, 256, (3, 30, 40, 3), dtype=np.uint8)
     offsets = [(2, -5), (0, 0), (-3, 4)]
     moved, valid = resample.photographs(images, offsets)
@@ -160,7 +158,7 @@ def test_pixels_between_pixels_are_means_of_light(room):
 
 
 @pytest.mark.parametrize("colours", [(), (3,)])
-def test_bands_of_rows_show_in_no_resampled_photograph(monkeypatch, colours):
+def test_resampling_in_bands_gives_the_same_result_as_the_whole_image(monkeypatch, colours):
     image = np.random.default_rng(0).integers(0, 256, (2, 45, 60, *colours), dtype=np.uint8)
     moves = [
         warp.turn((45, 60), 20, (3.3, -2.6)) + [[0, 0, 0], [0, 0, 0], [1e-4, 2e-4, 0]],
@@ -172,14 +170,14 @@ def test_bands_of_rows_show_in_no_resampled_photograph(monkeypatch, colours):
     assert np.abs(banded.astype(int) - whole).max() <= 1
 
 
-def test_clipped_pixels_are_not_averaged_into_something_that_looks_measured():
+def test_resampling_does_not_average_clipped_with_unclipped_pixels():
     image = np.full((1, 20, 20), 40, np.uint8)
     image[0, :, 10:] = 255
     moved, _ = resample.photographs(np.repeat(image, 2, axis=0), [[0, 0.5], [0, 0]], true_g())
     assert set(np.unique(moved[0])) == {40, 255}
 
 
-def test_what_is_no_picture_takes_part_in_no_mean():
+def test_resampling_does_not_average_masked_pixels():
     images = np.full((2, 20, 24), 90, np.uint8)
     valid = np.ones(images.shape, bool)
     images[0, :, 12], valid[0, :, 12] = 200, False
@@ -187,7 +185,7 @@ def test_what_is_no_picture_takes_part_in_no_mean():
     assert kept[1].all() and not kept[0].all() and np.all(moved[0][kept[0]] == 90)
 
 
-def test_moves_that_do_not_fit_the_images_are_refused():
+def test_homographies_that_do_not_fit_the_images_raise_an_error():
     images = np.zeros((2, 20, 24), np.uint8)
     for moves, said in (([[0, 0.5]], "expected 2 homographies"), ([[0, 0], [0, 99.5]], "overlap")):
         with pytest.raises(ValueError, match=said):
@@ -213,7 +211,7 @@ def map_error(found, room, taken):
     return np.median(np.abs(ratio / np.median(ratio, axis=0) - 1))
 
 
-def test_a_bracket_that_turned_becomes_a_sharper_map(room, turned):
+def test_correcting_rotation_halves_the_error_of_the_map(room, turned):
     taken = turned[0]
     errors = {
         way: map_error(pipeline.assemble(taken, align=way), room, taken)
@@ -222,7 +220,7 @@ def test_a_bracket_that_turned_becomes_a_sharper_map(room, turned):
     assert errors["cerman"] < errors["none"] / 2
 
 
-def test_the_assembly_tells_the_moves_and_auto_tells_its_choice(turned):
+def test_the_assembly_holds_the_homographies_and_a_note_on_the_method(turned):
     taken, truth = turned
     found = next(pipeline.assemble_steps(taken, align="auto"))
     relative = np.linalg.inv(truth[1]) @ truth
@@ -232,7 +230,7 @@ def test_the_assembly_tells_the_moves_and_auto_tells_its_choice(turned):
     assert np.array_equal(still.homographies, warp.as_homographies(mtb.align(taken.images)))
 
 
-def test_a_function_of_the_readers_own_may_answer_with_moves(turned):
+def test_your_own_align_function_may_return_homographies(turned):
     taken, truth = turned
     moves = np.linalg.inv(truth[1]) @ truth
     found = next(pipeline.assemble_steps(taken, align=lambda images: moves))
@@ -253,7 +251,7 @@ def test_masks_follow_the_warp(turned):
     assert not found.bracket.valid[0].all() and found.bracket.valid[1:].all()
 
 
-def test_photographs_of_two_scenes_are_a_doubt(room):
+def test_photos_of_two_scenes_give_a_warning(room):
     rng = np.random.default_rng(4)
     other = (10 ** rng.uniform(-1, 3, (50, 73, 1))).repeat(3, 0).repeat(3, 1)[:150, :219] * np.ones(
         3
@@ -274,7 +272,7 @@ def test_photographs_of_two_scenes_are_a_doubt(room):
 # real photographs
 
 
-def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(photographs):
+def test_the_arch_is_registered_to_the_measured_shifts_without_rotation(photographs):
     taken = photographs("stlouis_arch")
     small = taken.images[:, ::4, ::4]  # shifts of 1, 7.5 and 2 pixels at full size
     g = registration.find_provisional_response(replace(taken, images=small), "auto")
@@ -287,7 +285,7 @@ def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(phot
     )
 
 
-def test_a_walk_around_the_crusader_fits_better_by_homographies_than_by_shifts_and_turns(shared):
+def test_different_viewpoints_fit_better_by_homographies_than_by_rotations(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(6)) for path in paths])
     turned, tilted = (alignment.register(images, way).pairs for way in ("cerman", "homography"))

@@ -19,7 +19,7 @@ def views(offsets, shape=(40, 50)):
 
 @given(arrays(np.int64, st.tuples(st.integers(1, 5), st.just(2)), elements=st.integers(-18, 18)))
 @settings(deadline=None)
-def test_moved_images_of_one_scene_are_equal_and_nothing_but_the_scene(offsets):
+def test_shifted_views_of_one_scene_become_equal(offsets):
     offsets = np.clip(offsets - offsets[0], -18, 18)
     images = views(offsets)
     rows, columns = crop(offsets, images.shape[1:])
@@ -44,18 +44,18 @@ def test_the_crop_holds_exactly_the_pixels_that_every_image_covers(offsets):
 
 @pytest.mark.parametrize("shape", [(40, 50), (40, 50, 3)])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-def test_depth_and_channels_survive(shape, dtype):
+def test_shift_keeps_bit_depth_and_channels(shape, dtype):
     images = views([(0, 0), (2, -5)], shape).astype(dtype)
     moved = shift(images, [(0, 0), (2, -5)])
     assert moved.dtype == dtype and moved.shape == (2, 38, 45, *shape[2:])
 
 
-def test_images_that_stay_are_not_copied():
+def test_images_with_zero_offsets_are_not_copied():
     images = views([(0, 0), (0, 0)])
     assert shift(images, np.zeros((2, 2), int)) is images
 
 
-def test_the_images_given_are_left_as_they_were():
+def test_shift_does_not_change_its_arguments():
     images = views([(0, 0), (3, 4)])
     before = images.copy()
     shift(images, [(0, 0), (3, 4)])[:] = 0
@@ -63,7 +63,7 @@ def test_the_images_given_are_left_as_they_were():
 
 
 @pytest.mark.parametrize("offsets", [[(40, 0), (0, 0)], [(0, 25), (0, -25)], [(-20, 0), (20, 1)]])
-def test_offsets_that_leave_nothing_are_refused(offsets):
+def test_offsets_without_an_overlap_raise_an_error(offsets):
     with pytest.raises(ValueError, match=r"overlap.*\(40, 50\)"):
         shift(views([(0, 0), (0, 0)]), offsets)
 
@@ -71,12 +71,12 @@ def test_offsets_that_leave_nothing_are_refused(offsets):
 @pytest.mark.parametrize(
     "offsets", [[(0, 0)], [(0, 0)] * 3, [0, 0], [(0.5, 0), (0, 0)], [(0, 0, 0), (0, 0, 0)]]
 )
-def test_offsets_that_are_not_one_whole_pair_per_image_are_refused(offsets):
+def test_offsets_must_be_one_pair_of_integers_per_image(offsets):
     with pytest.raises(ValueError, match=".*offsets"):
         shift(views([(0, 0), (0, 0)]), offsets)
 
 
-def test_offsets_that_are_all_positive_leave_no_row_beyond_the_pictures():
+def test_the_crop_stays_inside_the_images_if_all_offsets_have_one_sign():
     rows, columns = crop([[2, 5], [4, 3]], (20, 30))
     assert (rows, columns) == (slice(4, 20), slice(5, 30))
     rows, columns = crop([[-2, -5], [-4, -3]], (20, 30))

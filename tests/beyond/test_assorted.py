@@ -44,45 +44,45 @@ def tones(E, truth):
     return peak_signal_noise_ratio(*log, data_range=4)
 
 
-def test_four_exposures_two_stops_apart_promise_six_stops():
+def test_four_exposures_two_stops_apart_add_six_stops():
     assert assorted.added_decades(FOUR) == pytest.approx(np.log10(64))
 
 
-def test_the_range_grows_at_the_bright_end_by_the_decades_promised():
+def test_the_range_grows_at_the_bright_end_by_added_decades():
     assert ends(FOUR)[1] - ends(np.ones(SHAPE))[1] == pytest.approx(
         assorted.added_decades(FOUR), abs=0.05
     )
 
 
-def test_beside_single_pixels_the_range_grows_as_promised_in_all():
+def test_compared_with_single_pixels_the_whole_range_grows_by_added_decades():
     """A single shot read pixel by pixel; the mean over neighbours makes up for the dark filters."""
     single, four = ends(np.ones(SHAPE), sigma=1e-3), ends(FOUR)
     assert np.diff(four) - np.diff(single) == pytest.approx(assorted.added_decades(FOUR), abs=0.12)
 
 
-def test_beside_a_single_shot_that_is_blurred_as_much_a_quarter_of_a_decade_is_lost_in_the_dark():
+def test_compared_with_an_equally_blurred_shot_a_quarter_of_a_decade_is_lost_in_the_dark():
     assert ends(FOUR)[0] - ends(np.ones(SHAPE))[0] == pytest.approx(0.25, abs=0.08)
 
 
-def test_what_is_full_through_all_filters_is_the_least_that_it_can_be():
+def test_pixels_that_are_full_behind_all_filters_get_the_lower_bound():
     E = assorted.reconstruct(assorted.shoot(np.full(SHAPE, 1e6), FOUR), FOUR)
     assert np.allclose(E, 64)
 
 
 @pytest.mark.parametrize("L", [0.01, 0.5, 3, 10, 50])
-def test_an_even_surface_comes_back_whichever_filters_know_it(L):
+def test_a_uniform_surface_is_reconstructed_at_any_level(L):
     assert error(L, FOUR) < 0.1
     noiseless = assorted.reconstruct(assorted.shoot(np.full(SHAPE, L), FOUR, bits=16), FOUR)
     assert np.allclose(noiseless, L, rtol=2e-3)
 
 
-def test_exposures_and_colours_show_each_colour_through_each_filter_equally_often():
+def test_the_mosaic_has_each_color_behind_each_filter_equally_often():
     c, e = assorted.colours_and_exposures()
     for channel, count in ((0, 2), (1, 4), (2, 2)):
         assert np.sort(e[c == channel]).tolist() == [0.25] * count + [1.0] * count
 
 
-def test_exposures_times_colours_bring_an_even_colour_back():
+def test_a_uniform_color_is_reconstructed():
     c, e = (
         mosaic.tile(pattern, SHAPE) for pattern in assorted.colours_and_exposures((1.0, 1 / 16))
     )
@@ -91,7 +91,7 @@ def test_exposures_times_colours_bring_an_even_colour_back():
     assert np.allclose(back, E, rtol=5e-3)
 
 
-def test_of_an_ordinary_scene_plain_demosaicing_is_better_and_by_how_much():
+def test_plain_demosaicing_is_better_for_an_ordinary_scene():
     """Sharpness is the price: 28.4 dB beside 30.0 of bilinear interpolation, where nothing is full."""
     E = photograph() * 0.9
     c = mosaic.tile(mosaic.BAYER, E.shape[:2])
@@ -102,7 +102,7 @@ def test_of_an_ordinary_scene_plain_demosaicing_is_better_and_by_how_much():
     assert psnr(mixed, E) == pytest.approx(28.4, abs=0.3)
 
 
-def test_of_a_scene_too_wide_for_one_exposure_assorted_pixels_are_better():
+def test_assorted_pixels_are_better_for_a_scene_too_wide_for_one_exposure():
     """25.6 dB beside 21.3, counted in the logarithm of light over four decades."""
     E = scenes.workshop()[::2, ::2].astype(np.float64)
     E = E / np.quantile(E, 0.8)  # a fifth of the picture is full
@@ -123,12 +123,12 @@ def waves(frequency, level, e, *, length=256):
 
 
 @pytest.mark.parametrize("level", [0.3, 20.0])
-def test_a_wave_that_the_filters_sample_often_enough_comes_back(level):
+def test_a_wave_below_the_sampling_limit_is_reconstructed(level):
     seen = waves(16 / 256, level, assorted.FOUR_EXPOSURES)
     assert seen[16] > 0.75 and np.delete(seen, [0, 16]).max() < 0.12
 
 
-def test_where_the_light_is_strong_a_fine_wave_becomes_a_coarse_one():
+def test_a_fine_wave_is_aliased_where_only_dark_filters_measure():
     """Only every second column knows: 112 waves in 256 pixels look like 16; not so on an even sensor."""
     plain, strong = (
         waves(112 / 256, *pair)
@@ -150,12 +150,12 @@ def test_where_the_light_is_strong_a_fine_wave_becomes_a_coarse_one():
         lambda: assorted.reconstruct(np.ones(SHAPE, np.uint8), FOUR[:4]),
     ],
 )
-def test_what_does_not_fit_together_is_refused(call):
+def test_invalid_arguments_raise_an_error(call):
     with pytest.raises(ValueError, match="expected"):
         call()
 
 
-def test_a_weight_is_one_over_the_variance_of_rounding_photons_and_reading():
+def test_a_weight_is_the_inverse_of_the_variance_of_rounding_photons_and_readout():
     Z, e = np.array([51, 255], np.uint8), np.array([2.0, 2.0])
     assert assorted.weight(Z, e) == pytest.approx([4 * 12 * 255**2, 0])
     noise = 0.2 / 1000 + (5 / 1000) ** 2 + 1 / (12 * 255**2)

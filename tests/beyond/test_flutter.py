@@ -30,7 +30,7 @@ def test_the_code_has_52_chops_half_of_them_open():
     assert len(CODE) == 52 and CODE.sum() == 26
 
 
-def test_a_box_loses_frequencies_and_the_code_none():
+def test_a_box_shutter_has_zeros_in_its_transfer_and_the_code_has_none():
     assert flutter.transfer(BOX).min() < 1e-3 and flutter.transfer(CODE).min() > 0.025
     whole_waves = np.abs(np.fft.fft(BOX))[
         1:
@@ -46,19 +46,19 @@ def test_the_transfer_of_one_chop_is_flat_and_that_of_a_box_is_the_dirichlet_ker
     )
 
 
-def test_smearing_is_the_matrix_and_the_matrix_a_convolution():
+def test_smear_equals_the_matrix_product_and_a_convolution():
     x = np.random.default_rng(0).random(30)
     assert np.allclose(flutter.smear(x, CODE), np.convolve(x, CODE) / 52)
     assert np.allclose(flutter.matrix(CODE, 30) @ x, flutter.smear(x, CODE))
 
 
 @pytest.mark.parametrize("h", [CODE, BOX, ONE, [1, 0, 1, 1]])
-def test_without_noise_any_shutter_is_undone_where_the_ends_are_known(h):
+def test_without_noise_sharpen_inverts_smear_for_any_shutter(h):
     x = np.random.default_rng(1).random((80, 3))
     assert np.allclose(flutter.sharpen(flutter.smear(x, h), h), x, atol=1e-9)
 
 
-def test_what_stands_behind_is_taken_off_first():
+def test_sharpen_works_after_subtracting_the_background():
     x, behind = thing(), np.linspace(0, 0.3, 251)[:, None]
     y = flutter.smear(x, CODE) + behind
     assert np.allclose(flutter.sharpen(y - behind, CODE), x, atol=1e-9)
@@ -81,7 +81,7 @@ def test_noise_grows_by_the_amplification(h):
     assert flutter.amplification(BOX) == np.inf and n == 200
 
 
-def test_one_coded_picture_is_worth_nearly_nine_short_ones():
+def test_one_coded_photo_is_as_clean_as_the_mean_of_nearly_nine_short_ones():
     assert (
         flutter.equivalent_pictures(CODE) == pytest.approx(8.7, abs=0.05)
         and flutter.equivalent_pictures(ONE) == 1
@@ -96,7 +96,7 @@ def test_one_coded_picture_is_worth_nearly_nine_short_ones():
     )
 
 
-def test_a_bracket_of_two_coded_pictures_is_as_clean_as_one_of_many_short_ones():
+def test_a_bracket_of_two_coded_photos_is_as_clean_as_one_of_many_short_ones():
     """A thing with a lamp on it: the highlights come from the small gain, the shadows from the large one."""
     x = thing().copy()
     x[90:110, 50:70] = 8.0
@@ -115,7 +115,7 @@ def test_a_bracket_of_two_coded_pictures_is_as_clean_as_one_of_many_short_ones()
     assert rms(radiance(CODE, gains, 1)[90:110, 50:70], 8.0) < 0.3
 
 
-def test_pictures_with_different_gains_are_joined_without_those_that_are_full():
+def test_combine_leaves_out_full_pixels():
     x = np.array([0.1, 0.6, 3.0])
     joined = flutter.combine([np.minimum(x, 1), x / 4], [1.0, 0.25])
     assert np.allclose(joined, x)
@@ -134,11 +134,11 @@ def test_pictures_with_different_gains_are_joined_without_those_that_are_full():
         lambda: flutter.combine([[1.0]], [0.0]),
     ],
 )
-def test_what_means_nothing_is_refused(call):
+def test_invalid_arguments_raise_an_error(call):
     with pytest.raises(ValueError, match="expected"):
         call()
 
 
-def test_photographs_of_several_gains_count_by_their_squares_and_not_where_they_are_full():
+def test_combine_weights_photos_by_the_square_of_their_gain():
     found = flutter.combine([[[0.1, 0.4, 1.0]], [[0.6, 1.0, 1.0]]], [1, 4])
     assert found[0] == pytest.approx([(0.1 + 16 * 0.6 / 4) / 17, 0.4, 1.0])

@@ -57,7 +57,7 @@ def test_patches_are_the_windows_of_a_picture():
     assert np.array_equal(np.sort(P[2, 4]), np.sort(T[2:5, 4:7].ravel()))
 
 
-def test_the_distance_is_that_of_all_pixels_and_the_price_is_added():
+def test_the_patch_distance_is_the_sum_of_squares_plus_the_price():
     S, price = noise((2, 8, 9, 3)), noise((2, 8, 9), 1)
     Q, P = patchmatch.make_sources(S, 3, price), patchmatch.cut_patches(noise((8, 9, 3), 2), 3)
     at = np.zeros((6, 7, 3), int)
@@ -68,7 +68,7 @@ def test_the_distance_is_that_of_all_pixels_and_the_price_is_added():
     assert patchmatch.distance(P, Q, at)[4, 5] == pytest.approx(expected, rel=1e-5)
 
 
-def test_patchmatch_comes_to_what_an_exhaustive_search_finds():
+def test_patchmatch_finds_nearly_the_same_as_an_exhaustive_search():
     T, S = noise((14, 15, 1)), noise((2, 16, 17, 1), 3)
     S[1, 3:13, 4:14] = T[2:12, 1:11]  # a part of T is to be found again
     P, Q = patchmatch.cut_patches(T, 5), patchmatch.make_sources(S, 5)
@@ -86,7 +86,7 @@ def test_patchmatch_comes_to_what_an_exhaustive_search_finds():
     assert np.array_equal(found[-1].at[3, 4], [1, 4, 7]) and found[-1].d[3, 4] < 1e-9
 
 
-def test_a_field_of_a_finer_scale_leads_as_far_in_the_same_direction():
+def test_upscale_field_scales_the_offsets():
     at = patchmatch.identity_field(6, 8, 1) + np.array([0, 1, -2])
     fine = patchmatch.upscale_field(at, (12, 16))
     assert np.all(fine[..., 0] == 1)
@@ -95,7 +95,7 @@ def test_a_field_of_a_finer_scale_leads_as_far_in_the_same_direction():
     )
 
 
-def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
+def test_voting_with_identity_matches_reproduces_the_image():
     S = noise((1, 10, 11, 3))
     P, Q = patchmatch.cut_patches(S[0], 3), patchmatch.make_sources(S, 3)
     field = patchmatch.start_field(P, Q, patchmatch.identity_field(8, 9))
@@ -105,7 +105,7 @@ def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
     assert np.allclose(bidirectional.vote(S, w, both, 3), S[0], atol=1e-6)
 
 
-def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_coherence():
+def test_missing_patches_lower_completeness_and_foreign_ones_lower_coherence():
     S = np.zeros((1, 16, 16, 1), np.float32)
     S[0, 5:9, 5:9] = 1
     T = np.zeros((16, 16, 1), np.float32)
@@ -126,7 +126,7 @@ def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_c
 
 @settings(max_examples=25, deadline=None)
 @given(st.floats(1e-3, 1e3), st.floats(1e-3, 10))
-def test_a_value_becomes_radiance_and_a_value_again(t, full):
+def test_values_survive_a_round_trip_through_radiance(t, full):
     v = np.linspace(0, 1, 11, dtype=np.float32)
     wells = np.float32([full])
     assert np.allclose(ldr_values.expose(ldr_values.radiance(v, t, wells), t, wells), v, atol=1e-5)
@@ -134,7 +134,7 @@ def test_a_value_becomes_radiance_and_a_value_again(t, full):
     assert np.allclose(ldr_values.boost(v, 4), boosted, atol=1e-5)
 
 
-def test_values_of_photographs_agree_with_merging_one_alone(walk):
+def test_radiance_of_values_agrees_with_merging_a_single_photo(walk):
     Z, t = walk.bracket.images, walk.bracket.times
     seen = ldr_values.as_values(Z, t, G)
     for k in range(3):
@@ -145,7 +145,7 @@ def test_values_of_photographs_agree_with_merging_one_alone(walk):
         )
 
 
-def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
+def test_the_true_radiance_lies_in_the_consistent_range_of_each_photo(walk):
     """The true radiance lies within what each photograph allows, but for noise beyond a few levels."""
     seen = ldr_values.as_values(walk.bracket.images, walk.bracket.times, G)
     unit = np.exp(G[-1])  # of g over the truth's, in which exposure 1 fills a pixel
@@ -166,7 +166,7 @@ def test_a_pixel_clipped_in_a_longer_exposure_cannot_be_a_source_for_a_shorter_o
         assert np.array_equal(barred[k + 1 :], scene.clipped[k + 1 :].any(axis=-1))
 
 
-def test_a_still_scene_is_the_scene():
+def test_a_still_scene_is_reconstructed():
     place = layers("workshop", (48, 72)).radiance
     shots = camera.shoot(
         place, camera.times_around(place, 3, stops=3), camera.Camera(full_well=20000, read_noise=5)
@@ -183,7 +183,7 @@ def test_where_the_reference_is_well_exposed_the_result_is_the_reference(walk):
     assert np.allclose(H[well], (np.exp(G[Z[1]]) / t[1])[well], rtol=1e-4) and well.mean() > 0.1
 
 
-def test_a_moving_visitor_is_where_the_reference_saw_her_and_without_a_ghost(walk):
+def test_a_moving_visitor_appears_as_in_the_reference_without_a_ghost(walk):
     Z, t = walk.bracket.images, walk.bracket.times
     H, E = patches.synthesise(Z, t, G), merge_with_quality(Z, t, G).E
     truth = walk.moments[1]
@@ -196,7 +196,7 @@ def test_a_moving_visitor_is_where_the_reference_saw_her_and_without_a_ghost(wal
         assert psnr(H, walk.moments[reference]) > psnr(E, walk.moments[reference])
 
 
-def test_the_steps_go_from_coarse_to_fine_and_become_more_alike(walk):
+def test_the_steps_go_from_coarse_to_fine_with_decreasing_dissimilarity(walk):
     steps = list(patches.synthesise_steps(walk.bracket.images, walk.bracket.times, G))
     sides = [state.H.shape[0] for state in steps]
     assert sides == sorted(sides) and sides[0] < 30 and steps[-1].H.shape == (48, 72, 3)
@@ -207,7 +207,7 @@ def test_the_steps_go_from_coarse_to_fine_and_become_more_alike(walk):
     )
 
 
-def test_the_order_of_the_photographs_makes_no_difference(walk):
+def test_the_order_of_the_photos_does_not_matter(walk):
     Z, t = walk.bracket.images[:, :32, :48], walk.bracket.times
     knobs = {"rounds": (2, 1), "coarsest": 16}
     order = [2, 0, 1]
@@ -222,7 +222,7 @@ def test_the_order_of_the_photographs_makes_no_difference(walk):
 
 @pytest.mark.parametrize("count", [1, 2])
 @pytest.mark.parametrize("channels", [(), (3,)])
-def test_few_photographs_gray_or_black_or_full_give_finite_radiance(count, channels):
+def test_few_gray_black_or_full_photos_give_finite_radiance(count, channels):
     for level in (0, 255):
         images = np.full((count, 20, 24, *channels), level, np.uint8)
         H = patches.synthesise(images, 2.0 ** np.arange(count), G, rounds=(2, 1))
@@ -244,7 +244,7 @@ def test_few_photographs_gray_or_black_or_full_give_finite_radiance(count, chann
         {"rounds": (-1, 2)},
     ],
 )
-def test_what_means_nothing_is_refused(change):
+def test_invalid_arguments_raise_an_error(change):
     given = {
         "images": np.zeros((3, 20, 24, 3), np.uint8),
         "times": [1.0, 2.0, 4.0],
@@ -255,7 +255,7 @@ def test_what_means_nothing_is_refused(change):
 
 
 @pytest.mark.parametrize("step", [(1, 0), (0, 1), (-1, 0), (0, -1), (2, -3)])
-def test_a_match_goes_on_from_a_neighbour_and_at_the_edge_from_the_nearest_pixel(step):
+def test_propagate_takes_the_match_of_the_neighbour_or_the_nearest_edge_pixel(step):
     at = np.random.default_rng(3).integers(0, 9, (5, 7, 3))
     found = patchmatch.propagate(at, step)
     for y, x in np.ndindex(5, 7):
@@ -265,7 +265,7 @@ def test_a_match_goes_on_from_a_neighbour_and_at_the_edge_from_the_nearest_pixel
 
 @pytest.mark.quick
 @pytest.mark.parametrize(("k", "unknown"), [(0, [[1, 1, 1], [2, 2, 2]]), (1, [[2, 2, 2]]), (2, [])])
-def test_only_what_a_longer_exposure_clips_has_no_price(k, unknown):
+def test_only_pixels_that_a_longer_exposure_clips_have_no_price(k, unknown):
     L, clipped = np.full((3, 4, 5, 3), 0.5, np.float32), np.zeros((3, 4, 5, 3), bool)
     clipped[0, 0, 0, 1] = clipped[1, 1, 1, 0] = clipped[2, 2, 2, 2] = True
     full, alpha = np.ones(3, np.float32), np.ones((4, 5, 1), np.float32)

@@ -14,7 +14,7 @@ E_SHARES = splitter.shares()
 WELL = {"full_well": 20000, "read_noise": 5}
 
 
-def test_the_splitters_lose_nothing_but_what_goes_back_to_the_lens():
+def test_the_beam_splitters_only_lose_the_light_reflected_to_the_lens():
     e = splitter.shares((0.08, 0.06))
     assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08) and np.log2(
         e[0] / e[1]
@@ -22,7 +22,7 @@ def test_the_splitters_lose_nothing_but_what_goes_back_to_the_lens():
     assert np.log2(e[1] / e[2]) == pytest.approx(4.1, abs=0.05)
 
 
-def test_each_pixel_obeys_the_rule_of_its_neighbourhood():
+def test_each_pixel_is_blended_by_the_case_of_its_neighborhood():
     B, D = np.full((15, 15), 0.5), np.full((15, 15), 0.7)
     full = np.zeros((15, 15), bool)
     full[4:11, 4:11] = True
@@ -37,14 +37,14 @@ def test_each_pixel_obeys_the_rule_of_its_neighbourhood():
     assert case[7, 7] == 4 and E[7, 7] == 0.7
 
 
-def test_a_full_pixel_is_predicted_by_the_ratio_that_holds_around_it():
+def test_a_full_pixel_is_predicted_by_the_ratio_of_its_neighbors():
     D = np.linspace(1, 2, 100).reshape(10, 10)
     full = np.zeros((10, 10), bool)
     full[5, 5] = True
     assert splitter.predict_full(1.1 * D, D, full)[5, 5] == pytest.approx(1.1 * D[5, 5])
 
 
-def test_a_ramp_over_six_decades_comes_back_within_noise_and_rises():
+def test_a_ramp_over_six_decades_is_reconstructed_and_rises():
     E = np.geomspace(1e-3, 200, 600) * np.ones((32, 1))
     back = splitter.merge(splitter.shoot(E, E_SHARES, **WELL, bits=16), E_SHARES)
     seen = np.median(back, axis=0)[E[0] > 0.02]
@@ -52,7 +52,7 @@ def test_a_ramp_over_six_decades_comes_back_within_noise_and_rises():
     assert np.all(np.diff(seen[::10]) > 0)
 
 
-def test_the_seams_are_gentler_than_those_of_a_hard_cut():
+def test_the_seams_are_smaller_than_those_of_a_hard_threshold():
     """Two sensors whose ratio is off by 5 %: without the neighbourhood there would be a step of 5 %."""
     E = np.linspace(0.8, 1.2, 400) * np.ones((20, 1))
     Z = splitter.shoot(E, E_SHARES, bits=16)
@@ -97,7 +97,7 @@ def test_a_mosaic_is_merged_before_its_colours_are_interpolated():
     assert np.allclose(splitter.merge(splitter.shoot(E, E_SHARES, c), E_SHARES, c), E, rtol=0.01)
 
 
-def test_the_steps_bring_in_the_sensors_from_the_darkest_on():
+def test_the_steps_add_the_sensors_from_the_darkest_to_the_brightest():
     Z = splitter.shoot(np.geomspace(0.01, 100, 400).reshape(20, 20), E_SHARES)
     steps = list(splitter.merge_steps(Z, E_SHARES))
     assert [state.sensor for state in steps] == [2, 1, 0] and set(np.unique(steps[-1].case)) == {
@@ -109,7 +109,7 @@ def test_the_steps_bring_in_the_sensors_from_the_darkest_on():
     assert np.array_equal(steps[-1].E.astype(np.float32), splitter.merge(Z, E_SHARES))
 
 
-def test_where_all_are_full_the_light_is_at_least_that():
+def test_pixels_that_are_full_on_all_sensors_get_the_lower_bound():
     E = np.full((8, 8), 1e4)
     assert np.allclose(
         splitter.merge(splitter.shoot(E, E_SHARES), E_SHARES), 1 / E_SHARES[-1], rtol=1e-3
@@ -131,12 +131,12 @@ def test_where_all_are_full_the_light_is_at_least_that():
         lambda: splitter.shoot(-np.ones((4, 4)), E_SHARES),
     ],
 )
-def test_what_means_nothing_is_refused(call):
+def test_invalid_arguments_raise_an_error(call):
     with pytest.raises(ValueError, match="expected"):
         call()
 
 
-def test_a_pixel_at_the_very_level_that_counts_as_full_is_full():
+def test_a_pixel_exactly_at_the_full_level_counts_as_full():
     """Light in the brightest sensor's last level may have been any amount: the next sensor has the word."""
     Z = np.full((3, 9, 9), 40, np.uint8)
     Z[2, 4, 4] = 255

@@ -53,7 +53,7 @@ def smooth(shape=(48, 64)):
 
 
 @pytest.mark.parametrize("move", [(0, 3), (2, -4)])
-def test_the_flow_of_a_moved_picture_is_its_move_and_brings_it_back(move):
+def test_the_flow_of_a_shifted_image_is_the_shift(move):
     a = smooth()
     b = np.roll(a, move, axis=(0, 1))
     u = flow.tvl1(a, b)
@@ -86,13 +86,13 @@ def test_a_pixel_is_warped_as_a_line_between_pixels():
     assert flow.warp(f, u).tolist() == [[0.5, 2.5, 4], [0.5, 2.5, 4]]
 
 
-def test_consistency_is_one_for_equals_and_nothing_from_sixteen_levels_on():
+def test_consistency_is_1_for_equal_values_and_0_from_16_levels_on():
     v = np.zeros((1, 3, 1), np.float32)
     v_ = np.float32([[[0], [8 / 255], [16 / 255]]])
     assert video.consistency(v, v_).ravel().tolist() == pytest.approx([1, 0.5, 0], abs=1e-6)
 
 
-def test_windows_hold_the_neighbours_of_each_item():
+def test_slide_windows_yields_the_neighbors_of_each_item():
     for count in range(6):
         for span in range(4):
             found = list(neighbours.slide_windows(range(count), span))
@@ -126,7 +126,7 @@ def test_a_still_film_is_as_good_as_a_bracket():
     assert psnr(E_, E) > psnr(merge(np.stack(frames), times, G), E) - 0.5
 
 
-def test_the_result_is_within_what_each_frame_allows(film, states):
+def test_the_result_is_consistent_with_each_frame(film, states):
     frames, t, _ = film
     for Z, time, state in zip(frames, t, states, strict=True):
         top = np.exp(G[Z]) / time
@@ -182,18 +182,18 @@ def test_black_and_full_frames_give_finite_radiance():
         lambda: list(steady.tonemap_steps([-np.ones((2, 2))], reinhard.tonemap)),
     ],
 )
-def test_what_means_nothing_is_refused(call):
+def test_invalid_arguments_raise_an_error(call):
     with pytest.raises(ValueError, match="expected"):
         call()
 
 
 @pytest.mark.papers
-def test_the_times_of_a_turn_are_repeated(film):
+def test_exposure_times_repeat_cyclically(film):
     frames, t, _ = film
     assert np.array_equal(video.merge(frames, t[:2], G), video.merge(frames, t, G))
 
 
-def test_with_no_neighbours_the_operator_is_the_operator():
+def test_span_0_equals_tone_mapping_each_frame_alone():
     L = luminance(layers("chapel", (24, 36)).radiance)
     (state,) = steady.tonemap_steps([L], reinhard.tonemap, span=0)
     assert state.own == pytest.approx(reinhard.log_average(L), rel=1e-6)
@@ -212,14 +212,14 @@ def test_the_adaptation_is_the_geometric_mean_of_the_frames_around():
     assert averages == pytest.approx([10**0.5, 10, 10**1.5], rel=1e-4)
 
 
-def test_flicker_counts_what_goes_up_and_down_and_not_what_changes_steadily():
+def test_flicker_measures_alternation_and_not_steady_change():
     assert steady.flicker(np.full((2, 2), 0.5) for _ in range(5)) == 0
     levels = np.linspace(0.2, 0.8, 7) ** 2.2
     assert steady.flicker(np.full((2, 2), y) for y in levels) < 0.3
     assert steady.flicker(np.full((2, 2), y) for y in (0.4, 0.5) * 3) > 4
 
 
-def test_a_light_that_comes_and_goes_changes_the_room_less():
+def test_steady_adaptation_reduces_flicker_from_a_blinking_lamp():
     room = luminance(layers("workshop", (32, 48)).radiance)
     lamp = room.copy()
     lamp[4:10, 4:10] = 50 * room.max()
@@ -243,6 +243,6 @@ def test_frames_that_are_dimmer_than_white_are_not_pulled_up_to_it():
     assert steady.adapt([bright], key=0.18)[1] > 1
 
 
-def test_a_picture_too_small_to_be_followed_has_no_motion():
+def test_too_small_images_have_zero_flow():
     a, b = np.random.default_rng(0).random((2, 15, 40)).astype(np.float32)
     assert not flow.tvl1(a, b).any()

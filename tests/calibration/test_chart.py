@@ -24,7 +24,7 @@ def drawn(values, *, patch=40, gap=chart.GAP, margin=20):
     return picture, margin - 0.5 + SQUARE * [wide, high]
 
 
-def test_a_homography_takes_the_corners_where_they_shall_go_as_the_librarys_does():
+def test_the_homography_maps_the_corners_and_agrees_with_scikit_image():
     rng = np.random.default_rng(0)
     for _ in range(20):
         source, target = (10 * SQUARE + rng.uniform(-2, 2, (4, 2)) for _ in range(2))
@@ -42,7 +42,7 @@ def test_a_flat_chart_is_read_exactly():
 
 
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])
-def test_a_turned_chart_is_read_the_same_by_its_own_corners(turns):
+def test_a_rotated_chart_is_read_alike_with_rotated_corners(turns):
     picture, corners = drawn(np.arange(24).reshape(4, 6) * 10)
     turned = np.rot90(picture, turns)
     for _ in range(turns):  # (x, y) -> (y, W - 1 - x)
@@ -72,7 +72,7 @@ def test_channels_and_16_bits_are_read_like_gray():
     assert colour.shape == (4, 6, 3) and np.allclose(colour, gray[..., None])
 
 
-def test_the_grays_reflect_what_their_munsell_values_and_their_densities_say():
+def test_the_gray_reflectances_agree_with_munsell_values_and_densities():
     """Closed forms: the polynomial of Newhall, Nickerson and Judd, 1943, and R = 10^-D by the label."""
     V, D = np.array([9.5, 8, 6.5, 5, 3.5, 2]), np.array([0.05, 0.23, 0.44, 0.70, 1.05, 1.5])
     Y = 1.2219 * V - 0.23111 * V**2 + 0.23951 * V**3 - 0.021009 * V**4 + 0.0008404 * V**5
@@ -123,7 +123,7 @@ def test_the_scales_of_the_patches_are_their_reflectances():
     assert np.allclose(s / s[0], chart.NEUTRAL / chart.NEUTRAL[0], rtol=0.005)
 
 
-def test_what_is_no_chart_is_refused():
+def test_invalid_charts_raise_an_error():
     image = np.zeros((50, 50), np.uint8)
     for call in (
         lambda: chart.read_chart(image, [[0, 0], [1, 1], [2, 2], [3, 3]]),
@@ -151,7 +151,7 @@ def test_patches_touch_each_other_unless_a_gap_is_named():
     np.testing.assert_allclose(chart.read_patches(image, corners, 2, 3, gap=0), expected, atol=1e-9)
 
 
-def test_a_curve_goes_on_beyond_what_was_measured_with_its_last_slope():
+def test_the_response_is_extrapolated_with_its_last_slope():
     M = np.linspace(0.1, 0.6, 256)
     g = ln_exposure(InverseResponse(M, 2 * (M - 0.1), np.ones(1), np.zeros(1)), black=-0.2)
     z = np.arange(1, 256)

@@ -45,7 +45,7 @@ def two_blends(f, dim=0.2, start=0.0):
 # Schedules
 
 
-def test_every_patch_switches_once_and_stays_on_for_its_share():
+def test_every_patch_is_on_for_its_fraction_of_the_schedule_and_switches_once():
     shown = display.draw_schedule(Schedule((200,), low=7, patch=1, border=0), shape=(3, 5)).reshape(
         15, 15
     )
@@ -58,7 +58,7 @@ def test_every_patch_switches_once_and_stays_on_for_its_share():
     }
 
 
-def test_patches_stand_in_black_and_in_the_middle():
+def test_the_patches_are_centered_on_black():
     shown = display.draw_schedule(shape=(400, 500))
     assert shown.shape == (15, 400, 500) and not shown[:, 0].any()
     lit = np.argwhere(shown[0])
@@ -81,7 +81,7 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
 @pytest.mark.parametrize(
     "rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]], [[[0, 9], [9, 0]]], [0, 9, 9]]
 )
-def test_a_picture_that_shows_no_grid_is_refused(rows):
+def test_a_photo_without_the_grid_raises_an_error(rows):
     with pytest.raises(ValueError, match="a grid, bright on black"):
         display.find_corners(rows)
 
@@ -121,7 +121,7 @@ def test_the_unit_of_irradiance_does_not_matter(solver):
     assert rmse(SOLVERS[solver](other), SOLVERS[solver](blends)) < 2e-4
 
 
-def test_the_simplex_ends_where_the_quadratic_has_its_least_value():
+def test_the_simplex_finds_the_minimum_of_the_quadratic():
     f = as_response("cubic").inverse  # a camera f = inverse: g is no polynomial
     blends = two_blends(f, dim=0.6)
     low = min(one.M.min() for one in blends)
@@ -135,7 +135,7 @@ def test_the_simplex_ends_where_the_quadratic_has_its_least_value():
     )
 
 
-def test_both_ways_of_joining_agree_where_the_response_is_a_polynomial():
+def test_both_joining_methods_agree_for_a_polynomial_response():
     blends = two_blends(as_response("cubic").f)
     assert rmse(wilburn.join(blends), joining.join(blends)) < 5e-4
 
@@ -178,7 +178,7 @@ def test_several_blends_calibrate_the_screen_too(papers):
 # Motion
 
 
-def test_ramps_are_found_where_they_are(papers):
+def test_ramps_are_found_at_their_true_positions(papers):
     image = papers.blurred(as_response("linear").f, np.random.default_rng(0), lines=20)
     found = motion_blur.find_ramps(image)
     assert [one.rises for one in found] == [False, True] * 20
@@ -187,7 +187,7 @@ def test_ramps_are_found_where_they_are(papers):
         assert inside[0] <= one.start < one.stop <= inside[1] and one.stop - one.start > 70
 
 
-def test_a_ramp_does_not_end_by_its_own_noise(papers):
+def test_noise_does_not_choose_the_ends_of_a_ramp(papers):
     """Another draw of a line's noise leaves its ramps where they are, so noise has not chosen their ends.
 
     A line by itself ends where it seems bright enough: just inside of that, what noise has darkened
@@ -213,7 +213,7 @@ def test_a_ramp_does_not_end_by_its_own_noise(papers):
     assert abs(first_sample(motion_blur.find_ramps(first))) < tolerance < -first_sample(alone)
 
 
-def test_a_slanting_edge_is_followed_and_what_lies_elsewhere_is_left_out(papers):
+def test_a_slanted_edge_is_followed_and_other_pixels_are_ignored(papers):
     image = papers.blurred(as_response("srgb").f, np.random.default_rng(2), lines=40)
     wide = np.pad(image, ((0, 0), (120, 120)), mode="edge")
     slanting = np.stack([np.roll(row, 3 * (k - 20)) for k, row in enumerate(wide)])
@@ -235,7 +235,7 @@ def test_a_line_without_an_edge_has_no_ramp():
 
 
 @pytest.mark.parametrize("name", sorted(RESPONSES))
-def test_linear_motion_passes_and_one_that_gathers_15_percent_does_not(papers, name):
+def test_linear_motion_is_accepted_and_15_percent_acceleration_is_rejected(papers, name):
     linear, accelerated = papers.figure7(name, trials=3)
     assert np.all(linear < motion_blur.MAX_RMSE / 3) and np.all(accelerated > motion_blur.MAX_RMSE)
 
@@ -244,7 +244,7 @@ def test_linear_motion_passes_and_one_that_gathers_15_percent_does_not(papers, n
 
 
 @pytest.mark.parametrize("name", sorted(RESPONSES))
-def test_his_polynomial_holds_the_published_errors(papers, name):
+def test_the_polynomial_reaches_the_published_errors(papers, name):
     got = papers.table1(name, sets=1, lines=60)
     assert (
         got["display, polynomial"].rmse.mean() <= 0.012
@@ -256,7 +256,7 @@ def test_his_polynomial_holds_the_published_errors(papers, name):
     )
 
 
-def test_the_compared_method_holds_the_published_disparity(papers):
+def test_the_compared_method_reaches_the_published_disparity(papers):
     """Ten sets, of which the worst two are left out, as in the paper."""
     cameras = [as_response("srgb").f] * 10
     near, far = (
@@ -281,7 +281,7 @@ def test_the_spline_reads_real_responses_from_motion_blur(papers, cameras):
     assert np.median(rmse) <= 0.0005 and rmse.max() <= 0.006
 
 
-def test_what_is_no_blend_is_refused(tmp_path):
+def test_invalid_blends_raise_an_error(tmp_path):
     line = InverseResponse(np.linspace(0.1, 0.5, 9), np.linspace(0, 1, 9), np.ones(2), np.zeros(2))
     image = np.zeros((4, 60), np.uint8)
     for call in (

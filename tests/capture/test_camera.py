@@ -62,14 +62,14 @@ def test_the_true_g_of_a_linear_camera_is_the_logarithm_of_the_level():
     assert np.allclose(responses.true_g("linear")[1:], np.log(np.arange(1, 256) / 128))
 
 
-def test_no_response_means_a_linear_one():
+def test_the_default_response_is_linear():
     assert responses.as_response(None) is responses.as_response("linear")
 
 
 @pytest.mark.parametrize(
     "bad", ["kodachrome", lambda X: 1 - X, lambda X: 2 * X, lambda X: 0 * X, lambda X: 0.5]
 )
-def test_what_is_no_response_is_refused(bad):
+def test_invalid_responses_raise_an_error(bad):
     with pytest.raises(ValueError, match="response"):
         responses.as_response(bad)
 
@@ -92,7 +92,7 @@ def test_the_variance_of_the_photons_is_their_mean():
         assert np.isclose(N.var(), 10_000 * X, rtol=0.02)
 
 
-def test_a_full_well_spills():
+def test_photons_are_limited_by_the_full_well():
     N = sensor.photons(np.float32([2, 100, np.inf]), full_well=1000, rng=np.random.default_rng(1))
     assert np.array_equal(N, [1000, 1000, 1000])
 
@@ -152,7 +152,7 @@ def test_a_longer_exposure_is_nowhere_darker():
     assert np.all(np.diff(images.astype(int), axis=0) >= 0)
 
 
-def test_light_beyond_a_full_well_is_white_and_none_is_black():
+def test_clipped_pixels_are_white_and_pixels_without_light_black():
     images = shoot([[0.0, 1.0, 1e30]], [1.0, 1e30]).images
     assert images[:, 0].tolist() == [[0, 255, 255], [0, 255, 255]]
 
@@ -169,18 +169,18 @@ def test_any_order_of_times_gives_the_same_photographs_sorted():
 
 @pytest.mark.parametrize("shape", [(12, 17), (12, 17, 3)])
 @pytest.mark.parametrize(("bits", "dtype"), [(8, np.uint8), (16, np.uint16)])
-def test_frames_are_of_the_scenes_shape_and_of_the_bits_asked_for(shape, bits, dtype):
+def test_frames_have_the_shape_of_the_scene_and_the_requested_bits(shape, bits, dtype):
     taken = shoot(np.ones(shape), [0.1, 0.2], Camera(bits=bits))
     assert taken.images.shape == (2, *shape) and taken.images.dtype == dtype
     assert taken.valid is None and not taken.linear
 
 
-def test_a_linear_camera_says_so():
+def test_a_bracket_of_a_linear_camera_is_marked_as_linear():
     assert shoot(ramp(), [1.0], Camera(response="linear")).linear
     assert shoot(ramp(), [1.0], Camera(response=None)).linear
 
 
-def test_a_seed_decides_the_noise_and_a_generator_moves_on():
+def test_a_seed_determines_the_noise_and_a_generator_advances():
     knobs = dict(full_well=3000, read_noise=5, gray_noise=0.5)
     assert np.array_equal(
         shoot(ramp(), [1.0], Camera(**knobs), rng=3).images,
@@ -218,7 +218,7 @@ def test_the_noisy_experiment_of_cerman_and_hlavac_can_be_set_up():
     )
 
 
-def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
+def test_hot_pixels_are_white_in_every_frame_regardless_of_camera_shake():
     E, offsets = np.full((60, 70, 3), 0.01), camera.shake(3, radius=4)
     images = shoot(E, [0.1, 0.2, 0.4], Camera(hot=0.02), offsets=offsets).images
     white = images == 255
@@ -230,7 +230,7 @@ def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
 # The hand
 
 
-def test_a_frame_moved_by_its_offset_lies_on_the_reference():
+def test_shifting_a_frame_by_its_offset_aligns_it_with_the_reference():
     E = np.random.default_rng(0).random((40, 50)).astype(np.float32)
     offsets = np.array([[3, -2], [0, 0], [-4, 5]])
     images = shoot(
@@ -242,7 +242,7 @@ def test_a_frame_moved_by_its_offset_lies_on_the_reference():
         assert np.array_equal(moved[5:-5, 5:-5], images[1][5:-5, 5:-5])
 
 
-def test_the_views_are_the_radiance_that_the_frames_saw():
+def test_views_returns_the_radiance_seen_by_each_frame():
     E, offsets = ramp(shape=(40, 50)), camera.shake(3, radius=3, rng=8)
     images = shoot(E, [0.1, 0.4, 1.6], offsets=offsets).images
     for image, view, time in zip(images, camera.views(E, offsets), [0.1, 0.4, 1.6], strict=True):
@@ -254,7 +254,7 @@ def test_a_tripod_sees_the_whole_scene():
     assert np.array_equal(camera.views(E, np.zeros((2, 2), int))[1], E)
 
 
-def test_the_hand_shakes_within_its_radius_around_the_middle_frame():
+def test_shake_stays_within_its_radius_and_keeps_the_middle_frame():
     offsets = camera.shake(500, radius=3, rng=1)
     assert offsets.shape == (500, 2) and np.array_equal(np.unique(offsets), np.arange(-3, 4))
     assert np.array_equal(camera.shake(5)[2], [0, 0]) and np.array_equal(
@@ -265,7 +265,7 @@ def test_the_hand_shakes_within_its_radius_around_the_middle_frame():
 # Exposure times
 
 
-def test_the_times_are_the_stops_apart_that_were_asked_for():
+def test_times_around_returns_times_the_requested_stops_apart():
     times = camera.times_around(ramp(), 6, stops=1.5)
     assert times.shape == (6,) and np.allclose(np.diff(np.log2(times)), 1.5)
 
@@ -313,13 +313,13 @@ def test_black_pixels_do_not_lengthen_the_exposure():
         (dict(times=[1.0, 2.0], offsets=[[0, 0], [0, 30]]), "span less"),
     ],
 )
-def test_what_means_nothing_is_refused_with_what_came(knobs, said):
+def test_invalid_arguments_raise_an_error_that_names_the_value(knobs, said):
     with pytest.raises(ValueError, match=said):
         taken = {name: knobs.pop(name) for name in ("E", "times", "offsets") if name in knobs}
         shoot(**{"E": ramp(), "times": [1.0], **taken}, camera=Camera(**knobs))
 
 
-def test_a_hand_without_frames_and_a_scene_without_light_are_refused():
+def test_shake_without_frames_and_a_black_scene_raise_an_error():
     with pytest.raises(ValueError, match="at least one frame"):
         camera.shake(0)
     with pytest.raises(ValueError, match="at least one frame"):
@@ -330,6 +330,6 @@ def test_a_hand_without_frames_and_a_scene_without_light_are_refused():
         camera.times_around(np.zeros((3, 3)))
 
 
-def test_a_hand_shakes_as_far_as_the_radius_and_no_farther():
+def test_shake_reaches_its_radius_and_not_more():
     assert np.abs(camera.shake(2000)).max() == 8
     assert np.abs(camera.shake(2000, radius=3)).max() == 3

@@ -71,13 +71,13 @@ def test_a_sunlit_white_wall_fills_the_levels_near_the_sunny_sixteen_rule():
 
 
 @pytest.mark.parametrize("text", ["", "1/0", "-1", "0", "fast", "1/", "inf", "nan"])
-def test_a_time_that_means_nothing_is_refused_by_name(text):
+def test_an_invalid_shutter_time_raises_an_error(text):
     with pytest.raises(ValueError, match="shutter time"):
         exposure.seconds(text)
 
 
 @pytest.mark.parametrize("bad", [0, -1, np.inf, np.nan])
-def test_settings_that_are_not_positive_are_refused(bad):
+def test_settings_must_be_positive(bad):
     for call in (
         lambda: exposure.ev(bad, 1),
         lambda: exposure.ev(1, bad),
@@ -110,7 +110,7 @@ def test_irradiance_goes_down_by_a_stop_where_the_aperture_does():
         exposure.irradiance(1.0, 0)
 
 
-def test_a_camera_s_times_are_true_where_the_dial_has_them_and_as_they_are_beyond_it():
+def test_nominal_times_of_a_camera_become_true_times_if_the_dial_has_them():
     dial = exposure.read_dial(["30", "1/60", "0.0166s", "time", "1/16000", "x 200"])
     assert dial.names == ("30", "1/60", "0.0166s", "1/16000")
     assert dial.values.tolist() == [32, 1 / 64, 1 / 64, 1 / 16000]

@@ -64,7 +64,7 @@ def test_shifts_written_as_homographies_cut_the_same_views_as_offsets(E):
     assert camera.views is hand_motion.views
 
 
-def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_back():
+def test_photos_of_a_rotating_camera_align_when_rotated_back():
     room = scenes.room((120, 170))
     moves = [warp.turn(room.shape, 2.5, (3, 5)), np.eye(3)]
     taken = camera.shoot(
@@ -79,7 +79,7 @@ def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_
     assert np.abs(turned - still).mean() < off.mean() / 4
 
 
-def test_the_hand_is_seeded_and_stays_within_what_was_asked_for():
+def test_shake_is_reproducible_and_stays_within_its_limits():
     moves = hand_motion.shake(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1)
     assert np.array_equal(moves, hand_motion.shake(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1))
     assert np.array_equal(moves[25], np.eye(3))
@@ -153,7 +153,7 @@ def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
         assert beyond(side) > 0
 
 
-def test_how_far_moves_are_apart_is_told_at_the_worst_corner():
+def test_corner_distance_is_that_of_the_worst_corner():
     assert warp.corner_distance(warp.as_homographies([[3, 4]]), np.eye(3), SHAPE) == pytest.approx(
         [5]
     )
@@ -176,7 +176,7 @@ def test_how_far_moves_are_apart_is_told_at_the_worst_corner():
         ([[0, 0], [0, 500]], "expected images that overlap"),
     ],
 )
-def test_moves_that_mean_nothing_are_refused(moves, said):
+def test_invalid_homographies_raise_an_error(moves, said):
     with pytest.raises(ValueError, match=said):
         warp.common_rectangle(moves, SHAPE)
 
@@ -184,6 +184,6 @@ def test_moves_that_mean_nothing_are_refused(moves, said):
 @pytest.mark.parametrize(
     "knobs", [dict(count=0), dict(radius=-1), dict(degrees=np.nan), dict(tilt=0.5)]
 )
-def test_a_hand_that_means_nothing_is_refused(knobs):
+def test_invalid_shake_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="frame, motion"):
         hand_motion.shake(**{"count": 3, "shape": SHAPE} | knobs)

@@ -9,12 +9,12 @@ from hdrlab.core.filters.scatter import GlareSpread
 RNG = np.random.default_rng(0)
 
 
-def test_a_clean_lens_changes_nothing():
+def test_a_clean_lens_does_not_change_the_image():
     E = RNG.lognormal(size=(6, 7, 3)).astype(np.float32)
     assert np.array_equal(add_glare(E, GlareSpread(0)), E)
 
 
-def test_a_lamp_loses_its_share_and_lifts_the_dark_less_farther_away():
+def test_a_lamp_loses_the_glare_fraction_and_lifts_the_dark_less_at_a_distance():
     E = np.zeros((21, 31), np.float32)
     E[10, 15] = 1000
     F = add_glare(E, GlareSpread(0.1))
@@ -30,6 +30,6 @@ def test_glare_is_proportional_to_light_and_the_same_for_each_channel():
     assert np.allclose(add_glare(E)[..., 1], add_glare(E[..., 1]), rtol=1e-5)
 
 
-def test_a_share_of_all_the_light_is_refused():
+def test_a_glare_fraction_of_1_raises_an_error():
     with pytest.raises(ValueError, match="share"):
         add_glare(np.ones((3, 3)), GlareSpread(1))

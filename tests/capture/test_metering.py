@@ -34,7 +34,7 @@ def test_an_even_picture_reads_the_same_in_every_mode(mode):
 
 
 @pytest.mark.parametrize(("mode", "low", "high"), [("spot", 0.01, 0.05), ("partial", 0.10, 0.15)])
-def test_spot_asks_1_to_5_percent_and_partial_10_to_15(mode, low, high):
+def test_spot_metering_covers_1_to_5_percent_and_partial_10_to_15(mode, low, high):
     assert low <= (metering.weights(np.ones(SHAPE), mode) > 0).mean() <= high
 
 
@@ -49,7 +49,7 @@ def test_centre_gives_its_share_of_the_weight_to_the_central_quarter(inside):
     )  # feathered: it falls all the way, and never to nothing
 
 
-def test_the_spot_goes_where_it_is_put():
+def test_the_spot_can_be_placed_anywhere():
     B = np.zeros(SHAPE)
     B[60:, 90:] = 0.5
     assert metering.reading(B, metering.spot(SHAPE, at=(0.9, 0.9), share=0.01)) == pytest.approx(
@@ -66,14 +66,14 @@ def test_a_matrix_meter_divides_the_picture_into_28_zones():
         labels[0, 0] = 9
 
 
-def test_a_matrix_meter_hardly_listens_to_a_bare_sun():
+def test_a_matrix_meter_gives_the_bare_sun_little_weight():
     B = np.full(SHAPE, 0.05)
     B[:16, :20] = 1.0
     assert metering.reading(B, metering.matrix(B)) == pytest.approx(0.05, rel=0.05)
     assert metering.reading(B, metering.average(SHAPE)) > 0.07
 
 
-def test_a_matrix_meter_leans_toward_the_focus_point():
+def test_a_matrix_meter_gives_the_focus_point_more_weight():
     B = np.full(SHAPE, 0.1)
     B[:, 60:] = 0.3
     left, right = (metering.reading(B, metering.matrix(B, at=(0.5, x))) for x in (0.2, 0.8))
@@ -126,7 +126,7 @@ def test_twice_the_light_gives_one_ev_more():
     )
 
 
-def test_a_black_and_a_burnt_out_first_shot_are_both_survived():
+def test_autoexposure_recovers_from_a_black_or_burnt_out_first_shot():
     for start in (-10, 40):
         states = list(
             autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, max_shots=20)
@@ -134,7 +134,7 @@ def test_a_black_and_a_burnt_out_first_shot_are_both_survived():
         assert abs(np.log2(states[-1].B_pre / metering.MIDDLE_GRAY)) < 1 / 6
 
 
-def test_what_means_nothing_is_refused():
+def test_invalid_arguments_raise_an_error():
     B = np.full(SHAPE, 0.3)
     for call in (
         lambda: metering.weights(B, "matrx"),
@@ -150,7 +150,7 @@ def test_what_means_nothing_is_refused():
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_subject_is_a_part_of_its_picture_and_its_reflectance_is_as_told(name):
+def test_each_metering_scene_has_a_subject_of_known_reflectance(name):
     scene = SCENES[name]
     assert np.all(np.isfinite(scene.E)) and scene.E.min() > 0
     assert 0.02 < scene.mask.mean() < 0.9
@@ -159,7 +159,7 @@ def test_a_subject_is_a_part_of_its_picture_and_its_reflectance_is_as_told(name)
     )
 
 
-def test_the_centre_meter_fades_as_a_bell_does_and_ends_nowhere():
+def test_the_center_weights_are_gaussian_and_never_0():
     """The logarithm of its weights falls by the square of the distance, in the core as outside of it."""
     w = metering.centre((61, 61))
     away = (np.arange(61) - 30.0) ** 2

@@ -11,7 +11,7 @@ BALL = movers.ball((40, 60), (20, 30), 8, [2.0, 1.0, 0.5])
 TIMES = [0.125, 0.5, 2.0]
 
 
-def test_a_moment_is_light_before_what_the_mask_leaves():
+def test_compose_moment_puts_the_figure_in_front_of_the_scene():
     E, mask = movers.compose_moment(WALL, BALL, (3, -10))
     assert np.array_equal(E[mask == 0], WALL[mask == 0]) and np.allclose(
         E[mask == 1], shifted(BALL.light)[mask == 1]
@@ -31,13 +31,13 @@ def test_a_ball_has_the_area_of_its_disc_and_its_radiance_at_the_brightest():
     assert np.all(plain.light <= 3 * plain.mask) and np.all(plain.light[plain.mask == 1] > 0)
 
 
-def test_a_figure_that_walks_out_of_the_frame_is_gone_and_does_not_come_back():
+def test_a_figure_that_leaves_the_frame_does_not_wrap_around():
     for at in [(0, 200), (-90, 0), (39, 59), (-40, -60)]:
         E, mask = movers.compose_moment(WALL, BALL, at)
         assert np.array_equal(E[mask == 0], WALL[mask == 0]) and mask.sum() < BALL.mask.sum() / 4
 
 
-def test_each_photograph_is_that_of_its_moment_and_the_truth_is_sorted_with_it():
+def test_each_photo_shows_its_moment_and_the_truth_is_sorted_alike():
     taken = movers.shoot(
         WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], camera.Camera(response="linear")
     )
@@ -57,7 +57,7 @@ def test_outside_the_region_every_moment_is_the_still_scene():
     assert all(np.any(one != WALL) for one in taken.moments)
 
 
-def test_photographs_of_one_time_keep_their_own_truth():
+def test_photos_of_equal_times_keep_their_own_truth():
     taken = movers.shoot(
         WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, camera.Camera(response="linear")
     )
@@ -67,7 +67,7 @@ def test_photographs_of_one_time_keep_their_own_truth():
         )
 
 
-def test_a_hand_that_shakes_moves_scene_and_figure_alike():
+def test_camera_shake_moves_scene_and_figure_together():
     offsets = np.array([[2, 0], [0, 0], [-3, 5]])
     wall = np.random.default_rng(1).random((40, 60, 3), np.float32)
     taken = movers.shoot(wall, BALL, np.zeros((3, 2), int), TIMES, offsets=offsets)
@@ -83,7 +83,7 @@ def test_the_visitor_of_an_embedded_place_is_a_figure():
     assert np.allclose(E, scenes.compose(place, (0, 7)))
 
 
-def test_a_path_is_straight_even_and_at_its_own_place_in_the_middle():
+def test_a_path_has_equal_steps_and_is_centered_on_the_middle_frame():
     at = movers.path(5, (2, -10))
     assert at[2].tolist() == [0, 0] and np.all(np.diff(at, axis=0) == [2, -10])
 
@@ -100,7 +100,7 @@ def test_a_path_is_straight_even_and_at_its_own_place_in_the_middle():
         ({"model": camera.Camera(hot=0.01)}, "hot"),
     ],
 )
-def test_what_is_no_bracket_with_a_figure_is_refused(wrong, said):
+def test_invalid_figures_and_places_raise_an_error(wrong, said):
     given = {"E": WALL, "figure": BALL, "at": movers.path(3, (0, 9)), "times": TIMES} | wrong
     with pytest.raises(ValueError, match=said):
         movers.shoot(**given)
@@ -109,6 +109,6 @@ def test_what_is_no_bracket_with_a_figure_is_refused(wrong, said):
 @pytest.mark.parametrize(
     "wrong", [{"radius": 0}, {"radiance": [1, 2]}, {"radiance": -1}, {"centre": 3}]
 )
-def test_what_is_no_ball_is_refused(wrong):
+def test_an_invalid_ball_raises_an_error(wrong):
     with pytest.raises(ValueError, match="expected"):
         movers.ball(**({"shape": (20, 20), "centre": (9, 9), "radius": 4} | wrong))

@@ -17,7 +17,7 @@ from hdrlab.radiance.uncertainty import inverse_variance_merge
     overlap=st.floats(0, 3),
     per_stop=st.sampled_from([1, 3]),
 )
-def test_every_luminance_of_the_scene_is_held_and_neighbours_overlap(
+def test_the_plan_covers_every_luminance_and_neighbors_overlap(
     low, scene, usable, overlap, per_stop
 ):
     high = low * 2**scene
@@ -45,7 +45,7 @@ def test_times_are_powers_of_two_and_named_as_on_the_dial():
     assert plan.names == ("1/15", "1", "15", "256")
 
 
-def test_the_shortest_just_holds_the_brightest():
+def test_the_shortest_exposure_just_holds_the_brightest_luminance():
     plan = planning.plan(0.01, 1000, per_stop=3)
     assert 1000 <= plan.holds[0, 1] < 1000 * 2 ** (1 / 3)
     assert plan.holds[0, 1] == pytest.approx(exposure.saturating_luminance(plan.times[0]))
@@ -57,7 +57,7 @@ def test_four_times_the_speed_takes_a_quarter_of_the_time():
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 1), (2, 1), (-1, 1), (1, np.inf), (np.nan, 1)])
-def test_luminances_that_mean_nothing_are_refused(low, high):
+def test_invalid_luminances_raise_an_error(low, high):
     with pytest.raises(ValueError, match="luminances"):
         planning.plan(low, high)
 
@@ -78,7 +78,7 @@ MAKERS = [
 
 @pytest.mark.parametrize("maker", MAKERS)
 @pytest.mark.parametrize(("low", "high", "snr"), [(0.5, 500, 20), (2, 50, 60), (1, 1, 5)])
-def test_by_noise_each_luminance_has_the_ratio_that_was_asked_for(maker, low, high, snr):
+def test_planning_by_noise_reaches_the_requested_snr_at_each_luminance(maker, low, high, snr):
     names, times, speeds = planning.plan_by_noise(low, high, snr, maker)
     every = planning.squared_snr(np.geomspace(low, high, 2001), times, speeds, maker).sum(axis=1)
     assert every.min() >= snr**2 * (1 - 1e-6)
@@ -92,7 +92,7 @@ def test_by_noise_each_luminance_has_the_ratio_that_was_asked_for(maker, low, hi
 
 
 @pytest.mark.parametrize("maker", MAKERS[1:])
-def test_by_noise_no_three_other_photographs_are_quicker(maker):
+def test_planning_by_noise_finds_the_quickest_three_photos(maker):
     low, high, snr = 5.0, 200.0, 12.0
     found = planning.plan_by_noise(low, high, snr, maker)
     took = found.times.sum() + maker.pause * len(found.times)
@@ -130,12 +130,12 @@ def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
         *((planning.Model(), snr) for snr in (0, np.nan, 1e9)),
     ],
 )
-def test_by_noise_what_means_nothing_is_refused(maker, snr):
+def test_planning_by_noise_raises_an_error_for_invalid_arguments(maker, snr):
     with pytest.raises(ValueError, match="expected"):
         planning.plan_by_noise(0.1, 1000, snr, maker)
 
 
-def test_the_same_plan_comes_again_after_another_one():
+def test_a_plan_does_not_depend_on_earlier_plans():
     first = planning.plan_by_noise(1, 50, 15)
     planning.plan_by_noise(0.1, 3000, 20)
     assert planning.plan_by_noise(1, 50, 15).names == first.names
@@ -147,14 +147,14 @@ def test_a_bracket_around_a_time_takes_the_nearest_that_the_camera_has():
     assert [dial.names[j] for j in chosen] == ["1/125", "1/60", "1/15"]
 
 
-def test_a_bracket_that_the_camera_s_times_do_not_hold_on_one_side_moves_to_the_other():
+def test_a_bracket_is_shifted_to_stay_within_the_cameras_times():
     times = 2.0 ** np.arange(-10, 1)
     assert np.log2(times[planning.around(0.5, times, 4, 2.0)]).tolist() == [-6, -4, -2, 0]
     assert np.log2(times[planning.around(0.001, times, 4, 2.0)]).tolist() == [-10, -8, -6, -4]
 
 
 @pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
-def test_a_bracket_in_which_two_times_would_be_one_is_refused(frames, stops):
+def test_a_bracket_with_two_equal_times_raises_an_error(frames, stops):
     with pytest.raises(
         ValueError, match=f"{frames} times {stops:g} stops apart, the camera has 11 over"
     ):

@@ -38,7 +38,7 @@ def test_the_range_of_a_sensor_is_its_well_over_its_noise():
     assert ranges.sensor_range(one).decades == pytest.approx(4, abs=1e-3)
 
 
-def test_a_smaller_gain_digs_deeper_into_the_dark_until_it_fills_the_converter_first():
+def test_the_range_is_largest_at_an_intermediate_gain():
     high, base, low = (ranges.sensor_range(Sensor(gain=K)).stops for K in (40, 5, 1))
     assert high < base and low < base
     assert (
@@ -91,7 +91,7 @@ def test_without_a_black_level_the_dark_is_too_bright():
 
 
 @given(K=st.floats(0.5, 50), N=st.integers(0, 15_000))
-def test_levels_tell_the_electrons_to_half_a_level(K, N):
+def test_electrons_can_be_computed_from_levels_within_half_a_level(K, N):
     one = Sensor(gain=K, bits=16, black=100)
     Z = sensor.digitise(np.array([[N]], np.float32), one)
     assert abs(K * (float(Z[0, 0]) - 100) - N) <= K / 2 + 1e-2
@@ -100,7 +100,7 @@ def test_levels_tell_the_electrons_to_half_a_level(K, N):
 # One exposure of a wide scene
 
 
-def test_a_longer_exposure_holds_the_same_range_further_down():
+def test_a_longer_exposure_covers_the_same_range_of_darker_luminances():
     L = np.geomspace(1e-4, 1e4, 8001)
     ends = []
     for time in (0.01, 0.16):
@@ -141,7 +141,7 @@ def test_vignetting_takes_its_share_in_the_corners_and_nothing_in_the_middle():
     assert np.allclose(b.images[0] / 65535, 0.5 * bright, atol=1e-4)
 
 
-def test_white_balance_makes_a_gray_card_gray_and_leaves_what_is_full_white():
+def test_white_balance_makes_a_gray_card_gray_and_keeps_full_pixels_white():
     lamp = np.array([0.9, 0.6, 0.25])
     E = np.stack([np.full((4, 3), 0.2 * part) for part in lamp], axis=-1)
     E[2:] = 50
@@ -210,7 +210,7 @@ def test_the_variance_grows_with_the_signal_and_falls_when_the_well_is_full():
     assert not found.used[-1]
 
 
-def test_a_jpeg_is_told_from_raw_levels_by_noise_that_does_not_grow():
+def test_photon_transfer_raises_an_error_for_jpegs_whose_noise_does_not_grow():
     pairs = flats(Sensor())
     curved = np.round(255 * np.clip((pairs - 64.0) / 4000, 0, 1) ** (1 / 2.2)).astype(np.uint8)
     with pytest.raises(ValueError, match="noise that grows"):
@@ -227,7 +227,7 @@ def test_a_jpeg_is_told_from_raw_levels_by_noise_that_does_not_grow():
         np.zeros((5, 2, 3, 3), np.uint16),
     ],
 )
-def test_photographs_that_tell_nothing_are_refused(Z):
+def test_photon_transfer_raises_an_error_for_unusable_photos(Z):
     with pytest.raises(ValueError, match="expected"):
         photon_transfer.calibrate(Z)
 
@@ -272,7 +272,7 @@ def test_figures_that_mean_nothing_are_refused():
             call()
 
 
-def test_a_converter_has_no_level_beyond_its_last_and_none_below_0():
+def test_digitise_clips_to_the_levels_of_the_converter():
     small = Sensor(full_well=50_000, gain=1, bits=12, black=64)
     assert sensor.digitise(np.float32([-1000, 0, 3000, 5000, 50_000]), small).tolist() == [
         0,
@@ -283,7 +283,7 @@ def test_a_converter_has_no_level_beyond_its_last_and_none_below_0():
     ]
 
 
-def test_what_just_fills_a_sensor_is_lost():
+def test_an_exposure_that_just_fills_the_sensor_counts_as_full():
     full = Sensor(full_well=1000, gain=1, bits=12, black=0, read_noise=1)
     found = ranges.expose_levels([0.5, 1.0, 2.0], 1.0, full)
     assert found.full.tolist() == [False, True, True]

@@ -33,7 +33,7 @@ def test_a_table_rises_and_leaves_black_and_white_alone(delta):
 
 
 @given(delta=st.floats(-4, 4), more=st.floats(-4, 4))
-def test_light_twice_is_the_sum_of_the_light(delta, more):
+def test_two_corrections_equal_one_by_the_sum(delta, more):
     once = relight.f(relight.f_inv(LEVELS) + delta)
     twice = relight.f(relight.f_inv(once[1:255]) + more)
     assert twice == pytest.approx(relight.curve(delta + more)[1:255], abs=1e-4)
@@ -64,7 +64,7 @@ def test_rounds_bring_the_mean_to_the_target_where_one_leaves_it_off():
 
 
 @pytest.mark.parametrize("level", [0, 255])
-def test_a_picture_of_nothing_but_black_or_white_is_left_as_it_is(level):
+def test_a_black_or_white_image_is_not_changed(level):
     Z = np.full((32, 32, 3), level, np.uint8)
     found = battiato.correct(Z)
     assert np.array_equal(found.picture, Z) and found.delta == 0
@@ -85,7 +85,7 @@ def test_contrast_is_the_mean_distance_from_the_mean():
     )  # the smoothing's own: (2+1+0+1+2)/5
 
 
-def test_focus_hears_an_edge_and_not_the_noise():
+def test_focus_measures_an_edge_and_ignores_noise():
     edge = np.repeat([[60.0, 160.0]], 16, axis=0).repeat(8, axis=1)
     grain = 100 + np.random.default_rng(1).normal(0, 2, (16, 16))
     assert battiato.focus(edge) == pytest.approx(2 * 100 / 16) and battiato.focus(grain) < 0.7
@@ -107,7 +107,7 @@ def test_sixty_four_blocks_cover_any_picture():
         )
 
 
-def test_a_quarter_of_a_mosaic_has_each_cells_red_mean_green_and_blue():
+def test_quarter_size_has_the_red_mean_green_and_blue_of_each_cell():
     mosaic = np.array([[10, 20], [40, 30]], np.uint8)
     assert battiato.quarter_size(mosaic).tolist() == [[[10, 30, 30]]]
     with pytest.raises(ValueError, match="Bayer"):
@@ -126,7 +126,7 @@ def test_against_the_light_the_relevant_regions_come_to_the_target_within_three_
 
 
 @pytest.mark.parametrize("EV", [12, 12.77, 13.3])
-def test_against_the_light_the_face_is_what_matters_and_comes_out_right(EV):
+def test_a_backlit_face_is_found_and_correctly_exposed(EV):
     Z, face = photographed(EV)
     found = battiato.correct(Z)
     assert found.by == "skin" and found.relevant[face].mean() > 0.8
@@ -139,7 +139,7 @@ def test_against_the_light_the_face_is_what_matters_and_comes_out_right(EV):
     )
 
 
-def test_a_well_exposed_photograph_is_left_within_five_levels():
+def test_a_well_exposed_photo_changes_by_less_than_five_levels():
     for Z in (data.astronaut(), battiato.correct(photographed(13)[0]).picture):
         change = battiato.brightness(battiato.correct(Z).picture) - battiato.brightness(Z)
         assert abs(change.mean()) < 5
@@ -170,12 +170,12 @@ def test_another_shape_of_the_response_reaches_the_target_too(shape):
 
 
 @pytest.mark.parametrize("knobs", [dict(target=0), dict(target=255), dict(by="faces")])
-def test_knobs_that_mean_nothing_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="expected"):
         battiato.correct(data.astronaut()[:64, :64], **knobs)
 
 
-def test_pictures_that_are_none_are_refused():
+def test_invalid_images_raise_an_error():
     for bad in (np.zeros((4, 4)), np.zeros((4, 4, 2), np.uint8), np.zeros((0, 4), np.uint8)):
         with pytest.raises(ValueError, match="picture"):
             battiato.correct(bad)
@@ -218,7 +218,7 @@ FOUND = {  # (way, dark): recall in the face, and share of flag, rocket and wall
 
 
 @pytest.mark.parametrize(("way", "dark"), FOUND)
-def test_skin_is_found_in_light_and_dark_faces_alike(way, dark):
+def test_skin_is_found_in_light_and_dark_faces(way, dark):
     Z, face, elsewhere = portrait(dark)
     found = skin.FINDERS[way](battiato.brighten(Z))
     recall, mistaken = FOUND[way, dark]
@@ -244,7 +244,7 @@ def test_blue_green_and_gray_are_no_skin():
     assert not skin.find_by_chrominance(Z).any() and not skin.find_by_locus(Z).any()
 
 
-def test_a_training_set_of_ones_own_moves_the_skin():
+def test_your_own_training_set_changes_what_counts_as_skin():
     rng = np.random.default_rng(5)
     green = np.array([60, 160, 60]) + rng.normal(0, 4, (500, 3))
     martian = skin.fit(green)

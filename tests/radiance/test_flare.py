@@ -18,7 +18,7 @@ def room():
 # The lens
 
 
-def test_a_point_of_light_becomes_the_point_spread():
+def test_a_point_of_light_is_spread_by_the_kernel():
     E = np.zeros((31, 41), np.float32)
     E[10, 12] = 1
     seen = lens.add_glare(E, GlareSpread(0.1, 2.5, 2.0))
@@ -32,21 +32,21 @@ def test_a_point_of_light_becomes_the_point_spread():
     )  # one constant at all distances: nothing comes round
 
 
-def test_no_light_is_made_and_what_stays_in_the_frame_is_what_was_there():
+def test_glare_adds_no_light_and_keeps_most_of_it_in_the_frame():
     E = np.zeros((81, 81), np.float32)
     E[40, 40] = 5
     seen = lens.add_glare(E, GlareSpread(0.2, 3.0))
     assert 0.95 * 5 < seen.sum(dtype=float) <= 5.0001 and np.all(seen >= 0)
 
 
-def test_veils_add_and_scale_as_light_does():
+def test_adding_glare_is_linear():
     rng = np.random.default_rng(1)
     one, two = rng.random((2, 20, 30, 3)).astype(np.float32)
     both = lens.add_glare(one + 3 * two)
     assert np.allclose(both, lens.add_glare(one) + 3 * lens.add_glare(two), rtol=1e-4, atol=1e-5)
 
 
-def test_a_clear_lens_changes_nothing(room):
+def test_a_clear_lens_does_not_change_the_image(room):
     assert np.array_equal(lens.add_glare(room, GlareSpread(0.0)), room)
 
 
@@ -57,7 +57,7 @@ def test_a_clear_lens_changes_nothing(room):
         *(GlareSpread(0.1, 2.0, -1.0), GlareSpread(0.1, 2.0, 0.0), GlareSpread(0.1, 2.0, np.inf)),
     ],
 )
-def test_a_lens_without_a_meaning_is_refused(spread):
+def test_an_invalid_glare_spread_raises_an_error(spread):
     with pytest.raises(ValueError, match="share"):
         lens.add_glare(np.ones((4, 4)), spread)
     with pytest.raises(ValueError, match="share"):
@@ -68,7 +68,7 @@ def test_a_lens_without_a_meaning_is_refused(spread):
 
 
 @pytest.mark.parametrize("power", [2.0, 2.5, 3.0])
-def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
+def test_glare_is_estimated_and_removed_within_5_percent(room, power):
     F = lens.add_glare(room, GlareSpread(0.1, power))
     found = flare.remove_glare(F)
     affected = (1 - 0.9 * room / F).max(axis=-1) > 0.05
@@ -77,7 +77,7 @@ def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
     assert np.median(before) > 0.04 and np.median(after) < 0.01 and np.mean(after < 0.05) > 0.9
 
 
-def test_a_lens_that_was_measured_is_undone_to_a_per_mille(room):
+def test_glare_of_a_known_lens_is_removed_within_a_tenth_of_a_percent(room):
     spread = GlareSpread(0.08, 2.25)
     F = lens.add_glare(room, spread)
     found = flare.remove_glare(F, spread=spread, part=1e-6)
@@ -85,14 +85,14 @@ def test_a_lens_that_was_measured_is_undone_to_a_per_mille(room):
 
 
 @pytest.mark.parametrize("name", scenes.PLACES)
-def test_a_scene_through_a_clear_lens_is_left_as_it_is(name):
+def test_a_scene_without_glare_is_not_changed(name):
     E = scenes.layers(name, (128, 192)).radiance
     found = flare.remove_glare(E)
     assert np.array_equal(found.E, E) and not found.region.any() and found.spread.share == 0
     assert "no veiling glare" in flare.note(found)
 
 
-def test_the_rounds_come_down_to_the_share(room):
+def test_the_iterations_converge_to_the_true_fraction_of_glare(room):
     F = lens.add_glare(room, GlareSpread(0.1, 2.0))
     shares = [state.share for state in flare.glare_steps(F, 2.0)]
     assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(
@@ -100,7 +100,7 @@ def test_the_rounds_come_down_to_the_share(room):
     )
 
 
-def test_outside_the_region_the_map_stays_bit_for_bit(room):
+def test_pixels_outside_the_glare_region_are_not_changed(room):
     F = lens.add_glare(room, GlareSpread(0.1, 3.0))
     found = flare.remove_glare(F, part=0.2)
     assert 0 < found.region.mean() < 0.9
@@ -130,12 +130,12 @@ def test_gray_maps_and_maps_without_light_are_maps(room):
         ({"part": 0}, "part"),
     ],
 )
-def test_what_is_no_map_is_refused(wrong, said):
+def test_invalid_maps_and_parameters_raise_an_error(wrong, said):
     with pytest.raises(ValueError, match=said):
         flare.remove_glare(**({"F": np.ones((4, 4))} | wrong))
 
 
-def test_without_powers_there_is_nothing_to_choose():
+def test_an_empty_list_of_powers_raises_an_error():
     with pytest.raises(ValueError, match="power"):
         flare.estimate_spread(np.ones((4, 4)), powers=())
 
@@ -152,7 +152,7 @@ def test_scattered_light_falls_with_distance():
 
 @pytest.mark.parametrize("place", [scenes.chapel, scenes.workshop, scenes.street])
 @pytest.mark.parametrize("r", [0.002, 0.01, 0.03])
-def test_the_picture_of_the_lights_is_found_and_removed(place, r):
+def test_a_mirrored_reflection_is_estimated_and_removed(place, r):
     E = place((128, 192))
     F = E + np.float32(r) * E[::-1, ::-1]
     assert reflection.fit_reflection(F) == pytest.approx(r, rel=0.02)
@@ -160,13 +160,13 @@ def test_the_picture_of_the_lights_is_found_and_removed(place, r):
 
 
 @pytest.mark.parametrize("place", [scenes.chapel, scenes.workshop, scenes.street])
-def test_a_scene_without_a_reflection_is_left_as_it_is(place):
+def test_a_scene_without_a_reflection_is_not_changed(place):
     E = place((128, 192))
     assert reflection.fit_reflection(E) < 1e-4
     assert np.allclose(reflection.remove_reflection(E), E, rtol=0.02, atol=1e-5 * E.max())
 
 
-def test_what_is_alike_on_both_sides_is_no_reflection():
+def test_a_symmetric_scene_is_not_mistaken_for_a_reflection():
     E = scenes.chapel((128, 192))
     symmetric = E + E[::-1, ::-1]
     assert np.array_equal(reflection.remove_reflection(symmetric), symmetric)
@@ -174,12 +174,12 @@ def test_what_is_alike_on_both_sides_is_no_reflection():
 
 
 @pytest.mark.papers
-def test_real_photographs_without_a_reflection_are_left_alone():
+def test_no_reflection_is_found_in_real_photos_without_one():
     E = pipeline.assemble(scenes.photographs((250, 188))).E
     assert reflection.fit_reflection(E) == 0
 
 
 @pytest.mark.parametrize("r", [-0.1, 1.0, np.nan])
-def test_a_reflection_of_less_than_nothing_or_of_all_light_is_refused(r):
+def test_a_reflection_outside_0_to_1_raises_an_error(r):
     with pytest.raises(InputError, match=str(r)):
         reflection.remove_reflection(np.ones((4, 4)), r)

@@ -77,7 +77,7 @@ def test_frames_that_agree_have_no_deviation_and_the_unit_of_light_does_not_matt
         assert np.allclose(deviation.measure_deviation(taken, np.ones(256)).v, 0, atol=1e-5)
 
 
-def test_an_edge_of_high_contrast_that_lies_a_pixel_elsewhere_is_no_ghost(wall):
+def test_a_sharp_edge_misaligned_by_a_pixel_is_not_a_ghost(wall):
     times = camera.times_around(wall, 5)
     offsets = np.array([[0, 0], [0, 1], [1, 0], [1, 1], [0, 1]])
     images = [
@@ -92,7 +92,7 @@ def test_an_edge_of_high_contrast_that_lies_a_pixel_elsewhere_is_no_ghost(wall):
     assert not regions.find_seeds(deviation.score_contradiction(plain, tau=TAU, edge=EDGE)).any()
 
 
-def test_regions_grow_from_their_seeds_alone():
+def test_regions_grow_only_from_their_seeds():
     seed, weak = np.zeros((2, 9, 30), bool)
     seed[4, 2], weak[4, :12], weak[4, 20:] = True, True, True
     grown = regions.grow(seed, weak, 20)
@@ -100,14 +100,14 @@ def test_regions_grow_from_their_seeds_alone():
     assert regions.grow(seed, weak, 3)[4].nonzero()[0].max() == 5
 
 
-def test_what_a_ring_encloses_belongs_to_its_region():
+def test_holes_in_a_region_are_filled():
     ring = np.zeros((20, 20), bool)
     ring[5:15, 5:15], ring[8:12, 8:12] = True, False
     assert regions.dilate(ring, 0)[5:15, 5:15].all()
     assert not regions.dilate(np.zeros((5, 5), bool), 3).any()
 
 
-def test_a_seam_is_even_in_stops_and_ends_in_either_map():
+def test_blending_is_linear_in_stops():
     E, other = np.full((1, 3), 1.0, np.float32), np.full((1, 3), 16.0, np.float32)
     assert np.allclose(regions.blend(E, other, np.array([[0, 0.5, 1]])), [[1, 4, 16]])
 
@@ -118,13 +118,13 @@ def test_the_best_exposure_of_a_region_is_the_longest_that_measures_it():
     assert frames.best_exposures(taken, np.ones((40, 40), np.int32)).tolist() == [2]
 
 
-def test_a_time_that_is_a_little_off_is_no_motion(moving, wall):
+def test_a_slightly_wrong_exposure_time_is_not_motion(moving, wall):
     still = camera.shoot(wall, moving.bracket.times, camera.Camera(full_well=50_000), rng=3)
     wrong = still.times * [1, 1.15, 1, 0.87, 1]
     assert not ghosts.remove_ghosts(still.images, wrong, FILM, W).labels.any()
 
 
-def test_a_frame_joins_its_leader_where_it_agrees_and_where_its_neighbourhood_does():
+def test_a_frame_is_used_where_it_and_its_neighborhood_agree_with_the_reference():
     images = np.full((2, 30, 40), 50, np.uint8)
     images[1] = 100
     images[1, 10:20, 10:20] = 200
@@ -138,7 +138,7 @@ def test_a_frame_joins_its_leader_where_it_agrees_and_where_its_neighbourhood_do
     )
 
 
-def test_where_the_leader_is_clipped_a_frame_that_breaks_its_bound_does_not_join():
+def test_a_frame_is_not_used_where_it_contradicts_the_bound_of_a_clipped_reference():
     images = np.full((2, 30, 40), 255, np.uint8)
     images[0] = 200  # bright, as the leader's bound asks for
     images[0, :, 20:] = 5  # somebody dark, where the leader says "at least"
@@ -147,7 +147,7 @@ def test_where_the_leader_is_clipped_a_frame_that_breaks_its_bound_does_not_join
     assert used[0, :, :14].all() and not used[0, :, 24:].any()
 
 
-def test_beside_a_light_of_great_variance_a_dark_place_that_differs_is_found():
+def test_a_difference_in_the_dark_beside_a_noisy_light_is_found():
     dark, everywhere = np.full((40, 40, 1), 1e-3, np.float32), np.ones((40, 40, 1), bool)
     V = np.full((40, 40, 1), 1e-12, np.float32)
     V[:, :20, 0] = np.exp(np.random.default_rng(2).normal(0, 8, (40, 20)))
@@ -160,7 +160,7 @@ def test_beside_a_light_of_great_variance_a_dark_place_that_differs_is_found():
 # What becomes of a ghost
 
 
-def test_in_the_region_the_error_is_ten_times_smaller_and_outside_nothing_changes(moving):
+def test_the_error_in_moving_regions_is_ten_times_smaller_and_others_are_not_changed(moving):
     b = moving.bracket
     plain = merge_with_quality(b.images, b.times, FILM, W)
     for knobs in ({}, {"fixed": 2}):
@@ -180,7 +180,7 @@ def test_in_the_region_the_error_is_ten_times_smaller_and_outside_nothing_change
         )
 
 
-def test_who_stands_in_the_only_frame_that_measures_a_bright_place_is_found_and_not_cut_in_two():
+def test_a_figure_seen_in_the_only_unclipped_frame_is_found_as_one_region():
     """Before a bright sky, which the longer frames clip; below it the wall, which all of them measure."""
     sky = np.where(np.arange(90)[:, None] < 50, 100.0, 2.0) * np.ones((1, 140))
     ball, times = movers.ball(SHAPE, (50, 70), 15, 8.0, stripes=0), [0.004, 0.03, 0.12, 0.5]
@@ -198,7 +198,7 @@ def test_who_stands_in_the_only_frame_that_measures_a_bright_place_is_found_and_
     assert ghosts.remove_ghosts(still, times, FILM, W).labels.max() == 0
 
 
-def test_a_reference_leads_in_every_region_and_the_map_shows_its_moment(moving):
+def test_with_a_fixed_reference_the_map_shows_its_moment(moving):
     for j in range(5):
         found = found_in(moving.bracket, fixed=j)
         assert set(found.references.tolist()) == {j}
@@ -211,7 +211,7 @@ def test_a_reference_leads_in_every_region_and_the_map_shows_its_moment(moving):
             assert inside[moving.hidden[j]].mean() > 0.9
 
 
-def test_alone_means_one_frame_in_each_region(moving):
+def test_alone_uses_one_frame_in_each_region(moving):
     found = found_in(moving.bracket, alone=True)
     inside = found.labels > 0
     assert inside.any() and np.all(found.used.sum(axis=0)[inside] == 1)
@@ -226,7 +226,7 @@ def test_any_order_of_frames_gives_the_same_map(moving):
     assert np.array_equal(first.used[order], other.used)
 
 
-def test_gray_and_16_bits_find_what_colour_and_8_bits_find(moving):
+def test_gray_and_16_bit_brackets_give_the_same_regions(moving):
     b = moving.bracket
     eight = found_in(b)
     sixteen = ghosts.remove_ghosts(b.images.astype(np.uint16) * 257, b.times, FILM, W)
@@ -235,7 +235,7 @@ def test_gray_and_16_bits_find_what_colour_and_8_bits_find(moving):
     assert gray.E.shape == SHAPE and (eight.labels > 0)[gray.labels > 0].mean() > 0.5
 
 
-def test_a_photograph_counts_only_where_it_holds_a_picture(moving):
+def test_masked_pixels_are_not_used(moving):
     b = moving.bracket
     valid = np.ones(b.images.shape[:3], bool)
     valid[:, :, :6] = False
@@ -245,7 +245,7 @@ def test_a_photograph_counts_only_where_it_holds_a_picture(moving):
     assert np.all(found.quality[:, :6] == Quality.UNSEEN) and np.all(np.isfinite(found.E))
 
 
-def test_what_was_given_stays_as_it_is(moving):
+def test_remove_ghosts_does_not_change_its_arguments(moving):
     b = moving.bracket
     merged = merge_with_quality(b.images, b.times, FILM, W)
     before = merged.E.copy(), merged.quality.copy(), b.images.copy()
@@ -257,7 +257,7 @@ def test_what_was_given_stays_as_it_is(moving):
 # What stands still
 
 
-def test_a_still_scene_has_no_region_and_its_map_bit_for_bit(wall):
+def test_a_still_scene_has_no_moving_region_and_the_plain_map(wall):
     for bits, seed in ((8, 1), (16, 2)):
         still = camera.shoot(
             wall, camera.times_around(wall, 5), camera.Camera(bits=bits, full_well=20_000), rng=seed
@@ -268,7 +268,7 @@ def test_a_still_scene_has_no_region_and_its_map_bit_for_bit(wall):
         assert np.array_equal(found.E, merge_with_quality(still.images, still.times, g, w).E)
 
 
-def test_regions_that_hold_too_much_of_the_picture_leave_the_plain_map(moving):
+def test_the_plain_map_is_kept_if_motion_is_widespread(moving):
     b = moving.bracket
     plain = merge_with_quality(b.images, b.times, FILM, W)
     share = 100 * np.mean(found_in(b).labels > 0)
@@ -290,12 +290,12 @@ def test_black_and_white_brackets_have_no_ghosts(level):
         ({"valid": np.ones((2, 2))}, "mask of shape"),
     ],
 )
-def test_knobs_without_a_meaning_are_refused(moving, wrong, said):
+def test_invalid_arguments_raise_an_error(moving, wrong, said):
     with pytest.raises(ValueError, match=said):
         found_in(moving.bracket, **wrong)
 
 
-def test_a_note_says_how_many_regions_and_who_leads(moving, wall):
+def test_the_note_names_the_regions_and_their_reference_frames(moving, wall):
     names = [f"img{j}" for j in range(5)]
     found = found_in(moving.bracket)
     said = ghosts.note(found, names)
@@ -304,7 +304,7 @@ def test_a_note_says_how_many_regions_and_who_leads(moving, wall):
     assert "nothing moved" in ghosts.note(found_in(still), names)
 
 
-def test_a_note_doubts_motion_that_is_everywhere(moving):
+def test_the_note_questions_widespread_motion(moving):
     b = moving.bracket
     noise = np.random.default_rng(4).integers(1, 249, b.images.shape, np.uint8)
     noise = np.repeat(np.repeat(noise[:, ::9, ::9], 9, axis=1), 9, axis=2)[
@@ -314,7 +314,7 @@ def test_a_note_doubts_motion_that_is_everywhere(moving):
     assert "alignment" in ghosts.note(found, [f"img{j}" for j in range(5)])
 
 
-def test_the_mask_grows_over_a_textured_part_of_what_moved_whose_edges_would_excuse_it_alone():
+def test_the_mask_grows_from_clear_motion_into_textured_parts():
     v, r = np.zeros((40, 60), np.float32), np.zeros((40, 60), np.float32)
     v[15:25, 10:20] = 1.0  # a head, which contradicts clearly
     v[15:25, 20:30], r[15:25, 20:30] = 0.15**2, 0.5  # a striped coat
@@ -342,7 +342,7 @@ def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clip
     assert found.measured[0, :, 0].tolist() == [False, True, False]
 
 
-def test_what_is_darker_than_a_clipped_frame_shows_is_found_but_for_an_edge_that_is_off_by_a_pixel():
+def test_contradictions_of_clipped_frames_are_found_except_at_misaligned_edges():
     E, near, outside = (np.zeros((9, 11, 3), kind) for kind in (np.float32, bool, bool))
     E[4, 5], near[3:6, 4:7], outside[:, -2:] = 1.0, True, True
     clipped = np.full((1, *E.shape), 255, np.uint8)
@@ -355,7 +355,7 @@ def test_what_is_darker_than_a_clipped_frame_shows_is_found_but_for_an_edge_that
 
 
 @pytest.mark.parametrize("w", [np.zeros(256), -np.ones(256), np.ones((256, 3))])
-def test_weights_that_trust_no_level_are_refused(moving, w):
+def test_weights_that_are_all_0_raise_an_error(moving, w):
     images, times = moving.bracket.images, moving.bracket.times
     E = merge_with_quality(images, times, FILM).E
     taken = frames.calibrate_frames(images, times, FILM, E)
@@ -363,7 +363,7 @@ def test_weights_that_trust_no_level_are_refused(moving, w):
         deviation.measure_deviation(taken, w)
 
 
-def test_a_map_of_another_size_than_the_photographs_is_refused(moving):
+def test_a_map_of_another_size_than_the_photos_raises_an_error(moving):
     images, times = moving.bracket.images, moving.bracket.times
     with pytest.raises(InputError, match="shape"):
         frames.calibrate_frames(images, times, FILM, np.ones((4, 5, 3)))

@@ -47,7 +47,7 @@ def test_one_frame_gives_its_exposure_over_its_time(method):
     assert np.allclose(E, np.exp(FILM[1:TOP]) / 0.5, rtol=1e-5)
 
 
-def test_each_method_is_its_formula():
+def test_each_method_follows_its_formula():
     z, t, w = np.array([60, 200]), np.array([0.25, 1.0]), weights.hat()
     wz, X = w[z], np.exp(FILM[z])
     expected = {
@@ -64,7 +64,7 @@ def test_each_method_is_its_formula():
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_on_clean_photographs_the_methods_agree(name, decades):
+def test_all_methods_agree_for_photos_without_noise(name, decades):
     E = decades((40, 60))
     taken = camera.shoot(
         E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, bits=16)
@@ -82,7 +82,7 @@ def test_on_clean_photographs_the_methods_agree(name, decades):
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", CURVES)
-def test_radiance_is_found_to_one_percent_where_a_frame_saw_it_well(name, method, seven_frames):
+def test_radiance_is_accurate_within_one_percent_where_well_exposed(name, method, seven_frames):
     E, taken = seven_frames(name)
     found = merge_with_quality(
         taken.images, taken.times, responses.true_g(name), weights.gaussian(), method=method
@@ -112,7 +112,7 @@ def test_any_order_of_frames_gives_the_same_map_bit_for_bit(method, bits, times)
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_16_bits_give_the_map_of_the_8_they_hold(method):
+def test_16_bit_photos_give_the_same_map_as_8_bit_ones(method):
     images = np.random.default_rng(4).integers(0, 256, (3, 20, 30, 3), np.uint8)
     eight = merge_with_quality(images, [1, 2, 8], FILM, method=method)
     sixteen = merge_with_quality(images.astype(np.uint16) * 257, [1, 2, 8], FILM, method=method)
@@ -149,7 +149,7 @@ def test_the_scale_of_the_weights_does_not_matter():
     assert np.allclose(maps[0], maps[1], rtol=1e-5) and np.allclose(maps[0], maps[2], rtol=1e-5)
 
 
-def test_the_number_of_threads_changes_nothing(monkeypatch):
+def test_the_number_of_threads_does_not_change_the_map(monkeypatch):
     images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
     one, three = (
         monkeypatch.setattr(threads, "THREADS", count)
@@ -160,7 +160,7 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-def test_what_was_given_stays_as_it_is_in_any_layout(dtype):
+def test_merge_does_not_change_its_arguments_in_any_memory_layout(dtype):
     images = np.random.default_rng(9).integers(0, np.iinfo(dtype).max, (3, 40, 30, 3), dtype)
     g = responses.true_g("film", np.iinfo(dtype).max + 1)
     given, plain = np.asfortranarray(images), merge(images, [4, 2, 1], g)
@@ -175,7 +175,7 @@ def test_what_was_given_stays_as_it_is_in_any_layout(dtype):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_pixel_clipped_in_every_frame_takes_the_shortest_ones_bound_and_says_so(method):
+def test_a_pixel_clipped_in_every_frame_gets_the_bound_of_the_shortest_and_a_flag(method):
     found = merge_with_quality(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
     assert np.isclose(found.E[0, 0], np.exp(FILM[TOP]) / 0.25, rtol=1e-6)
     assert found.quality.tolist() == [[Quality.CLIPPED, Quality.MEASURED]]
@@ -189,13 +189,13 @@ def test_each_channel_has_its_own_bound(level, bound):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_pixel_dark_in_every_frame_takes_the_longest_ones_bound_and_says_so(method):
+def test_a_pixel_dark_in_every_frame_gets_the_bound_of_the_longest_and_a_flag(method):
     found = merge_with_quality(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
     assert np.isclose(found.E[0, 0], np.exp(FILM[1]) / 0.5, rtol=1e-6)
     assert found.quality.tolist() == [[Quality.DARK, Quality.MEASURED]]
 
 
-def test_a_pixel_that_leaps_from_dark_to_clipped_lies_between_its_two_bounds():
+def test_a_pixel_dark_in_one_frame_and_clipped_in_the_next_gets_the_mean_of_its_bounds():
     found = merge_with_quality(row([0, 10], [255, 20]), [0.25, 1024], FILM)
     low, high = np.exp(FILM[TOP]) / 1024, np.exp(FILM[1]) / 0.25
     assert low < high and np.isclose(found.E[0, 0], np.sqrt(low * high), rtol=1e-6)
@@ -206,7 +206,7 @@ STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
 
 
 @given(STACKS, st.sampled_from(sorted(METHODS)), st.data())
-def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
+def test_measured_radiance_lies_between_the_bounds_of_dark_and_clipped_pixels(images, method, data):
     """All that is measured lies between what a dark pixel takes and what a clipped one takes."""
     times = np.array(
         data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images)))
@@ -246,13 +246,13 @@ def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(
 
 
 @pytest.mark.parametrize("level", [0, 255])
-def test_a_black_or_white_stack_is_finite_and_says_that_nothing_was_measured(level):
+def test_black_or_white_stacks_give_finite_maps_without_measured_pixels(level):
     found = merge_with_quality(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
     assert np.all(np.isfinite(found.E)) and np.ptp(found.E) == 0
     assert np.all(found.quality == (Quality.CLIPPED if level else Quality.DARK))
 
 
-def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
+def test_a_clipped_sun_is_not_darker_than_its_sky():
     y, x = np.mgrid[-40:40, -60:60]
     E = (2 + 60 * np.exp(-np.hypot(y, x) / 12) + 1e5 * (np.hypot(y, x) < 6)).astype(np.float32)
     taken = camera.shoot(
@@ -308,7 +308,7 @@ def flat_scene(shape=(12, 14, 3)):
 @pytest.mark.parametrize(
     ("level", "where"), [(255, (5, 6)), (200, (5, 6)), (255, (0, 0)), (255, (11, 7)), (0, (4, 13))]
 )
-def test_a_stuck_pixel_takes_its_neighbours_median_and_says_so(level, where):
+def test_a_stuck_pixel_is_replaced_by_the_median_of_its_neighbors_and_flagged(level, where):
     taken = flat_scene()
     y, x = where
     images = taken.images.copy()
@@ -337,7 +337,7 @@ def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
     assert np.all(np.abs(ratio / np.median(ratio) - 1) < 0.1)
 
 
-def test_a_true_highlight_of_one_pixel_that_a_frame_measures_stays():
+def test_a_measured_highlight_of_one_pixel_is_kept():
     E = np.full((9, 9), 0.3, np.float32)
     E[4, 4] = 12
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
@@ -367,7 +367,7 @@ def test_without_two_exposures_nothing_counts_as_stuck():
 # Masks and weights
 
 
-def test_a_frame_counts_where_it_shows_something_and_nowhere_else():
+def test_masked_pixels_are_not_merged():
     images = np.random.default_rng(10).integers(1, TOP, (3, 20, 30), np.uint8)
     valid = np.ones(images.shape, bool)
     valid[0, :, :10], valid[2, :, 20:] = False, False
@@ -383,7 +383,7 @@ def test_a_frame_counts_where_it_shows_something_and_nowhere_else():
     )
 
 
-def test_a_pixel_that_no_frame_shows_is_0_and_says_so():
+def test_a_pixel_masked_in_every_frame_is_0_and_flagged():
     images = np.full((2, 3, 4, 3), 100, np.uint8)
     valid = np.ones((2, 3, 4), bool)
     valid[:, 1, 2] = False
@@ -395,7 +395,7 @@ def test_a_pixel_that_no_frame_shows_is_0_and_says_so():
     )
 
 
-def test_the_bounds_come_from_frames_that_show_the_pixel():
+def test_bounds_are_computed_from_unmasked_frames():
     valid = np.array([[[False, True]], [[True, True]]])
     found = merge_with_quality(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
     assert np.allclose(found.E, np.exp(FILM[TOP]) * np.array([[1 / 4, 1]]))
@@ -410,7 +410,7 @@ def test_a_masked_pixel_is_not_mistaken_for_a_stuck_one():
     assert np.array_equal(found.E[5, 6], merge(taken.images[1:2], taken.times[1:2], FILM)[5, 6])
 
 
-def test_a_level_that_weighs_nothing_still_counts_where_there_is_no_other():
+def test_pixels_with_weight_0_in_all_frames_are_still_measured():
     w = weights.cut(weights.flat(), above=0.8, below=0.2)
     found = merge_with_quality(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
     assert not found.quality.any() and np.allclose(
@@ -446,14 +446,14 @@ def test_the_response_decides_each_channel():
         ({"top": 1.5}, "top as a fraction"),
     ],
 )
-def test_what_does_not_fit_together_is_refused(given, said):
+def test_invalid_arguments_raise_an_error(given, said):
     knobs = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | given
     with pytest.raises(ValueError, match=said):
         merge_with_quality(**knobs)
 
 
 @pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
-def test_a_response_that_ends_where_it_began_is_refused_though_it_dips_between(verb):
+def test_a_response_that_does_not_rise_raises_an_error(verb):
     g = np.r_[0.0, -np.ones(254), 0.0]
     with pytest.raises(ValueError, match="rise"):
         verb(np.full((2, 2, 2), 9, np.uint8), [1, 2], g)
@@ -470,12 +470,12 @@ def test_a_response_that_ends_where_it_began_is_refused_though_it_dips_between(v
         (np.ones((2, 4, 5), np.uint8), [1, 2, 3]),
     ],
 )
-def test_images_that_are_no_bracket_are_refused(verb, images, times):
+def test_invalid_images_raise_an_error(verb, images, times):
     with pytest.raises(InputError, match="expected"):
         verb(images, times, FILM)
 
 
-def test_photographs_whose_memory_may_go_give_the_same_map():
+def test_expendable_photos_give_the_same_map():
     """The pipeline lets the fast merge give the frames' memory back as it reads them."""
     rng = np.random.default_rng(3)
     images = rng.integers(0, 256, (4, 1100, 300, 3), dtype=np.uint8)

@@ -36,14 +36,14 @@ def test_exact_equations_give_the_ratio_at_once(k, seed):
     assert np.isclose(states[0].k, k) and np.isclose(states[-1].k, k)
 
 
-def test_the_solution_is_that_of_least_squares():
+def test_the_solution_is_the_least_squares_solution():
     rng = np.random.default_rng(0)
     found = ratios.Equations(rng.uniform(1, 9, 30), rng.uniform(1, 9, 30), rng.uniform(0, 1, 30))
     k = np.linalg.lstsq((found.v * found.x)[:, None], found.v * found.y, rcond=None)[0][0]
     assert np.isclose(ratios.solve_ratio(found, np.ones(30, bool)), k)
 
 
-def test_a_round_keeps_the_equations_below_the_limit_of_the_last_ones_mean_error():
+def test_each_iteration_keeps_the_equations_below_the_error_limit_of_the_last():
     rng = np.random.default_rng(1)
     x = rng.uniform(16, 60, 200)
     y = 4 * x + rng.normal(0, 0.5, 200)
@@ -57,7 +57,7 @@ def test_a_round_keeps_the_equations_below_the_limit_of_the_last_ones_mean_error
     assert abs(states[-1].k - states[-2].k) < 1e-6
 
 
-def test_the_papers_equations_lie_beside_the_line_and_the_corrected_ones_on_it():
+def test_the_papers_equations_are_biased_and_the_corrected_ones_are_not():
     light = (np.arange(400_000) + 0.5) / 400_000 * 240
     h = [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (0.25, 1)]
     paper, corrected = (ratios.collect_equations(*h, scheme) for scheme in ("paper", "mid-step"))
@@ -90,7 +90,7 @@ def test_other_ratios_are_found_to_a_quarter_of_a_percent(truth):
     assert abs(ratios.estimate_ratio(*pair(log_normal(), truth)) / truth - 1) < 0.0025
 
 
-def test_a_bracket_gives_its_times_however_it_was_held():
+def test_exposure_times_are_recovered_without_alignment():
     E = log_normal(3)
     taken = camera.shoot(E, [1, 2, 5, 15], camera.Camera(response="linear", gray_noise=1.0), rng=3)
     images = np.stack([np.rot90(image, 2 * (j % 2)) for j, image in enumerate(taken.images)])
@@ -98,7 +98,7 @@ def test_a_bracket_gives_its_times_however_it_was_held():
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_darker_frame_after_a_brighter_has_the_inverse_ratio(scheme):
+def test_swapping_the_frames_inverts_the_ratio(scheme):
     images = pair(log_normal(), 3)
     assert np.isclose(
         ratios.estimate_ratio(*images[::-1], scheme=scheme),
@@ -106,7 +106,7 @@ def test_a_darker_frame_after_a_brighter_has_the_inverse_ratio(scheme):
     )
 
 
-def test_16_bits_serve_beyond_what_8_can_hold():
+def test_16_bit_photos_work():
     images = pair(log_normal(), 4, bits=16, gray_noise=64.0)
     assert abs(ratios.estimate_ratio(*images) - 4) < 0.01
 
@@ -117,7 +117,7 @@ def test_all_channels_have_one_ratio():
     assert abs(ratios.estimate_ratio(*pair(E.astype(np.float32), 4)) - 4) < 0.01
 
 
-def test_what_the_mask_hides_does_not_count():
+def test_masked_pixels_do_not_change_the_ratio():
     images = pair(log_normal(), 4)
     spoiled, valid = images.copy(), np.ones(images.shape, bool)
     spoiled[1, :, :100], valid[1, :, :100] = 90, False
@@ -152,12 +152,12 @@ def test_constant_frames_are_refused(scheme, level):
         (np.zeros((2, 4, 4), np.uint8), {"valid": np.zeros((2, 4, 4), bool)}),
     ],
 )
-def test_what_is_no_bracket_is_refused(images, knobs):
+def test_invalid_arguments_raise_an_error(images, knobs):
     with pytest.raises(ValueError, match="expected"):
         ratios.estimate_ratios(images, **knobs)
 
 
-def test_a_level_without_pixels_is_no_equation():
+def test_levels_without_pixels_give_no_equation():
     h = np.zeros((2, 256), int)
     h[0, 20:50], h[1, 80:200:4] = 10, 10
     found = ratios.collect_equations(*h)
@@ -167,14 +167,14 @@ def test_a_level_without_pixels_is_no_equation():
     assert np.allclose(found.y, 4 * found.x)
 
 
-def test_rounds_end_where_the_ratio_no_longer_changes():
+def test_iterations_end_when_the_ratio_no_longer_changes():
     x = np.linspace(1, 100, 200)
     exact = ratios.Equations(x, 3 * x, np.ones_like(x))
     steps = list(ratios.ratio_steps(exact))
     assert len(steps) == 2 and steps[-1].k == pytest.approx(3)
 
 
-def test_the_paper_takes_every_level_but_the_first_and_the_middle_scheme_leaves_the_dark_ones_out():
+def test_the_papers_scheme_uses_every_level_but_the_first_and_the_middle_scheme_no_dark_ones():
     h = np.ones(256)
     least = {
         name: (found.x.min(), found.y.min())

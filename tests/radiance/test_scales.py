@@ -10,7 +10,7 @@ from hdrlab.radiance import scales
 
 
 @given(seed=st.integers(0, 99), red=st.floats(0.05, 20), blue=st.floats(0.05, 20))
-def test_the_scales_that_were_taken_off_are_found(seed, red, blue):
+def test_known_channel_scales_are_recovered(seed, red, blue):
     M = np.random.default_rng(seed).uniform(0.05, 1, (200, 3))
     assert np.allclose(scales.fit_channel_scales(M / [red, 1, blue], M), [red, 1, blue], rtol=1e-4)
 
@@ -29,7 +29,7 @@ def test_no_neighbour_of_the_scales_fits_better(seed):
         assert misfit(k) < misfit(k * step)
 
 
-def test_pixels_of_any_brightness_count_alike_and_any_shape_serves():
+def test_channel_scales_do_not_depend_on_brightness_or_array_shape():
     rng = np.random.default_rng(0)
     M = rng.uniform(0.2, 1, (6, 7, 3))
     light = M * [2.0, 1, 0.5] * np.exp(rng.normal(0, 0.1, M.shape))
@@ -55,7 +55,7 @@ def test_grays_stay_gray():
         (np.ones((0, 3)), np.ones((0, 3))),
     ],
 )
-def test_what_has_no_chromaticity_is_refused(light, M):
+def test_inputs_without_chromaticity_raise_an_error(light, M):
     with pytest.raises(ValueError, match="expected"):
         scales.fit_channel_scales(light, M)
 
@@ -65,7 +65,7 @@ def test_what_has_no_chromaticity_is_refused(light, M):
 
 @pytest.mark.parametrize("n", [256, 65536])
 @pytest.mark.parametrize("gamma", [0.5, 1.0, 2.2])
-def test_of_a_power_the_weight_is_the_level(gamma, n):
+def test_the_snr_weight_of_a_power_law_is_proportional_to_the_level(gamma, n):
     """f = M^gamma: f / f' = M / gamma, and gamma goes with the scale."""
     g = gamma * np.log(np.maximum(np.arange(n), 0.25) / (n // 2))
     w = weights.snr(g)
@@ -75,14 +75,14 @@ def test_of_a_power_the_weight_is_the_level(gamma, n):
 
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
-def test_the_weight_is_the_noises_effect_upside_down(name):
+def test_the_snr_weight_is_the_inverse_of_the_effect_of_noise(name):
     """Noise of one level changes ln f by f' / f: weight times that is even over the levels."""
     g = responses.true_g(name)
     even = weights.snr(g)[20:240] * np.gradient(g)[20:240]
     assert np.ptp(even) < 0.1 * even.mean()
 
 
-def test_where_a_curve_is_level_the_weight_stays_finite_and_positive():
+def test_the_snr_weight_is_finite_and_positive_where_the_response_is_flat():
     g = responses.true_g("film").copy()
     g[250:], g[60:75] = g[250], g[60]
     w = weights.snr(g)
@@ -98,13 +98,13 @@ def test_colours_share_one_weight_and_the_unit_of_exposure_is_no_matter():
 @pytest.mark.parametrize(
     "g", [np.zeros(256), np.full(256, np.nan), np.zeros((2, 2, 2)), -np.arange(256.0)]
 )
-def test_what_is_no_response_is_refused(g):
+def test_invalid_responses_raise_an_error(g):
     with pytest.raises(ValueError, match="expected a"):
         weights.snr(g)
 
 
 @given(k=st.floats(1e-3, 1e3), x=st.integers(0, 59), y=st.integers(0, 39))
-def test_one_reading_of_a_meter_gives_the_unit_back(k, x, y):
+def test_one_light_meter_reading_determines_the_unit(k, x, y):
     cd = 10 ** np.random.default_rng(7).uniform(0, 3, (40, 60))
     around = cd[max(y - 1, 0) : y + 2, max(x - 1, 0) : x + 2].mean()
     assert np.isclose(scales.fit_unit(cd / k, x, y, around), k, rtol=1e-4)
@@ -113,7 +113,7 @@ def test_one_reading_of_a_meter_gives_the_unit_back(k, x, y):
 @pytest.mark.parametrize(
     ("x", "y", "reading"), [(60, 0, 1), (-1, 0, 1), (0, 40, 1), (5, 5, 0), (5, 5, np.nan)]
 )
-def test_a_reading_that_cannot_be_is_refused(x, y, reading):
+def test_an_invalid_meter_reading_raises_an_error(x, y, reading):
     with pytest.raises(ValueError, match="cd/m"):
         scales.fit_unit(np.ones((40, 60)), x, y, reading)
 

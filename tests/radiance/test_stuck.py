@@ -15,7 +15,7 @@ def pair(shape=(7, 9), dtype=np.uint8):
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("where", [(3, 4), (0, 0), (6, 8), (0, 5), (4, 0)])
 @pytest.mark.parametrize("level", [255, 200, 0])
-def test_a_pixel_that_stands_still_and_stands_out_is_stuck_anywhere(dtype, where, level):
+def test_a_constant_pixel_that_differs_from_its_neighbors_is_stuck(dtype, where, level):
     short, long = pair(dtype=dtype)
     short[where], long[where] = [level * (np.iinfo(dtype).max // 255)] * 2
     expected = np.zeros((7, 9), bool)
@@ -47,14 +47,14 @@ def test_a_pixel_that_follows_the_exposure_or_does_not_stand_out_is_not_stuck(
     assert not find_stuck(short, long).any()
 
 
-def test_two_pixels_side_by_side_are_a_thing_and_not_stuck():
+def test_two_adjacent_pixels_are_not_stuck():
     short, long = pair()
     short[3, 4:6], long[3, 4:6] = 255, 255
     assert not find_stuck(short, long).any()
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (5, 1)])
-def test_the_smallest_pictures_have_no_stuck_pixels_but_for_the_obvious(shape):
+def test_no_pixel_of_a_tiny_image_is_stuck(shape):
     short, long = pair(shape)
     assert not find_stuck(short, long).any()
 
@@ -75,7 +75,7 @@ def test_at_the_border_the_picture_is_continued_by_reflection():
 
 
 @pytest.mark.parametrize(("ratio", "mended"), [(2.0, True), (1.9, False)])
-def test_a_stop_of_exposure_is_enough_to_tell_a_hot_pixel(ratio, mended):
+def test_hot_pixels_are_found_from_one_stop_of_exposure_difference_on(ratio, mended):
     frames = np.full((2, 9, 9, 1), 60, np.uint8)
     frames[1] = 120
     frames[:, 4, 4] = 250

@@ -28,7 +28,7 @@ def photographed(response, bits=8, rng=0, E=LIGHT):
 @pytest.mark.parametrize(
     ("response", "bits"), [("linear", 16), ("linear", 8), ("gamma", 8), ("film", 8)]
 )
-def test_of_100_pixels_of_any_decade_95_lie_within_1_96_deviations(response, bits):
+def test_95_percent_of_pixels_in_each_decade_lie_within_1_96_deviations(response, bits):
     images, times, g, N, true = photographed(response, bits)
     found = merge_with_deviation(images, times, g, N, READ)
     inside = np.abs(found.E - true) < 1.96 * found.s
@@ -38,7 +38,7 @@ def test_of_100_pixels_of_any_decade_95_lie_within_1_96_deviations(response, bit
 
 
 @pytest.mark.parametrize("response", ["linear", "gamma", "film"])
-def test_no_other_mean_errs_less(response):
+def test_the_inverse_variance_mean_has_the_smallest_error(response):
     images, times, g, N, true = photographed(response, rng=2)
     found = merge_with_deviation(images, times, g, N, READ)
     known = np.isfinite(found.s)
@@ -50,14 +50,14 @@ def test_no_other_mean_errs_less(response):
     assert error(found.E) < min(others)
 
 
-def test_the_deviation_of_draws_is_the_one_that_is_said():
+def test_the_reported_deviation_equals_that_of_repeated_draws():
     flat = np.full((40, 50), 0.05)
     images, times, g, N, _ = photographed("linear", 16, rng=1, E=flat)
     found = merge_with_deviation(images, times, g, N, READ)
     assert found.E.std() == pytest.approx(np.median(found.s), rel=0.06)
 
 
-def test_photons_alone_leave_one_over_the_root_of_all_that_were_counted():
+def test_with_photon_noise_only_the_relative_error_is_one_over_the_root_of_the_count():
     g = responses.true_g("linear", 65536)
     images = np.full((3, 1, 1), 20_000, np.uint16) * np.array([1, 2, 3], np.uint16)[:, None, None]
     found = merge_with_deviation(images, [1, 2, 3], g, N=1e4)
@@ -65,7 +65,7 @@ def test_photons_alone_leave_one_over_the_root_of_all_that_were_counted():
     assert found.s / found.E == pytest.approx(counted**-0.5, rel=1e-3)
 
 
-def test_of_equal_answers_the_mean_has_a_fraction_of_the_variance():
+def test_the_variance_of_a_mean_of_equal_estimates_is_divided_by_their_number():
     X, step = np.array([1.0, 2.0, 3.0]), np.full(3, np.sqrt(12 * 0.3))
     E, s = inverse_variance_merge(X, step, np.ones(3, bool), np.ones(3), 1e12, 0)
     assert E == pytest.approx(2) and s**2 == pytest.approx(0.1)
@@ -80,7 +80,7 @@ def test_the_three_causes_of_noise_add_their_variances():
     assert variance(0 * X, X, 1e9, 0) == pytest.approx(X**2 / 12)
 
 
-def test_the_order_of_the_frames_and_the_unit_of_time_change_nothing_else():
+def test_frame_order_does_not_matter_and_the_unit_of_time_scales_the_result():
     images, times, g, N, _ = photographed("film")
     found = merge_with_deviation(images, times, g, N, READ)
     turned = merge_with_deviation(images[::-1], times[::-1], g, N, READ)
@@ -90,7 +90,7 @@ def test_the_order_of_the_frames_and_the_unit_of_time_change_nothing_else():
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
-def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
+def test_pixels_that_no_frame_measures_have_a_bound_and_an_infinite_deviation(channels):
     images = np.array([[[40, 255, 0]], [[80, 255, 0]]], np.uint8)
     images = images.reshape(*images.shape, *[1] * len(channels)) + np.zeros(channels, np.uint8)
     g = responses.true_g("linear")
@@ -103,7 +103,7 @@ def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
     assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
 
-def test_what_errs_with_the_light_does_not_average_out():
+def test_the_relative_error_rho_does_not_average_out():
     g = responses.true_g("linear", 65536)
     images = np.full((4, 1, 1), 30_000, np.uint16)
     found = merge_with_deviation(images, np.ones(4), g, N=1e9, rho=0.02)
@@ -111,14 +111,14 @@ def test_what_errs_with_the_light_does_not_average_out():
 
 
 @pytest.mark.parametrize(("R", "counts"), [(0.0, False), (30.0, True)])
-def test_black_is_a_measurement_where_the_noise_is_wider_than_its_step(R, counts):
+def test_level_0_counts_as_measured_if_the_noise_exceeds_the_quantization_step(R, counts):
     images = np.array([[[0]], [[40]]], np.uint8)
     found = merge_with_deviation(images, [1, 1], responses.true_g("linear"), N=1000, R=R)
     alone = merge_with_deviation(images[1:], [1], responses.true_g("linear"), N=1000, R=R)
     assert (found.E < alone.E) == (found.s < alone.s) == counts
 
 
-def test_a_full_well_that_reads_a_little_less_than_the_top_measures_nothing():
+def test_a_full_well_just_below_the_top_level_is_not_measured():
     maker = camera.Camera(
         response="linear", bits=16, full_well=2_500, read_noise=20
     )  # 0.8 % of the well
@@ -132,7 +132,7 @@ def test_a_full_well_that_reads_a_little_less_than_the_top_measures_nothing():
     assert np.array_equal(found.E, alone.E) and np.array_equal(found.s, alone.s)
 
 
-def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
+def test_each_channel_may_have_its_own_noise():
     images = np.array([[[[40, 40, 255]]], [[[80, 80, 255]]], [[[160, 160, 200]]]], np.uint8)
     g = responses.true_g("linear")
     each = merge_with_deviation(images, [1, 2, 4], g, [100, 1000, 1000], [5, 0, 0])
@@ -155,7 +155,7 @@ def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
         {"rho": -1},
     ],
 )
-def test_noise_that_cannot_be_is_refused(bad):
+def test_invalid_noise_raises_an_error(bad):
     with pytest.raises(ValueError, match=f"{next(iter(bad))} of at least .* one a channel"):
         merge_with_deviation(
             np.ones((2, 2, 2), np.uint8), [1, 2], responses.true_g("linear"), **{"N": 100, **bad}

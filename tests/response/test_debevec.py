@@ -51,7 +51,7 @@ def test_the_systems_rows_are_those_of_the_paper():
 @pytest.mark.parametrize(
     ("frames", "count"), [(2, 256), (4, 86), (11, 26), (12, 24), (256, 2), (257, 1)]
 )
-def test_samples_needed_are_the_least_that_outnumber_the_levels(frames, count):
+def test_samples_needed_is_the_smallest_number_that_exceeds_the_levels(frames, count):
     assert debevec.samples_needed(frames) == count
     assert count * (frames - 1) > 255 >= (count - 1) * (frames - 1)
 
@@ -78,7 +78,7 @@ def test_lE_is_where_the_samples_lie_on_the_curve(name, solve):
     )  # half a level in the middle of a curve
 
 
-def test_levels_beyond_the_cut_take_the_value_of_the_last_one_that_an_equation_reaches():
+def test_levels_beyond_the_cut_repeat_the_last_constrained_value():
     Z, B = samples()
     g = debevec.gsolve(Z, B, 30, CUT).g
     reached = (
@@ -97,19 +97,19 @@ def test_levels_beyond_the_cut_take_the_value_of_the_last_one_that_an_equation_r
         ({"Z": [[100, 100]]}, "seen well in two exposures"),
     ],
 )
-def test_a_system_without_an_answer_is_refused(given, said):
+def test_an_underdetermined_system_raises_an_error(given, said):
     knobs = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | given
     with pytest.raises(ValueError, match=said):
         debevec.gsolve(**knobs)
 
 
-def test_the_slides_solution_finds_the_camera_s_curve(seven_frames):
+def test_recover_finds_the_response_of_a_simulated_camera(seven_frames):
     _, taken = seven_frames("film")
     g = debevec.recover(taken.images, taken.times, samples=60)
     assert laws.curve_error(g, responses.true_g("film")) < 0.01 and np.all(np.diff(g) >= 0)
 
 
-def test_below_the_first_level_that_counts_each_level_is_a_step_of_light_and_level_0_half_a_step():
+def test_straighten_toe_makes_the_response_linear_below_the_first_weighted_level():
     w = weights.cut(weights.hat(), below=0.05)
     first = int(np.argmax(w > 0))
     exposures = np.exp(debevec.straighten_toe(responses.true_g("film")[:, None], w)[: first + 1, 0])

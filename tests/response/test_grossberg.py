@@ -43,7 +43,7 @@ def test_the_equations_hold_on_the_true_curve(seven_frames):
     )
 
 
-def test_a_level_between_two_is_read_between_them():
+def test_fractional_levels_are_interpolated():
     g = np.random.default_rng(0).normal(size=256)
     T = np.array([0.0, 3.25, 254.5, 255.0])
     assert np.allclose(grossberg.interpolate_levels(T) @ g, np.interp(T, np.arange(256), g))
@@ -58,7 +58,7 @@ def test_seven_frames_give_the_response_to_one_percent(name, model, seven_frames
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_frames_that_are_not_aligned_serve_as_well(model, seven_frames):
+def test_the_result_does_not_depend_on_the_alignment_of_frames(model, seven_frames):
     _, taken = seven_frames("film")
     turned = np.stack([np.rot90(image, 2 * (j % 2)) for j, image in enumerate(taken.images)])
     g = MODELS[model](taken.images, taken.times)
@@ -71,7 +71,7 @@ def test_the_polynomial_obeys_the_laws_too(name, law):
     law(grossberg.recover_polynomial, name)
 
 
-def test_what_the_mask_hides_does_not_bend_the_curve(decades):
+def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
     images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
@@ -93,12 +93,12 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         (STACK, [1, 2], {"smoothness": 0}),
     ],
 )
-def test_what_tells_nothing_is_refused(images, times, knobs):
+def test_brackets_without_two_exposures_raise_an_error(images, times, knobs):
     with pytest.raises(ValueError, match="expected"):
         grossberg.recover(images, times, **knobs)
 
 
-def test_a_polynomial_without_an_order_is_refused():
+def test_a_polynomial_of_order_0_raises_an_error():
     with pytest.raises(ValueError, match="order"):
         grossberg.recover_polynomial(STACK, [1, 2], order=0)
 
@@ -122,7 +122,7 @@ def test_noise_makes_pixels_and_polynomials_fail(figures):
         assert figure.noisy["polynomial, pixels"] > 5 and figure.noisy["polynomial, histograms"] > 5
 
 
-def test_the_cut_heals_debevec_and_not_the_polynomial_of_pixels(figures):
+def test_cut_weights_rescue_debevec_but_not_the_polynomial_of_pixels(figures):
     for figure in figures:
         assert figure.cut["Debevec, pixels"] <= 0.5 and figure.cut["polynomial, pixels"] > 5
 

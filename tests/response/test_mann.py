@@ -10,7 +10,7 @@ from hdrlab.response import mann
 
 
 @given(gamma=st.floats(0.3, 1.5), R=st.floats(0.2, 0.8), start=st.floats(150, 249))
-def test_each_rung_has_R_times_the_exposure_of_the_one_above(gamma, R, start):
+def test_each_level_of_descend_has_R_times_the_exposure_of_the_previous_one(gamma, R, start):
     T = np.arange(256) * R**gamma
     levels = mann.descend(T, start)
     assert np.allclose(levels, start * R ** (gamma * np.arange(len(levels))))
@@ -18,12 +18,12 @@ def test_each_rung_has_R_times_the_exposure_of_the_one_above(gamma, R, start):
 
 
 @given(gamma=st.floats(0.3, 1.5), alpha=st.floats(0, 20), R=st.floats(0.3, 0.8))
-def test_the_slope_of_an_exact_ladder_is_the_exponent(gamma, alpha, R):
+def test_fit_exponent_finds_the_exponent_of_exact_levels(gamma, alpha, R):
     levels = alpha + 200 * R ** (gamma * np.arange(4))
     assert np.isclose(mann.fit_exponent([(levels, R), (levels[1:], R)], alpha=alpha), gamma)
 
 
-def test_a_ladder_ends_where_the_transfer_knows_no_more():
+def test_descend_stops_where_the_transfer_is_unknown_or_does_not_fall():
     T = np.where(np.arange(256) < 100, np.nan, np.arange(256) / 2)
     assert mann.descend(T, 240).tolist() == [240, 120, 60]
     assert mann.descend(np.full(256, np.nan), 240).tolist() == [240]
@@ -40,7 +40,7 @@ def test_a_power_law_is_found_to_a_tenth_of_a_percent_through_noise(gamma, seed,
     assert laws.curve_error(g, mann.power_law(gamma)) < 0.001
 
 
-def test_the_level_of_the_covered_lens_must_be_given(decades):
+def test_the_black_level_alpha_must_be_given(decades):
     E, alpha, gamma = decades(), 20, 0.6
     response = lambda X: alpha / 255 + (1 - alpha / 255) * X**gamma  # noqa: E731
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(response=response))
@@ -51,13 +51,15 @@ def test_the_level_of_the_covered_lens_must_be_given(decades):
 
 
 @pytest.mark.parametrize(("name", "low", "high"), [("srgb", 0.005, 0.05), ("film", 0.03, 0.2)])
-def test_on_a_camera_that_is_no_power_law_it_is_a_compromise(name, low, high, seven_frames):
+def test_for_a_camera_that_is_no_power_law_the_error_is_within_known_bounds(
+    name, low, high, seven_frames
+):
     _, taken = seven_frames(name)
     g = mann.recover(taken.images, taken.times)
     assert low < laws.curve_error(g, responses.true_g(name)) < high
 
 
-def test_photographs_that_no_light_fills_serve_too(decades):
+def test_photos_without_clipped_pixels_work_too(decades):
     E = np.minimum(decades(), 1)
     taken = camera.shoot(
         E, [0.1, 0.2, 0.4], camera.Camera(response="gamma", full_well=50_000, read_noise=5), rng=0
@@ -89,7 +91,7 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         (STACK, [1, 2], {"starts": 0}),
     ],
 )
-def test_what_tells_nothing_is_refused(images, times, knobs):
+def test_brackets_without_two_exposures_raise_an_error(images, times, knobs):
     with pytest.raises(ValueError, match="expected"):
         mann.recover(images, times, **knobs)
 

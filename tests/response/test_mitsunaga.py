@@ -72,7 +72,7 @@ def test_a_random_curve_rises_as_steeply_as_promised():
         )
 
 
-def test_a_curve_that_dips_is_drawn_to_the_line_just_so_far_that_it_rises():
+def test_limit_slope_makes_a_falling_curve_rise_with_the_least_slope():
     c = np.array([4.0, -3, 2])
     assert polynomial.slope(polynomial.GRID, c).min() < 0
     drawn = polynomial.limit_slope(c, least=0.1)
@@ -80,7 +80,7 @@ def test_a_curve_that_dips_is_drawn_to_the_line_just_so_far_that_it_rises():
     assert np.array_equal(polynomial.limit_slope(drawn, least=0.05), drawn)
 
 
-def test_the_response_rises_even_where_the_polynomial_dips():
+def test_the_response_rises_even_where_the_polynomial_falls():
     g = mitsunaga.curve(np.array([4.0, -3, 2]))
     assert g[128] == 0 and np.all(np.isfinite(g)) and np.all(np.diff(g) > 0)
 
@@ -98,14 +98,14 @@ def test_the_coefficients_are_the_least_squares_solution_of_equation_7():
     assert np.isclose(np.append(1, c) @ H @ np.append(1, c), left[0], rtol=1e-5)
 
 
-def test_the_matrices_of_halves_add_up_and_orders_are_nested():
+def test_gram_matrices_of_parts_add_up_and_contain_those_of_lower_orders():
     M = average(ambiguity.draw_trial(np.random.default_rng(2)).Z)
     whole, *halves = (gram(*neighbours(part, MAX_ORDER), STATED) for part in (M, M[::2], M[1::2]))
     assert np.allclose(whole, sum(halves))
     assert np.allclose(gram(*neighbours(M, 4), STATED), whole[:4, :4])
 
 
-def test_one_turn_is_the_scheme_on_the_page():
+def test_the_scheme_finds_the_same_polynomial_as_the_literal_one_of_the_paper():
     """The literal scheme, in powers and with c_0, finds the same polynomial and ratios from clean samples."""
     c = ambiguity.draw_curve(np.random.default_rng(3))
     R = np.array([0.47, 0.53, 0.5])
@@ -121,7 +121,7 @@ def test_one_turn_is_the_scheme_on_the_page():
     assert np.allclose(ratios, R, atol=1e-4) and np.allclose(state.R, R, atol=1e-4)
 
 
-def test_a_pair_without_samples_keeps_the_ratio_it_was_given():
+def test_a_pair_without_samples_keeps_its_initial_ratio():
     M = np.full((1, 30, 3), np.nan)
     M[0, :, 1], M[0, :, 2] = np.linspace(0.1, 0.45, 30), np.linspace(0.2, 0.9, 30)
     state = last(mitsunaga.fit_steps(M, [0.3, 0.5], 2))
@@ -155,7 +155,7 @@ def test_ratios_are_shared_by_the_channels():
     assert np.allclose(state.R, R, rtol=0.011)
 
 
-def test_the_order_is_that_of_the_camera():
+def test_the_chosen_order_is_that_of_the_camera():
     rng = np.random.default_rng(5)
     for order in (1, 2, 3):
         M = clean(
@@ -166,14 +166,14 @@ def test_the_order_is_that_of_the_camera():
         assert choose_order([M[:, k::5] for k in range(5)], STATED) == order
 
 
-def test_the_order_of_a_power_law_is_not_that_of_the_line_which_other_ratios_would_make_it():
+def test_the_chosen_order_respects_the_stated_times_for_a_power_law():
     taken = bracket("gamma")
     assert calibrate(taken.images, taken.times).c.shape[1] + 1 >= 5
     line = calibrate(taken.images, taken.times ** (1 / 2.2))
     assert line.c.shape[1] + 1 == 1  # under such times it is one
 
 
-def test_an_order_that_only_one_part_of_the_picture_asks_for_is_not_taken():
+def test_the_chosen_order_is_robust_to_motion_in_one_part_of_the_image():
     """One of five parts shows a scene that moved: the fit to it swings, and the other four know better."""
     rng = np.random.default_rng(9)
     c = ambiguity.draw_curve(rng, order=3)
@@ -185,7 +185,7 @@ def test_an_order_that_only_one_part_of_the_picture_asks_for_is_not_taken():
 @pytest.mark.parametrize(
     ("name", "low", "high"), [("window", 6, 8), ("frobisher", 5, 6), ("stlouis_arch", 4, 5)]
 )
-def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, photographs):
+def test_the_chosen_order_for_real_photos_stays_low(name, low, high, photographs):
     """Where the error of eq. 7 falls up to order 10, with maps up to a quarter of a stop off."""
     taken = photographs(name)
     step = max(1, taken.images.shape[1] // 400)
@@ -198,7 +198,7 @@ def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, ph
 
 
 @pytest.mark.papers
-def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(measured_curves):
+def test_for_measured_curves_the_chosen_order_is_better_than_any_fixed_one(measured_curves):
     """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
     exposure, brightness = measured_curves
     true, errors = invert_curves(exposure, brightness)[::4], {None: [], 5: [], 10: []}
@@ -231,7 +231,7 @@ def test_other_seeds_stay_near_the_published_figure(seed):
 
 
 @pytest.mark.papers
-def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
+def test_early_stopping_improves_the_worst_trial_and_costs_accuracy_in_typical_ones():
     """A thousand turns instead of five help most of the first ten trials, and ruin the 32nd."""
     rng = np.random.default_rng(0)
     stopped, driven = [], []
@@ -249,7 +249,7 @@ def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
     assert stopped[-1] < 2.7 and driven[-1] > 3 * stopped[-1]
 
 
-def test_the_literal_scheme_slides_along_the_u_ambiguity():
+def test_the_literal_scheme_drifts_along_the_exponential_ambiguity():
     """The error rests, the curve leaves the truth, and stays on a power of the truth."""
     drift = ambiguity.measure_drift(ambiguity.draw_trial(np.random.default_rng(1)), STATED)
     assert drift.error.shape == drift.u.shape == (300,)
@@ -297,13 +297,13 @@ def test_a_simulated_camera_is_recovered_to_a_thousandth():
     assert np.sqrt(np.mean((f / f[-1] - truth / truth[-1]) ** 2)) < 0.002
 
 
-def test_the_ratios_come_back_with_the_photographs_in_any_order():
+def test_the_ratios_do_not_depend_on_the_order_of_photos():
     taken = bracket()
     ratios = calibrate(taken.images[::-1], taken.times[::-1]).R
     assert np.allclose(ratios, taken.times[:-1] / taken.times[1:], rtol=0.01)
 
 
-def test_a_mask_keeps_pixels_out():
+def test_masked_pixels_do_not_change_the_response():
     taken = bracket()
     valid = np.ones(taken.images.shape, bool)
     valid[:, :, :30] = False
@@ -315,7 +315,7 @@ def test_a_mask_keeps_pixels_out():
     )
 
 
-def test_what_cannot_be_calibrated_is_refused():
+def test_brackets_without_usable_pixels_raise_an_error():
     flat = np.full((20, 20), 100, np.uint8)
     for images, times, said in (
         ([flat], [1], "2 different exposure times"),
@@ -348,7 +348,7 @@ def test_the_papers_scheme_corrects_a_time_that_is_wrong():
         assert laws.curve_error(g, true_g("linear")) < 0.03
 
 
-def test_the_papers_scheme_asks_for_samples_that_two_frames_see_well():
+def test_the_papers_scheme_raises_an_error_without_well_exposed_pixels_in_two_frames():
     flat = np.full((20, 20), 100, np.uint8)
     with pytest.raises(ValueError, match="pixels "):
         mitsunaga.recover(np.stack([flat * 0 + 2, flat * 0 + 254]), [1, 2])

@@ -54,7 +54,7 @@ def test_the_iterations_end_at_the_tolerance_or_at_their_number(seven_frames):
     )
 
 
-def test_levels_without_a_mean_0_and_those_beyond_the_cut_are_filled():
+def test_level_0_and_levels_without_a_mean_or_beyond_the_cut_are_filled():
     means, w = np.arange(256.0), WEIGHTS
     means[[0, 3, 100, 250, 255]] = 7, np.nan, np.nan, 9, np.nan
     filled = robertson.fill(means, w)
@@ -62,14 +62,14 @@ def test_levels_without_a_mean_0_and_those_beyond_the_cut_are_filled():
     assert filled[0] == 0.25
 
 
-def test_a_sample_in_one_exposure_is_refused():
+def test_samples_in_one_exposure_raise_an_error():
     for Z, times in (([[0, 100]], [1, 2]), ([[100, 200]], [1, 1]), ([[100, 100]], [1, 2])):
         with pytest.raises(ValueError, match="seen well in two exposures"):
             next(robertson.recover_steps(np.array(Z), times, weights.hat()))
 
 
 @pytest.mark.parametrize("name", ["film", "linear"])
-def test_frames_a_stop_apart_give_the_curve_by_the_papers_scheme(name, decades):
+def test_the_papers_scheme_recovers_the_response_of_frames_a_stop_apart(name, decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 7, stops=1), camera.Camera(response=name))
     g = robertson.recover(taken.images, taken.times, samples=500)

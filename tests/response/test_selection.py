@@ -19,7 +19,7 @@ def test_the_published_threshold_is_36_4():
 
 
 @given(s=st.integers(2, 100), psi=st.floats(0.01, 0.5))
-def test_an_estimate_of_the_noise_that_is_good_needs_no_other_threshold(s, psi):
+def test_the_threshold_for_well_estimated_noise_equals_that_for_known_noise(s, psi):
     exact = selection.threshold(s, psi=psi)
     assert np.isclose(selection.threshold(s, psi=psi, estimated=1e9), exact, rtol=1e-5)
     assert selection.threshold(s, psi=0.05, estimated=10) > selection.threshold(s, psi=0.05)
@@ -47,12 +47,12 @@ def test_the_spatial_average_is_that_of_the_patch():
 
 @pytest.mark.parametrize("t", [1, 2, 100])
 @pytest.mark.parametrize("psi", [0.05, 0.2])
-def test_of_flat_patches_the_test_loses_the_share_psi(t, psi):
+def test_the_test_rejects_the_fraction_psi_of_flat_patches(t, psi):
     kept = selection.flat(noise(t), psi=psi)[INNER].mean()
     assert abs(kept - (1 - psi)) < 0.01
 
 
-def test_compared_with_one_frames_noise_the_average_would_pass_whatever_it_shows():
+def test_equation_12_read_literally_would_accept_an_edge_in_the_average():
     """Eq. 12 read literally: an edge of one sigma passes, that the corrected test rejects."""
     A = noise(100, (60, 60))
     A[:, :, 30:] += 0.01
@@ -93,7 +93,7 @@ def test_quantisation_to_256_levels_does_not_spoil_the_test():
         ),
     ],
 )
-def test_what_means_nothing_is_refused(call, said):
+def test_invalid_arguments_raise_an_error(call, said):
     with pytest.raises(ValueError, match=said):
         call()
 
@@ -124,7 +124,7 @@ def test_the_circle_ends_where_vignetting_begins(edge, seed):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_without_vignetting_the_circle_is_the_whole_picture(seed):
+def test_without_vignetting_the_circle_covers_the_whole_image(seed):
     assert selection.circle(*apertures(1e9, seed=seed)) == selection.radius((240, 320)).max()
 
 

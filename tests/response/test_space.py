@@ -42,7 +42,7 @@ def test_components_are_orthonormal_and_ordered_by_spread():
     assert np.all(np.diff(found.sd) < 0)
 
 
-def test_as_many_components_as_the_curves_span_lose_nothing():
+def test_reconstruction_is_exact_with_as_many_components_as_the_curves_span():
     found = space.fit_space(POWERS, len(POWERS) - 1)
     assert np.allclose(space.reconstruct(space.project(POWERS, found), found), POWERS, atol=1e-12)
 
@@ -52,7 +52,7 @@ def test_the_spread_is_that_of_the_coefficients():
     assert np.allclose(space.project(POWERS, found).std(axis=0), found.sd)
 
 
-def test_more_samples_than_components_and_no_noise_find_the_curve_exactly():
+def test_noiseless_samples_determine_the_curve_exactly():
     found = space.fit_space(POWERS, 3)
     curve = space.reconstruct([0.4, -0.2, 0.05], found)
     at = np.linspace(0.05, 0.95, 9)
@@ -60,7 +60,7 @@ def test_more_samples_than_components_and_no_noise_find_the_curve_exactly():
     assert np.allclose(again, curve, atol=1e-6)
 
 
-def test_without_trust_in_the_samples_the_mean_is_the_likeliest():
+def test_with_infinite_noise_the_most_likely_curve_is_the_mean():
     found = space.fit_space(POWERS, 3)
     assert np.allclose(space.fit_samples([0.5], [0.9], found, noise=1e6), found.mean, atol=1e-9)
 
@@ -75,7 +75,7 @@ def test_every_formula_rises_from_zero_to_one():
 
 
 @pytest.mark.parametrize("gamma", [1.6, 2.4])
-def test_the_straight_start_is_a_tangent(gamma):
+def test_the_linear_toe_is_tangent_to_the_curve(gamma):
     at, step = 0.05, 1e-6
     M = np.array([at - step, at, at + step])
     below, here, above = families.toe(M, gamma, at)
@@ -83,7 +83,7 @@ def test_the_straight_start_is_a_tangent(gamma):
 
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
-def test_the_family_holds_every_response_of_the_simulated_camera(name):
+def test_the_default_space_contains_every_simulated_response(name):
     basis, g = space.default_space(), responses.true_g(name)
     apart = np.exp(space.reconstruct(space.project(g, basis), basis)) - np.exp(g)
     assert np.abs(apart).max() < 0.01 * np.exp(g).max()
@@ -95,7 +95,7 @@ def test_the_inverse_of_a_measured_curve_is_its_g():
     assert np.allclose(g[2:], responses.true_g("gamma")[2:], atol=1e-3)
 
 
-def test_a_basis_of_ones_own_answers_in_its_span():
+def test_recover_with_your_own_basis_returns_a_curve_in_its_span():
     basis = space.fit_space(
         families.to_log(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2
     )
@@ -105,7 +105,7 @@ def test_a_basis_of_ones_own_answers_in_its_span():
     assert abs(g[200] - 2.2 * np.log(200 / 128)) < 0.03
 
 
-def test_what_is_no_space_is_refused():
+def test_invalid_arguments_raise_an_error():
     for call in (
         lambda: space.fit_space(POWERS, 0),
         lambda: space.fit_space(POWERS, 99),
@@ -135,12 +135,12 @@ def test_the_published_components_are_orthonormal_and_of_three_digit_exponents(s
     assert np.allclose(emor.H @ emor.H.T, np.eye(25), atol=1e-6)
 
 
-def test_the_published_components_leave_of_201_curves_what_is_known(shared, papers, curves):
+def test_the_published_components_have_the_published_residuals(shared, papers, curves):
     left = papers.projection(curves, papers.read_emor(shared("crf_curves") / "emor.txt"))
     assert left[3] < 0.00575 and left[5] < 0.00235 and left[11] < 0.00055
 
 
-def test_our_own_components_leave_more_than_theirs(papers, curves):
+def test_components_fitted_to_201_curves_have_residuals_like_the_published_ones(papers, curves):
     left = papers.projection(curves, space.fit_space(curves, 11))
     assert left[3] < 0.0057 and left[5] < 0.00231 and left[11] < 0.00053
 
@@ -192,6 +192,6 @@ def test_notebook_09_says_which_is_better_on_two_noisy_photographs():
     assert all(gsolve[name, 4000] < gsolve[name, 100] for name in ("srgb", "wig"))
 
 
-def test_noise_of_nothing_is_refused():
+def test_noise_of_0_raises_an_error():
     with pytest.raises(ValueError, match="noise > 0"):
         space.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], noise=0)

@@ -92,13 +92,13 @@ def test_light_adds_up():
 
 
 @pytest.mark.parametrize("name", subjects.SUBJECTS)
-def test_a_subject_that_travels_is_the_one_that_is_computed(name):
+def test_the_stored_subjects_equal_the_computed_ones(name):
     found, made = embedded.SUBJECTS[name](), subjects.SUBJECTS[name]()
     assert np.allclose(found.E, made[..., :3], rtol=1e-3)  # half floats hold 11 bits
     assert np.mean(found.mask != (made[..., 3] > 0.99)) < 1e-3
 
 
-def test_the_room_that_travels_is_the_one_that_is_computed():
+def test_the_stored_room_equals_the_computed_one():
     stored = scenes.room()
     computed = view.room(stored.shape[:2], samples=SAMPLES)
     assert np.allclose(stored, computed, rtol=2e-3)
@@ -124,7 +124,7 @@ def test_nothing_is_downloaded(monkeypatch):
         dict(sun=np.inf),
     ],
 )
-def test_a_room_that_cannot_be_is_refused(knobs):
+def test_invalid_room_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="expected"):
         view.room(**{"shape": (8, 8), **knobs})
 
@@ -136,7 +136,7 @@ def test_decades_count_powers_of_ten():
     assert np.isclose(scenes.decades(np.geomspace(1e-3, 1e4, 50)[None], tail=0), 7)
 
 
-def test_decades_leave_out_black_and_the_odd_pixel():
+def test_decades_ignore_black_and_outlying_pixels():
     E = np.geomspace(1, 100, 10_000).reshape(100, 100)
     E[0, :3], E[0, 3] = 0, 1e9
     assert np.isclose(scenes.decades(E), 2, atol=0.02)
@@ -145,7 +145,7 @@ def test_decades_leave_out_black_and_the_odd_pixel():
 @pytest.mark.parametrize(
     ("E", "tail"), [([[0.0]], 0), ([[1.0]], 0.5), ([[1.0]], -0.1), ([[-1.0]], 0)]
 )
-def test_decades_of_what_has_none_are_refused(E, tail):
+def test_decades_raise_an_error_for_images_without_a_range(E, tail):
     with pytest.raises(ValueError, match="expected"):
         scenes.decades(E, tail=tail)
 
@@ -214,19 +214,19 @@ def test_a_line_of_sight_leaves_a_box_where_it_should():
 
 
 @pytest.mark.parametrize("name", ["astronaut", "brick", "chelsea", "coffee", "grass", "gravel"])
-def test_a_texture_reflects_part_of_the_light_and_its_halvings_the_same_part(name):
+def test_a_texture_has_reflectances_below_1_and_its_mip_levels_the_same_mean(name):
     levels = textures.texture(name)
     assert levels[0].min() > 0 and levels[0].max() < 1 and levels[-1].shape[:2] == (1, 1)
     assert np.allclose(levels[4].mean(axis=(0, 1)), levels[0].mean(axis=(0, 1)), rtol=0.05)
 
 
-def test_a_texture_seen_from_afar_is_its_mean():
+def test_a_distant_texture_shows_its_mean():
     u = np.linspace(0, 5, 100, dtype=np.float32)
     rho = textures.look_up("coffee", u, u, np.full(100, 8, np.float32))
     assert rho.shape == (3, 100) and np.ptp(rho, axis=1).max() < 1e-6
 
 
-def test_a_texture_seen_from_near_is_its_picture():
+def test_a_near_texture_shows_its_pixels():
     rho = textures.texture("gravel")[0]
     row, column = np.array([5, 100, 300]), np.array([7, 200, 40])
     u, v = (column + 0.5) / 512, (row + 0.5) / 512

@@ -54,7 +54,7 @@ def test_the_files_are_half_floats_and_together_under_eight_megabytes():
 
 
 @each
-def test_a_program_that_knows_one_part_alone_sees_the_radiance(name):
+def test_a_reader_of_single_part_exr_files_sees_the_radiance(name):
     assert np.array_equal(exr.read(FILES[name]), scenes.layers(name).radiance)
 
 
@@ -100,7 +100,7 @@ def test_a_place_that_does_not_exist_is_refused():
 
 
 @each
-def test_a_visitor_who_stands_outside_the_frame_changes_nothing(name):
+def test_a_visitor_outside_the_frame_does_not_change_the_scene(name):
     place = scenes.layers(name, (128, 192))
     assert np.array_equal(scenes.compose(place, (0, 192)), place.radiance)
     assert np.array_equal(scenes.compose(place, (-500, 0)), place.radiance)
@@ -133,13 +133,13 @@ def test_a_visitor_is_lit_by_the_place(name):
 
 
 @pytest.mark.parametrize("offset", [3, (1, 2, 3), (0.5, 0)])
-def test_an_offset_that_is_not_two_whole_numbers_is_refused(offset):
+def test_an_offset_must_be_two_integers(offset):
     with pytest.raises(ValueError, match="offset"):
         scenes.compose(scenes.layers("street", (16, 24)), offset)
 
 
 @each
-def test_depth_tells_what_is_near_from_what_is_far(name):
+def test_depth_is_small_near_the_camera_and_large_far_away(name):
     z = scenes.layers(name).depth
     assert z[-1].max() < np.median(z) + 5 and 0.3 < z.min() < 5 and z.max() > 10
 
@@ -156,7 +156,7 @@ def test_the_street_is_darkest_in_its_alley():
 # Files of layers
 
 
-def test_layers_come_back_as_they_were_written(tmp_path):
+def test_layers_survive_a_round_trip_through_a_file(tmp_path):
     rng = np.random.default_rng(1)
     shapes_of = {"a": (9, 14, 3), "b": (9, 14), "c": (9, 14, 4)}
     layers = {name: rng.random(shape).astype(np.float16) for name, shape in shapes_of.items()}
@@ -177,7 +177,7 @@ def test_layers_come_back_as_they_were_written(tmp_path):
         ({"a": np.full((3, 4), -1.0)}, "in 0 to 65504"),
     ],
 )
-def test_layers_that_a_file_cannot_hold_are_refused(tmp_path, layers, said):
+def test_layers_that_a_file_cannot_hold_raise_an_error(tmp_path, layers, said):
     with pytest.raises(ValueError, match=said):
         write_layers(tmp_path / "layers.exr", layers)
     assert not list(tmp_path.iterdir())
@@ -293,7 +293,7 @@ def test_each_spot_of_sunlight_has_a_texel_to_itself_with_its_radiance():
     assert np.allclose(mesh.vertices.reshape(11, 4, 3).mean(axis=1), P + [0, 0, 0.002])
 
 
-def test_windows_that_shine_with_one_texture_are_lamps_of_their_own():
+def test_windows_with_a_common_texture_are_separate_lamps():
     """One mesh of them all would have several places for each texel, of which Mitsuba finds but one."""
     place = render.model("street")
     light = place.lights["windows"]
@@ -316,7 +316,7 @@ def noisy(rng):
     return E, rho, guides, *(E * rng.gamma(4, 1 / 4, E.shape) for _ in range(2))
 
 
-def test_averaging_alike_places_takes_out_most_of_the_noise_and_keeps_the_light():
+def test_denoising_removes_most_of_the_noise_and_keeps_the_light():
     E, rho, guides, A, B = noisy(np.random.default_rng(0))
     clean = rho * denoise.denoise(A, B, rho, guides)
     before, after = (np.sqrt(np.mean((each / E - 1) ** 2)) for each in ((A + B) / 2, clean))
@@ -324,7 +324,7 @@ def test_averaging_alike_places_takes_out_most_of_the_noise_and_keeps_the_light(
     assert abs(np.mean(clean / E) - 1) < 0.03
 
 
-def test_averaging_does_not_cross_an_edge_between_surfaces():
+def test_denoising_does_not_cross_an_edge_between_surfaces():
     E, rho, guides, A, B = noisy(np.random.default_rng(1))
     light = denoise.denoise(
         A * np.where(rho > 0.4, 5, 1), B * np.where(rho > 0.4, 5, 1), rho, guides
@@ -333,13 +333,13 @@ def test_averaging_does_not_cross_an_edge_between_surfaces():
     assert 4 < ratio[:, :8].mean() < 6
 
 
-def test_a_path_that_met_a_lamp_by_chance_is_not_believed():
+def test_fireflies_are_removed():
     A, B = np.ones((9, 9, 3)), np.ones((9, 9, 3))
     A[4, 4] = 500
     assert denoise.believed(A, B).max() == 2 and np.array_equal(denoise.believed(B, A), B)
 
 
-def test_light_is_brought_to_a_finer_grid_along_the_edges_of_its_guides():
+def test_upsampling_light_follows_the_edges_of_its_guides():
     x = np.arange(64)
     guides = np.repeat((x >= 33)[None, :, None] * 1.0, 40, axis=0)
     coarse = guides.reshape(20, 2, 32, 2, 1).mean(axis=(1, 3))
@@ -351,7 +351,7 @@ def test_light_is_brought_to_a_finer_grid_along_the_edges_of_its_guides():
 # Made again
 
 
-def test_the_visitors_layer_makes_the_place_with_the_visitor_again():
+def test_the_layer_of_the_visitor_recomposes_the_scene_with_the_visitor():
     y, x = np.mgrid[:60, :90]
     without = (1 + x / 90)[..., None] * np.array([1.0, 2.0, 3.0])
     hidden = np.clip(12.5 - np.hypot(y - 20, x - 40), 0, 1)
@@ -370,7 +370,7 @@ def test_a_height_that_cannot_be_halved_twice_is_refused(height):
         render.rendered("chapel", height=height)
 
 
-def test_rounds_are_averaged_and_what_a_half_float_cannot_hold_is_brought_into_it():
+def test_rounds_are_averaged_and_clipped_to_the_range_of_half_floats():
     first = {"radiance": np.float32([[[0, 2, 90_000]]]), "mover": np.zeros((1, 1, 4), np.float32)}
     second = {"radiance": np.float32([[[0, 4, 90_000]]]), "mover": np.ones((1, 1, 4), np.float32)}
     found = render.mean([first, second])
@@ -379,7 +379,7 @@ def test_rounds_are_averaged_and_what_a_half_float_cannot_hold_is_brought_into_i
     assert all(layer.dtype == np.float32 for layer in found.values())
 
 
-def test_no_round_at_all_is_refused():
+def test_averaging_no_rounds_raises_an_error():
     with pytest.raises(ValueError, match="one round.*0"):
         render.rendered("chapel", rounds=0)
 
@@ -393,7 +393,7 @@ mitsuba = pytest.mark.skipif(
 @pytest.mark.parametrize(
     ("name", "corner"), [("chapel", (180, 320)), ("workshop", (240, 440)), ("street", (200, 560))]
 )
-def test_a_place_rendered_again_is_the_one_that_is_shipped(name, corner):
+def test_rendering_again_reproduces_the_shipped_scene(name, corner):
     """A part of the picture, by a third of the paths: means of 8 x 8 pixels, for single ones are noisy."""
     part = tuple(slice(start, start + size) for start, size in zip(corner, (48, 72), strict=True))
     mi, place = render.mitsuba("scalar_rgb"), render.model(name)

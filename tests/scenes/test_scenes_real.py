@@ -34,7 +34,7 @@ def taken():
     return scenes.photographs(SHAPE)
 
 
-def test_six_photographs_of_three_megapixels_travel_with_their_licence_in_three_megabytes():
+def test_the_package_contains_six_photos_of_three_megapixels_and_their_licence():
     taken = scenes.photographs()
     assert taken.images.shape == (6, 2000, 1500, 3) and taken.images.dtype == np.uint8
     assert sum(file.stat().st_size for file in FOLDER.iterdir()) < 3e6
@@ -46,7 +46,7 @@ def test_six_photographs_of_three_megapixels_travel_with_their_licence_in_three_
     )
 
 
-def test_they_are_the_photographs_as_published(shared):
+def test_the_photos_are_those_that_were_published(shared):
     assert [file.read_bytes() for file in photographs(FOLDER)] == [
         file.read_bytes() for file in photographs(shared("tripod_phone"))
     ]
@@ -60,12 +60,12 @@ def test_a_smaller_shape_is_the_mean_of_levels(taken):
 
 
 @pytest.mark.parametrize("shape", [(2001, 1500), (0, 240), (320,)])
-def test_a_shape_that_they_do_not_have_is_refused(shape):
+def test_a_larger_shape_than_that_of_the_photos_raises_an_error(shape):
     with pytest.raises(ValueError, match="shape"):
         scenes.photographs(shape)
 
 
-def test_the_pipeline_finds_nothing_to_doubt_in_them(taken):
+def test_the_pipeline_gives_no_warning_for_the_photos(taken):
     found = pipeline.assemble(taken)
     assert found.doubts == () and found.fallback == "" and found.spread < 0.05
     assert np.array_equal(found.bracket.times, taken.times)

@@ -10,12 +10,12 @@ from hdrlab.errors import InputError
 from hdrlab.tonemap import brush
 
 
-def test_in_full_every_code_of_the_display_is_for_as_many_pixels():
+def test_without_a_limit_all_display_codes_are_equally_frequent():
     codes = encode_srgb(brush.equalise(laws.scene(), limit=np.inf))
     assert np.abs(np.sort(codes, axis=None) - np.linspace(0, 1, codes.size)).max() < 0.01
 
 
-def test_the_least_limit_is_the_plain_logarithm():
+def test_limit_1_gives_the_plain_logarithm():
     L = laws.scene()
     low, high = brush.find_range(L)
     plain = np.clip(np.log(L / low) / np.log(high / low), 0, 1)
@@ -34,20 +34,20 @@ def test_p_runs_from_zero_to_one():
     assert P[0] == 0 and P[-1] == pytest.approx(1) and np.allclose(np.diff(P), 0.1) and P.max() <= 1
 
 
-def test_the_histogram_counts_what_lies_beyond_at_the_ends():
+def test_the_histogram_counts_values_out_of_range_in_the_end_bins():
     t = brush.bin_position(np.float32([[0.01, 1.5, 50, 5000]]), 1, 100, 2)
     h = brush.histogram(t, bins=2)
     assert h.tolist() == [0.5, 0.5]
 
 
-def test_a_flat_wall_stays_flat():
+def test_noise_of_a_flat_wall_is_not_stretched():
     """Noise of one percent would be stretched over the whole display, were there no least range."""
     noisy = 5 * (1 + 0.01 * np.random.default_rng(0).standard_normal((80, 80)))
     P = encode_srgb(brush.equalise(noisy.astype(np.float32)))
     assert np.ptp(P) < 0.5 and abs(np.median(P) - 0.5) < 0.1
 
 
-def test_a_dark_corner_shows_in_the_lens_what_the_whole_picture_hides():
+def test_the_lens_shows_detail_of_a_dark_corner_that_the_global_operator_hides():
     L = np.full((200, 300), 1000.0)
     L[:60, :60] = 0.01 * np.where(np.indices((60, 60)).sum(axis=0) % 8 < 4, 1.0, 1.5)
     whole, seen = brush.tonemap(L)[:60, :60], brush.lens(L, (30, 30), size=60)
@@ -69,7 +69,7 @@ def test_the_lens_stays_inside_the_picture(y, x, size, magnification):
     assert np.all((seen >= 0) & (seen <= 1)) and seen.dtype == np.float32
 
 
-def test_the_window_lies_around_its_centre_and_moves_inward_at_the_edge():
+def test_the_window_is_centered_and_shifted_inward_at_the_edge():
     assert brush.place_window((100, 200), (50, 80), 20) == (slice(40, 60), slice(70, 90))
     assert brush.place_window((100, 200), (0, 199), 20) == (slice(0, 20), slice(180, 200))
     assert brush.place_window((10, 200), (5, 100), 20) == (slice(0, 10), slice(90, 110))
@@ -84,7 +84,7 @@ def test_magnification_repeats_the_pixels_of_the_window():
     assert np.array_equal(large, small.repeat(3, axis=0).repeat(3, axis=1))
 
 
-def test_a_lens_over_the_whole_picture_is_the_operator():
+def test_a_lens_over_the_whole_image_equals_tonemap():
     L = laws.scene((64, 64))
     assert np.array_equal(brush.lens(L, (32, 32), size=64), brush.tonemap(L))
 
@@ -103,13 +103,13 @@ def test_every_limit_obeys_the_laws(limit):
 
 
 @pytest.mark.parametrize("knobs", [{"bins": 0}, {"limit": 0.5}, {"limit": np.nan}])
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     for view in (brush.tonemap, lambda L, **knobs: brush.lens(L, (1, 1), **knobs)):
         with pytest.raises(ValueError, match="at least 1 bin"):
             view(np.ones((3, 3)), **knobs)
 
 
-def test_a_lens_that_makes_no_sense_is_refused():
+def test_invalid_lens_parameters_raise_an_error():
     for knobs in ({"size": 0}, {"magnification": 0}, {"size": 4, "magnification": 5}):
         with pytest.raises(ValueError, match="magnification"):
             brush.lens(np.ones((9, 9)), (4, 4), **knobs)
@@ -126,7 +126,7 @@ def test_a_histogram_counts_every_pixel_once():
     assert np.allclose(h, plain, atol=1e-4) and h.sum() == pytest.approx(1)
 
 
-def test_bins_span_a_stop_at_least_and_what_is_wider_as_it_is():
+def test_the_range_is_at_least_one_stop():
     low, high = brush.find_range(np.full((20, 20), 3.0, np.float32))
     assert high / low == pytest.approx(2) and low * high == pytest.approx(9)
     wide = np.repeat(np.float32([1, 5, 50]), 200).reshape(20, 30)
@@ -134,6 +134,6 @@ def test_bins_span_a_stop_at_least_and_what_is_wider_as_it_is():
 
 
 @pytest.mark.parametrize("centre", [(1,), (1, 2, 3), (np.nan, 2), (np.inf, 2)])
-def test_a_centre_that_is_no_place_is_refused(centre):
+def test_a_center_outside_the_image_raises_an_error(centre):
     with pytest.raises(InputError, match="centre"):
         brush.lens(np.ones((9, 9)), centre, size=4)

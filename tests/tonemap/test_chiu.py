@@ -32,7 +32,7 @@ def test_the_scale_is_one_over_k_times_the_blur():
         assert np.allclose(scale(L, headroom=8, sigma=3), exact, rtol=1e-3)
 
 
-def test_the_clamp_lets_nothing_above_white():
+def test_the_clamp_limits_the_result_to_white():
     L = laws.scene()
     s = chiu.scale(L, headroom=1, sigma=3)
     assert np.any(s * L > 1) and np.all(chiu.clamp(s, L) * L <= 1 + 1e-6)
@@ -72,7 +72,7 @@ def test_passes_make_the_scale_smoother():
     assert np.all(np.diff(rough) < 0)
 
 
-def test_the_dark_side_of_an_edge_is_held_back_and_the_bright_side_is_not_enough():
+def test_an_edge_is_too_dark_on_its_dark_side_and_too_bright_on_the_bright_side():
     Ld = chiu.tonemap(window(), sigma=8, passes=0)[50]
     assert Ld[78] < 0.01 < Ld[20] and Ld[81] > 1.5 * Ld[140]
     assert Ld[20] == pytest.approx(1 / 8, rel=0.01) and Ld[140] == pytest.approx(1 / 8, rel=0.01)
@@ -100,7 +100,7 @@ def test_a_hot_pixel_does_not_darken_its_neighbourhood():
         assert np.abs(hot - calm)[laws.hot_pixel(L) == L].max() < 0.1
 
 
-def test_by_default_a_bright_half_stays_the_brighter_one_where_a_narrow_blur_makes_both_alike():
+def test_the_default_blur_keeps_the_contrast_of_two_halves_that_a_narrow_one_removes():
     """Why the default is 8 % of the picture: beyond the halo, textured halves keep some of their contrast."""
     texture = np.exp(0.2 * np.random.default_rng(0).standard_normal((96, 128)))
     L = np.where(np.arange(128) < 64, 1.0, 30.0) * texture
@@ -116,6 +116,6 @@ def test_more_headroom_is_a_darker_picture():
 
 
 @pytest.mark.parametrize("knobs", [{"headroom": 0}, {"sigma": 0}, {"sigma": -1}, {"passes": -1}])
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="expected"):
         chiu.tonemap(np.ones((3, 3)), **knobs)

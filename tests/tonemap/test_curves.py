@@ -33,7 +33,7 @@ def test_the_curves_are_their_formulas():
     assert np.allclose(curves.logarithmic(L, low=1, high=100), [[0, 0.5, 1]])
 
 
-def test_every_curve_maps_the_range_onto_the_display_and_beyond_it_stays():
+def test_every_curve_maps_the_range_onto_the_display_and_clips_beyond():
     L = np.float32([[0, 0.5, 1, 7, 100, 1e5]])
     for F in (
         curves.linear(L, high=100),
@@ -48,7 +48,7 @@ def test_gamma_divides_every_log_ratio():
     assert ratio[0, 0] == pytest.approx(np.log(8) / 3, rel=1e-5)
 
 
-def test_the_logarithm_gives_every_stop_the_same_share():
+def test_the_logarithm_gives_every_stop_the_same_range():
     steps = np.diff(
         curves.logarithmic(2.0 ** np.arange(11, dtype=np.float32)[None], low=1, high=1024)
     )
@@ -82,7 +82,7 @@ def test_quantising_uses_every_level_once():
     assert curves.quantise([0.5], levels=2)[0] == 1, "halves go up"
 
 
-def test_quantising_refuses_what_is_no_display_value():
+def test_quantise_raises_an_error_for_values_out_of_range():
     with pytest.raises(ValueError, match="3 outside"):
         curves.quantise([0.5, 1.2, -0.1, np.nan])
     for levels in (1, 65537):
@@ -90,7 +90,7 @@ def test_quantising_refuses_what_is_no_display_value():
             curves.quantise([0.5], levels=levels)
 
 
-def test_a_curve_draws_a_line_and_an_operator_a_band():
+def test_spread_is_narrow_for_a_curve_and_wide_for_a_local_operator():
     L = laws.scene()
     for Ld in (curves.tonemap(L), reinhard.tonemap(L)):
         luminance, least, greatest = curves.spread(L, Ld)
@@ -102,12 +102,12 @@ def test_a_curve_draws_a_line_and_an_operator_a_band():
 @pytest.mark.parametrize(
     "knobs", [{"curve": "cubic"}, {"gamma": 0}, {"gamma": np.inf}, {"cut": 0.5}, {"cut": -0.1}]
 )
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="expected"):
         curves.tonemap(np.ones((3, 3)), **knobs)
 
 
-def test_extremes_leave_out_a_hot_and_a_dead_pixel_and_the_dark():
+def test_robust_extremes_ignore_a_hot_a_dead_and_black_pixels():
     L = np.float32(np.arange(2, 102)).reshape(10, 10)
     L[0, 0], L[9, 9] = 1e-9, 1e9
     assert (robust_minimum(L), robust_maximum(L)) == (3, 100)
@@ -115,7 +115,7 @@ def test_extremes_leave_out_a_hot_and_a_dead_pixel_and_the_dark():
     assert robust_minimum(L, cut=0.1) == 12 and robust_maximum(L, cut=0.1) == 91
 
 
-def test_extremes_of_next_to_nothing():
+def test_robust_extremes_of_tiny_and_black_images_are_defined():
     for extreme in (robust_minimum, robust_maximum):
         assert extreme(np.zeros((3, 4), np.float32)) == 0
         assert extreme(np.full((1, 1), 5, np.float32)) == 5

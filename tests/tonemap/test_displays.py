@@ -25,26 +25,26 @@ def test_hlg_is_a_root_below_a_twelfth_and_meets_the_logarithm_with_one_slope():
 
 
 @given(st.floats(0, 1))
-def test_a_signal_survives_the_way_to_light_and_back(v):
+def test_pq_and_hlg_signals_survive_a_round_trip(v):
     assert transfer.hlg(transfer.hlg_inverse(v)) == pytest.approx(v, abs=1e-6)
     if v > 1e-6:  # below it PQ is black
         assert transfer.pq(transfer.pq_inverse(v)) == pytest.approx(v, abs=1e-6)
 
 
-def test_more_light_never_has_a_smaller_code():
+def test_pq_and_hlg_rise_with_light():
     assert np.all(np.diff(transfer.pq(LIGHT)) > 0) and np.all(
         np.diff(transfer.hlg(LIGHT / 10_000)) > 0
     )
 
 
-def test_a_step_of_12_bits_of_pq_is_below_what_an_eye_sees():
+def test_a_12_bit_step_of_pq_is_below_the_visible_threshold():
     """Of a ramp it sees some 0.5 % where it is bright, and 1 % at 1 cd/m2 [Barten99; BT.2246]."""
     FD = transfer.pq_inverse(np.linspace(0, 1, 4096))
     step = np.diff(FD) / np.maximum(FD[:-1], 1e-9)
     assert step[FD[:-1] > 1].max() < 0.007 and step[FD[:-1] > 100].max() < 0.004
 
 
-def test_pq_gives_the_dark_what_a_gamma_gives_the_bright():
+def test_pq_spends_more_codes_on_the_dark_than_a_gamma():
     def gamma(FD):
         return (FD / 10_000) ** (1 / 2.4)
 
@@ -60,7 +60,7 @@ def test_a_brighter_display_has_a_steeper_gamma():
     assert transfer.display_light(1, peak=4000) == 4000
 
 
-def test_all_are_those_of_colour_science():
+def test_pq_and_hlg_agree_with_colour_science():
     models = pytest.importorskip("colour.models")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it takes the logarithm of what it then leaves out
@@ -79,6 +79,6 @@ def test_all_are_those_of_colour_science():
     "function", [transfer.pq, transfer.pq_inverse, transfer.hlg, transfer.hlg_inverse]
 )
 @pytest.mark.parametrize("value", [-0.01, 10_001, np.nan, np.inf])
-def test_light_and_signals_that_cannot_be_coded_are_refused(function, value):
+def test_light_and_signals_out_of_range_raise_an_error(function, value):
     with pytest.raises(ValueError, match=r"values in 0 \.\.\. "):
         function([0.5, value])

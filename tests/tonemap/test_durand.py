@@ -25,7 +25,7 @@ def test_the_logarithm_has_the_base_ten_and_black_is_a_millionth_of_the_median()
     assert np.allclose(durand.logarithm(L), [[-5, 0, 1, 3, 1]], atol=1e-5)
 
 
-def test_base_and_detail_make_the_logarithm_again():
+def test_base_and_detail_add_up_to_the_logarithm():
     lL = durand.logarithm(laws.scene())
     found = durand.layers(lL, sigma_s=5)
     assert np.allclose(found.base + found.detail, lL, atol=1e-6)
@@ -47,7 +47,7 @@ def test_a_scene_of_little_contrast_is_not_stretched():
     assert np.allclose(durand.compress(base, 0, 0.5, contrast=50), base - 0.5)
 
 
-def test_a_step_of_four_decades_becomes_the_contrast_and_its_edge_stays_sharp():
+def test_a_step_of_four_decades_is_compressed_to_the_contrast_with_a_sharp_edge():
     L = np.where(np.arange(120) < 60, 1.0, 1e4) * np.ones((80, 1))
     Ld = durand.tonemap(L, contrast=50)
     assert np.allclose(Ld[:, :60], 0.02, rtol=0.05) and np.allclose(Ld[:, 60:], 1, rtol=0.05)
@@ -69,14 +69,14 @@ def _compressed(L):
     return durand.compress(base, *durand.base_range(base)), detail
 
 
-def test_there_is_no_halo_where_chius_blur_has_one():
+def test_a_flat_wall_beside_a_window_has_no_halo():
     """Along a flat wall that ends at a bright window the picture is flat."""
     L = np.where(np.arange(200) < 100, 1.0, 3000.0) * np.ones((100, 1))
     wall = durand.tonemap(L)[50, :100]
     assert wall.max() / wall.min() < 1.02
 
 
-def test_a_lonely_pixel_takes_the_base_of_its_neighbourhood():
+def test_an_isolated_pixel_gets_the_base_of_its_neighborhood():
     lL = np.zeros((60, 80), np.float32)
     lL[30, 40] = 3
     found = bilateral(lL, sigma_s=8, sigma_r=0.4)
@@ -88,7 +88,7 @@ def test_a_lonely_pixel_takes_the_base_of_its_neighbourhood():
         )
 
 
-def test_where_all_is_certain_the_base_is_the_bilateral_mean_itself():
+def test_if_all_pixels_are_certain_the_base_is_the_bilateral_mean():
     found = bilateral(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
     assert durand.fix_uncertain(*found, sigma_s=8) is found.mean
 
@@ -126,12 +126,12 @@ def test_more_contrast_is_a_darker_shadow():
         {"sigma_r": -1},
     ],
 )
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="expected"):
         durand.tonemap(np.ones((3, 3)), **knobs)
 
 
 @pytest.mark.parametrize("name", ["lobby", "venice"])
-def test_a_real_place_comes_out_well_exposed(shared, name):
+def test_real_maps_are_displayed_well_exposed(shared, name):
     Ld = fast.tonemap(luminance(rgbe.read(shared("hdri_cc0") / f"{name}.hdr")))
     assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.03 and np.mean(Ld < 1e-3) < 0.01

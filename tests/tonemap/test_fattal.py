@@ -32,7 +32,7 @@ def solution(L, **knobs):
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_other_knobs_keep_to_the_display_too(mode):
+def test_other_parameters_obey_range_and_exposure_laws(mode):
     laws.stays_in_range(MODES[mode])
     laws.exposure(MODES[mode])
 
@@ -59,7 +59,7 @@ def test_a_slope_is_per_pixel_of_the_picture_at_every_level(k):
     assert np.allclose(fattal.slope(level, k)[8:-8, 8:-8], 0.5, atol=1e-3)
 
 
-def test_attenuation_is_its_formula_and_stays_put_below_the_noise():
+def test_attenuation_follows_the_formula_and_is_constant_below_the_noise():
     slope = np.float32([[0.0, 0.001, 0.02, 0.1, 0.2, 5.0]])
     phi = fattal.attenuation(slope, 1.0, alpha=0.1, beta=0.8, noise=0.02)[0]
     assert phi[3] == pytest.approx(1)
@@ -134,14 +134,14 @@ def test_changing_alpha_alone_is_a_global_gamma(beta):
 
 
 @pytest.mark.parametrize("turned", [np.fliplr, np.flipud, np.transpose, np.rot90])
-def test_a_picture_turned_over_is_the_same_picture(turned):
+def test_flipping_and_transposing_commute_with_the_operator(turned):
     """Thin lines, at which attenuation jumps; a side of 97 keeps its pixels in all levels of the pyramid."""
     L = laws.scene((97, 97))
     L[::9], L[:, ::13] = 500, 300
     assert np.allclose(fattal.tonemap(turned(L)), turned(fattal.tonemap(L)), atol=1e-3)
 
 
-def test_thin_lines_do_not_make_the_field_between_them_drift():
+def test_thin_lines_do_not_change_the_brightness_between_them():
     """A gray wall behind bright lines one pixel wide is as bright at the left as at the right.
 
     With Phi of one pixel for each step they are 28 nats apart, eight times the height of a line.
@@ -153,7 +153,7 @@ def test_thin_lines_do_not_make_the_field_between_them_drift():
     assert np.ptp(field) < 0.01 * (line - field.mean())
 
 
-def test_beta_one_changes_nothing():
+def test_beta_1_does_not_change_the_image():
     lL = fattal.log_luminance(laws.scene())
     assert np.allclose(solution(laws.scene(), beta=1), lL - lL.mean(), atol=1e-4)
 
@@ -169,7 +169,7 @@ def test_a_fraction_of_the_pixels_is_black_and_another_white():
     assert np.mean(Ld == 1) == pytest.approx(0.05, abs=0.002)
 
 
-def test_an_even_picture_is_not_stretched_over_the_display():
+def test_a_nearly_uniform_image_is_not_stretched_over_the_display():
     nearly_even = 1 + 0.01 * np.random.default_rng(0).random((64, 64))
     assert fattal.tonemap(nearly_even, alpha=1.0).min() > 0.9
     assert np.all(fattal.tonemap(np.full((40, 50), 3.7)) == 1)
@@ -228,12 +228,12 @@ def test_the_picture_is_close_to_that_of_pfstools():
         {"white": 0.5},
     ],
 )
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match=f".*{next(iter(knobs))}"):
         fattal.tonemap(np.ones((3, 3)), **knobs)
 
 
-def test_a_real_place_comes_out_well_exposed(shared):
+def test_a_real_map_is_displayed_well_exposed(shared):
     L = luminance(rgbe.read(shared("memorial") / "memorial.hdr"))
     Ld = fattal.tonemap(L)
     assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.006

@@ -23,7 +23,7 @@ def by_definition(lL, **knobs):
     return answer
 
 
-def test_the_samples_come_to_the_definition_and_more_of_them_nearer():
+def test_sampling_approximates_the_definition_better_with_more_samples():
     lL = np.log(laws.scene((18, 25)))
     true, off = pyramid.collapse(by_definition(lL, **KNOBS)), []
     for samples in (8, 32, 256):
@@ -33,7 +33,7 @@ def test_the_samples_come_to_the_definition_and_more_of_them_nearer():
 
 
 @pytest.mark.parametrize("samples", [2, 5, 24])
-def test_with_powers_and_slopes_of_1_the_picture_stays(samples):
+def test_alpha_1_and_beta_1_do_not_change_the_image(samples):
     lL = np.log(laws.scene((40, 61)))
     found = last(local_laplacian.filter_steps(lL, sigma=0.5, alpha=1.0, beta=1.0, samples=samples))
     assert np.allclose(pyramid.collapse(found.levels), lL, atol=1e-4)
@@ -71,7 +71,7 @@ def test_a_smaller_beta_shows_more_of_the_dark_and_a_smaller_alpha_more_detail()
     assert fine[0] < fine[1] < fine[2]
 
 
-def test_beside_a_step_the_light_never_runs_the_other_way():
+def test_there_is_no_halo_beside_a_step():
     """A base that is blurred makes the dark side sink at the edge; here it rises to it."""
     L = np.where(np.arange(128) < 64, 1.0, 1000.0) * np.ones((128, 1))
     row = np.log(local_laplacian.tonemap(L)[64])
@@ -87,7 +87,7 @@ def test_more_than_the_display_shows_is_compressed_to_its_contrast():
     assert black == pytest.approx(-local_laplacian.DISPLAY_CONTRAST, abs=0.05)
 
 
-def test_an_even_scene_is_white_and_a_black_one_black():
+def test_a_uniform_scene_becomes_white_and_a_black_one_black():
     assert np.all(local_laplacian.tonemap(np.full((20, 30), 3.7)) == 1)
     assert not local_laplacian.tonemap(np.zeros((20, 30))).any()
 
@@ -96,6 +96,6 @@ def test_an_even_scene_is_white_and_a_black_one_black():
     "knobs",
     [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}],
 )
-def test_knobs_out_of_range_are_refused(knobs):
+def test_parameters_out_of_range_raise_an_error(knobs):
     with pytest.raises(ValueError, match="sigma"):
         local_laplacian.tonemap(np.ones((3, 3)), **knobs)

@@ -79,7 +79,7 @@ def test_the_eye_is_most_sensitive_at_eight_cycles_per_degree():
 
 
 @pytest.mark.parametrize("f", quality.FREQUENCIES)
-def test_a_contrast_at_the_threshold_is_seen_half_of_the_time(f):
+def test_contrast_at_the_threshold_is_visible_with_probability_one_half(f):
     tau = quality.threshold(f)
     sigma = np.array([0, tau, 4 / 3 * tau, 100 * tau])
     assert np.allclose(quality.visible(sigma, f), [0.00135, 0.5, 0.84134, 1], atol=1e-5)
@@ -91,18 +91,18 @@ def test_a_picture_has_the_structure_of_itself():
         assert quality.structural_fidelity(y, y) == pytest.approx(1, abs=1e-12)
 
 
-def test_a_picture_of_strong_texture_shows_all_of_its_own_luminance():
+def test_an_image_has_full_structural_fidelity_to_its_own_luminance():
     picture = np.random.default_rng(0).integers(0, 256, (300, 300), dtype=np.uint8)
     assert quality.tmqi(quality.gray(picture), picture).S > 0.998
     assert quality.tmqi(quality.gray(picture)[::-1], picture).S < 0.3
 
 
-def test_what_is_missing_counts_as_much_as_what_is_invented():
+def test_structural_fidelity_is_symmetric():
     x, y = quality.gray(shown(scene())), quality.gray(shown(scene(seed=1)))
     assert quality.structural_fidelity(x, y) == pytest.approx(quality.structural_fidelity(y, x))
 
 
-def test_the_unit_and_the_black_level_of_the_scene_cancel():
+def test_the_unit_and_the_black_level_of_the_scene_do_not_matter():
     L = scene()
     known = quality.tmqi(L, shown(L))
     for other in (L * 2.0**-20, L * 2.0**20, L.astype(np.float64) + 1):
@@ -121,7 +121,7 @@ def test_the_unit_and_the_black_level_of_the_scene_cancel():
     ],
     ids=["blur", "burnt", "drowned", "few levels", "noise", "displaced"],
 )
-def test_damage_lowers_the_fidelity_the_more_the_worse(worse):
+def test_more_damage_gives_a_lower_fidelity(worse):
     L = scene()
     x, y = quality.scale_luminance(L), quality.gray(shown(L))
     S = [quality.structural_fidelity(x, y)]
@@ -129,7 +129,7 @@ def test_damage_lowers_the_fidelity_the_more_the_worse(worse):
     assert np.all(np.diff(S) < 0) and S[3] < 0.9 * S[0], S
 
 
-def test_a_negative_shows_no_structure_of_the_scene():
+def test_a_negative_has_a_fidelity_of_0():
     L = scene()
     found = quality.tmqi(L, 255 - shown(L))
     assert found.S == 0 and found.Q == pytest.approx(0.1988 * found.N**0.7088)
@@ -141,7 +141,7 @@ def test_tone_mapping_beats_a_display_that_clips():
     assert quality.tmqi(L, shown(L)).Q > quality.tmqi(L, clipped).Q + 0.05
 
 
-def test_the_usual_mean_and_contrast_are_natural_and_a_step_off_costs_what_the_density_says():
+def test_naturalness_is_1_at_the_typical_mean_and_contrast_and_falls_with_the_density():
     checker = np.where(np.indices((110, 110)).sum(axis=0) % 2, 1.0, -1.0)
     y = 115.94 + 64.29 * 3.4 / 12.5 * checker
     assert quality.naturalness(y) == pytest.approx(1, abs=1e-3)
@@ -170,7 +170,7 @@ def test_quality_is_finite_and_from_0_to_1_for_any_radiance(name):
         assert all(0 <= one <= 1 + 1e-12 for one in quality.tmqi(L, picture))
 
 
-def test_rounding_in_a_bright_even_place_is_no_structure():
+def test_rounding_in_a_bright_uniform_area_does_not_count_as_structure():
     """At 2^32 even the rounding of a squared float64 would be visible: it would be a sigma of 60."""
     L = np.full((40, 60), 0.7, np.float32)
     L[:, :5] = 0
@@ -189,6 +189,6 @@ def test_rounding_in_a_bright_even_place_is_no_structure():
         (np.ones((4, 5, 3)), np.zeros((4, 5), np.uint8), "luminance"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(L, picture, said):
+def test_images_that_cannot_be_compared_raise_an_error(L, picture, said):
     with pytest.raises(ValueError, match=said):
         quality.tmqi(L, picture)

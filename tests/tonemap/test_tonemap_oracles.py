@@ -107,7 +107,7 @@ def operator(name):
     return pytest.importorskip(f"hdrlab.fast.{name}")
 
 
-def test_the_measure_tells_a_picture_from_a_flat_one_and_from_its_mirror():
+def test_the_similarity_measure_distinguishes_an_image_from_a_flat_one_and_its_mirror():
     """So that the bounds below mean something: SSIM and correlation of what is not alike are far below."""
     Ld = operator("reinhard").tonemap(room())
     assert likeness(Ld, Ld) == pytest.approx((1, 1))
@@ -116,7 +116,7 @@ def test_the_measure_tells_a_picture_from_a_flat_one_and_from_its_mirror():
     assert likeness(Ld, np.minimum(8 * Ld, 1)).ssim < 0.9
 
 
-def test_reinhards_curve_is_pfstools_own(L):
+def test_reinhards_curve_equals_that_of_pfstools(L):
     """Both are equation 4. Theirs takes the brightest pixel for white; ours leaves out one in ten thousand,
     unless told, as it is here. What remains is their log average: its floor for black is another.
     """
@@ -169,7 +169,7 @@ def test_fattals_compression_is_like_pfstools(L):
     assert found.ssim > 0.92 and found.correlation > 0.97, found
 
 
-def test_reinhards_curve_is_luminance_hdrs_own(L, tmp_path):
+def test_reinhards_curve_equals_that_of_luminance_hdr(L, tmp_path):
     """Here even the log average is alike."""
     reinhard = operator("reinhard")
     options = ("--tmo", "reinhard02", "--tmoR02Key", "0.18", "--tmoR02Scales", "false")

@@ -42,19 +42,19 @@ def test_a_picture_smaller_than_its_field_is_its_own_foveal_image():
     assert np.array_equal(ward.foveal_image(laws.scene((20, 30)), field=60), laws.scene((20, 30)))
 
 
-def test_the_histogram_counts_the_lit_and_clips_to_its_ends():
+def test_the_histogram_counts_positive_pixels_and_clips_to_its_ends():
     h, db = ward.histogram(np.float32([[0, 1e-9, 1, 10, 99, 1e9]]), low=1, high=100, bins=2)
     assert h.tolist() == [2, 3] and db == pytest.approx(np.log(10))
 
 
-def test_a_trim_cuts_to_the_ceiling_and_puts_nothing_elsewhere():
+def test_trimming_cuts_to_the_ceiling_without_redistributing():
     h = np.array([10.0, 70, 20])
     state = ward.trim(h, db=0.5, D=1.0)
     assert state.ceiling == 50 and state.h.tolist() == [10, 50, 20]
     assert state.trimmings == 20 and state.T == 100
 
 
-def test_every_trim_takes_its_ceiling_from_what_the_last_one_left():
+def test_every_trim_computes_its_ceiling_from_the_previous_histogram():
     h, db = uneven(), 0.07
     states = list(ward.adjust_steps(h, db, D))
     assert len(states) > 3 and np.array_equal(states[0].h, h)
@@ -115,7 +115,7 @@ def chart():
     return L
 
 
-def test_a_chart_whose_few_brightnesses_trim_to_nothing_is_not_black_beside_its_lamp():
+def test_a_chart_with_few_brightnesses_is_not_black_beside_a_lamp():
     """The linear map would be: 0.5 of 1000 is no level of 256."""
     Ld = ward.tonemap(chart(), field=200)
     light = 99 * Ld + 1  # cd/m^2
@@ -125,7 +125,7 @@ def test_a_chart_whose_few_brightnesses_trim_to_nothing_is_not_black_beside_its_
 
 
 @pytest.mark.parametrize("white", [3.0, 10, 100, 1e4])
-def test_filling_uses_the_display_from_end_to_end_and_exaggerates_nothing(white):
+def test_fill_uses_the_whole_display_without_exaggerating_contrast(white):
     lnL, lnLd = ward.curve(chart().astype(np.float32), white=white, field=200)
     slope = np.diff(lnLd) / np.diff(lnL)
     assert slope.min() >= 0 and slope.max() <= 1 + 1e-9
@@ -142,7 +142,7 @@ def test_a_tolerance_too_small_to_stop_early_leaves_no_black_unused():
     )
 
 
-def test_without_a_ceiling_every_brightness_is_as_frequent_as_any_other():
+def test_without_a_ceiling_all_brightnesses_are_equally_frequent():
     """The formula itself, on a histogram that no trim has touched."""
     L = laws.scene((40, 50))
     low, high = float(L.min()), float(L.max())
@@ -152,7 +152,7 @@ def test_without_a_ceiling_every_brightness_is_as_frequent_as_any_other():
     assert np.abs(np.sort(at) - np.linspace(0, 1, at.size)).max() < 0.02
 
 
-def test_the_operator_is_its_curve_at_every_pixel():
+def test_tonemap_applies_the_same_curve_to_every_pixel():
     L = laws.scene()
     b, lnLd = ward.curve(L)
     plain = (np.exp(np.interp(np.log(L), b, lnLd)) - 1) / 99
@@ -186,19 +186,19 @@ def test_only_the_ratio_of_the_display_counts():
         {"white": np.nan},
     ],
 )
-def test_knobs_that_make_no_sense_are_refused(knobs):
+def test_invalid_parameters_raise_an_error(knobs):
     with pytest.raises(ValueError, match="0 < black < white"):
         ward.tonemap(np.ones((3, 3)), **knobs)
 
 
 @pytest.mark.parametrize("name", ["lobby", "venice"])
-def test_a_real_place_comes_out_well_exposed(shared, name):
+def test_real_maps_are_displayed_well_exposed(shared, name):
     Ld = ward.tonemap(luminance(rgbe.read(shared("hdri_cc0") / f"{name}.hdr")))
     assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.01
 
 
 @pytest.mark.parametrize("knobs", [{}, {"bins": 1}, {"white": 1e5}, {"bins": 5000}])
-def test_lines_between_many_knots_are_the_exponential_of_the_curve(knobs):
+def test_the_fast_table_equals_the_exponential_of_the_curve(knobs):
     L = laws.scene()
     b, lnLd = ward.curve(L, **knobs)
     white = knobs.get("white", 100)
