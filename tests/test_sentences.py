@@ -414,7 +414,7 @@ SENTENCES = {
         "to the third sensor: 0.44 %. Only 0.04 % is lost": lambda n: (
             share_of_light(n)[2] == 0.44 and round(100 * (1 - n.shares.sum()), 2) == 0.04
         ),
-        "3.6 stops less than the first, and the third 4.1 more": lambda n: (
+        "3.6 stops less light than the first, and the third 4.1 stops less": lambda n: (
             np.log2(n.shares[:-1] / n.shares[1:]).round(1).tolist() == [3.6, 4.1]
         ),
         "Ratios of 12 and 17 are large": lambda n: (
