@@ -73,7 +73,7 @@ def grade_submission(
     """Return the result of a submission, while a terminal shows how many checks are done."""
     from hdrlab.core.steps import last
     from hdrlab.course.grading import grader
-    from hdrlab.course.sandbox.running import Unavailable
+    from hdrlab.course.sandbox.session import Unavailable
     from hdrlab.course.scratch import temporary_folder
 
     if not submission.exists():

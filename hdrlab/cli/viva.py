@@ -69,7 +69,7 @@ def viva(
     """
     from hdrlab.course import scratch
     from hdrlab.course.grading import grader
-    from hdrlab.course.sandbox.running import Unavailable
+    from hdrlab.course.sandbox.session import Unavailable
     from hdrlab.course.viva import pages
     from hdrlab.io.files import write
 

@@ -13,7 +13,7 @@ from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.compare import AnswerMismatch
 from hdrlab.course.checks.mistakes import KnownMistake
 from hdrlab.course.checks.subject import NoAnswer
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 
 @pytest.fixture

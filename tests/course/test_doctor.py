@@ -8,7 +8,7 @@ import pytest
 from hdrlab.course.checks.subject import NoAnswer
 from hdrlab.course.grading import doctor
 from hdrlab.course.sandbox import practice, tiers
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from hdrlab.course.sandbox import filters, users
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 
 class Rules:

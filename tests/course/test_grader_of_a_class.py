@@ -10,7 +10,7 @@ from hdrlab.course.classroom.jobs import GradingJob
 from hdrlab.course.classroom.run import Grader
 from hdrlab.course.grading import results
 from hdrlab.course.plan import GradingOptions
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 
 def grader(monkeypatch, *each, **knobs):

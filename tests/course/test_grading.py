@@ -18,7 +18,7 @@ from hdrlab.course.grading import grader, results
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import feedback, gradebook
 from hdrlab.course.sandbox import tiers
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.source_code import inline
 from hdrlab.course.submissions import reader
 

@@ -14,7 +14,7 @@ from hdrlab.course.grading import grader
 from hdrlab.course.grading.results import Drawing
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.submissions.reader import SubmittedCode
 
 HW2 = plan.read().homeworks["hw2"]

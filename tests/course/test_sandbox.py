@@ -26,7 +26,7 @@ if sys.platform != "linux":  # test_windows goes the way of other systems
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.grading import doctor
-from hdrlab.course.sandbox import contents, filters, practice, running, strict, tiers, users
+from hdrlab.course.sandbox import contents, filters, practice, session, strict, tiers, users
 from hdrlab.course.sandbox.inside import channel, system
 from hdrlab.course.source_code.names import imported_numpy_modules
 
@@ -244,11 +244,11 @@ def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
             opened = [one for one in range(64) if libc.fcntl(one, 1) >= 0]
             return list(os.environ), groups, limits, [tried(place) for place in places], calls, len(opened)
         """
-    ).replace("LIMITS", repr(list(running.LIMITS)))
+    ).replace("LIMITS", repr(list(session.LIMITS)))
     environment, groups, limits, places, calls, opened_files = alone(source, tier)
-    assert set(environment) <= {*running.ENVIRONMENT, "LD_LIBRARY_PATH", "PYTHONHOME", "PWD"}
-    assert [int(soft) for soft, _ in limits] == list(running.LIMITS.values())
-    assert [int(hard) for _, hard in limits] == list(running.LIMITS.values())
+    assert set(environment) <= {*session.ENVIRONMENT, "LD_LIBRARY_PATH", "PYTHONHOME", "PWD"}
+    assert [int(soft) for soft, _ in limits] == list(session.LIMITS.values())
+    assert [int(hard) for _, hard in limits] == list(session.LIMITS.values())
     assert {int(answer) for answer in calls} == {-1}
     if tier == "strict":
         assert set(places[0]) <= {
@@ -492,7 +492,7 @@ def as_user(user, code):
     """Return what the system's Python prints as another user, or its error."""
     paths = [
         Path(channel.__file__).parents[4],
-        *{os.path.dirname(one) for one in running.package_folders().values()},
+        *{os.path.dirname(one) for one in session.package_folders().values()},
     ]
     told = subprocess.run(
         ["/usr/bin/env", "python3", "-B", "-c", code],
@@ -584,8 +584,8 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
         if next(starts) >= ended:
             return practice.launch(control)
         words = [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]
-        return running.SandboxProcess(
-            process=running.start_process(words, {}), clean_up=lambda: None
+        return session.SandboxProcess(
+            process=session.start_process(words, {}), clean_up=lambda: None
         )
 
     monkeypatch.setitem(tiers.TIERS, "practice", lambda: replace(practice.sandbox(), launch=launch))
@@ -601,12 +601,12 @@ def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
     cleared = []
 
     def launch(control):
-        process = running.start_process([sys.executable, "-c", "raise SystemExit('no')"], {})
-        return running.SandboxProcess(
+        process = session.start_process([sys.executable, "-c", "raise SystemExit('no')"], {})
+        return session.SandboxProcess(
             process=process, clean_up=lambda: cleared.append(process.returncode)
         )
 
-    started = running.SandboxSession(replace(practice.sandbox(), launch=launch))
+    started = session.SandboxSession(replace(practice.sandbox(), launch=launch))
     with pytest.raises(tiers.Unavailable, match="did not start: no"):
         started.wait_until_ready()
     assert cleared == [1]
@@ -620,7 +620,7 @@ def test_a_check_is_cleared_away_once(monkeypatch):
         assert seconds > 0
         left = inside.cpu_seconds_left
         with monkeypatch.context() as changed:
-            changed.setattr(running.channel, "send", None)  # nothing more is asked of it
+            changed.setattr(session.channel, "send", None)  # nothing more is asked of it
             assert inside.clear_check() == (0, 0.0) and inside.cpu_seconds_left == left
 
 

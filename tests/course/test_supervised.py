@@ -8,9 +8,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.sandbox import running
 from hdrlab.course.sandbox.inside import channel
-from hdrlab.course.sandbox.running import Sandbox, SandboxProcess, SandboxSession, Unavailable
+from hdrlab.course.sandbox.session import (
+    Sandbox,
+    SandboxProcess,
+    SandboxSession,
+    Unavailable,
+    package_folders,
+)
 
 
 class Process:
@@ -94,7 +99,7 @@ def cpu_seconds(check, total):
 
 
 def test_a_submission_may_import_numpy_and_scipy():
-    folders = running.package_folders()
+    folders = package_folders()
     assert set(folders) == {"numpy", "scipy"}
     assert all(os.path.isfile(f"{folder}/__init__.py") for folder in folders.values())
 

@@ -14,12 +14,12 @@ from hdrlab.course.sandbox import (
     descent,
     filters,
     practice,
-    running,
+    session,
     strict,
     users,
 )
 from hdrlab.course.sandbox.contents import SandboxMounts
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 INSIDE = SandboxMounts(
     prefix="/usr",
@@ -71,7 +71,7 @@ def launched(monkeypatch):
         made.orders.append(order)
         return ["descend"]
 
-    for room in (strict, running):
+    for room in (strict, session):
         monkeypatch.setattr(room, "start_process", start)
     for room in (strict, container):
         monkeypatch.setattr(room, "contents", lambda: INSIDE)
@@ -93,7 +93,7 @@ def test_the_strict_tier_is_launched_by_bubblewrap_and_root_becomes_a_spare_user
     ((words, environment, control),) = launched.started
     assert (environment, control, launched.rules) == ({}, 5, [b"rules of a supervisor"])
     assert made.process == "process" and made.scratch == ""
-    supervisor = running.supervisor_command(
+    supervisor = session.supervisor_command(
         "/python/bin/python3", INSIDE.program, 5, INSIDE.packages
     )
     if root:
@@ -121,12 +121,12 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
 ):
     (tmp_path / "scipy.libs").mkdir()
     found = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
-    monkeypatch.setattr(running, "package_folders", lambda: found)
+    monkeypatch.setattr(session, "package_folders", lambda: found)
     inside = replace(INSIDE, places={"/python/bin/python3": "/usr/local/bin/python3.11"}, hidden=())
     monkeypatch.setattr(container, "contents", lambda: inside)
     made = container.launch(CONTROL)
     (order,) = launched.orders
-    program = running.SUPERVISOR_PATH
+    program = session.SUPERVISOR_PATH
     assert order["homes"] == [
         "/usr",
         str(program.parent),
@@ -139,11 +139,11 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
         and order["user"] == 60706
     )
     told = {"numpy": "{2}", "scipy": "{3}"}
-    assert order["command"] == running.supervisor_command(
+    assert order["command"] == session.supervisor_command(
         "{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told
     )
     more = {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib:{4}"}
-    assert order["environment"] == running.ENVIRONMENT | more
+    assert order["environment"] == session.ENVIRONMENT | more
     assert launched.started == [(["descend"], {}, 5)] and not launched.ended
     made.clean_up()
     assert launched.ended == ["lease"]
@@ -156,7 +156,7 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     monkeypatch.setattr(descent, "landlock_version", lambda: here["landlock"])
     made = container.sandbox()
     assert made.credit and made.seccomp_program == b"rules of a check"
-    assert made.limits == running.LIMITS
+    assert made.limits == session.LIMITS
     for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
         here[name] = value
         with pytest.raises(Unavailable, match=f"the container tier {said}"):
@@ -172,7 +172,7 @@ def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
 ):
     began = []
     monkeypatch.setattr(
-        running, "start_process", lambda *words, **knobs: began.append((words, knobs)) or "process"
+        session, "start_process", lambda *words, **knobs: began.append((words, knobs)) or "process"
     )
     monkeypatch.delenv("SYSTEMROOT", raising=False)
     for name, value in variables.items():
@@ -180,11 +180,11 @@ def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
     made = practice.launch(CONTROL)
     (((words, environment), knobs),) = began
     python = getattr(sys, "_base_executable", sys.executable)
-    assert words == running.supervisor_command(
-        python, str(running.SUPERVISOR_PATH), 5, running.package_folders()
+    assert words == session.supervisor_command(
+        python, str(session.SUPERVISOR_PATH), 5, session.package_folders()
     )
     own = {"HOME": made.scratch, "TMPDIR": made.scratch}
-    assert environment == running.ENVIRONMENT | own | variables and knobs == {
+    assert environment == session.ENVIRONMENT | own | variables and knobs == {
         "pass_fds": [5],
         "folder": made.scratch,
     }
@@ -198,7 +198,7 @@ def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
 def test_the_practice_tier_counts_no_processes_and_no_credit():
     assert practice.sandbox().credit is False
     assert set(practice.sandbox().limits) == {"CPU", "AS", "FSIZE", "NOFILE", "CORE"}
-    assert practice.sandbox().limits.items() <= running.LIMITS.items()
+    assert practice.sandbox().limits.items() <= session.LIMITS.items()
 
 
 def mounts(places, *hidden):

@@ -23,8 +23,9 @@ from hdrlab.core.arrays import describe
 from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import running, tiers
+from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.inside import system
+from hdrlab.course.sandbox.session import Unavailable
 
 # calls of a task that are kept to recognize a mistake
 MAX_REMEMBERED_CALLS = 20
@@ -130,7 +131,7 @@ class GradingPlugin:
             kept = self.calls.setdefault(task_of(item), [])
             room = MAX_REMEMBERED_CALLS - len(kept)
             kept += [(call.args, call.kwargs, call.answer) for call in subject.calls[:room]]
-        if isinstance(raised, running.Unavailable):  # the machine failed, not the submission
+        if isinstance(raised, Unavailable):  # the machine failed, not the submission
             return self._write(unavailable=str(raised))
         if raised is None:
             notes = "\n".join(dict.fromkeys(compare.notes))[:MAX_MESSAGE_CHARACTERS]

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, NoReturn, Self
 from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
 from hdrlab.course.sandbox.inside import channel
-from hdrlab.course.sandbox.running import Sandbox, SandboxSession
+from hdrlab.course.sandbox.session import Sandbox, SandboxSession
 
 DEFAULT_CALL_TIMEOUT_SECONDS = 10.0
 # limits as multiples of the time of one call: for one check, for all checks of a submission, and

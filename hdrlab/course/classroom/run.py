@@ -19,7 +19,7 @@ from hdrlab.course.classroom.jobs import GradingJob, JobResult
 from hdrlab.course.grading import doctor, grader, results
 from hdrlab.course.plan import GradingOptions, Homework, Late
 from hdrlab.course.reports import gradebook
-from hdrlab.course.sandbox import running
+from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students.late_days import LateRecord
 from hdrlab.course.students.roster import Roster
@@ -110,7 +110,7 @@ def _check_tier_available(tier: str) -> None:
     """Raise Unavailable if this machine cannot run the tier. The check is cached per process."""
     examination = doctor.examine(tier)
     if not examination.works:
-        raise running.Unavailable(examination.says)
+        raise Unavailable(examination.says)
 
 
 def read_hidden_checks(folder: Path | None) -> list[tuple[str, bytes]]:

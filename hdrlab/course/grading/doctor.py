@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import practice, running, tiers
+from hdrlab.course.sandbox import practice, tiers
+from hdrlab.course.sandbox.session import Unavailable
 
 MAX_ATTEMPTS = 3  # a sandbox that does not start may have been killed by something else
 BREAK_OUT_SOURCE = Path(__file__).with_name("break_out.py").read_text("utf8")
@@ -58,7 +59,7 @@ def examine(tier: str) -> Finding:
     for_credit = tier != "practice"
     try:
         possible, seconds = _try_repeatedly(tier)
-    except (running.Unavailable, NoAnswer, OSError) as error:
+    except (Unavailable, NoAnswer, OSError) as error:
         reason = str(error)
         return Finding(tier, False, for_credit, reason, remedy(reason))
     if not for_credit:
@@ -76,7 +77,7 @@ def examine(tier: str) -> Finding:
 def _try_repeatedly(tier: str) -> tuple[list[str], float]:
     """Return what `_try_once` returns; it fails if every attempt fails."""
     for _ in range(MAX_ATTEMPTS - 1):
-        with contextlib.suppress(running.Unavailable, NoAnswer):
+        with contextlib.suppress(Unavailable, NoAnswer):
             return _try_once(tier)
     return _try_once(tier)
 

@@ -29,7 +29,7 @@ from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Drawing, Result
 from hdrlab.course.plan import GradingOptions, Homework, Task
 from hdrlab.course.sandbox import tiers
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.sanitize import sanitize_text
 from hdrlab.course.submissions import reader
 from hdrlab.course.submissions.reader import SubmittedCode

@@ -11,13 +11,13 @@ import sys
 from contextlib import ExitStack
 from socket import socket
 
-from hdrlab.course.sandbox import descent, filters, running, users
+from hdrlab.course.sandbox import descent, filters, session, users
 from hdrlab.course.sandbox.contents import contents
 
 ROOT_USER = 0
 
 
-def sandbox() -> running.Sandbox:
+def sandbox() -> session.Sandbox:
     """Return the container tier.
 
     Raises
@@ -26,16 +26,16 @@ def sandbox() -> running.Sandbox:
         If the system is not Linux with Landlock, this is not root, or libseccomp is missing.
     """
     if sys.platform != "linux":
-        raise running.Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
+        raise session.Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
     if os.geteuid() != ROOT_USER:
-        raise running.Unavailable(
+        raise session.Unavailable(
             "the container tier needs root, which alone can become another user"
         )
     if descent.landlock_version() == 0:
-        raise running.Unavailable(
+        raise session.Unavailable(
             "the container tier needs Landlock, which this kernel or container lacks"
         )
-    return running.Sandbox(
+    return session.Sandbox(
         tier="container",
         credit=True,
         launch=launch,
@@ -43,7 +43,7 @@ def sandbox() -> running.Sandbox:
     )
 
 
-def launch(control: socket) -> running.SandboxProcess:
+def launch(control: socket) -> session.SandboxProcess:
     """Start the supervisor as a spare user, behind Landlock.
 
     The user may not walk to the interpreter and the packages if they lie in somebody's home folder.
@@ -51,8 +51,8 @@ def launch(control: socket) -> running.SandboxProcess:
     `descent.main`).
     """
     mounts = contents()
-    packages = running.package_folders()
-    homes = [mounts.prefix, str(running.SUPERVISOR_PATH.parent)]
+    packages = session.package_folders()
+    homes = [mounts.prefix, str(session.SUPERVISOR_PATH.parent)]
     package_numbers = {}
     for name, folder in packages.items():
         package_numbers[name] = f"{{{len(homes)}}}"
@@ -64,13 +64,13 @@ def launch(control: socket) -> running.SandboxProcess:
             library_path.append(f"{{{len(homes)}}}")
             homes.append(libraries)
     python = os.path.relpath(mounts.places[mounts.python], mounts.prefix)
-    supervisor = running.supervisor_command(
+    supervisor = session.supervisor_command(
         f"{{0}}/{python}",
-        f"{{1}}/{running.SUPERVISOR_PATH.name}",
+        f"{{1}}/{session.SUPERVISOR_PATH.name}",
         control.fileno(),
         package_numbers,
     )
-    environment = running.ENVIRONMENT | {
+    environment = session.ENVIRONMENT | {
         "PYTHONHOME": "{0}",
         "LD_LIBRARY_PATH": ":".join(library_path),
     }
@@ -85,6 +85,6 @@ def launch(control: socket) -> running.SandboxProcess:
             command=supervisor,
             environment=environment,
         )
-        process = running.start_process(command, {}, pass_fds=[control.fileno()])
+        process = session.start_process(command, {}, pass_fds=[control.fileno()])
         # the lease is held until the process has ended
-        return running.SandboxProcess(process=process, clean_up=stack.pop_all().close)
+        return session.SandboxProcess(process=process, clean_up=stack.pop_all().close)

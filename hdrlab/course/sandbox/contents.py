@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from hdrlab.course.sandbox.running import SUPERVISOR_PATH, package_folders
+from hdrlab.course.sandbox.session import SUPERVISOR_PATH, package_folders
 
 # folders inside the sandbox
 PYTHON = "/python"

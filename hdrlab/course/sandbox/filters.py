@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox.session import Unavailable
 
 # names of system calls, by purpose: "computing", "reading" and "supervising"
 SYSTEM_CALLS: dict[str, list[str]] = tomllib.loads(

@@ -12,18 +12,18 @@ import sys
 import tempfile
 from socket import socket
 
-from hdrlab.course.sandbox import running
+from hdrlab.course.sandbox import session
 
-DOES_NOT_STOP: list[str] = running.RULES["practice"]["does_not_stop"]
+DOES_NOT_STOP: list[str] = session.RULES["practice"]["does_not_stop"]
 # without NPROC, which would count all processes of the student, also those outside of the sandbox
-LIMITS = {name: limit for name, limit in running.LIMITS.items() if name != "NPROC"}
+LIMITS = {name: limit for name, limit in session.LIMITS.items() if name != "NPROC"}
 # Python does not start on Windows without it
 WINDOWS_VARIABLE = "SYSTEMROOT"
 
 
-def sandbox() -> running.Sandbox:
+def sandbox() -> session.Sandbox:
     """Return the practice tier. Where processes cannot fork, each check starts a new interpreter."""
-    return running.Sandbox(
+    return session.Sandbox(
         tier="practice",
         credit=False,
         launch=launch,
@@ -32,40 +32,40 @@ def sandbox() -> running.Sandbox:
     )
 
 
-def launch(control: socket) -> running.SandboxProcess:
+def launch(control: socket) -> session.SandboxProcess:
     """Start the supervisor with this interpreter, in an empty folder and with few variables."""
     # the interpreter of a virtual environment would bring all its packages
     python = getattr(sys, "_base_executable", sys.executable)
-    command = running.supervisor_command(
-        python, str(running.SUPERVISOR_PATH), control.fileno(), running.package_folders()
+    command = session.supervisor_command(
+        python, str(session.SUPERVISOR_PATH), control.fileno(), session.package_folders()
     )
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
 
     def remove_scratch() -> None:
         shutil.rmtree(scratch, ignore_errors=True)
 
-    environment = running.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
+    environment = session.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
     if WINDOWS_VARIABLE in os.environ:
         environment[WINDOWS_VARIABLE] = os.environ[WINDOWS_VARIABLE]
     try:
         # on Windows alone
         if hasattr(control, "share"):
             process = _start_and_share(command, environment, scratch, control)
-            return running.SandboxProcess(process=process, clean_up=remove_scratch)
-        process = running.start_process(
+            return session.SandboxProcess(process=process, clean_up=remove_scratch)
+        process = session.start_process(
             command, environment, pass_fds=[control.fileno()], folder=scratch
         )
     except BaseException:
         remove_scratch()
         raise
-    return running.SandboxProcess(process=process, clean_up=remove_scratch, scratch=scratch)
+    return session.SandboxProcess(process=process, clean_up=remove_scratch, scratch=scratch)
 
 
 def _start_and_share(
     command: list[str], environment: dict[str, str], folder: str, control: socket
 ) -> subprocess.Popen[bytes]:
     """Start a command, and describe the control socket to it on its standard input, as on Windows."""
-    process = running.start_process(command, environment, folder=folder, stdin=subprocess.PIPE)
+    process = session.start_process(command, environment, folder=folder, stdin=subprocess.PIPE)
     if process.stdin:
         process.stdin.write(control.share(process.pid))  # type: ignore[attr-defined,unused-ignore]
         process.stdin.close()

@@ -17,7 +17,7 @@ from typing import BinaryIO
 
 from hdrlab.course.sandbox import descent, filters, users
 from hdrlab.course.sandbox.contents import PYTHON, SandboxMounts, contents
-from hdrlab.course.sandbox.running import (
+from hdrlab.course.sandbox.session import (
     ENVIRONMENT,
     RULES,
     Sandbox,

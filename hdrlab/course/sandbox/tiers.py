@@ -1,7 +1,7 @@
 """Choose a sandbox tier. There is no fallback: if this machine cannot run the tier, that is an error."""
 
 from hdrlab.course.sandbox import container, practice, strict
-from hdrlab.course.sandbox.running import Sandbox, Unavailable
+from hdrlab.course.sandbox.session import Sandbox, Unavailable
 from hdrlab.errors import InputError
 
 __all__ = ["TIERS", "Unavailable", "choose"]

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course.sandbox import descent, running
+from hdrlab.course.sandbox import descent, session
 
 # systems assign these numbers to nobody [systemd.io/UIDS-GIDS]
 SPARE_USERS = range(60706, 61184)
@@ -40,7 +40,7 @@ def lease() -> tuple[int, socket.socket]:
                 return user, lock
     first = SPARE_USERS.start
     last = SPARE_USERS.stop - 1
-    raise running.Unavailable(f"no user number of {first} to {last} is free here")
+    raise session.Unavailable(f"no user number of {first} to {last} is free here")
 
 
 def _mapped_users() -> list[range]:
