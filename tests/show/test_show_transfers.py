@@ -99,7 +99,7 @@ def test_equations_are_drawn_less_a_multiple_and_those_thrown_out_are_told_apart
     out, kept, line = ax.lines
     assert out.get_ydata().tolist() == [9] and np.allclose(kept.get_ydata(), 0)
     assert np.allclose(line.get_ydata(), [0, 0.2])
-    assert legend(ax) == ["1 thrown out", "9 in use", "k = 4.0200"] and "4 times" in ax.get_ylabel()
+    assert legend(ax) == ["1 removed", "9 in use", "k = 4.0200"] and "4 ×" in ax.get_ylabel()
 
 
 def test_every_drawing_becomes_a_picture():

@@ -84,7 +84,7 @@ def deviations(
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     for (colour, style), (name, y) in zip(LINES[1:], off.items(), strict=False):
         ax.plot(stops, y, linestyle=style, color=colour, linewidth=1.6, label=name)
-    ax.set(xlabel="true exposure, stops from that of level 128", ylabel="found less true, stops")
+    ax.set(xlabel="true exposure, stops from that of level 128", ylabel="estimated − true, stops")
     fix_limits(ax, span, (-limit, limit))
     return with_legend(ax, "upper left")
 

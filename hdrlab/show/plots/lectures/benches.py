@@ -128,5 +128,5 @@ def draw_calibrated(found: Calibrated) -> Axes:
     ax = curves.deviations(
         {"as shot": found.shot, "aligned": found.aligned}, found.truth, limit=1.0
     )
-    ax.set_title(f"{count - found.wrong} of {count} photographs aligned to the pixel", fontsize=10)
+    ax.set_title(f"{count - found.wrong} of {count} photos aligned to the pixel", fontsize=10)
     return ax

@@ -68,6 +68,6 @@ def deviations(
     for (colour, style), (name, one) in zip(LINES[1:], found.items(), strict=False):
         off = difference(one, one._replace(X=np.asarray(inverse(one.M), np.float64)))
         ax.plot(255 * one.M, 100 * off, linestyle=style, color=colour, linewidth=1.6, label=name)
-    ax.set(xlabel="pixel level, 255 M", ylabel="found less true, % of the range")
+    ax.set(xlabel="pixel level, 255 M", ylabel="estimated − true, % of the range")
     ax.set(xlim=(0, 255), ylim=(-limit, limit))
     return with_legend(ax, "upper left")

@@ -99,7 +99,7 @@ def transfer(found: photon_transfer.Transfer, *, span: Ends = None, limits: Ends
     used = found.used
     ax = axes()
     ax.plot(S[used], V[used], "o", color="#D55E00", label="pairs that are used")
-    ax.plot(S[~used], V[~used], "x", color="#0072B2", label="too near to a full well")
+    ax.plot(S[~used], V[~used], "x", color="#0072B2", label="too close to a full well")
     line = np.array([0, S.max()])
     ax.plot(
         line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}"

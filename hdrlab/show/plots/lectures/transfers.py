@@ -146,7 +146,7 @@ def equations(
     span: Ends = None,
     limits: Ends = None,
 ) -> Axes:
-    """Draw equations y = k x, less `against` times x, those thrown out pale, and the line of k.
+    """Draw equations y = k x, less `against` times x, the removed ones pale, and the line of k.
 
     `span` and `limits` fix the axes, so that a slider moves the equations and nothing else.
     """
@@ -156,11 +156,11 @@ def equations(
     ax = axes()
     off = y - against * x
     out = ~used
-    ax.plot(x[out], off[out], "x", color="#999999", markersize=4, label=f"{out.sum()} thrown out")
+    ax.plot(x[out], off[out], "x", color="#999999", markersize=4, label=f"{out.sum()} removed")
     ax.plot(x[used], off[used], ".", color="#0072B2", markersize=5, label=f"{used.sum()} in use")
     ends = np.array([0, x.max(initial=1)])
     ax.plot(ends, (k - against) * ends, color="#D55E00", linewidth=1.8, label=f"k = {k:.4f}")
-    less = f" less {against:g} times that of A" if against else ""
-    ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{less}")
+    subtracted = f" − {against:g} × level in A" if against else ""
+    ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{subtracted}")
     fix_limits(ax, span or (0, ends[1] * 1.02), limits)
     return with_legend(ax, "upper left")
