@@ -180,14 +180,14 @@ def refuses_what_is_no_bracket(recover, response):
         (taken.images.astype(float), taken.times),
         (taken.images[..., None], taken.times),
     ):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             recover(images, times)
 
 
 def refuses_one_photograph_and_times_that_are_all_alike(recover, response):
     taken = photographs(response)
     for images, times in ((taken.images[:1], taken.times[:1]), (taken.images[:3], [0.1, 0.1, 0.1])):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             recover(images, times)
 
 
@@ -200,7 +200,7 @@ def refuses_photographs_that_share_no_level(recover, response):
         (ramp, 255 * flat),
         (0 * flat, ramp),
     ):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             recover(np.stack(frames), [1.0, 4.0])
 
 

@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 
 from hdrlab.align import mtb
 from hdrlab.align.shift import shift
+from hdrlab.errors import InputError
 
 
 def plain(fixed, moving, offset):
@@ -210,7 +211,7 @@ def test_frames_without_texture_are_not_moved(levels):
 )
 def test_invalid_stacks_raise_an_error(images, bits):
     for verb in (mtb.align, lambda *a, **k: list(mtb.align_steps(*a, **k))):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             verb(images, bits=bits)
 
 

@@ -70,11 +70,11 @@ def test_a_bracket_is_made_by_keywords_and_cannot_be_changed():
 
 def test_old_code_may_still_unpack_a_bracket_but_is_warned():
     made = bracket(IMAGES, [1, 2, 4])
-    with pytest.warns(DeprecationWarning, match="unpacking a Bracket"):
+    with pytest.warns(DeprecationWarning, match="Bracket"):
         images, times, names, valid, linear = made
     assert images is made.images and times is made.times and names is made.names
     assert valid is None and not linear
-    with pytest.warns(DeprecationWarning, match="indexing a Bracket"):
+    with pytest.warns(DeprecationWarning, match="Bracket"):
         images, times = made[:2]
     assert images is made.images and times is made.times
     with pytest.warns(DeprecationWarning, match="dataclasses.replace"):

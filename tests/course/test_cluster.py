@@ -229,7 +229,7 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
 
 
 def test_a_worker_that_cannot_do_the_work_is_named(address, tmp_path):
-    with pytest.raises(ValueError, match="tcp://.* cannot do the work: no strict tier here"):
+    with pytest.raises(ValueError, match="tcp://.* cannot .*work: no strict tier here"):
         graded(address, tmp_path, check_available=unable)
 
 

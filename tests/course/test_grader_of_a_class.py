@@ -54,7 +54,7 @@ def test_a_function_that_was_killed_is_asked_again_and_believed_when_it_is_so_ea
 ):
     made, asked = grader(monkeypatch, *(result("x", *kinds) for kinds in tries))
     if counts is None:
-        with pytest.raises(ValueError, match="ended without an answer, each time at another check"):
+        with pytest.raises(ValueError, match="ended .*answer, each time at another check"):
             made.grade(JOB)
     else:
         assert made.grade(JOB) == results.to_json(result("t", *tries[counts]))

@@ -123,7 +123,7 @@ def test_imports_from_one_module_stand_in_one_line():
 
 
 def test_a_function_that_is_not_there_is_an_error():
-    with pytest.raises(ValueError, match="function of the library"):
+    with pytest.raises(ValueError, match="function .*library"):
         inline.inlined({"x": "response.debevec.nothing"})
-    with pytest.raises(ValueError, match="module of the library"):
+    with pytest.raises(ValueError, match="module .*library"):
         inline.inlined({"x": "response.nothing.x"})

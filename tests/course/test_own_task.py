@@ -17,6 +17,7 @@ from hdrlab.course.checks.plugin import GradingPlugin
 from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.source_code import inline
+from hdrlab.errors import InputError
 
 WRONG = "def flat_field(Z, flat):\n    return Z / flat\n"
 FILE = "flat_field.py:flat_field"
@@ -45,7 +46,7 @@ def test_a_task_of_the_plan_may_be_a_function_beside_it(folder):
 def test_a_function_elsewhere_is_refused(folder, function):
     text = (folder / "plan.toml").read_text()
     (folder / "plan.toml").write_text(text.replace(FILE, function))
-    with pytest.raises(ValueError, match="beside the plan"):
+    with pytest.raises(ValueError, match="plan"):
         plan.read(folder / "plan.toml")
 
 
@@ -64,7 +65,7 @@ def test_a_second_task_joins_the_first_and_a_third_begins_another_homework(folde
 
 @pytest.mark.parametrize("name", ["flat_field", "extra", "Dark", "dark-frame", "class", "../dark"])
 def test_a_name_that_is_there_or_that_no_function_can_have_is_refused(folder, name):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         list(own_task.write(folder, name, "extra"))
 
 

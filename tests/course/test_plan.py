@@ -87,7 +87,7 @@ def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, re
         with pytest.raises(ValueError, match="out of none"):
             read(tasks=tasks.replace("points", "parameters = ['cut'], points"))
     else:
-        with pytest.raises(ValueError, match="function of hdrlab, or FILE.py:NAME beside the plan"):
+        with pytest.raises(ValueError, match="function of hdrlab, or FILE.py:NAME .*plan"):
             read(tasks=tasks)
 
 
@@ -157,7 +157,7 @@ def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
 @pytest.mark.parametrize("due", ["2026-10-01T12:00:00", "2026-10-01", "7", "12:00:00"])
 def test_a_due_date_has_a_time_and_a_zone(due, read):
     assert read().homeworks["hw9"].due.isoformat() == "2026-10-01T12:00:00+00:00"
-    with pytest.raises(ValueError, match=r"due of \[hw9\] as a date with time and zone"):
+    with pytest.raises(ValueError, match=r"due of \[hw9\] .*date with time and zone"):
         read(due=due)
 
 

@@ -12,6 +12,7 @@ import pytest
 from hdrlab.course.grading import results
 from hdrlab.course.grading.results import Check, Drawing, Result
 from hdrlab.course.reports import feedback, gradebook
+from hdrlab.errors import InputError
 from hdrlab.io import web
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>\x1b[31m\x00 =cmd|"/c calc"!A1 ]]> & \ud7ff'
@@ -64,7 +65,7 @@ def test_the_json_is_read_again_as_it_was(hostile):
 
 @pytest.mark.parametrize("data", [b"{}", b"[]", b'{"version": 99}', b'{"version": 1}', b"no json"])
 def test_anything_else_is_no_result(data):
-    with pytest.raises(ValueError, match="expected|Expecting"):
+    with pytest.raises((InputError, json.JSONDecodeError)):
         results.from_json(data)
 
 
@@ -167,6 +168,13 @@ def test_gradescope_gets_what_its_schema_asks(hostile):
         )
     assert sum(one["score"] for one in read["tests"]) == pytest.approx(read["score"])
     assert "the secret" not in json.dumps(read)
+
+
+def test_gradescope_shows_which_checks_passed_and_which_failed(hostile):
+    shown = [test["status"] for test in json.loads(gradebook.gradescope(hostile))["tests"]]
+    expected = {"holds": "passed", "fails": "failed", "no answer": "failed"}
+    assert shown == [expected[check.outcome] for check in hostile.checks]
+    assert {"passed", "failed"} == set(shown)
 
 
 def test_junit_is_xml_whatever_was_written(hostile):

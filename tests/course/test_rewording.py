@@ -76,7 +76,7 @@ def test_a_function_here_is_asked_as_a_student_s_and_its_calls_are_remembered_as
         subject.h()
     assert subject.calls[1] == ((), {}, None)
     for name in ("_g", "g"):
-        with pytest.raises(AttributeError, match=f"no function for the task {name}"):
+        with pytest.raises(AttributeError, match=f"no function .*task {name}"):
             getattr(subject, name)
 
 

@@ -369,7 +369,7 @@ def without(monkeypatch):
 
 def test_without_bubblewrap_there_is_no_strict_tier(without):
     without.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(tiers.Unavailable, match="no bwrap on the path"):
+    with pytest.raises(tiers.Unavailable, match="no bwrap .*path"):
         tiers.choose("strict")
 
 
@@ -666,7 +666,7 @@ def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subj
         subject.scaled(lambda x: x)
     subject.fresh()
     closed = Subject({"f": ""}, practice.sandbox())
-    with pytest.raises(RuntimeError, match="in a with statement"):
+    with pytest.raises(RuntimeError, match="with statement"):
         closed.f()
 
 
@@ -695,9 +695,7 @@ def test_a_submission_that_has_used_up_its_processor_is_told_so():
     with opened("practice") as subject:
         assert subject.scaled(1.0) is not None
         subject._session.cpu_seconds_left = 0.0
-        with pytest.raises(
-            NoAnswer, match="s of processor time for a whole submission are used up"
-        ):
+        with pytest.raises(NoAnswer, match="s of processor time .*whole submission are used up"):
             subject.scaled(1.0)
 
 

@@ -54,7 +54,7 @@ def test_only_the_tasks_that_were_handed_in_are_there(opened):
     assert subject.f.__name__ == "f"
     subject._sources["_g"] = ""
     for name in ("g", "_g"):
-        with pytest.raises(AttributeError, match=f"the submission has no task {name}"):
+        with pytest.raises(AttributeError, match=f"submission has no task {name}"):
             getattr(subject, name)
 
 

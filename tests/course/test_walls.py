@@ -159,10 +159,10 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     assert made.limits == session.LIMITS
     for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
         here[name] = value
-        with pytest.raises(Unavailable, match=f"the container tier {said}"):
+        with pytest.raises(Unavailable, match=f"container tier {said}"):
             container.sandbox()
     container.sys.platform = "darwin"
-    with pytest.raises(Unavailable, match="the container tier needs Linux, and this is darwin"):
+    with pytest.raises(Unavailable, match="container tier needs Linux, and this is darwin"):
         container.sandbox()
 
 

@@ -148,5 +148,5 @@ def test_invalid_signals_and_widths_raise_an_error(method):
 
 
 def test_a_signal_with_too_large_a_range_raises_an_error():
-    with pytest.raises(ValueError, match="a range of at most 5 for"):
+    with pytest.raises(ValueError, match="range of at most 5 for"):
         fast_bilateral(np.array([[0, 6]]), sigma_s=1, sigma_r=0.01)

@@ -13,6 +13,7 @@ from PIL import Image
 
 from hdrlab import cli
 from hdrlab.core import gamut
+from hdrlab.errors import InputError
 from hdrlab.fast.merge import merge
 from hdrlab.io import codecs, files, photos, radiance, times, web
 from hdrlab.io.maps import exr, rgbe
@@ -128,7 +129,7 @@ def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeyp
     monkeypatch.setattr(
         OpenEXR.File, "write", lambda *_: (_ for _ in ()).throw(RuntimeError("disk"))
     )
-    with pytest.raises(OSError, match=r"is the disk full.*room\.exr"):
+    with pytest.raises(OSError, match=r"disk full.*room\.exr"):
         exr.write(tmp_path / "room.exr", np.ones((4, 5, 3)))
     assert not list(tmp_path.iterdir())
 
@@ -161,7 +162,7 @@ def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
     ids=["a hundred levels", "falling", "complex", "beyond float32", "masked", "objects"],
 )
 def test_a_response_that_means_nothing_makes_no_map(g):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         merge(np.zeros((2, 4, 5), np.uint8), [0.1, 1], g)
 
 

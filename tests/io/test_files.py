@@ -36,13 +36,13 @@ def test_a_missing_folder_is_named_before_anything_is_written(tmp_path):
 
 
 def test_a_folder_is_not_replaced(tmp_path):
-    with pytest.raises(ValueError, match="name of a file"), files.replacing(tmp_path):
+    with pytest.raises(ValueError, match="name .*file"), files.replacing(tmp_path):
         pytest.fail("the block ran")
 
 
 def test_a_device_is_not_replaced():
     with (
-        pytest.raises(ValueError, match="name of a file"),
+        pytest.raises(ValueError, match="name .*file"),
         files.replacing(os.devnull),
     ):
         pytest.fail("the block ran")
@@ -104,5 +104,5 @@ def test_a_full_disk_is_reported_and_a_system_that_cannot_reserve_is_not(tmp_pat
 )
 def test_a_folder_with_the_name_of_a_file_is_refused_by_name(name, read, tmp_path):
     (tmp_path / name).mkdir()
-    with pytest.raises(FileFormatError, match=rf"{name}: this is a folder"):
+    with pytest.raises(FileFormatError, match=rf"{name}: .*folder"):
         read(tmp_path / name)

@@ -397,7 +397,7 @@ def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_r
     with pytest.raises(ValueError, match=r"curved\.jxl: .*linear floats"):
         radiance.read_radiance(tmp_path / "curved.jxl")
     program(tmp_path, "cjxl", "a.pfm", "dc.jxl", "-d", "1", *where[1].split(), where[2])
-    with pytest.raises(ValueError, match=r"dc\.jxl: .*one frame of the picture's size"):
+    with pytest.raises(ValueError, match=r"dc\.jxl: .*one frame .*picture's size"):
         radiance.read_radiance(tmp_path / "dc.jxl")
 
 

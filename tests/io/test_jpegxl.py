@@ -217,7 +217,7 @@ def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_
 ):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
     (tmp_path / "odd.jxl").write_bytes(header(*USUAL, frame=frame))
-    with pytest.raises(ValueError, match=r"odd\.jxl: .*one frame of the picture's size"):
+    with pytest.raises(ValueError, match=r"odd\.jxl: .*one frame .*picture's size"):
         photos.read_photo(tmp_path / "odd.jxl")
 
 

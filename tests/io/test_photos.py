@@ -309,7 +309,7 @@ def test_other_kinds_of_tiff_and_png_are_refused_by_name(tmp_path):
     with pytest.raises(ValueError, match="x.tif: .*gray or RGB of 8 or 16 bits.*3 x float32, RGB"):
         read_photo(tmp_path / "x.tif")
     path = png(tmp_path / "x.png", 1, 1, 8, 2, (b"tRNS", bytes(6)))
-    with pytest.raises(ValueError, match="x.png: .*gray or RGB of 8 or 16 bits.*an alpha channel"):
+    with pytest.raises(ValueError, match="x.png: .*gray or RGB of 8 or 16 bits.*alpha channel"):
         read_photo(path)
     path = png(tmp_path / "x.png", 1, 1, 4, 0)
     with pytest.raises(ValueError, match="x.png: .*gray or RGB of 8 or 16 bits.*4-bit pixels"):

@@ -13,6 +13,7 @@ import pytest
 from PIL import Image, ImageSequence
 
 from hdrlab.cli import run
+from hdrlab.errors import InputError
 from hdrlab.io import radiance, sequence
 from hdrlab.io.photos import write_picture
 
@@ -122,7 +123,7 @@ def test_a_damaged_film_is_refused(content, tmp_path):
 )
 def test_what_means_nothing_is_refused_and_nothing_is_left(call, folder):
     before = sorted(path.name for path in folder.iterdir())
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         call(folder)
     assert sorted(path.name for path in folder.iterdir()) == before
 

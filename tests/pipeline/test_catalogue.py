@@ -60,5 +60,5 @@ def test_every_method_documents_every_keyword(chapter):
 
 def test_an_unknown_setting_raises_an_error_that_lists_the_settings():
     check_settings("align", "mtb", {"bits": 5})
-    with pytest.raises(ValueError, match="a setting of mtb out of .*bits.*'bytes'"):
+    with pytest.raises(ValueError, match="setting of mtb out of .*bits.*'bytes'"):
         check_settings("align", "mtb", {"bytes": 5})

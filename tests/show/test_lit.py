@@ -25,7 +25,7 @@ def test_repr_is_the_alt_text(file):
 
 
 def test_empty_alt_text_is_rejected(file):
-    with pytest.raises(ValueError, match="expected an alt text"):
+    with pytest.raises(ValueError, match="alt text"):
         Lit(file, " ")._repr_html_()
 
 

@@ -188,7 +188,7 @@ def test_a_picture_carries_its_alt_text_into_the_page():
 
 @pytest.mark.parametrize("alt", ["", "  ", None])
 def test_a_picture_without_alt_text_is_refused(alt):
-    with pytest.raises(ValueError, match="alt text that says what the picture shows"):
+    with pytest.raises(ValueError, match="alt text that says .*picture shows"):
         pictures.picture(np.zeros((4, 5), np.uint8), alt=alt)
 
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab.core.filters import guided
+from hdrlab.errors import InputError
 
 
 @pytest.fixture
@@ -100,7 +101,7 @@ def test_the_edge_of_another_guide_is_taken_over(rng):
     ],
 )
 def test_invalid_images_and_parameters_raise_an_error(I, p, knobs):  # noqa: E741
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         guided.guided(I, p, **{"radius": 2, "epsilon": 0.1} | knobs)
 
 

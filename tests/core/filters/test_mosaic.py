@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from hdrlab.core.filters import mosaic
+from hdrlab.errors import InputError
 
 
 def filters(shape):
@@ -56,5 +57,5 @@ def test_invalid_mosaics_raise_an_error():
         lambda: mosaic.sample(np.ones((4, 4, 3)), filters((4, 6))),
         lambda: mosaic.demosaic(np.ones((4, 4)), np.full((4, 4), 3)),
     ):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             call()

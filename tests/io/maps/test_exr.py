@@ -107,7 +107,7 @@ def test_what_is_no_radiance_is_not_written(tmp_path):
 
 def test_other_channels_are_refused_by_name(tmp_path):
     path = wrote(tmp_path / "x.exr", {"U": GRAY, "V": GRAY})
-    with pytest.raises(ValueError, match="x.exr: .*the channels R, G, B or Y.*U, V"):
+    with pytest.raises(ValueError, match="x.exr: .*channels R, G, B or Y.*U, V"):
         exr.read(path)
 
 

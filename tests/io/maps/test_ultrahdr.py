@@ -12,6 +12,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
 from hdrlab.core import colour, gainmap
+from hdrlab.errors import InputError
 from hdrlab.io import radiance
 from hdrlab.io.maps import ultrahdr
 from hdrlab.io.photos import read_bracket, read_photo, write_picture
@@ -183,7 +184,7 @@ def test_a_frame_of_a_bracket_is_its_first_picture_with_a_warning(tmp_path):
     E = scene(shape=(48, 72))
     for k, name in enumerate("ab"):
         ultrahdr.write_picture(tmp_path / f"{name}.jpg", pipeline.develop(E * 4**k, "curves"), E)
-    with pytest.warns(UserWarning, match=r"a\.jpg.* has a gain map: .* tone-mapped locally"):
+    with pytest.warns(UserWarning, match=r"a\.jpg.* .*gain map: .* tone-mapped locally"):
         taken = read_bracket(tmp_path, [1, 4])
     assert np.array_equal(taken.images[0], read_photo(tmp_path / "a.jpg"))
 
@@ -209,21 +210,19 @@ def test_the_command_writes_such_a_picture_and_takes_it_as_a_map(tmp_path, capsy
         "tonemap", tmp_path / "map.exr", "-o", tmp_path / "no.png", "--to", "ultrahdr"
     )
     assert (
-        code == 2 and "expected an Ultra HDR picture" in said and not (tmp_path / "no.png").exists()
+        code == 2 and "no.png" in said and "ultrahdr" in said and not (tmp_path / "no.png").exists()
     )
     code, said = told("convert", tmp_path / "map.exr", tmp_path / "no.jpg")
-    assert code == 2 and "expected a radiance file" in said
+    assert code == 2 and "no.jpg" in said and not (tmp_path / "no.jpg").exists()
     write_picture(tmp_path / "plain.jpg", np.zeros((8, 8, 3), np.uint8))
     code, said = told("tonemap", tmp_path / "plain.jpg", "-o", tmp_path / "no.png")
-    assert (
-        code == 2 and "plain.jpg: expected a JPEG with a gain map" in said and said.count("\n") == 1
-    )
+    assert code == 2 and "plain.jpg" in said and "gain map" in said and said.count("\n") == 1
 
 
 @pytest.mark.parametrize("headroom", [1.0, 0.5, np.nan, 1e9])
 def test_a_headroom_that_makes_no_sense_is_refused_and_nothing_is_written(headroom, tmp_path):
     picture = np.zeros((8, 8, 3), np.uint8)
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         ultrahdr.write_picture(tmp_path / "no.jpg", picture, np.ones((8, 8, 3)), headroom=headroom)
     with pytest.raises(ValueError, match="of one shape"):
         ultrahdr.write_picture(tmp_path / "no.jpg", picture, np.ones((8, 9, 3)))
@@ -266,7 +265,7 @@ def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
     start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
     said = ultrahdr.ADOBE + b'<rdf:Description hdrgm:GainMapMax="' + b"9" * 5000 + b'x"/>'
     path.write_bytes(data[:start] + segment(b"\xe1", said) + data[start:])
-    with pytest.raises(ValueError, match=r"lamp\.jpg: .*JPEG with a gain map") as refused:
+    with pytest.raises(ValueError, match=r"lamp\.jpg: .*JPEG .*gain map") as refused:
         ultrahdr.read(path)
     assert 200 < len(str(refused.value)) < 400 + len(str(path))
 
