@@ -19,6 +19,7 @@ from hdrlab.calibration.blends import (
 )
 from hdrlab.calibration.display import Schedule
 from hdrlab.capture.responses import RESPONSES, as_response, true_g
+from hdrlab.errors import InputError
 
 pytestmark = pytest.mark.papers
 
@@ -82,7 +83,7 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
     "rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]], [[[0, 9], [9, 0]]], [0, 9, 9]]
 )
 def test_a_photo_without_the_grid_raises_an_error(rows):
-    with pytest.raises(ValueError, match="a grid, bright on black"):
+    with pytest.raises(ValueError, match="grid, bright on black"):
         display.find_corners(rows)
 
 
@@ -311,7 +312,7 @@ def test_invalid_blends_raise_an_error(tmp_path):
         lambda: display.draw_schedule(shape=(100, 100)),
         lambda: display.find_corners(np.zeros((5, 5))),
     ):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             call()
 
 

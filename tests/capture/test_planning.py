@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab.capture import exposure, planning
+from hdrlab.errors import InputError
 from hdrlab.radiance.uncertainty import inverse_variance_merge
 
 
@@ -131,7 +132,7 @@ def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
     ],
 )
 def test_planning_by_noise_raises_an_error_for_invalid_arguments(maker, snr):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         planning.plan_by_noise(0.1, 1000, snr, maker)
 
 
@@ -156,6 +157,6 @@ def test_a_bracket_is_shifted_to_stay_within_the_cameras_times():
 @pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
 def test_a_bracket_with_two_equal_times_raises_an_error(frames, stops):
     with pytest.raises(
-        ValueError, match=f"{frames} times {stops:g} stops apart, the camera has 11 over"
+        ValueError, match=f"{frames} times {stops:g} stops apart, .*camera has 11 over"
     ):
         planning.around(0.1, 2.0 ** np.arange(-10, 1), frames, stops)

@@ -7,6 +7,7 @@ from hypothesis import given, strategies as st
 from hdrlab import scenes
 from hdrlab.capture import camera, photon_transfer, ranges, sensor
 from hdrlab.capture.sensor import Sensor
+from hdrlab.errors import InputError
 
 QUIET = Sensor(read_noise=0, full_well=1e9, gain=1e9 / 4000, bits=12, black=64)
 
@@ -228,7 +229,7 @@ def test_photon_transfer_raises_an_error_for_jpegs_whose_noise_does_not_grow():
     ],
 )
 def test_photon_transfer_raises_an_error_for_unusable_photos(Z):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         photon_transfer.calibrate(Z)
 
 
@@ -268,7 +269,7 @@ def test_figures_that_mean_nothing_are_refused():
         lambda: sensor.develop(np.ones((4, 4))),
         lambda: sensor.develop(np.ones((4, 4, 3), np.uint16), bayer=True),
     ):
-        with pytest.raises(ValueError, match="expected"):
+        with pytest.raises(InputError):
             call()
 
 
@@ -300,5 +301,5 @@ def test_photon_transfer_needs_a_pair_beyond_those_that_it_draws_its_line_throug
     N = np.array([0, 1000, 3000, 6000])[:, None, None, None] * np.ones((4, 2, 64, 64))
     Z = np.round(rng.poisson(N) / 2 + rng.normal(100, 3, N.shape)).astype(np.uint16)
     assert photon_transfer.calibrate(Z).gain == pytest.approx(2, rel=0.1)
-    with pytest.raises(ValueError, match="a dark pair and three more"):
+    with pytest.raises(ValueError, match="dark pair and three more"):
         photon_transfer.calibrate(Z[:3])

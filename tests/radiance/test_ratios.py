@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab.capture import camera
+from hdrlab.errors import InputError
 from hdrlab.io.radiance import read_radiance
 from hdrlab.radiance import ratios
 
@@ -139,7 +140,7 @@ def test_frames_that_do_not_overlap_in_brightness_are_refused(scheme, truth):
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("level", [0, 100, 255])
 def test_constant_frames_are_refused(scheme, level):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         ratios.estimate_ratios(np.full((2, 8, 8), level, np.uint8), scheme=scheme)
 
 
@@ -153,7 +154,7 @@ def test_constant_frames_are_refused(scheme, level):
     ],
 )
 def test_invalid_arguments_raise_an_error(images, knobs):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         ratios.estimate_ratios(images, **knobs)
 
 

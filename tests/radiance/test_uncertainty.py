@@ -156,7 +156,7 @@ def test_each_channel_may_have_its_own_noise():
     ],
 )
 def test_invalid_noise_raises_an_error(bad):
-    with pytest.raises(ValueError, match=f"{next(iter(bad))} of at least .* one a channel"):
+    with pytest.raises(ValueError, match=f"{next(iter(bad))} of at least .* .*channel"):
         merge_with_deviation(
             np.ones((2, 2, 2), np.uint8), [1, 2], responses.true_g("linear"), **{"N": 100, **bad}
         )

@@ -14,6 +14,7 @@ from scipy.sparse.linalg import spsolve
 from hdrlab.core.colour import luminance
 from hdrlab.core.filters import poisson, pyramid
 from hdrlab.core.steps import last
+from hdrlab.errors import InputError
 from hdrlab.fast import fattal as fast
 from hdrlab.io.maps import rgbe
 from hdrlab.tonemap import fattal
@@ -229,7 +230,7 @@ def test_the_picture_is_close_to_that_of_pfstools():
     ],
 )
 def test_invalid_parameters_raise_an_error(knobs):
-    with pytest.raises(ValueError, match=f".*{next(iter(knobs))}"):
+    with pytest.raises(ValueError, match=f"{next(iter(knobs))}"):
         fattal.tonemap(np.ones((3, 3)), **knobs)
 
 
@@ -243,5 +244,5 @@ def test_a_real_map_is_displayed_well_exposed(shared):
     "knobs", [{"noise": np.inf}, {"noise": 0}, {"alpha": np.inf}, {"beta": 1.1}, {"white": 0.5}]
 )
 def test_a_knob_beyond_its_range_is_refused(knobs):
-    with pytest.raises(ValueError, match="expected"):
+    with pytest.raises(InputError):
         fattal.tonemap(np.ones((16, 16)), **knobs)
