@@ -15,7 +15,8 @@ def trimmings_redistributed(h, db, D, *, tolerance=0.025):
     def trim(h, db, D):
         T = float(h.sum())
         top = ceiling(T, db, D)
-        cut, room = float(np.maximum(h - top, 0).sum()), h < top
+        cut = float(np.maximum(h - top, 0).sum())
+        room = h < top
         return Trim(np.minimum(h, top) + np.where(room, cut / max(room.sum(), 1), 0), top, T, cut)
 
     state = Trim(h, np.inf, float(h.sum()), np.inf)

@@ -146,7 +146,8 @@ def coarsest_level_forgotten(images, *, bits=6, luma=False):
 )
 def nothing_excluded(images, *, bits=6, luma=False):
     def error(fixed, moving, offset):
-        (dy, dx), (H, W) = offset, fixed.shape[1:]
+        dy, dx = offset
+        H, W = fixed.shape[1:]
         A, A_kept = fixed[:, max(dy, 0) : max(H + dy, 0), max(dx, 0) : max(W + dx, 0)]
         B, B_kept = moving[:, max(-dy, 0) : max(H - dy, 0), max(-dx, 0) : max(W - dx, 0)]
         return float((A ^ B).mean())

@@ -14,7 +14,8 @@ def loosest(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, np.inf).min(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, -np.inf).max(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
@@ -29,7 +30,8 @@ def middle_of_radiance(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = np.log(
         (np.where(low, np.exp(lower), 0) + np.where(high, np.exp(upper), 0))
         / np.maximum(1.0 * low + high, 1)
@@ -47,7 +49,8 @@ def clipped_alone(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = lower
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
@@ -61,7 +64,8 @@ def flags_swapped(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
     flags = 2 * low + 1 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
@@ -75,7 +79,8 @@ def hidden_frames_count(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
     lower = np.where(Z >= top, g[top] - B, -np.inf).max(axis=0)
     upper = np.where(Z == 0, g[1] - B, np.inf).min(axis=0)
-    low, high = np.isfinite(lower), np.isfinite(upper)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)

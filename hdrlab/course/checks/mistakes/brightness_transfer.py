@@ -13,8 +13,10 @@ from hdrlab.course.checks.mistakes import mistake
 )
 def upper_edge(h_A, h_B):
     n = len(np.asarray(h_A))
-    H_A, H_B = cumulate(h_A, n), cumulate(h_B, n)
-    middle, edges = H_A[1:], np.arange(n + 1) - 0.5
+    H_A = cumulate(h_A, n)
+    H_B = cumulate(h_B, n)
+    middle = H_A[1:]
+    edges = np.arange(n + 1) - 0.5
     T = np.interp(middle, H_B, edges)
     return np.where((middle > 0) & (middle < 1) & (T > edges[1]) & (T <= edges[-2]), T, np.nan)
 
@@ -26,8 +28,10 @@ def upper_edge(h_A, h_B):
 )
 def half_a_level(h_A, h_B):
     n = len(np.asarray(h_A))
-    H_A, H_B = cumulate(h_A, n), cumulate(h_B, n)
-    middle, edges = (H_A[1:] + H_A[:-1]) / 2, np.arange(n + 1)
+    H_A = cumulate(h_A, n)
+    H_B = cumulate(h_B, n)
+    middle = (H_A[1:] + H_A[:-1]) / 2
+    edges = np.arange(n + 1)
     T = np.interp(middle, H_B, edges)
     return np.where((middle > 0) & (middle < 1) & (T > edges[1]) & (T <= edges[-2]), T, np.nan)
 
@@ -38,8 +42,10 @@ def half_a_level(h_A, h_B):
 )
 def other_way(h_A, h_B):
     n = len(np.asarray(h_A))
-    H_B, H_A = cumulate(h_A, n), cumulate(h_B, n)
-    middle, edges = (H_A[1:] + H_A[:-1]) / 2, np.arange(n + 1) - 0.5
+    H_B = cumulate(h_A, n)
+    H_A = cumulate(h_B, n)
+    middle = (H_A[1:] + H_A[:-1]) / 2
+    edges = np.arange(n + 1) - 0.5
     T = np.interp(middle, H_B, edges)
     return np.where((middle > 0) & (middle < 1) & (T > edges[1]) & (T <= edges[-2]), T, np.nan)
 
@@ -51,7 +57,9 @@ def other_way(h_A, h_B):
 )
 def outer_levels_taken(h_A, h_B):
     n = len(np.asarray(h_A))
-    H_A, H_B = cumulate(h_A, n), cumulate(h_B, n)
-    middle, edges = (H_A[1:] + H_A[:-1]) / 2, np.arange(n + 1) - 0.5
+    H_A = cumulate(h_A, n)
+    H_B = cumulate(h_B, n)
+    middle = (H_A[1:] + H_A[:-1]) / 2
+    edges = np.arange(n + 1) - 0.5
     T = np.interp(middle, H_B, edges)
     return np.where((middle > 0) & (middle < 1), T, np.nan)

@@ -25,7 +25,8 @@ def distance_in_pixels(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
     squared = (down * shape[0]) ** 2 + (right * shape[1]) ** 2
     core = spot(shape, at=at, share=share) > 0
-    low, high = 0.01, 100.0
+    low = 0.01
+    high = 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
         w = _normal(np.exp(-squared / (2 * sigma**2)))
@@ -42,7 +43,8 @@ def disc_is_an_ellipse(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = squared <= np.sort(squared, axis=None)[round(share * squared.size) - 1]
-    low, high = 0.01, 100.0
+    low = 0.01
+    high = 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
         w = _normal(np.exp(-squared / (2 * sigma**2)))
@@ -59,7 +61,8 @@ def not_normalised(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = spot(shape, at=at, share=share) > 0
-    low, high = 0.01, 100.0
+    low = 0.01
+    high = 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
         w = _normal(np.exp(-squared / (2 * sigma**2)))
@@ -76,7 +79,8 @@ def exponential(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = spot(shape, at=at, share=share) > 0
-    low, high = 0.01, 100.0
+    low = 0.01
+    high = 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
         w = _normal(np.exp(-np.sqrt(squared) / sigma))

@@ -11,7 +11,9 @@ from hdrlab.course.checks.mistakes import mistake
 )
 def bias_of_16(bits):
     bits = np.asarray(bits, np.int64)
-    sign, e, m = 1 - 2 * (bits >> 15), bits >> 10 & 31, bits & 1023
+    sign = 1 - 2 * (bits >> 15)
+    e = bits >> 10 & 31
+    m = bits & 1023
     value = np.where(e > 0, 1024 + m, 2 * m) * 2.0 ** (e - 26)
     value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
     return (sign * value).astype(np.float32)
@@ -24,7 +26,9 @@ def bias_of_16(bits):
 )
 def hidden_one_forgotten(bits):
     bits = np.asarray(bits, np.int64)
-    sign, e, m = 1 - 2 * (bits >> 15), bits >> 10 & 31, bits & 1023
+    sign = 1 - 2 * (bits >> 15)
+    e = bits >> 10 & 31
+    m = bits & 1023
     value = np.where(e > 0, m, 2 * m) * 2.0 ** (e - 25)
     value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
     return (sign * value).astype(np.float32)
@@ -37,7 +41,9 @@ def hidden_one_forgotten(bits):
 )
 def smallest_have_the_one(bits):
     bits = np.asarray(bits, np.int64)
-    sign, e, m = 1 - 2 * (bits >> 15), bits >> 10 & 31, bits & 1023
+    sign = 1 - 2 * (bits >> 15)
+    e = bits >> 10 & 31
+    m = bits & 1023
     value = (1024 + m) * 2.0 ** (e - 25)
     value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
     return (sign * value).astype(np.float32)
@@ -49,7 +55,8 @@ def smallest_have_the_one(bits):
 )
 def sign_lost(bits):
     bits = np.asarray(bits, np.int64)
-    e, m = bits >> 10 & 31, bits & 1023
+    e = bits >> 10 & 31
+    m = bits & 1023
     value = np.where(e > 0, 1024 + m, 2 * m) * 2.0 ** (e - 25)
     value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
     return value.astype(np.float32)

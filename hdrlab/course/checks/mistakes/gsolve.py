@@ -13,8 +13,10 @@ from hdrlab.response.debevec import Solution
 )
 def weight_of_the_neighbour(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -23,7 +25,9 @@ def weight_of_the_neighbour(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z + 1] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -38,8 +42,10 @@ def weight_of_the_neighbour(Z, B, smoothness, w):
 )
 def smoothness_not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -48,7 +54,9 @@ def smoothness_not_weighted(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -63,8 +71,10 @@ def smoothness_not_weighted(Z, B, smoothness, w):
 )
 def right_side_not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, B[j]
@@ -73,7 +83,9 @@ def right_side_not_weighted(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -88,8 +100,10 @@ def right_side_not_weighted(Z, B, smoothness, w):
 )
 def not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = 1
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -98,7 +112,9 @@ def not_weighted(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -113,8 +129,10 @@ def not_weighted(Z, B, smoothness, w):
 )
 def lambda_inverted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -123,7 +141,9 @@ def lambda_inverted(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = 1 / smoothness * w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -138,8 +158,10 @@ def lambda_inverted(Z, B, smoothness, w):
 )
 def lambda_read_as_1(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -148,7 +170,9 @@ def lambda_read_as_1(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -163,8 +187,10 @@ def lambda_read_as_1(Z, B, smoothness, w):
 )
 def log2_of_the_times(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j] / np.log(2)
@@ -173,7 +199,9 @@ def log2_of_the_times(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
@@ -188,8 +216,10 @@ def log2_of_the_times(Z, B, smoothness, w):
 )
 def root_of_lambda(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
-        (N, P), n = Z.shape, len(w)
-        A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+        N, P = Z.shape
+        n = len(w)
+        A = np.zeros((N * P + n - 1, n + N))
+        b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
             A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
@@ -198,7 +228,9 @@ def root_of_lambda(Z, B, smoothness, w):
             A[N * P + z, z - 1 : z + 2] = smoothness**0.5 * w[z] * np.array([1, -2, 1])
         return A, b
 
-    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    Z = np.asarray(Z)
+    B = np.asarray(B, np.float64)
+    w = np.asarray(w, np.float64)
     n = len(w)
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)

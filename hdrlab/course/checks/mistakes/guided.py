@@ -26,7 +26,8 @@ def lines_not_averaged(I, p=None, *, radius, epsilon):
 )
 def variance_for_covariance(I, p=None, *, radius, epsilon):
     def lines(I, p, *, radius, epsilon):
-        mean_I, mean_p = window_mean(I, radius), window_mean(p, radius)
+        mean_I = window_mean(I, radius)
+        mean_p = window_mean(p, radius)
         cov = window_mean(I * I, radius) - mean_I**2
         var = window_mean(I * I, radius) - mean_I**2
         a = cov / (var + epsilon)
@@ -44,7 +45,8 @@ def variance_for_covariance(I, p=None, *, radius, epsilon):
 )
 def epsilon_squared(I, p=None, *, radius, epsilon):
     def lines(I, p, *, radius, epsilon):
-        mean_I, mean_p = window_mean(I, radius), window_mean(p, radius)
+        mean_I = window_mean(I, radius)
+        mean_p = window_mean(p, radius)
         cov = window_mean(I * p, radius) - mean_I * mean_p
         var = window_mean(I * I, radius) - mean_I**2
         a = cov / (var + epsilon**2)
@@ -66,7 +68,8 @@ def window_of_radius(I, p=None, *, radius, epsilon):
         return total / count
 
     def lines(I, p, *, radius, epsilon):
-        mean_I, mean_p = window_mean(I, radius), window_mean(p, radius)
+        mean_I = window_mean(I, radius)
+        mean_p = window_mean(p, radius)
         cov = window_mean(I * p, radius) - mean_I * mean_p
         var = window_mean(I * I, radius) - mean_I**2
         a = cov / (var + epsilon)

@@ -14,9 +14,14 @@ from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
     misses_method=True,
 )
 def mean_of_radiance(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -33,9 +38,14 @@ def mean_of_radiance(images, times, g, w=None):
     " that only one frame measures is wrong.",
 )
 def by_the_number_of_frames(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -49,9 +59,14 @@ def by_the_number_of_frames(images, times, g, w=None):
     says="You always use the hat. Look up the weights in w, and use the hat only if w is None.",
 )
 def always_the_hat(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n), top)
     total = W.sum(axis=0)
@@ -65,9 +80,14 @@ def always_the_hat(images, times, g, w=None):
     says="You use the green curve for every channel. g[:, c] belongs to channel c.",
 )
 def green_curve_for_all(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1))[:, g.ndim - 1, None], (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -82,9 +102,14 @@ def green_curve_for_all(images, times, g, w=None):
     "ln of both.",
 )
 def log2_of_the_times(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log2(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log2(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -98,9 +123,14 @@ def log2_of_the_times(images, times, g, w=None):
     says="g holds natural logarithms, so the inverse of ln E is exp. You used a power of 2.",
 )
 def power_of_two(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -115,9 +145,14 @@ def power_of_two(images, times, g, w=None):
     "otherwise frames of one scene disagree.",
 )
 def times_forgotten(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), 0 * t
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = 0 * t
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)
@@ -133,9 +168,14 @@ def times_forgotten(images, times, g, w=None):
     misses_method=True,
 )
 def not_weighted(images, times, g, w=None):
-    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
-    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
-    c, top = np.arange(Z.shape[-1]), int(CLIPPING_LEVEL * (n - 1)) + 1
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    B = np.log(t)
+    c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, np.ones(n), top)
     total = W.sum(axis=0)

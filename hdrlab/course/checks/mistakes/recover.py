@@ -21,11 +21,10 @@ from hdrlab.response.mitsunaga import (
     "curve for all channels.",
 )
 def one_curve_for_all(images, times, *, order=5, eps=0.001):
-    images, t = (
-        np.asarray(images if np.ndim(images) == 3 else images[..., 1]),
-        np.asarray(times, np.float64),
-    )
-    images, t = images[np.argsort(t)], np.sort(t)
+    images = np.asarray(images if np.ndim(images) == 3 else images[..., 1])
+    t = np.asarray(times, np.float64)
+    images = images[np.argsort(t)]
+    t = np.sort(t)
     every = max(
         1, int(np.sqrt(images.size / len(t) / 12_000))
     )  # an even grid of some thousand pixels
@@ -45,21 +44,22 @@ def one_curve_for_all(images, times, *, order=5, eps=0.001):
 def times_believed(images, times, *, order=5, eps=0.001):
     def fit_steps(M, R, order, *, eps=0.001, max_iterations=30):
         channels = [neighbours(own, order) for own in M]
-        levels, R, before = (
-            terms(np.linspace(0, 1, 256), order)[:, 1:],
-            np.asarray(R),
-            np.full(256, np.inf),
-        )
+        levels = terms(np.linspace(0, 1, 256), order)[:, 1:]
+        R = np.asarray(R)
+        before = np.full(256, np.inf)
         for _ in range(max_iterations):
             c = np.stack([coefficients(gram(*one, R)) for one in channels])
             curves = c @ levels.T
-            change, before = float(np.max(np.abs(curves - before))), curves
+            change = float(np.max(np.abs(curves - before)))
+            before = curves
             yield Fit(c, R, change)
             if change < eps:
                 return
 
-    images, t = np.asarray(images), np.asarray(times, np.float64)
-    images, t = images[np.argsort(t)], np.sort(t)
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    images = images[np.argsort(t)]
+    t = np.sort(t)
     every = max(
         1, int(np.sqrt(images.size / len(t) / 12_000))
     )  # an even grid of some thousand pixels
@@ -81,8 +81,10 @@ def response_not_inverse(images, times, *, order=5, eps=0.001):
         f_inv = np.cumsum(np.append(increments[0] / 4, [0.75 * increments[0], *increments[1:]]))
         return f_inv / f_inv[n // 2]
 
-    images, t = np.asarray(images), np.asarray(times, np.float64)
-    images, t = images[np.argsort(t)], np.sort(t)
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    images = images[np.argsort(t)]
+    t = np.sort(t)
     every = max(
         1, int(np.sqrt(images.size / len(t) / 12_000))
     )  # an even grid of some thousand pixels

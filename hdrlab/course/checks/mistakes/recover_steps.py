@@ -23,7 +23,8 @@ def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
         return means
 
     t = np.asarray(times, np.float64) / np.max(times)
-    means, f_inv = alternate(Z, t, w), linear(len(w))
+    means = alternate(Z, t, w)
+    f_inv = linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
@@ -44,7 +45,8 @@ def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
         return np.exp((np.arange(n) - n // 2) / 50)
 
     t = np.asarray(times, np.float64) / np.max(times)
-    means, f_inv = alternate(Z, t, w), linear(len(w))
+    means = alternate(Z, t, w)
+    f_inv = linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
@@ -62,7 +64,8 @@ def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 )
 def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     t = np.asarray(times, np.float64) / np.max(times)
-    means, f_inv = alternate(Z, t, w), linear(len(w))
+    means = alternate(Z, t, w)
+    f_inv = linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
         new = np.nan_to_num(means(f_inv))
@@ -81,7 +84,8 @@ def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
 )
 def one_turn(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     t = np.asarray(times, np.float64) / np.max(times)
-    means, f_inv = alternate(Z, t, w), linear(len(w))
+    means = alternate(Z, t, w)
+    f_inv = linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)

@@ -12,7 +12,8 @@ from hdrlab.course.checks.mistakes import mistake
 )
 def not_in_sigmas(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
-    detail, edge = np.minimum(d, sigma) ** alpha, beta * np.maximum(d - sigma, 0)
+    detail = np.minimum(d, sigma) ** alpha
+    edge = beta * np.maximum(d - sigma, 0)
     return g + np.sign(lL - g) * (detail + edge)
 
 
@@ -23,10 +24,8 @@ def not_in_sigmas(lL, g, *, sigma, alpha, beta):
 )
 def edges_jump(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
-    detail, edge = (
-        sigma * np.where(d <= sigma, d / sigma, 0) ** alpha,
-        beta * np.maximum(d - sigma, 0),
-    )
+    detail = sigma * np.where(d <= sigma, d / sigma, 0) ** alpha
+    edge = beta * np.maximum(d - sigma, 0)
     return g + np.sign(lL - g) * (detail + edge)
 
 
@@ -37,7 +36,8 @@ def edges_jump(lL, g, *, sigma, alpha, beta):
 )
 def beta_of_the_whole(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
-    detail, edge = sigma * np.minimum(d / sigma, 1) ** alpha, np.where(d > sigma, beta * d, 0)
+    detail = sigma * np.minimum(d / sigma, 1) ** alpha
+    edge = np.where(d > sigma, beta * d, 0)
     return g + np.sign(lL - g) * (detail + edge)
 
 
@@ -47,5 +47,6 @@ def beta_of_the_whole(lL, g, *, sigma, alpha, beta):
 )
 def alpha_inverted(lL, g, *, sigma, alpha, beta):
     d = np.abs(lL - g)
-    detail, edge = sigma * np.minimum(d / sigma, 1) ** (1 / alpha), beta * np.maximum(d - sigma, 0)
+    detail = sigma * np.minimum(d / sigma, 1) ** (1 / alpha)
+    edge = beta * np.maximum(d - sigma, 0)
     return g + np.sign(lL - g) * (detail + edge)

@@ -14,7 +14,8 @@ from hdrlab.tonemap.reinhard import WIDTHS, Scale, response
     "blur, not always with the same one.",
 )
 def surround_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
-    even, adaptation = np.array(True), np.zeros(1, np.float32)
+    even = np.array(True)
+    adaptation = np.zeros(1, np.float32)
     for width, V1 in zip(WIDTHS, blurred[:-1], strict=False):
         V = response(V1, blurred[1], width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)
@@ -30,7 +31,8 @@ def index_as_width(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     def response(V1, V2, *, width, key=0.18, phi=8.0):
         return (V1 - V2) / (2**phi * key / (WIDTHS.index(width) + 1) ** 2 + V1)
 
-    even, adaptation = np.array(True), np.zeros(1, np.float32)
+    even = np.array(True)
+    adaptation = np.zeros(1, np.float32)
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)
@@ -44,7 +46,8 @@ def index_as_width(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     "width beyond an edge that happens to be even again.",
 )
 def does_not_stop(blurred, *, key=0.18, phi=8.0, threshold=0.05):
-    even, adaptation = np.array(True), np.zeros(1, np.float32)
+    even = np.array(True)
+    adaptation = np.zeros(1, np.float32)
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = np.abs(V) < threshold
@@ -58,7 +61,8 @@ def does_not_stop(blurred, *, key=0.18, phi=8.0, threshold=0.05):
     "negative and always below it. Use |V|.",
 )
 def sign_kept(blurred, *, key=0.18, phi=8.0, threshold=0.05):
-    even, adaptation = np.array(True), np.zeros(1, np.float32)
+    even = np.array(True)
+    adaptation = np.zeros(1, np.float32)
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (V < threshold)

@@ -14,7 +14,8 @@ def upside_down(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     z = np.arange(len(g))
-    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    low = np.maximum(z - span, 0)
+    high = np.minimum(z + span, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
     w = np.maximum(slope, least) / f
     w[[0, -1]] = 0
@@ -43,7 +44,8 @@ def ends_count(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     z = np.arange(len(g))
-    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    low = np.maximum(z - span, 0)
+    high = np.minimum(z + span, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
     w = f / np.maximum(slope, least)
     return w / w[len(g) // 2]
@@ -58,7 +60,8 @@ def span_ignored(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     z = np.arange(len(g))
-    low, high = np.maximum(z - 1, 0), np.minimum(z + 1, len(g) - 1)
+    low = np.maximum(z - 1, 0)
+    high = np.minimum(z + 1, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
     w = f / np.maximum(slope, least)
     w[[0, -1]] = 0
@@ -74,7 +77,8 @@ def slope_not_bounded(g, *, least=0.01, span=4):
     g = np.asarray(g, dtype=np.float64)
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     z = np.arange(len(g))
-    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    low = np.maximum(z - span, 0)
+    high = np.minimum(z + span, len(g) - 1)
     slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
     w = f / np.maximum(slope, 1e-6)
     w[[0, -1]] = 0

@@ -37,7 +37,8 @@ def by_all_samples(Z, t, E, n=256):
     says="You count samples of unknown irradiance as 0, which lowers the mean. Leave them out.",
 )
 def nan_taken_for_0(Z, t, E, n=256):
-    known, E = np.ones(len(E), bool), np.nan_to_num(E)
+    known = np.ones(len(E), bool)
+    E = np.nan_to_num(E)
     X = E[known, None] * t
     with np.errstate(invalid="ignore"):
         return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(

@@ -11,7 +11,8 @@ from hdrlab.course.checks.mistakes import mistake
     "square it.",
 )
 def read_noise_in_electrons(X, D, N, R):
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X / N + R**2 + D**2 / 12
 
 
@@ -20,7 +21,8 @@ def read_noise_in_electrons(X, D, N, R):
     says="R is a standard deviation. Only variances add up: square R / N.",
 )
 def read_noise_not_squared(X, D, N, R):
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X / N + R / N + D**2 / 12
 
 
@@ -30,7 +32,8 @@ def read_noise_not_squared(X, D, N, R):
     "is X N / N^2: divide by N twice.",
 )
 def photons_not_divided_twice(X, D, N, R):
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X + (R / N) ** 2 + D**2 / 12
 
 
@@ -39,7 +42,8 @@ def photons_not_divided_twice(X, D, N, R):
     says="You add D^2. The exposure is spread evenly over one step D, so its variance is D^2 / 12.",
 )
 def rounding_of_a_whole_step(X, D, N, R):
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X / N + (R / N) ** 2 + D**2
 
 
@@ -48,5 +52,6 @@ def rounding_of_a_whole_step(X, D, N, R):
     says="You did not square the step D. Rounding adds D^2 / 12.",
 )
 def rounding_once(X, D, N, R):
-    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    N = np.asarray(N, np.float64)
+    R = np.asarray(R, np.float64)
     return X / N + (R / N) ** 2 + D / 12

@@ -15,7 +15,8 @@ def sign_kept(F, powers=(1, 1, 1)):
     def contrast(F):
         Y = F[0] if len(F) == 1 else LUMA[0] * F[0] + LUMA[1] * F[1] + LUMA[2] * F[2]
         Y = np.pad(Y, 1, mode="reflect")
-        rows, columns = Y[:-2, 1:-1] + Y[2:, 1:-1], Y[1:-1, :-2] + Y[1:-1, 2:]
+        rows = Y[:-2, 1:-1] + Y[2:, 1:-1]
+        columns = Y[1:-1, :-2] + Y[1:-1, 2:]
         # summed by pairs: 2 Y + 2 Y is 4 Y without rounding, where Y is flat
         return rows + columns - 4 * Y[1:-1, 1:-1]
 

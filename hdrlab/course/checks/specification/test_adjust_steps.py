@@ -15,11 +15,13 @@ def drawn(rng, bins=50):
     The paper's pseudo-code compares the trimmings with the first T; Ward's program pcond compares
     them with the T before each trim. For this histogram both stop after the same trim.
     """
-    b, D = np.arange(bins), float(np.log(100))
+    b = np.arange(bins)
+    D = float(np.log(100))
     while True:
         tall = 900 * np.exp(-(((b - rng.integers(8, 20)) / 1.2) ** 2))
         low = 300 * np.exp(-(((b - 36) / 1.5) ** 2))
-        h, db = np.round(20 + tall + low + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24))
+        h = np.round(20 + tall + low + rng.uniform(0, 3, bins))
+        db = float(rng.uniform(0.18, 0.24))
         trims = [
             (one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)
         ]
@@ -73,10 +75,8 @@ def test_trimmings_are_not_redistributed(subject, rng):
     for before, after in zip(
         [h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False
     ):
-        said, grown = (
-            "h: expected that no bin grows in a trim, got larger ones",
-            after > before + 1e-6 * before.max(),
-        )
+        said = "h: expected that no bin grows in a trim, got larger ones"
+        grown = after > before + 1e-6 * before.max()
         require(not np.any(grown), said, expected=before, came=after, kind="curve")
     require(after.sum() < h.sum(), "h: expected trims, but the histogram did not change")
 

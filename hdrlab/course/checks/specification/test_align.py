@@ -7,7 +7,9 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.course.checks.compare import finite, points, same
 
-MARGIN, H, W = 48, 160, 208
+MARGIN = 48
+H = 160
+W = 208
 # the coarsest level has 10 x 13 pixels: at 5 x 6 ties would decide, and any order may break them
 BITS = 5
 
@@ -20,7 +22,9 @@ def scene(rng, *, fine=0.05):
     soft = sum(s * gaussian_filter(rng.standard_normal(shape), s) for s in (3, 8, 20))
     hard = np.zeros(shape)
     for _ in range(40):
-        y, x, size = rng.integers(0, shape[0]), rng.integers(0, shape[1]), rng.integers(6, 40)
+        y = rng.integers(0, shape[0])
+        x = rng.integers(0, shape[1])
+        size = rng.integers(6, 40)
         hard[y : y + size, x : x + size] += rng.normal()
     lE = 0.8 * soft + 0.5 * hard + fine * rng.standard_normal(shape)
     return np.exp(lE - np.median(lE))
@@ -148,7 +152,8 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     Make sure that you use the coarsest level, and that you double the offset before you search
     around it.
     """
-    E, (dy, dx) = scene(rng), (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
+    E = scene(rng)
+    dy, dx = (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
     came = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
     same(came[0] - came[1], [dy, dx], 0, what="the offset at 4 bits")
     came = finite(subject.align(photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1), (2, 2))

@@ -12,7 +12,8 @@ def agree(subject, rng, channels=(), **knobs):
     """Compare the light of an image, a third of it black, for gains with one range or one per
     channel.
     """
-    low, high = rng.uniform(-2, -1, channels), rng.uniform(2, 3, channels)
+    low = rng.uniform(-2, -1, channels)
+    high = rng.uniform(2, 3, channels)
     sdr, g = np.maximum(rng.uniform(-0.5, 1, (2, 12, 16, 3)), 0)
     came, expected = (
         f(sdr, g, low, high, **knobs) for f in (subject.apply_gain, gainmap.apply_gain)

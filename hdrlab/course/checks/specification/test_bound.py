@@ -6,7 +6,8 @@ from hdrlab.capture import responses
 from hdrlab.course.checks.compare import finite, parts, points, same
 from hdrlab.radiance.merge import bound
 
-G, TOP = responses.true_g("gamma"), 250
+G = responses.true_g("gamma")
+TOP = 250
 
 
 def drawn(rng, P=3, M=40):

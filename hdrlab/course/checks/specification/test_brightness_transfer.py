@@ -47,7 +47,8 @@ def test_a_photo_compared_with_itself_keeps_its_levels(subject, rng):
     T(m) = m, not m + 1/2.
     """
     h, _ = drawn(rng)
-    came, levels = subject.brightness_transfer(h, h), np.arange(1.0, len(h) - 1)
+    came = subject.brightness_transfer(h, h)
+    levels = np.arange(1.0, len(h) - 1)
     same(came[1:-1], levels, 0.02, what="T of one photograph", kind="curve")
 
 
@@ -76,5 +77,6 @@ def test_the_number_of_pixels_does_not_matter(subject, rng):
     Divide each histogram by its own sum.
     """
     h_A, h_B = drawn(rng)
-    T, came = brightness_transfer(h_A, h_B), subject.brightness_transfer(h_A, 3 * h_B)
+    T = brightness_transfer(h_A, h_B)
+    came = subject.brightness_transfer(h_A, 3 * h_B)
     same(came, T, 0.02, what="T of three times the pixels", kind="curve", where=sure(T, len(T)))

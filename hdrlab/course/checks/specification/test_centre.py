@@ -10,7 +10,8 @@ def asked(subject, rng):
     """Return the student's weights and the expected ones."""
     H, W = shape = int(rng.integers(20, 30)), int(rng.integers(36, 48))
     at = float(rng.uniform(0.2, 0.3)), float(rng.uniform(0.65, 0.8))
-    inside, share = float(rng.uniform(0.6, 0.8)), int(rng.integers(120, 300)) / (H * W)
+    inside = float(rng.uniform(0.6, 0.8))
+    share = int(rng.integers(120, 300)) / (H * W)
     came = subject.centre(shape, inside=inside, share=share, at=at)
     return finite(came, shape, what="w"), metering.centre(shape, inside=inside, share=share, at=at)
 

@@ -22,10 +22,8 @@ def test_the_base_gets_the_requested_contrast(subject, rng):
     """
     base, low, high = drawn(rng)
     for contrast in (50.0, 10.0):
-        m, came = (
-            np.log10(contrast) / (high - low),
-            subject.compress(base, low, high, contrast=contrast),
-        )
+        m = np.log10(contrast) / (high - low)
+        came = subject.compress(base, low, high, contrast=contrast)
         what = "the compressed base minus its mean"
         same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
@@ -57,7 +55,8 @@ def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
     Limit m to at most 1.
     """
     base, low, high = drawn(rng)
-    flat, high = low + (base - low) / 10, low + (high - low) / 10
+    flat = low + (base - low) / 10
+    high = low + (high - low) / 10
     same(
         subject.compress(flat, low, high, contrast=50.0),
         flat - high,

@@ -71,7 +71,8 @@ def test_more_overlap_needs_more_photos(subject, rng):
 
     The step from one photo to the next is usable - overlap.
     """
-    scene, usable = float(rng.uniform(16, 24)), 7.0
+    scene = float(rng.uniform(16, 24))
+    usable = 7.0
     for overlap in (1.0, 3.0, 5.0, 6.0):
         expected = 1 + math.ceil((scene - usable) / (usable - overlap))
         what = f"the number of photos at {overlap:g} stops of overlap"

@@ -23,7 +23,8 @@ def test_pixels_within_the_margin_are_marked(subject, rng):
     Mark every pixel that is at most `margin` away from a pixel of the mask.
     """
     mask, margin = drawn(rng)
-    near, widened = distance_transform_edt(~mask) <= margin, regions.dilate(mask, margin)
+    near = distance_transform_edt(~mask) <= margin
+    widened = regions.dilate(mask, margin)
     # another check tests the holes
     same(
         subject.dilate(mask, margin), near, 0, what="the mask", picture=True, where=near == widened

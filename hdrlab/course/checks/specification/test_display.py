@@ -31,7 +31,8 @@ def test_white_becomes_1_and_brighter_pixels_are_clipped(subject, rng):
 
     Use the square of white, and clip larger values at 1.
     """
-    Lm, white = drawn(rng), float(rng.uniform(1.5, 6))
+    Lm = drawn(rng)
+    white = float(rng.uniform(1.5, 6))
     Lm[0, :5] = white * np.array([1, 1.5, 2, 10, 100])
     expected = np.minimum(Lm * (1 + Lm / white**2) / (1 + Lm), 1)
     same(subject.display(Lm, Lm, white), expected, 1e-4, what="Ld", picture=True)

@@ -8,14 +8,16 @@ from hdrlab.course.checks.compare import finite, points, same
 def field(rng, shape=(12, 17)):
     """Return a field (2, H, W) that is 0 on the differences beyond the last row and column."""
     G = rng.standard_normal((2, *shape))
-    G[0, -1], G[1, :, -1] = 0, 0
+    G[0, -1] = 0
+    G[1, :, -1] = 0
     return G
 
 
 def gradient(u):
     """Return the forward differences of u, 0 beyond the last row and column."""
     G = np.zeros((2, *u.shape))
-    G[0, :-1], G[1, :, :-1] = np.diff(u, axis=0), np.diff(u, axis=1)
+    G[0, :-1] = np.diff(u, axis=0)
+    G[1, :, :-1] = np.diff(u, axis=1)
     return G
 
 
@@ -57,7 +59,8 @@ def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
 
     As a matrix, it is minus the transpose of the gradient.
     """
-    G, u = field(rng), rng.standard_normal((12, 17))
+    G = field(rng)
+    u = rng.standard_normal((12, 17))
     divG = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")
     same(float(divG.sum()), 0.0, 1e-3, what="the sum of div G")
     same(float((divG * u).sum()), -float((G * gradient(u)).sum()), 1e-3, what="the sum of u div G")

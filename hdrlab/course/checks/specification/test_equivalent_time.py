@@ -52,7 +52,8 @@ def test_changing_the_settings_back_restores_the_time(subject, rng):
     T' = T (F' / F)^2 S / S'.
     """
     T, F, F_new, S, S_new = drawn(rng)
-    there, exposure = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new)), T * S / F**2
+    there = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new))
+    exposure = T * S / F**2
     same(
         there * S_new / F_new**2,
         exposure,

@@ -26,7 +26,8 @@ def test_twice_the_f_number_is_two_stops_and_half_the_time_is_one(subject, rng):
     """
     same(subject.ev(1.0, 1.0), 0.0, 1e-4, what="EV of f/1 and 1 s")
     same(subject.ev(8.0, 1 / 64), 12.0, 1e-4, what="EV of f/8 and 1/64 s")
-    F, T = float(rng.uniform(1.4, 16)), float(2.0 ** rng.uniform(-10, 3))
+    F = float(rng.uniform(1.4, 16))
+    T = float(2.0 ** rng.uniform(-10, 3))
     same(subject.ev(F, T), np.log2(F * F / T), 1e-4, what=f"EV of f/{F:.3g} and {T:.3g} s")
 
 
@@ -38,7 +39,8 @@ def test_twice_the_speed_lowers_the_value_by_one(subject, rng):
 
     Subtract log2(S / 100).
     """
-    F, T = float(rng.uniform(1.4, 16)), float(2.0 ** rng.uniform(-10, 3))
+    F = float(rng.uniform(1.4, 16))
+    T = float(2.0 ** rng.uniform(-10, 3))
     for n in (-1, 1, 3):
         same(
             subject.ev(F, T, S=100.0 * 2**n),

@@ -28,7 +28,8 @@ def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
     |Y - t| > 4.
     """
     t = int(rng.integers(20, 230))
-    far, close = np.abs(CODES.astype(int) - t) > 12, CODES == t
+    far = np.abs(CODES.astype(int) - t) > 12
+    close = CODES == t
     same(subject.exclusion(CODES, t), far, 0, what="where Y is compared", where=far | close)
 
 

@@ -10,7 +10,8 @@ from hdrlab.radiance.deghosting import regions
 def drawn(rng):
     """Return a score with wide and thin areas above 1, some of them at the border."""
     score = 1 + 3 * gaussian_filter(rng.standard_normal((40, 50)), 2)
-    score[int(rng.integers(10, 30)), :], score[:, int(rng.integers(10, 40))] = 2, 2
+    score[int(rng.integers(10, 30)), :] = 2
+    score[:, int(rng.integers(10, 40))] = 2
     return score.astype(np.float32)
 
 
@@ -48,5 +49,7 @@ def test_lines_and_dots_are_not_marked(subject, rng):
     Do not mark a pixel outside such a square, however high its score is.
     """
     score = np.zeros((20, 30))
-    score[int(rng.integers(3, 9))], score[14, int(rng.integers(3, 20))], score[16:18] = 9, 50, 3
+    score[int(rng.integers(3, 9))] = 9
+    score[14, int(rng.integers(3, 20))] = 50
+    score[16:18] = 3
     same(subject.find_seeds(score), score < 0, 0, what="the mask of lines", picture=True)

@@ -58,8 +58,6 @@ def test_a_patch_cut_by_the_border_is_not_flat(subject, rng):
 
     Return False within size // 2 pixels of the border.
     """
-    inside, came = (
-        np.pad(np.ones((36, 56)), 2),
-        subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0),
-    )
+    inside = np.pad(np.ones((36, 56)), 2)
+    came = subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0)
     same(came, inside, 0, what="flat, for frames with little noise", picture=True)

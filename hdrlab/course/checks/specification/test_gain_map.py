@@ -60,5 +60,7 @@ def test_each_channel_has_its_own_range_and_gamma(subject, rng):
 
     g = ((G - low) / (high - low))^gamma.
     """
-    low, high, gamma = rng.uniform(-2, -1, 3), rng.uniform(2.5, 4, 3), float(rng.choice([0.5, 2]))
+    low = rng.uniform(-2, -1, 3)
+    high = rng.uniform(2.5, 4, 3)
+    gamma = float(rng.choice([0.5, 2]))
     agree(subject, rng, (-0.5, 2), low, high, gamma=gamma, k=(0.0, 0.0))

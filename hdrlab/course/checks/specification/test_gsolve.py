@@ -15,7 +15,8 @@ HAT = weights.hat()
 
 def samples(rng, N=50, P=5, *, response=None, noise=1.0, light=(-3, 3)):
     """Return Z (N, P) and B (P,) of a camera, with frames 1.5 stops apart and noise in levels."""
-    lE, B = rng.uniform(*light, N), 1.5 * np.log(2) * (np.arange(P) - P // 2)
+    lE = rng.uniform(*light, N)
+    B = 1.5 * np.log(2) * (np.arange(P) - P // 2)
     M = (response or laws.drawn_response(rng)).f(np.clip(0.2 * np.exp(lE[:, None] + B), 0, 1))
     return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
 
@@ -25,8 +26,10 @@ def asked(subject, Z, B, smoothness, w):
     free.
     """
     g, lE = parts(subject.gsolve(Z, B, smoothness, w), 2, what="g and lE")
-    g, lE = finite(g, (len(w),), what="g"), finite(lE, (len(Z),), what="lE")
-    g, lE = g.astype(float), lE.astype(float)
+    g = finite(g, (len(w),), what="g")
+    lE = finite(lE, (len(Z),), what="lE")
+    g = g.astype(float)
+    lE = lE.astype(float)
     return g - g[len(w) // 2], lE - g[len(w) // 2]
 
 
@@ -84,7 +87,8 @@ def test_more_smoothness_gives_a_straighter_curve_and_a_worse_fit(subject, rng):
     Multiply every smoothness row by `smoothness`, once. A larger value makes g straighter.
     """
     Z, B = samples(rng, N=40)
-    bends, misses = [], []
+    bends = []
+    misses = []
     for smoothness in (1.0, 10.0, 100.0, 1000.0):
         g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
@@ -136,10 +140,8 @@ def test_any_number_of_levels_works(subject, rng):
     The unknowns are g (n,) followed by lE (N,): n + N columns.
     """
     Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
-    (g, _), (few, _) = (
-        asked(subject, Z, B, 10.0, HAT),
-        asked(subject, Z // 16, B, 1.0, weights.hat(16)),
-    )
+    g, _ = asked(subject, Z, B, 10.0, HAT)
+    few, _ = asked(subject, Z // 16, B, 1.0, weights.hat(16))
     fine = g[8::16] - g[136]  # g in the middle of each of the 16 levels
     same(
         few[4:12],

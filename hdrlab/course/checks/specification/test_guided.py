@@ -35,7 +35,8 @@ def test_an_image_is_smoothed_along_its_guide(subject, rng):
     All means are over (2 r + 1) x (2 r + 1) pixels, and cov(I, p) = mean(I p) - mean(I) mean(p).
     """
     guide, p, knobs = drawn(rng)
-    expected, where = guided(guide, p, **knobs), inside(knobs["radius"])
+    expected = guided(guide, p, **knobs)
+    where = inside(knobs["radius"])
     same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
@@ -49,7 +50,8 @@ def test_an_image_that_guides_itself_keeps_its_edges(subject, rng):
     cov(I, I) is the variance of I.
     """
     guide, _, knobs = drawn(rng)
-    expected, where = guided(guide, **knobs), inside(knobs["radius"])
+    expected = guided(guide, **knobs)
+    where = inside(knobs["radius"])
     same(subject.guided(guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
@@ -63,7 +65,8 @@ def test_a_large_epsilon_leaves_the_mean_of_means(subject, rng):
     """
     guide, p, knobs = drawn(rng)
     knobs["epsilon"] = 1e6
-    expected, where = guided(guide, p, **knobs), inside(knobs["radius"])
+    expected = guided(guide, p, **knobs)
+    where = inside(knobs["radius"])
     same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 

@@ -7,16 +7,19 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, parts, points, same
 from hdrlab.radiance.uncertainty import inverse_variance_merge, variance
 
-TIMES, SHAPE = np.array([1.0, 4.0, 16.0]), (30, 40)
+TIMES = np.array([1.0, 4.0, 16.0])
+SHAPE = (30, 40)
 
 
 def counted(rng, times=TIMES, dimmest=2.0):
     """Return the measurements of a linear camera, as a student gets them, and the true radiance."""
-    N, R = float(rng.uniform(800, 1200)), float(rng.uniform(2, 4))
+    N = float(rng.uniform(800, 1200))
+    R = float(rng.uniform(2, 4))
     E = np.exp(rng.uniform(np.log(dimmest / N), np.log(0.2), SHAPE))
     t = times[:, None, None]
     X = (rng.poisson(E * t * N) + R * rng.standard_normal((len(t), *SHAPE))) / N
-    step, measured = float(rng.uniform(0.5, 1) / N), E * t < 1
+    step = float(rng.uniform(0.5, 1) / N)
+    measured = E * t < 1
     measured[0] = True
     return (
         step * np.maximum(np.round(X / step), 1),
@@ -47,7 +50,8 @@ def test_a_single_photo_keeps_its_own_noise(subject, rng):
     s is a standard deviation: the square root of V = variance(X, D, N, R) / t^2.
     """
     given, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
-    (X, D, _, t, N, R), (E, s) = given, asked(subject, given)
+    X, D, _, t, N, R = given
+    E, s = asked(subject, given)
     alike(E, X[0] / t, 1e-3, "E / (X / t)", X[0] / t)
     true = np.sqrt(variance(X[0], D[0], N, R)) / t
     alike(s, true, 0.02, "s / the standard deviation of one photo", true)
@@ -65,7 +69,8 @@ def test_equal_exposure_times_give_the_plain_mean(subject, rng):
     equal.
     """
     given, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
-    (X, D, _, _, N, R), (E, s) = given, asked(subject, given)
+    X, D, _, _, N, R = given
+    E, s = asked(subject, given)
     plain = X.mean(axis=0) / 2
     alike(E, plain, 0.005, "E / the plain mean", plain)
     true = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
@@ -81,7 +86,8 @@ def test_a_photo_that_does_not_measure_a_pixel_is_ignored(subject, rng):
     Set its V to infinity: then 1 / V is 0.
     """
     (X, D, measured, *rest), _ = counted(rng)
-    before, D = asked(subject, (X, D, measured, *rest)), np.where(measured, D, 1e-4)
+    before = asked(subject, (X, D, measured, *rest))
+    D = np.where(measured, D, 1e-4)
     E, s = asked(subject, (np.where(measured, X, 0.5), D, measured, *rest))
     alike(E, before[0], 1e-3, "E after changing unmeasured values / E before", before[0])
     alike(s, before[1], 1e-3, "s after changing unmeasured values / s before", before[1])
@@ -97,7 +103,8 @@ def test_each_measurement_is_weighted_by_its_inverse_variance(subject, rng):
     E = sum(x / V) / sum(1 / V), and s^2 = 1 / sum(1 / V).
     """
     given, _ = counted(rng)
-    (E, s), true = asked(subject, given), inverse_variance_merge(*given)
+    E, s = asked(subject, given)
+    true = inverse_variance_merge(*given)
     alike(E, true[0], 0.05, "E, in standard deviations", true[1])
     alike(s, true[1], 0.05, "s / the correct s", true[1])
 

@@ -60,9 +60,7 @@ def test_labels_are_1_to_r_and_0_elsewhere(subject, rng):
     Use 0 where the mask is False.
     """
     mask = drawn(rng)
-    count, came = (
-        int(regions.label(mask).max()),
-        finite(subject.label(mask), mask.shape, what="labels"),
-    )
+    count = int(regions.label(mask).max())
+    came = finite(subject.label(mask), mask.shape, what="labels")
     same(np.unique(came), np.arange(count + 1), 0, what="the set of labels")
     same(came[~mask], np.zeros(np.count_nonzero(~mask)), 0, what="the labels outside the mask")

@@ -73,7 +73,8 @@ def test_more_light_changes_the_base_but_not_the_detail(subject, rng):
     Do not take a logarithm; lL is one already.
     """
     lL = drawn(rng)
-    (base, detail), (moved, same_detail) = asked(subject, lL), asked(subject, lL + np.float32(1.3))
+    base, detail = asked(subject, lL)
+    moved, same_detail = asked(subject, lL + np.float32(1.3))
     same(
         moved - base,
         np.full(lL.shape, 1.3),

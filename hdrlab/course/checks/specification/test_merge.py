@@ -114,7 +114,8 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
 
     Sort both together, or neither of them.
     """
-    images, order = photographs(rng, smooth(rng)), [1, 2, 0]
+    images = photographs(rng, smooth(rng))
+    order = [1, 2, 0]
     same_map(subject.merge(images[order], TIMES[order], G), merge(images, TIMES, G))
 
 

@@ -13,7 +13,8 @@ def test_a_reading_that_is_off_by_n_stops_changes_the_exposure_by_n(subject, rng
 
     EV_opt = EV_pre + log2(B_pre / B_opt).
     """
-    EV, stops = float(rng.uniform(4, 14)), rng.permutation([-2.0, 1.0, 2.0])
+    EV = float(rng.uniform(4, 14))
+    stops = rng.permutation([-2.0, 1.0, 2.0])
     for n in stops:
         same(
             subject.optimum(EV, 0.18 * 2**n),
@@ -31,7 +32,9 @@ def test_the_target_reading_can_be_chosen(subject, rng):
 
     Subtract log2(B_opt).
     """
-    EV, B, B_opt = rng.uniform(4, 14), rng.uniform(0.05, 0.9), rng.uniform(0.3, 0.6)
+    EV = rng.uniform(4, 14)
+    B = rng.uniform(0.05, 0.9)
+    B_opt = rng.uniform(0.3, 0.6)
     same(
         subject.optimum(EV, B, B_opt),
         EV + np.log2(B / B_opt),

@@ -10,7 +10,8 @@ def drawn(rng, off=10, scatter=0.1):
     """Return 60 equations of one ratio with some scatter; the first `off` of them show something
     that moved.
     """
-    x, v = rng.uniform(10, 60, 60), rng.uniform(0.2, 1, 60)
+    x = rng.uniform(10, 60, 60)
+    v = rng.uniform(0.2, 1, 60)
     y = x * rng.uniform(2, 6) * (1 + rng.uniform(-scatter, scatter, 60))
     y[:off] *= rng.uniform(0.3, 0.5, off)
     return ratios.Equations(x, y, v)

@@ -59,7 +59,8 @@ def test_the_iterations_converge_to_the_curve_of_the_camera(subject, rng):
         responses.RESPONSES["gamma"],
     ):  # the line is far from it
         Z, t = samples(rng, response, N=2000)
-        f, truth = asked(subject, Z, t, max_iterations=25)[-1], np.exp(responses.true_g(response))
+        f = asked(subject, Z, t, max_iterations=25)[-1]
+        truth = np.exp(responses.true_g(response))
         scale = np.sum(f[SHOWN] * truth[SHOWN]) / np.sum(f[SHOWN] ** 2)
         same_curve(scale * f, truth, 0.02)
 
@@ -73,8 +74,10 @@ def test_an_iteration_is_a_weighted_mean_followed_by_a_plain_one(subject, rng):
 
     Do not use weights in the update: all its pixels have the same pixel value.
     """
-    Z, t = rng.integers(15, 250, (900, 4)), rng.uniform(0.2, 1, 4)
-    line, shown = np.arange(256) / 128, slice(15, 249)
+    Z = rng.integers(15, 250, (900, 4))
+    t = rng.uniform(0.2, 1, 4)
+    line = np.arange(256) / 128
+    shown = slice(15, 249)
     truth = robertson.update(Z, t, robertson.irradiance(Z, t, line, W))
     found = asked(subject, Z, t, max_iterations=3, tolerance=0.0)
     said = f"expected a state before the first iteration and one after each, got {len(found)}"
@@ -92,7 +95,8 @@ def test_a_correct_curve_does_not_change(subject, rng):
     The initial guess is f^-1(m) = m / 128, which is 1 at pixel value 128.
     """
     x = np.union1d(rng.permutation(np.arange(5, 62))[:45], 32)  # 4 x 32 = 128, where f^-1 is 1
-    Z, t = np.stack([x, 2 * x, 4 * x], axis=1), np.array([1.0, 2.0, 4.0])
+    Z = np.stack([x, 2 * x, 4 * x], axis=1)
+    t = np.array([1.0, 2.0, 4.0])
     shown = np.unique(Z)
     truth = np.where(np.isin(np.arange(256), shown) & (W > 0), np.arange(256) / 128, np.nan)
     for f in asked(subject, Z, t, max_iterations=5):

@@ -24,7 +24,9 @@ def test_sigma_separates_details_from_edges(subject, rng):
     (d - sigma)) beyond.
     """
     lL, g, sigma = drawn(rng)
-    d, alpha, beta = np.abs(lL - g), float(rng.uniform(0.4, 0.8)), float(rng.uniform(0.2, 0.6))
+    d = np.abs(lL - g)
+    alpha = float(rng.uniform(0.4, 0.8))
+    beta = float(rng.uniform(0.2, 0.6))
     far = np.where(d <= sigma, sigma * (d / sigma) ** alpha, sigma + beta * (d - sigma))
     came = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
     same(came, g + np.sign(lL - g) * far, 1e-3, what="r", picture=True)

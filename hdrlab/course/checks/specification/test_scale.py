@@ -42,7 +42,8 @@ def test_a_uniform_image_is_shown_at_one_over_k(subject, rng):
     s = 1 / (k blur(L)). The extra factor L in the paper is a misprint.
     """
     for _ in range(2):
-        level, k = float(10 ** rng.uniform(-2, 3)), float(rng.uniform(2, 16))
+        level = float(10 ** rng.uniform(-2, 3))
+        k = float(rng.uniform(2, 16))
         L = np.full((40, 40), level, np.float32)
         same(asked(subject, L, k) * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
 

@@ -47,7 +47,8 @@ def test_each_response_compares_a_width_with_the_next(subject, rng):
     V = (V1 - V2) / (2^phi a / s^2 + V1).
     """
     blurred = drawn(rng)
-    truth, came = list(reinhard.scale_steps(blurred)), asked(subject, blurred)
+    truth = list(reinhard.scale_steps(blurred))
+    came = asked(subject, blurred)
     same(len(came), 8, 0, what="the number of states")
     for one, true in zip(came, truth, strict=True):
         same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
@@ -65,7 +66,8 @@ def test_a_pixel_takes_the_largest_even_width(subject, rng):
     """
     blurred = drawn(rng)
     truth = list(reinhard.scale_steps(blurred))
-    came, sure = asked(subject, blurred), ~doubtful(truth)
+    came = asked(subject, blurred)
+    sure = ~doubtful(truth)
     same_adaptation(came, truth, "the adaptation", sure)
     for one, true in zip(came, truth, strict=True):
         same(one[3], true.even, 0, what=f"even at width {true.width:.3g}", picture=True, where=sure)
@@ -94,7 +96,8 @@ def test_key_phi_and_threshold_are_used(subject, rng):
     """
     blurred = drawn(rng)
     for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
-        truth, came = list(reinhard.scale_steps(blurred, **knobs)), asked(subject, blurred, **knobs)
+        truth = list(reinhard.scale_steps(blurred, **knobs))
+        came = asked(subject, blurred, **knobs)
         sure = ~doubtful(truth, knobs.get("threshold", 0.05))
         ((knob, value),) = knobs.items()
         same_adaptation(came, truth, f"the adaptation with {knob}={value}", sure)

@@ -7,15 +7,15 @@ from hdrlab.course.checks.compare import points, same
 
 def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
     """Compare the common part of views of one scene that `offsets` (dy, dx) align."""
-    margin, H, W = 12, 40, 50
+    margin = 12
+    H = 40
+    W = 50
     world = rng.integers(0, 256, (H + 2 * margin, W + 2 * margin, *channels), dtype=np.uint8)
     images = [
         world[margin + dy : margin + dy + H, margin + dx : margin + dx + W] for dy, dx in offsets
     ]
-    (top, left), (bottom, right) = (
-        np.maximum(offsets, 0).max(0),
-        np.minimum(offsets, 0).min(0) + (H, W),
-    )
+    top, left = np.maximum(offsets, 0).max(0)
+    bottom, right = np.minimum(offsets, 0).min(0) + (H, W)
     common = world[margin + top : margin + bottom, margin + left : margin + right]
     same(subject.shift(np.stack(images), offsets), np.stack([common] * len(offsets)), 0, what=what)
 

@@ -7,7 +7,8 @@ from hdrlab.course.checks.compare import finite, points, same
 
 def means(Y):
     """Return the mean of each block of 2 x 2 pixels, not rounded."""
-    rows, columns = Y.shape[0] // 2, Y.shape[1] // 2
+    rows = Y.shape[0] // 2
+    columns = Y.shape[1] // 2
     return Y[: 2 * rows, : 2 * columns].reshape(rows, 2, columns, 2).mean(axis=(1, 3))
 
 

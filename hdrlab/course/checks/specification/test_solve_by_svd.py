@@ -8,7 +8,8 @@ from hdrlab.response.debevec import solve_by_svd
 
 def drawn(rng, sigma):
     """Return A (m, k) with the singular values sigma, and b (m,)."""
-    m, k = len(sigma) + int(rng.integers(5, 20)), len(sigma)
+    m = len(sigma) + int(rng.integers(5, 20))
+    k = len(sigma)
     U, V = (np.linalg.qr(rng.standard_normal((n, k)))[0] for n in (m, k))
     return U * sigma @ V.T, rng.standard_normal(m)
 

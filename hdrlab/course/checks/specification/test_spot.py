@@ -8,7 +8,8 @@ def drawn(rng):
     """Return a shape, a position off its center, and a fraction of the image that is a whole
     number of pixels.
     """
-    H, W = int(rng.integers(20, 30)), int(rng.integers(36, 48))
+    H = int(rng.integers(20, 30))
+    W = int(rng.integers(36, 48))
     at = float(rng.uniform(0.3, 0.45)), float(rng.uniform(0.55, 0.7))
     return (H, W), {"at": at, "share": int(rng.integers(20, 60)) / (H * W)}
 

@@ -52,7 +52,8 @@ def test_several_fractions_give_one_value_each(subject, rng):
     np.searchsorted accepts an array as well as a number. np.argmax of a comparison needs q[:,
     None].
     """
-    Y, q = drawn(rng), np.array([0.17, 0.5, 0.83])
+    Y = drawn(rng)
+    q = np.array([0.17, 0.5, 0.83])
     expected = [numbers(subject.threshold(histogram(Y), float(one)), what="t").item() for one in q]
     same(subject.threshold(histogram(Y), q), expected, 0, what="the thresholds for three fractions")
 

@@ -82,8 +82,10 @@ def test_twice_the_light_adds_one_to_the_exponent_and_black_is_zero(subject, rng
     """
     E = drawn(rng)
     E[2, 3] = 0
-    truth, lit = rgbe.to_pixels(E).astype(float), E.max(axis=-1, keepdims=True) > 0
-    one, two = asked(subject, E), asked(subject, 2 * E)
+    truth = rgbe.to_pixels(E).astype(float)
+    lit = E.max(axis=-1, keepdims=True) > 0
+    one = asked(subject, E)
+    two = asked(subject, 2 * E)
     same(
         two - one,
         lit * np.array([0, 0, 0, 1]),

@@ -39,7 +39,8 @@ def test_it_is_the_photographic_operator(subject, rng):
         L = drawn(rng)
         Lm = reinhard.scale_to_key(L.astype(float), key=key)
         what = f"Ld with key={key:.3g} and white={white:.3g}"
-        came, expected = subject.tonemap(L, key=key, white=white), reinhard.display(Lm, Lm, white)
+        came = subject.tonemap(L, key=key, white=white)
+        expected = reinhard.display(Lm, Lm, white)
         same(came, expected, 0.01, what=what, picture=True)
 
 
@@ -127,7 +128,8 @@ def test_one_hot_pixel_does_not_darken_the_image(subject, rng):
 
     Leave out the brightest 0.01 % of the pixels. In this image, these are 5.
     """
-    tonemap, L = asked(subject), laws.scene((200, 256))
+    tonemap = asked(subject)
+    L = laws.scene((200, 256))
     for one in (L, L**0.2):
         medians = [float(np.median(tonemap(picture))) for picture in (one, laws.hot_pixel(one))]
         same(medians[1], medians[0], 0.02, what="the median of Ld with a hot pixel")

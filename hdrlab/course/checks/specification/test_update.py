@@ -43,13 +43,12 @@ def test_the_mean_has_no_weights(subject):
 
     Use the plain mean of E_i t_j: no weights, and no squared time.
     """
-    Z, t, E = (
-        np.array([[7, 200], [200, 7], [7, 7]]),
-        np.array([1.0, 2.0]),
-        np.array([3.0, 5.0, 4.0]),
-    )
+    Z = np.array([[7, 200], [200, 7], [7, 7]])
+    t = np.array([1.0, 2.0])
+    E = np.array([3.0, 5.0, 4.0])
     expected = np.full(256, np.nan)
-    expected[7], expected[200] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4, (3 * 2 + 5 * 1) / 2
+    expected[7] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4
+    expected[200] = (3 * 2 + 5 * 1) / 2
     known = ~np.isnan(expected)
     same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=known)
 
@@ -63,7 +62,8 @@ def test_a_sample_without_irradiance_is_left_out(subject, rng):
     Leave out the rows of Z where E is NaN.
     """
     Z, t, E = drawn(rng)
-    more, nan = np.concatenate([Z, Z[:50]]), np.concatenate([E, np.full(50, np.nan)])
+    more = np.concatenate([Z, Z[:50]])
+    nan = np.concatenate([E, np.full(50, np.nan)])
     same(subject.update(more, t, nan), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 

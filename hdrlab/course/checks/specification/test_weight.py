@@ -17,13 +17,15 @@ def fused(F, powers):
     """Return W away from the border, computed with the formulas of the assignment."""
     Y = 0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2]
     C = np.abs(Y[:-2, 1:-1] + Y[2:, 1:-1] + Y[1:-1, :-2] + Y[1:-1, 2:] - 4 * Y[INNER])
-    S, E = F.std(axis=0)[INNER], np.exp(-((F - 0.5) ** 2) / (2 * 0.2**2)).prod(axis=0)[INNER]
+    S = F.std(axis=0)[INNER]
+    E = np.exp(-((F - 0.5) ** 2) / (2 * 0.2**2)).prod(axis=0)[INNER]
     return C ** powers[0] * S ** powers[1] * E ** powers[2]
 
 
 def compared(subject, F, powers, what):
     """Compare W away from the border."""
-    expected, came = fused(F, powers), np.asarray(subject.weight(F, powers))[INNER]
+    expected = fused(F, powers)
+    came = np.asarray(subject.weight(F, powers))[INNER]
     same(came, expected, 2e-3 * float(expected.max()), what=what, picture=True)
 
 

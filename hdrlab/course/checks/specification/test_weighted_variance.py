@@ -35,7 +35,8 @@ def test_a_single_frame_has_variance_0(subject, rng):
     Set v to 0 where the sum of the weights is 0.
     """
     x, w = drawn(rng)
-    w[1:, :, ::3], w[:, ::2, 1::3] = 0, 0
+    w[1:, :, ::3] = 0
+    w[:, ::2, 1::3] = 0
     alone = np.count_nonzero(w, axis=0) < 2
     came = finite(subject.weighted_variance(x, w), alone.shape, what="v")
     same(came, 0 * x[0], 1e-6, what="v where at most one frame measures", picture=True, where=alone)
