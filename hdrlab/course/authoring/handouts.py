@@ -1,14 +1,14 @@
-"""Handouts out of one source: the prose stands in solutions/*.py, the functions stand in the library.
+"""Build assignments and worked solutions: prose from solutions/*.py, code from the library.
 
-A source is a Python file in the percent form. Its cells say by their metadata what they are:
+A source is a Python file in the percent format. The metadata of its cells say what they are:
 
-task="gsolve"   becomes the function's signature and docstring over a stub, or, in the solution, the library's
-                own source; comment lines in the cell take the place of the docstring's beginning.
-                What the function yields or returns by name is given before it, and
-                `check("gsolve")` follows.
-about="gsolve hat"  is left out where the plan leaves one of these tasks out; a picture shows what they do
-{points}, {due}, {total}, {choice}, {late}, {hand}   in the prose stand for what the plan says
-use_plan("hw2")   gets the points of each task, so that `check` knows them wherever the sheet goes
+task="gsolve"       In the assignment, the cell becomes a stub: the function's signature and
+                    docstring. In the solution, it becomes the library's own source. Comment lines
+                    in the cell replace the first paragraph of the docstring. Classes that the
+                    function returns or yields come before it, and `check("gsolve")` after it.
+about="gsolve hat"  The cell is left out if the plan does not have all of these tasks.
+{points}, {due}, {total}, {choice}, {late}, {hand}   In the prose, these stand for what the plan says.
+use_plan("hw2")     The call gets the points of each task, so that `check` knows them.
 """
 
 import json
@@ -31,110 +31,150 @@ KERNEL = {
 }
 
 
-# folder beside the sheet, for the checks of tasks that are not hdrlab's
-CHECKS = "{}-checks"
+# the folder beside an assignment with the checks of the instructor's own tasks
+CHECKS_FOLDER = "{}-checks"
+MAX_LINE_LENGTH = 96
+
+Cell = dict[str, Any]
 
 
 class Handout(NamedTuple):
-    """A homework's two notebooks, as JSON holds them: to be filled in, and filled in."""
+    """The two notebooks of a homework, as JSON holds them."""
 
     homework: str
     assignment: dict[str, Any]
     solution: dict[str, Any]
 
 
+class CellPair(NamedTuple):
+    """A cell of the assignment and the same cell of the solution."""
+
+    assignment: Cell
+    solution: Cell
+
+
 def handout(source: str, homework: Homework, late: str = "") -> Handout:
-    """Return both notebooks of a homework.
+    """Return the assignment and the solution of a homework.
 
     Parameters
     ----------
     source : text of its file in solutions/
-    homework : what the plan says of it
-    late : what being late costs, in words
+    homework : what the plan says about it
+    late : the late-day rule as a sentence
     """
     import jupytext
 
-    read = jupytext.reads(source, fmt="py:percent").cells
+    cells = jupytext.reads(source, fmt="py:percent").cells
     tasks = {task.id: task for task in homework.tasks}
-    given = [dotted for task in homework.tasks for dotted in stubs.classes(task.function)]
-    blocks = inline.inlined({task.id: task.function for task in homework.tasks}, given)
-    both: tuple[list[dict[str, Any]], list[dict[str, Any]]] = ([], [])
-    for one in homework.tasks:
-        prose = (
-            cell.source for cell in read if cell.cell_type == "markdown" and one.id in _about(cell)
-        )
-        rewording.reword(one.id, one.variant, "\n".join(prose), all_of_it=True)
-    for cell in read:
-        about = _about(cell)
-        if not set(about) <= set(tasks):
+    classes = [dotted for task in homework.tasks for dotted in stubs.classes(task.function)]
+    blocks = inline.inlined({task.id: task.function for task in homework.tasks}, classes)
+    for task in homework.tasks:
+        _check_variant_applies(task, cells)
+    pairs: list[CellPair] = []
+    for cell in cells:
+        task_ids = _task_ids(cell)
+        if not set(task_ids) <= set(tasks):
             continue
-        for one in (tasks[id] for id in about if "task" not in cell.metadata):
-            cell.source = rewording.reword(one.id, one.variant, cell.source)
-        task = tasks[about[0]] if about else None
-        if cell.cell_type == "markdown":
-            text = _filled(cell.source, homework, task, late)
-            made = [(_markdown(text), _markdown(text))]
-        elif "task" in cell.metadata and task is not None:
-            made = list(_task_cells(task, cell.source, blocks))
-        elif about:  # a picture of what the task does: nothing to see before it is written
-            made = [(_code(cell.source, tags=["raises-exception"]), _code(cell.source))]
-        else:
-            made = [(_code(_planned(cell.source, homework), given=True),) * 2]
-        for notebook, column in zip(both, zip(*made, strict=True), strict=True):
-            notebook += column
-    return Handout(homework.name, *(_notebook(cells, homework.name) for cells in both))
+        about = [tasks[task_id] for task_id in task_ids]
+        pairs += _pairs_of_cell(cell, about, homework, late, blocks)
+    return Handout(
+        homework=homework.name,
+        assignment=_notebook([pair.assignment for pair in pairs], homework.name),
+        solution=_notebook([pair.solution for pair in pairs], homework.name),
+    )
 
 
-def _about(cell: Any) -> list[str]:
-    """Return the tasks that a cell of a source is about."""
+def _check_variant_applies(task: Task, cells: Sequence[Any]) -> None:
+    """Raise an InputError if the prose about a task has none of the words that its variant changes."""
+    prose = [
+        cell.source for cell in cells if cell.cell_type == "markdown" and task.id in _task_ids(cell)
+    ]
+    rewording.reword(task.id, task.variant, "\n".join(prose), all_of_it=True)
+
+
+def _pairs_of_cell(
+    cell: Any,
+    about: Sequence[Task],
+    homework: Homework,
+    late: str,
+    blocks: Mapping[str, inline.Block],
+) -> list[CellPair]:
+    """Return the cells of both notebooks that one cell of the source becomes."""
+    is_task = "task" in cell.metadata
+    text = cell.source
+    if not is_task:
+        for task in about:
+            text = rewording.reword(task.id, task.variant, text)
+    if cell.cell_type == "markdown":
+        filled = _fill_in(text, homework, about[0] if about else None, late)
+        return [CellPair(_markdown(filled), _markdown(filled))]
+    if is_task and about:
+        return _task_cells(about[0], text, blocks)
+    if about:  # a figure of what the task does: it fails until the task is written
+        return [CellPair(_code(text, tags=["raises-exception"]), _code(text))]
+    given = _code(_add_points(text, homework), given=True)
+    return [CellPair(given, given)]
+
+
+def _task_ids(cell: Any) -> list[str]:
+    """Return the ids of the tasks that a cell of a source is about."""
     return (cell.metadata.get("about") or cell.metadata.get("task") or "").split()
 
 
-def _task_cells(
-    task: Task, opening: str, blocks: Mapping[str, inline.Block]
-) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """Yield the cells of a task, each for the assignment and for the solution."""
+def _task_cells(task: Task, opening: str, blocks: Mapping[str, inline.Block]) -> list[CellPair]:
+    """Return the cells of a task: classes that it returns, the stub or the solution, and the check."""
+    pairs = []
     for dotted in stubs.classes(task.function):
-        yield (_code(stubs.bare_class(dotted), given=True),) * 2
-    said = "\n".join(line.removeprefix("#").removeprefix(" ") for line in opening.splitlines())
-    both = (stubs.stub(task, said.strip()), blocks[task.id].text)
-    stub, solved = (rewording.reword(task.id, task.variant, text) for text in both)
-    name = f"task-{task.id}"
-    yield _code(stub, task=task.id, id=name), _code(solved, task=task.id, id=name)
-    yield (_code(f'check("{task.id}")', id=f"check-{task.id}"),) * 2
+        class_cell = _code(stubs.bare_class(dotted), given=True)
+        pairs.append(CellPair(class_cell, class_cell))
+    docstring = "\n".join(line.removeprefix("#").removeprefix(" ") for line in opening.splitlines())
+    stub = rewording.reword(task.id, task.variant, stubs.stub(task, docstring.strip()))
+    solution = rewording.reword(task.id, task.variant, blocks[task.id].text)
+    cell_id = f"task-{task.id}"
+    pairs.append(
+        CellPair(_code(stub, task=task.id, id=cell_id), _code(solution, task=task.id, id=cell_id))
+    )
+    check_cell = _code(f'check("{task.id}")', id=f"check-{task.id}")
+    pairs.append(CellPair(check_cell, check_cell))
+    return pairs
 
 
-def _planned(text: str, homework: Homework) -> str:
-    """Return a cell in which `use_plan` says what each task is worth."""
-    points = ", ".join(f"{task.id}={task.points:g}" for task in homework.tasks)
+def _add_points(text: str, homework: Homework) -> str:
+    """Return a cell whose call of `use_plan` says what each task is worth."""
+    arguments = [f"{task.id}={task.points:g}" for task in homework.tasks]
     if homework.at_most is not None:
-        points = f"at_most={homework.at_most:g}, {points}"
-    if asked := {task.id: task.variant for task in homework.tasks if task.variant}:
-        points = f"{points}, variants={json.dumps(asked)}"
+        arguments.insert(0, f"at_most={homework.at_most:g}")
+    variants = {task.id: task.variant for task in homework.tasks if task.variant}
+    if variants:
+        arguments.append(f"variants={json.dumps(variants)}")
     if any(task.own for task in homework.tasks):
-        points = f'plan="{CHECKS.format(homework.name)}/plan.toml", {points}'
-    said = textwrap.fill(
-        f'use_plan("{homework.name}", {points})',
-        96,
+        arguments.insert(0, f'plan="{CHECKS_FOLDER.format(homework.name)}/plan.toml"')
+    call = textwrap.fill(
+        f'use_plan("{homework.name}", {", ".join(arguments)})',
+        MAX_LINE_LENGTH,
         subsequent_indent=9 * " ",
         break_on_hyphens=False,
     )
-    return text.replace(f'use_plan("{homework.name}")', said)
+    return text.replace(f'use_plan("{homework.name}")', call)
 
 
-def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
-    """Return prose with what the plan says in place of its names in braces."""
-    tasks = sum(one.points for one in homework.tasks)
-    said = {
+def _fill_in(text: str, homework: Homework, task: Task | None, late: str) -> str:
+    """Return prose in which what the plan says replaces the names in braces."""
+    points_of_tasks = sum(task.points for task in homework.tasks)
+    points_by_hand = sum(manual.points for manual in homework.by_hand)
+    replacements = {
         "points": _points_text(task),
-        "total": f"{homework.points + sum(one.points for one in homework.by_hand):g}",
-        "choice": f"Choose: the tasks give {tasks:g} points, of which {homework.points:g} count at most.",
+        "total": f"{homework.points + points_by_hand:g}",
+        "choice": (
+            f"Choose: the tasks give {points_of_tasks:g} points, of which {homework.points:g} count "
+            "at most."
+        ),
         "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
         "late": late,
-        "hand": "\n".join(_judged(one) for one in homework.by_hand),
+        "hand": "\n".join(_manual_task_text(manual) for manual in homework.by_hand),
     }
-    for name, value in said.items():
-        text = text.replace(f"{{{name}}}", value)
+    for name, replacement in replacements.items():
+        text = text.replace(f"{{{name}}}", replacement)
     return text
 
 
@@ -146,9 +186,10 @@ def _points_text(task: Task | None) -> str:
     return f"{task.points:g} points{required}"
 
 
-def _judged(one: ManualTask) -> str:
-    """Return what a person judges as an item of a list, and what earns how many points below it."""
-    return "\n  - ".join([f"- **{one.title}** ({one.points:g} points)", *one.rubric])
+def _manual_task_text(manual: ManualTask) -> str:
+    """Return a task that a person grades as an item of a list, with its rubric below."""
+    lines = [f"- **{manual.title}** ({manual.points:g} points)", *manual.rubric]
+    return "\n  - ".join(lines)
 
 
 def lateness(plan: Plan) -> str:
@@ -162,110 +203,135 @@ def lateness(plan: Plan) -> str:
     return f"You have {days} for the whole course; each extra day costs {points}."
 
 
-def _markdown(text: str) -> dict[str, Any]:
+def _markdown(text: str) -> Cell:
     return {"cell_type": "markdown", "metadata": {}, "source": text}
 
 
-def _code(text: str, *, id: str = "", tags: Sequence[str] = (), **marks: Any) -> dict[str, Any]:
-    metadata = {**({"hdrlab": marks} if marks else {}), **({"tags": list(tags)} if tags else {})}
-    cell: dict[str, Any] = {
+def _code(text: str, *, id: str = "", tags: Sequence[str] = (), **marks: Any) -> Cell:
+    """Return a code cell; `marks` (task, given) tell hdrlab what it is."""
+    metadata: dict[str, Any] = {}
+    if marks:
+        metadata["hdrlab"] = marks
+    if tags:
+        metadata["tags"] = list(tags)
+    cell: Cell = {
         "cell_type": "code",
         "execution_count": None,
         "outputs": [],
         "metadata": metadata,
+        "source": text,
     }
-    return {**cell, "source": text, **({"id": id} if id else {})}
+    if id:
+        cell["id"] = id
+    return cell
 
 
-def _notebook(cells: Sequence[dict[str, Any]], name: str) -> dict[str, Any]:
-    named = [{"id": f"{name}-{n:02d}", **cell} for n, cell in enumerate(cells, 1)]
-    return {"cells": named, "metadata": KERNEL, "nbformat": 4, "nbformat_minor": 5}
+def _notebook(cells: Sequence[Cell], name: str) -> dict[str, Any]:
+    """Return a notebook; a cell without an id gets one from its place."""
+    with_ids = [{"id": f"{name}-{number:02d}", **cell} for number, cell in enumerate(cells, 1)]
+    return {"cells": with_ids, "metadata": KERNEL, "nbformat": 4, "nbformat_minor": 5}
 
 
 def to_text(notebook: dict[str, Any]) -> str:
-    """Return a notebook as its file holds it: source in lines, so that a difference can be read."""
-    split = [
+    """Return a notebook as its file holds it, with the source in lines so that a diff is readable."""
+    cells = [
         {**cell, "source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
     ]
-    return (
-        json.dumps({**notebook, "cells": split}, indent=1, ensure_ascii=False, sort_keys=True)
-        + "\n"
-    )
+    with_lines = {**notebook, "cells": cells}
+    return json.dumps(with_lines, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
 
 
 def build_steps(
     plan: Plan, sources: Path, assignments: Path, solutions: Path | None, *, jobs: int = 2
 ) -> Iterator[Path]:
-    """Write the notebooks of all homeworks, and yield each file when it is there.
+    """Write the notebooks of all homeworks, and yield each file when it is written.
 
     Parameters
     ----------
-    plan : what is in each homework
+    plan : the homeworks
     sources : folder with the prose, a file <homework>.py for each
-    assignments, solutions : folders for the notebooks; without the second none is run
+    assignments, solutions : folders for the notebooks; None writes no solutions
     jobs : how many solutions run at a time
 
     Raises
     ------
-    ValueError
-        For a homework without a source, or a task the library does not have.
+    InputError
+        For a homework without a source, or a task that the library does not have.
     """
-    made = [made_of(plan, homework, sources) for homework in plan.homeworks.values()]
-    for one in made:
-        yield write_text(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
-        yield from _own_checks(plan.homeworks[one.homework], assignments)
+    handouts = [made_of(plan, homework, sources) for homework in plan.homeworks.values()]
+    for made in handouts:
+        yield write_text(assignments / f"{made.homework}.ipynb", to_text(made.assignment))
+        yield from _copy_own_checks(plan.homeworks[made.homework], assignments)
     if solutions is not None:
-        yield from _solved(made, assignments, solutions, jobs)
+        yield from _run_solutions(handouts, assignments, solutions, jobs)
 
 
 def made_of(plan: Plan, homework: Homework, sources: Path) -> Handout:
-    """Return a homework's handout out of its source in a folder, or raise a ValueError."""
+    """Return the handout of a homework, from its source in a folder.
+
+    Raises
+    ------
+    InputError
+        If the source is missing.
+    """
     source = sources / f"{homework.name}.py"
     if not source.is_file():
-        where = "it is in a clone of hdrlab, in solutions/"
-        raise InputError(f"expected the prose of {homework.name} in {source}; {where}")
+        raise InputError(
+            f"expected the prose of {homework.name} in {source}; it is in solutions/ of a clone of "
+            "hdrlab's repository"
+        )
     return handout(source.read_text(encoding="utf8"), homework, lateness(plan))
 
 
-def _own_checks(homework: Homework, folder: Path) -> Iterator[Path]:
-    """Copy the plan and the checks of tasks that are not hdrlab's, no solution, and yield each file."""
-    own = [(task.own.parent, f"test_{task.id}.py") for task in homework.tasks if task.own]
-    for file in dict.fromkeys(home / name for home, check in own for name in ("plan.toml", check)):
-        copy = folder / CHECKS.format(homework.name) / file.name
-        yield write_text(copy, file.read_text(encoding="utf8"))
+def _copy_own_checks(homework: Homework, folder: Path) -> Iterator[Path]:
+    """Copy the plan and the checks of the instructor's own tasks, and yield each file; no solution."""
+    sources: list[Path] = []
+    for task in homework.tasks:
+        if task.own:
+            home = task.own.parent
+            sources += [home / "plan.toml", home / f"test_{task.id}.py"]
+    for path in dict.fromkeys(sources):
+        copy = folder / CHECKS_FOLDER.format(homework.name) / path.name
+        yield write_text(copy, path.read_text(encoding="utf8"))
 
 
-def _solved(
-    made: Sequence[Handout], assignments: Path, solutions: Path, jobs: int
+def _run_solutions(
+    handouts: Sequence[Handout], assignments: Path, solutions: Path, jobs: int
 ) -> Iterator[Path]:
-    """Run the solutions, and yield each file when it is written."""
-    near = {one.homework: f"{CHECKS.format(one.homework)}/plan.toml" for one in made}
-    far = {
-        name: (assignments / plan).resolve().as_posix() for name, plan in near.items()
-    }  # run elsewhere
+    """Run the solutions, and yield each file when it is written.
+
+    They run in another folder, so `use_plan` names the plan of an instructor's own task by its
+    whole path meanwhile.
+    """
     from hdrlab.course.authoring import execute
 
-    texts = {one.homework: to_text(one.solution) for one in made}
-    texts = {name: text.replace(near[name], far[name]) for name, text in texts.items()}
+    relative = {
+        made.homework: f"{CHECKS_FOLDER.format(made.homework)}/plan.toml" for made in handouts
+    }
+    absolute = {name: (assignments / plan).resolve().as_posix() for name, plan in relative.items()}
     with tempfile.TemporaryDirectory(
         prefix="hdrlab-solutions-", ignore_cleanup_errors=True
     ) as folder:
         scratch = Path(folder)
-        sources = [write_text(scratch / f"{name}.ipynb", text) for name, text in texts.items()]
+        sources = []
+        for made in handouts:
+            name = made.homework
+            text = to_text(made.solution).replace(relative[name], absolute[name])
+            sources.append(write_text(scratch / f"{name}.ipynb", text))
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
-            ran, name = json.loads(done.executed.read_text(encoding="utf8")), done.source.stem
-            yield write_text(
-                solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name])
-            )
+            name = done.source.stem
+            executed = json.loads(done.executed.read_text(encoding="utf8"))
+            text = to_text(_without_times(executed)).replace(absolute[name], relative[name])
+            yield write_text(solutions / done.source.name, text)
 
 
-def _tidy(ran: dict[str, Any]) -> dict[str, Any]:
-    """Return a notebook that was run without when it was, and by what."""
+def _without_times(notebook: dict[str, Any]) -> dict[str, Any]:
+    """Return an executed notebook without the times of execution and the kernel's version."""
     cells = []
-    for cell in ran["cells"]:
+    for cell in notebook["cells"]:
         metadata = {name: value for name, value in cell["metadata"].items() if name != "execution"}
         cells.append({**cell, "metadata": metadata, "source": "".join(cell["source"])})
-    return {**ran, "cells": cells, "metadata": KERNEL}
+    return {**notebook, "cells": cells, "metadata": KERNEL}
 
 
 def write_text(file: Path, text: str) -> Path:
