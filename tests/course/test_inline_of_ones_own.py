@@ -197,38 +197,13 @@ def test_a_function_of_the_library_whose_name_is_taken_where_it_is_used_has_its_
         inlined({"main": ("d.py", text.replace("weights.hat()", "weights.none()"), "main")})
 
 
-@pytest.mark.parametrize(
-    ("texts", "joined"),
-    [
-        (["A = 1", "B = 2"], "A = 1\nB = 2"),
-        (["A = 1", "def f(): 1", "B = 2", "C = 3"], "A = 1\n\ndef f(): 1\n\nB = 2\nC = 3"),
-        (["@a\ndef f(): 1", "A = 1"], "@a\ndef f(): 1\n\nA = 1"),
-        (["class A: 1", "class B: 1"], "class A: 1\n\nclass B: 1"),
-        (["# c\nclass A: 1", "A = 1"], "# c\nclass A: 1\n\nA = 1"),
-        ([], ""),
-    ],
-)
-def test_functions_and_classes_stand_a_line_apart_and_constants_close(texts, joined):
-    assert inline._joined(texts) == joined
-
-
-def test_imports_stand_in_the_order_of_where_they_come_from():
-    lines = [
-        "from scipy import b",
-        "import numpy as np",
-        "from typing import A",
-        "import os",
-        "import ast",
-    ]
-    assert sorted(lines, key=inline._rank) == [
-        *(
-            "import ast",
-            "import os",
-            "from typing import A",
-            "import numpy as np",
-            "from scipy import b",
-        )
-    ]
+def test_copied_code_has_its_imports_first_and_empty_lines_around_functions(inlined):
+    text = "import numpy as np\nimport os\nA = 1\nB = 2\ndef g(): return A + B\n"
+    text += "def main(): return g(), np.pi, os.sep\n"
+    assert inlined({"main": ("a.py", text, "main")})["main"] == (
+        "import os\nimport numpy as np\n\nA = 1\nB = 2\n\ndef g(): return A + B\n\n"
+        "def main(): return g(), np.pi, os.sep\n"
+    )
 
 
 LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))

@@ -75,7 +75,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> TeamCode
             continue
         try:
             texts[task] = own_code(text, homework, {*tasks} - {task})
-        except names.BROKEN:
+        except names.PARSE_ERRORS:
             notes.append(f"{task} is nested too deep and is not compared")
     return TeamCode(team, texts, tuple(notes), work.variants)
 

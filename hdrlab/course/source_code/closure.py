@@ -100,7 +100,7 @@ def extract_sources(
     for cell in [*given, *own]:
         try:
             statements += _statements(cell, len(statements))
-        except names.BROKEN as error:
+        except names.PARSE_ERRORS as error:
             problems.append(_describe_broken(cell, tasks, error))
     binding = _statements_by_name(statements)
     sources = {}
@@ -285,7 +285,7 @@ def _shallow(node: ast.AST) -> Iterable[ast.AST]:
     while waiting:
         part = waiting.pop()
         yield part
-        if not isinstance(part, (*names.INNER, ast.Lambda)):
+        if not isinstance(part, (*names.DEFINITIONS, ast.Lambda)):
             waiting += ast.iter_child_nodes(part)
 
 
@@ -327,7 +327,7 @@ def plain(text: str) -> str:
     try:
         ast.parse(text)
         return text  # the lines are in a string
-    except names.BROKEN:
+    except names.PARSE_ERRORS:
         kept = [
             re.sub(r"[^ \t].*", "pass", line, count=1) if _is_notebook_syntax(line) else line
             for line in lines

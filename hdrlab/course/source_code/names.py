@@ -1,4 +1,4 @@
-"""Which names a piece of Python binds, and which it takes from outside: read from its tree, never run."""
+"""Find the names that a piece of Python binds, and those that it takes from outside, without running it."""
 
 import ast
 import contextlib
@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
-INNER = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may do to a parser
+DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+# what Python's parser raises for a text that is no Python
+PARSE_ERRORS = (SyntaxError, ValueError, RecursionError, MemoryError)
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -30,19 +31,20 @@ def free_names(node: ast.AST) -> list[FreeName]:
     >>> [use.node.id for use in free_names(ast.parse("def f(x, y=a): return [x * b for z in y]").body[0])]
     ['a', 'b']
     """
-    found: list[FreeName] = []
+    uses: list[FreeName] = []
+    # a stack instead of recursion: a student's code may be nested deeper than Python's calls go
     waiting: list[tuple[ast.AST, frozenset[str]]] = [(node, frozenset())]
-    while waiting:  # by hand: what a student wrote may be nested deeper than calls go
-        one, around = waiting.pop()
-        if isinstance(one, ast.Name):
-            if isinstance(one.ctx, ast.Load) and one.id not in around:
-                found.append(FreeName(one, one, ""))
-        elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
-            if one.value.id not in around:
-                found.append(FreeName(one.value, one, one.attr))
+    while waiting:
+        part, bound = waiting.pop()
+        if isinstance(part, ast.Name):
+            if isinstance(part.ctx, ast.Load) and part.id not in bound:
+                uses.append(FreeName(part, part, ""))
+        elif isinstance(part, ast.Attribute) and isinstance(part.value, ast.Name):
+            if part.value.id not in bound:
+                uses.append(FreeName(part.value, part, part.attr))
         else:
-            waiting += reversed(list(_parts(one, around)))
-    return found
+            waiting += reversed(list(_parts(part, bound)))
+    return uses
 
 
 def bound_names(node: ast.AST) -> list[str]:
@@ -53,70 +55,85 @@ def bound_names(node: ast.AST) -> list[str]:
     >>> bound_names(ast.parse("for i, (j, k) in pairs: n = i").body[0])
     ['i', 'j', 'k', 'n']
     """
-    found: list[str] = []
+    bound: list[str] = []
     waiting = [node]
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, ast.Name):
-            found += [one.id] if isinstance(one.ctx, ast.Store) else []
-        elif isinstance(one, INNER):
-            found.append(one.name)
-        elif isinstance(one, ast.Import | ast.ImportFrom):
-            found += [alias.asname or alias.name.split(".")[0] for alias in one.names]
-        elif isinstance(one, COMPREHENSIONS):  # its targets are its own
-            inner = [part for part in ast.walk(one) if isinstance(part, ast.NamedExpr)]
-            found += [part.target.id for part in inner]
-        elif not isinstance(one, ast.Lambda):
-            if isinstance(one, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and one.name:
-                found.append(one.name)
-            waiting += reversed(list(ast.iter_child_nodes(one)))
-    return list(dict.fromkeys(found))
+        part = waiting.pop()
+        if isinstance(part, ast.Name):
+            if isinstance(part.ctx, ast.Store):
+                bound.append(part.id)
+        elif isinstance(part, DEFINITIONS):
+            bound.append(part.name)
+        elif isinstance(part, ast.Import | ast.ImportFrom):
+            bound += [alias.asname or alias.name.split(".")[0] for alias in part.names]
+        elif isinstance(part, COMPREHENSIONS):  # its own loop variables are not visible outside
+            walrus = [inner for inner in ast.walk(part) if isinstance(inner, ast.NamedExpr)]
+            bound += [inner.target.id for inner in walrus]
+        elif not isinstance(part, ast.Lambda):
+            if isinstance(part, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and part.name:
+                bound.append(part.name)
+            waiting += reversed(list(ast.iter_child_nodes(part)))
+    return list(dict.fromkeys(bound))
 
 
-def _parts(node: ast.AST, around: frozenset[str]) -> Iterator[tuple[ast.AST, frozenset[str]]]:
+def _parts(node: ast.AST, bound: frozenset[str]) -> Iterator[tuple[ast.AST, frozenset[str]]]:
     """Yield the parts of a node in the order of reading, each with the names that are bound around it."""
     if isinstance(node, Function):
-        yield from ((one, around) for one in head(node))
-        own = _inside(node, around)
-        yield from (
-            (one, own) for one in (node.body if isinstance(node.body, list) else [node.body])
-        )
+        for part in head(node):
+            yield part, bound
+        inside = bound | _bound_inside(node)
+        body = node.body if isinstance(node.body, list) else [node.body]
+        for part in body:
+            yield part, inside - _globals_of(body)
         return
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
     if isinstance(node, COMPREHENSIONS):
-        around = around.union(*(bound_names(one.target) for one in node.generators))
-        parts = sorted(parts, key=lambda one: isinstance(one, ast.comprehension))
-    yield from ((one, around) for one in parts)
+        bound = bound.union(*(bound_names(generator.target) for generator in node.generators))
+        # the element comes first in the text, and its loops after it
+        parts = sorted(parts, key=lambda part: isinstance(part, ast.comprehension))
+    for part in parts:
+        yield part, bound
 
 
-def _inside(node: Function, around: frozenset[str]) -> frozenset[str]:
-    """Return the names that are bound around what is inside a function."""
-    own = around.union(one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg))
-    if isinstance(node, ast.Lambda):
-        return own.union(bound_names(node.body))
-    inner = (part for one in node.body for part in ast.walk(one) if isinstance(part, ast.Global))
-    return own.union(*map(bound_names, node.body)).difference(*(part.names for part in inner))
+def _bound_inside(node: Function) -> frozenset[str]:
+    """Return the arguments of a function and the names that its body binds."""
+    arguments = {part.arg for part in ast.walk(node.args) if isinstance(part, ast.arg)}
+    body = node.body if isinstance(node.body, list) else [node.body]
+    return frozenset(arguments.union(*(bound_names(statement) for statement in body)))
+
+
+def _globals_of(body: Iterable[ast.AST]) -> frozenset[str]:
+    """Return the names that a function's body declares as global."""
+    declarations = [
+        part for statement in body for part in ast.walk(statement) if isinstance(part, ast.Global)
+    ]
+    return frozenset(name for declaration in declarations for name in declaration.names)
 
 
 def head(node: ast.AST) -> list[ast.AST]:
-    """Return what of a function is run when it is defined: decorators, defaults and annotations."""
-    parts = (getattr(node, "args", None), getattr(node, "returns", None))
-    return [
+    """Return the parts of a function that run when it is defined: decorators, defaults, annotations."""
+    parts = [
         *getattr(node, "decorator_list", ()),
-        *(one for one in parts if isinstance(one, ast.AST)),
+        getattr(node, "args", None),
+        getattr(node, "returns", None),
     ]
+    return [part for part in parts if isinstance(part, ast.AST)]
 
 
 def modules(source: str | bytes) -> set[str]:
-    """Return what a text imports, dotted, with names that may be modules; nothing of what is no Python."""
-    found: set[str] = set()
-    with contextlib.suppress(*BROKEN):
+    """Return the modules that a text imports, dotted; imported names count, for they may be modules.
+
+    A text that is no Python imports nothing.
+    """
+    imported: set[str] = set()
+    with contextlib.suppress(*PARSE_ERRORS):
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.Import):
-                found |= {alias.name for alias in node.names}
+                imported |= {alias.name for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-                found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return found
+                imported.add(node.module)
+                imported |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return imported
 
 
 def imported_numpy_modules(sources: Iterable[str]) -> list[str]:
@@ -128,5 +145,5 @@ def imported_numpy_modules(sources: Iterable[str]) -> list[str]:
     >>> imported_numpy_modules(sources)
     ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
     """
-    found = set().union(*map(modules, sources))
-    return sorted(one for one in found if one.split(".")[0] in ("numpy", "scipy"))
+    imported = {name for source in sources for name in modules(source)}
+    return sorted(name for name in imported if name.split(".")[0] in ("numpy", "scipy"))

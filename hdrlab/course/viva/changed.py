@@ -114,7 +114,7 @@ def versions(source: str) -> list[Version]:
 
 def compiles(text: str) -> bool:
     """Return whether a text is valid Python."""
-    with suppress(*names.BROKEN):
+    with suppress(*names.PARSE_ERRORS):
         compile(text, "", "exec", dont_inherit=True)
         return True
     return False
