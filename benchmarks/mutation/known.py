@@ -14,7 +14,7 @@ from benchmarks.measure import THREADS
 
 # tests that run a file unseen by coverage: from outside, or in processes of their own
 SANDBOX = (
-    "tests/course/test_grading.py::test_in_a_sandbox_the_library_has_all_points_and_a_blank_none"
+    "tests/course/test_grading.py::test_in_a_sandbox_the_library_earns_all_points_and_a_blank_none"
 )
 KNOBS = "tests/test_knobs.py::test_every"
 AFAR = {

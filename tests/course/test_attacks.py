@@ -113,13 +113,15 @@ def points(subject, student="a"):
     return held, said
 
 
-def test_every_attack_of_the_list_is_there():
+def test_every_listed_attack_has_a_test():
     assert {int(name[1:3]) for name in siege.NAMES} == set(range(1, 27))
     assert set(siege.NAMES) == set(ENDS)
 
 
 @pytest.mark.parametrize(("tier", "name"), CASES)
-def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path, port):
+def test_an_attack_earns_no_points_and_leaves_no_files_or_processes(
+    tier, name, honest, tmp_path, port
+):
     place, other = siege.furnish(tmp_path), honest(tier)
     files, processes = siege.listing(place), system.list_children()
     timeout = 0.5 if name.startswith(SLOW) else 20.0

@@ -71,7 +71,7 @@ def end(processes):
         os.waitpid(pid, 0)
 
 
-def test_the_naive_grader_knows_right_from_wrong(tmp_path):
+def test_the_naive_grader_grades_honest_submissions_correctly(tmp_path):
     for answer, points in (("2 * x", 4), ("3 * x", 0), ("None", 0)):
         (tmp_path / "submission.py").write_text(f"def double(x): return {answer}")
         said, code, ended = graded(tmp_path, 60)
@@ -79,7 +79,7 @@ def test_the_naive_grader_knows_right_from_wrong(tmp_path):
 
 
 @pytest.mark.parametrize("name", [name for name in siege.NAMES if name not in NOT_NAIVE])
-def test_on_a_naive_grader_the_attack_succeeds(name, tmp_path, port):
+def test_the_attack_succeeds_against_a_naive_grader(name, tmp_path, port):
     place = siege.furnish(tmp_path)
     (place / "submission.py").write_text(siege.armed(name, place, port))
     files, processes = siege.listing(place), system.list_children()

@@ -39,7 +39,7 @@ HANDINS = {
         (("t",), 0, "t"),
     ],
 )
-def test_who_is_named_and_has_come_since_a_time_is_graded(only, hours, teams, monkeypatch):
+def test_only_and_since_select_the_submissions_to_grade(only, hours, teams, monkeypatch):
     since = None if hours is None else NOON + timedelta(hours=hours)
     assert " ".join(run.select_submissions(HANDINS, CLASS, only, since)) == teams
     with pytest.raises(ValueError, match="nothing was handed in by b3"):
@@ -57,7 +57,7 @@ def done(tmp_path):
     return JobResult(job, jobs.result_path(tmp_path / "results", job))
 
 
-def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(done, tmp_path):
+def test_feedback_is_rewritten_if_a_file_is_missing_or_belongs_to_another_result(done, tmp_path):
     folder = tmp_path / "feedback" / "t"
     shown = results.for_team(done.path.read_bytes())
     for spoil in (None, "result.json", "feedback.html", "result.csv"):
@@ -82,7 +82,7 @@ def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(don
     ]
 
 
-def test_feedback_that_cannot_be_written_says_why_in_two_hundred_characters(done, tmp_path):
+def test_a_failure_to_write_feedback_is_reported_as_a_problem_of_that_submission(done, tmp_path):
     done.path.write_bytes(b"damaged")
     found = run.write_feedback(tmp_path, done)
     assert (
@@ -93,7 +93,7 @@ def test_feedback_that_cannot_be_written_says_why_in_two_hundred_characters(done
     assert list(run.read_results(tmp_path, [done.job])) == []
 
 
-def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
+def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     course = GradingContext(
         CLASS, HOMEWORK, GradingOptions(), Late(1, 2.0), [LateRecord("hw1", 1, ("b3",), 5.0)]
     )
@@ -122,14 +122,14 @@ def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
     assert table[0][4:9] == [8.0, 8.0, 8.0, 6.0, 4.0] and table[2][4:8] == [10.0, 10.0, 8.0, 6.0]
 
 
-def test_a_gradebook_is_read_by_the_next_homework(tmp_path):
+def test_the_next_homework_reads_late_days_from_the_gradebook(tmp_path):
     lines = ["student,homework,received,late,work,note"]
     lines += ["'=b1,hw1,2026,3,7.5,", "b2,hw1,,0,0,not handed in", "b3,hw1,2026,1,2,not graded; x"]
     (tmp_path / "a.csv").write_text("\n".join(lines), encoding="utf8")
     assert marks.read([tmp_path / "a.csv"]) == [LateRecord("hw1", 3, ("=b1",), 7.5)]
 
 
-def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked():
+def test_class_statistics_count_outcomes_and_give_the_reason_of_ungradable_submissions():
     each = [
         result("a", "", "raised", misconceptions={"hat": "S"}),
         result("b", "missing", "missing", problems=("no file", "more")),
@@ -145,7 +145,7 @@ def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked
     ]
 
 
-def test_a_table_is_read_up_to_its_bound(tmp_path):
+def test_a_table_larger_than_the_limit_is_refused(tmp_path):
     (tmp_path / "a.csv").write_bytes(b" A ,b\n1\n\n 2 ,3\n")
     size = (tmp_path / "a.csv").stat().st_size
     assert csv_tables.read_csv(tmp_path / "a.csv", max_bytes=size) == [
@@ -156,7 +156,7 @@ def test_a_table_is_read_up_to_its_bound(tmp_path):
         csv_tables.read_csv(tmp_path / "a.csv", max_bytes=size - 1)
 
 
-def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):
+def test_files_and_folders_at_the_size_limit_are_accepted(tmp_path, monkeypatch):
     monkeypatch.setattr(class_folder, "MAX_FILE_MEGABYTES", 1)
     monkeypatch.setattr(class_folder, "MAX_FILES_PER_FOLDER", 2)
     for name, size in (

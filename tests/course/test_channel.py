@@ -54,7 +54,7 @@ def passed(value):
 
 @pytest.mark.grading
 @given(PLAIN)
-def test_plain_values_come_out_as_they_went_in(value):
+def test_plain_values_survive_the_channel(value):
     assert repr(passed(value)) == repr(value)
 
 
@@ -65,7 +65,7 @@ def test_arrays_keep_dtype_shape_and_bits(array):
     assert came.tobytes() == array.tobytes()
 
 
-def test_the_order_and_the_overlap_of_an_array_in_memory_do_not_matter():
+def test_arrays_of_any_memory_layout_survive_the_channel():
     x = np.arange(24.0).reshape(4, 6)
     for array in (
         x[::-1, ::-2],
@@ -78,11 +78,11 @@ def test_the_order_and_the_overlap_of_an_array_in_memory_do_not_matter():
         assert passed(array).flags.writeable and passed(array).flags.c_contiguous
 
 
-def test_an_array_of_a_class_of_its_own_comes_out_as_a_plain_one():
+def test_an_array_subclass_arrives_as_a_plain_array():
     assert type(passed(np.ma.masked_array([1.0, 2.0]))) is np.ndarray
 
 
-def test_a_large_array_passes_while_the_other_end_reads(pair):
+def test_an_array_larger_than_the_socket_buffer_arrives(pair):
     ours, theirs = pair
     array = np.random.default_rng(0).random(1 << 20)
     sender = threading.Thread(target=channel.send, args=(ours, "word", array))
@@ -111,7 +111,7 @@ def test_a_large_array_passes_while_the_other_end_reads(pair):
         ({(1, 2): 3}, "key"),
     ],
 )
-def test_what_does_not_travel_is_refused_before_anything_is_sent(pair, value, reason):
+def test_an_unsupported_value_is_refused_before_any_byte_is_sent(pair, value, reason):
     ours, theirs = pair
     with pytest.raises(channel.UnsupportedValue, match=reason):
         channel.send(ours, "word", value)
@@ -128,7 +128,7 @@ def nested(depth):
     return value
 
 
-def test_lists_are_not_nested_without_end():
+def test_lists_nested_too_deeply_are_refused():
     assert passed(nested(10)) == nested(10)
     with pytest.raises(channel.UnsupportedValue, match="deep"):
         passed(nested(40))
@@ -185,7 +185,7 @@ LIES = {
 
 
 @pytest.mark.parametrize("lie", LIES)
-def test_a_frame_that_lies_is_refused(pair, lie):
+def test_a_frame_with_a_false_header_is_refused(pair, lie):
     ours, theirs = pair
     sender = threading.Thread(
         target=lambda: (ours.sendall(LIES[lie]), ours.shutdown(socket.SHUT_WR))
@@ -197,7 +197,7 @@ def test_a_frame_that_lies_is_refused(pair, lie):
 
 
 @given(st.binary(max_size=400), st.integers(0, 200))
-def test_no_bytes_whatever_do_more_than_be_refused(noise, cut):
+def test_arbitrary_bytes_are_refused_without_any_other_error(noise, cut):
     whole = frame({"tuple": [ONE, {"float": "nan"}]}, [label()], bytes(16))
     for data in (noise, struct.pack(">I", len(noise)) + noise, whole[:cut], whole[:cut] + noise):
         ours, theirs = socket.socketpair()
@@ -211,14 +211,14 @@ def test_no_bytes_whatever_do_more_than_be_refused(noise, cut):
             assert (kind, type(value)) == ("answer", tuple)
 
 
-def test_a_byte_that_is_neither_true_nor_false_becomes_true(pair):
+def test_any_nonzero_byte_of_a_boolean_array_becomes_true(pair):
     ours, theirs = pair
     ours.sendall(frame(ONE, [label(dtype="bool", shape=(3,), nbytes=3)], b"\x00\x01\xff"))
     _, _, came = channel.receive(theirs)
     assert came.tolist() == [False, True, True] and came.sum() == 2
 
 
-def test_a_frame_that_drips_is_late_and_not_waited_for(pair):
+def test_a_frame_that_arrives_too_slowly_times_out(pair):
     ours, theirs = pair
     stop = threading.Event()
 
@@ -237,7 +237,7 @@ def test_a_frame_that_drips_is_late_and_not_waited_for(pair):
     dripping.join()
 
 
-def test_the_end_of_the_other_side_is_told_from_a_frame_cut_short(pair):
+def test_a_closed_connection_raises_end_of_file_and_a_truncated_frame_an_error(pair):
     ours, theirs = pair
     ours.close()
     with pytest.raises(EOFError):

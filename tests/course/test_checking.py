@@ -79,7 +79,7 @@ def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
     assert begun[1:] == ["closed"]
 
 
-def test_a_check_has_the_subject_afresh_and_none_where_the_task_is_missing_or_was_late(checking):
+def test_each_check_gets_a_fresh_subject_or_no_answer_for_a_missing_or_late_task(checking):
     checking.submission, subject = Asked(), fixture(checking, "subject")
     compare.notes.append("of the check before")
     assert subject(checking, request()) is checking.submission
@@ -92,13 +92,13 @@ def test_a_check_has_the_subject_afresh_and_none_where_the_task_is_missing_or_wa
     assert checking.submission.begun == 1 and Missing().printed == ""
 
 
-def test_inputs_are_drawn_from_the_tasks_seed_and_from_zero_without_one(checking):
+def test_inputs_are_drawn_from_the_seed_of_the_task_or_from_seed_zero(checking):
     rng = fixture(checking, "rng")
     for task, seed in (("hat", 7), ("gsolve", 0)):
         assert rng(checking, request(task)).random() == np.random.default_rng(seed).random()
 
 
-def test_every_check_is_written_down_before_the_first_is_run(checking):
+def test_all_checks_are_listed_before_the_first_one_runs(checking):
     def check():
         """Look at
         the ends.

@@ -33,7 +33,7 @@ def checking(tmp_path):
         ("setup", None, None),
     ],
 )
-def test_a_check_has_ended_when_it_was_called_or_could_not_be(when, raised, written, checking):
+def test_a_check_is_reported_after_its_call_or_a_failed_setup(when, raised, written, checking):
     call = SimpleNamespace(when=when, excinfo=raised and SimpleNamespace(value=raised))
     report = checking.pytest_runtest_makereport(item(), call)
     assert next(report) is None
@@ -43,7 +43,7 @@ def test_a_check_has_ended_when_it_was_called_or_could_not_be(when, raised, writ
     assert [one["outcome"] for one in checking.lines()] == ([written] if written else [])
 
 
-def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printed(checking):
+def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(checking):
     compare.notes += ["b", "a", "b", "n" * 2000]
     checking._ended(item(subject=Asked(said="<f at 0x7fab> " + "s" * 4000)), None)
     (line,) = checking.lines()
@@ -79,7 +79,7 @@ def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printe
         ),
     ],
 )
-def test_what_does_not_hold_is_written_with_its_words(raised, outcome, kind, message, checking):
+def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, message, checking):
     checking._ended(item(), raised)
     (line,) = checking.lines()
     assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (
@@ -91,7 +91,7 @@ def test_what_does_not_hold_is_written_with_its_words(raised, outcome, kind, mes
     assert checking.failed == {"hat"} and checking.late == ({"hat"} if kind == "late" else set())
 
 
-def test_of_a_difference_what_came_is_described_where_it_has_axes():
+def test_a_mismatch_message_describes_the_array_that_the_student_returned():
     told = plugin._message(AnswerMismatch("w: no", came=np.ones(3)))
     assert told.startswith("w: no\nYours: shape (3,)")
     assert plugin._message(AnswerMismatch("n" * 1600, came=np.ones(3))).startswith(
@@ -110,7 +110,9 @@ def test_of_a_difference_what_came_is_described_where_it_has_axes():
         ("image", (5, 1), False),
     ],
 )
-def test_a_difference_that_can_be_drawn_travels_as_text(kind, shape, drawn, checking, monkeypatch):
+def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
+    kind, shape, drawn, checking, monkeypatch
+):
     monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
     truth, came = np.zeros(shape), np.ones(shape, np.float32)
     error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
@@ -126,7 +128,7 @@ def test_a_difference_that_can_be_drawn_travels_as_text(kind, shape, drawn, chec
     assert plugin._differs(AnswerMismatch("no", came=truth, kind="curve")) is None
 
 
-def test_of_hidden_checks_nothing_is_kept_to_name_a_mistake_by(checking):
+def test_hidden_checks_are_not_used_to_recognize_a_mistake(checking):
     hidden = item(folder=Path("/hidden"), subject=Asked(1))
     checking._ended(hidden, AssertionError())
     assert not checking.failed and not checking.calls
@@ -136,12 +138,12 @@ def test_of_hidden_checks_nothing_is_kept_to_name_a_mistake_by(checking):
     assert checking.calls["hat"][1] == ((1,), {}, 1)
 
 
-def test_where_the_sandbox_cannot_be_had_that_is_all_that_is_written(checking):
+def test_an_unavailable_sandbox_is_reported_without_failing_a_check(checking):
     checking._ended(item(subject=Asked(1)), Unavailable("no walls"))
     assert checking.lines() == [{"unavailable": "no walls"}] and not checking.failed
 
 
-def test_at_the_end_the_mistakes_of_what_failed_are_named_and_an_error_there_costs_one_task_alone(
+def test_mistakes_of_failed_tasks_are_recognized_and_an_error_affects_one_task_only(
     checking, monkeypatch
 ):
     def closest(task, calls):

@@ -36,7 +36,7 @@ def everybody(tmp_path_factory):
     return handed.handed(300, tmp_path_factory.mktemp("target"))
 
 
-def test_a_class_of_300_holds_every_mistake_of_its_homework_every_attack_and_every_trap(everybody):
+def test_a_class_of_300_contains_every_mistake_attack_and_trap(everybody):
     which = {kind: {one.which for one in everybody if one.kind == kind} for kind in handed.SHARES}
     assert len(everybody) == 300 == sum(handed.SHARES.values())
     assert which["mistake"] == {one.name for one in misconceptions.known() if one.task in HW2}
@@ -52,7 +52,7 @@ def test_a_smaller_class_has_the_same_mixture(count):
         assert abs(made[kind] - share * count / 300) < 1
 
 
-def test_a_class_is_written_as_the_command_reads_it(everybody, tmp_path):
+def test_the_command_can_read_the_class_that_the_benchmark_writes(everybody, tmp_path):
     folder = handed.write(tmp_path / "class", everybody[:9])
     roster = read(folder / "roster.csv")
     assert set(roster.teams()) == {one.team for one in everybody[:9]}
@@ -61,7 +61,7 @@ def test_a_class_is_written_as_the_command_reads_it(everybody, tmp_path):
     assert [row["file"] for row in times] == [one.file for one in everybody[:9]]
 
 
-def test_an_attack_is_aimed_at_the_results_of_the_run(everybody):
+def test_the_results_attack_targets_the_output_folder_of_the_run(everybody):
     (one,) = (one for one in everybody if one.which == "a07_results")
     assert b"def double(" not in one.data and str(Path("target")).encode() in one.data
 
@@ -74,7 +74,7 @@ def one_of(team, kind, which="", score=1.0, problems=(), named=None):
     return Handed(team, (team,), f"{team}.py", b"", 0.0, kind, which), result
 
 
-def test_what_goes_wrong_in_a_class_is_counted():
+def test_wrong_scores_and_missed_mistakes_are_counted():
     known = next(one for one in misconceptions.known() if one.task == "hat")
     good = [
         one_of("a", "right"),
@@ -103,7 +103,7 @@ def test_what_goes_wrong_in_a_class_is_counted():
     )
 
 
-def test_one_byte_or_one_cell_that_differs_is_found(tmp_path):
+def test_two_runs_that_differ_in_one_byte_or_cell_are_told_apart(tmp_path):
     each = [one_of("a", "right")[0], one_of("b", "right")[0]]
     for out in ("one", "same", "other"):
         (tmp_path / out / "results").mkdir(parents=True)
@@ -125,13 +125,13 @@ def test_one_byte_or_one_cell_that_differs_is_found(tmp_path):
     assert set(judged.read(tmp_path / "one")) == {"a"} and judged.size(tmp_path / "one")[0] == 3
 
 
-def test_a_large_class_takes_as_much_more_as_it_is_larger_without_what_the_command_does_itself():
+def test_core_hours_of_a_large_class_scale_only_the_time_per_submission():
     used = Used(seconds=300, cpu=606, own=6, total=0, largest=0)
     assert judged.core_hours(used, 300) == pytest.approx(2 * judged.LARGE / 3600)
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are watched in /proc")
-def test_a_command_is_watched_with_all_that_it_starts():
+def test_a_measured_command_includes_its_child_processes():
     child = "x = bytearray(60_000_000)\nimport time\nwhile time.process_time() < 1: pass"
     parent = f"import subprocess, sys; subprocess.run([sys.executable, '-S', '-c', {child!r}])"
     used = grading.watched([sys.executable, "-S", "-c", parent])
@@ -140,23 +140,23 @@ def test_a_command_is_watched_with_all_that_it_starts():
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are watched in /proc")
-def test_a_process_is_the_root_of_its_tree():
+def test_a_process_tree_starts_with_its_root():
     assert next(grading.tree(os.getpid())) == os.getpid()
 
 
-def test_a_command_that_fails_says_what_it_said():
+def test_a_failed_command_raises_its_error_output():
     with pytest.raises(RuntimeError, match="no chalk"):
         grading.watched([sys.executable, "-S", "-c", "raise SystemExit('no chalk')"])
 
 
-def test_the_subject_is_called_class_though_that_is_a_word_of_python():
+def test_the_benchmark_of_a_class_is_called_class():
     assert "class" in command.subjects()
     assert [row.name for row in command.chosen("class", None)] == [
         *("whole", "processes", "workers", "mixed", "sheets", "costs", "books")
     ]
 
 
-def test_a_mixed_class_has_every_hostile_kind_that_the_tests_have_and_sixty_honest_ones(tmp_path):
+def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path):
     each = mixed.honest(60, tmp_path)
     assert len(each) == 60 == len({one.team for one in each}) and not any(
         one.hostile for one in each
@@ -173,7 +173,7 @@ def test_a_mixed_class_has_every_hostile_kind_that_the_tests_have_and_sixty_hone
     assert len(others) >= 120 and each[0].file in taken
 
 
-def test_rows_write_into_folders_of_their_own(tmp_path, monkeypatch):
+def test_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
     written = []
     used = Used(1.0, 1.0, 1.0, 1.0, 1.0)
 
@@ -197,7 +197,7 @@ def test_rows_write_into_folders_of_their_own(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there are names that this system cannot write")
-def test_a_mixed_class_is_written_with_its_roster_and_who_is_not_told_of_is_found(tmp_path):
+def test_hostile_students_without_a_note_are_found(tmp_path):
     each = mixed.honest(2, tmp_path)
     kinds = {one.kind: one for one in mixed.hostile(tmp_path, each[0])}
     others = list(kinds.values())
@@ -214,7 +214,7 @@ def test_a_mixed_class_is_written_with_its_roster_and_who_is_not_told_of_is_foun
     assert mixed.untold(tmp_path / "out", others) == others[2:]
 
 
-def test_what_is_to_cost_much_is_python_for_all_tasks_and_has_names_of_its_own():
+def test_costly_submissions_are_valid_python_with_unique_names():
     each = list(costs.each())
     assert len({(one.kind, one.which) for one in each}) == len(each) > 30
     for one in each:

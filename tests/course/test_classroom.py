@@ -51,7 +51,7 @@ def result(student, holds, misconceptions=None):
     return Result(student, "hw2", "T", "strict", checks, misconceptions or {}, (), "", "", "", {})
 
 
-def test_each_member_of_a_team_pays_with_their_own_days():
+def test_each_team_member_uses_their_own_late_days():
     before = [
         LateRecord("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 3))
     ]
@@ -64,7 +64,7 @@ def test_each_member_of_a_team_pays_with_their_own_days():
     assert (rows[2].note, rows[2].score, rows[2].left) == ("not handed in", 0.0, 7)
 
 
-def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
+def test_late_days_are_read_back_from_a_gradebook(tmp_path):
     rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0})
     csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, [row.cells for row in rows])
     assert marks.read([tmp_path / "gradebook.csv"]) == [
@@ -76,7 +76,7 @@ def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
         marks.read([tmp_path / "other.csv"])
 
 
-def test_canvas_gets_a_line_of_points_and_no_formula():
+def test_the_canvas_table_has_points_possible_and_no_formulas():
     rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
     lines = list(csv.reader(csv_tables.csv_text(*marks.canvas_table(rows, HOMEWORK)).splitlines()))
     assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][
@@ -86,7 +86,7 @@ def test_canvas_gets_a_line_of_points_and_no_formula():
     assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
 
 
-def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
+def test_the_what_if_table_shows_the_score_for_each_number_of_late_days():
     before = [
         LateRecord("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))
     ]
@@ -104,7 +104,7 @@ def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
 
 
-def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
+def test_the_class_page_counts_checks_and_misconceptions_and_escapes_them():
     script = "<script>alert(1)</script>"
     each = [
         result("t", (1, 0), {"hat": script}),
@@ -127,7 +127,7 @@ def tags(text):
     return found
 
 
-def test_what_a_result_rests_on_is_in_its_key(tmp_path):
+def test_the_key_of_a_result_depends_on_everything_that_affects_it(tmp_path):
     def keys(conditions, digest="digest"):
         one = replace(handin("t", ("b1",), 0), digest=digest)
         homework = HOMEWORK._replace(tasks=HOMEWORK.tasks[:1])
@@ -153,7 +153,7 @@ def test_what_a_result_rests_on_is_in_its_key(tmp_path):
         ({"hw2.py": b"x", "helpers.py": b""}, ""),
     ],
 )
-def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
+def test_an_archive_is_opened_or_refused_with_a_one_line_reason(members, said, tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         for name, data in members.items():
             archive.writestr(name, data)
@@ -163,7 +163,7 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
     assert said or path.read_bytes() == b"x"
 
 
-def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeypatch):
+def test_a_submission_killed_twice_at_the_same_check_is_graded_a_third_time(monkeypatch):
     killed, died = (
         result("b1", ())._replace(checks=(Check("hat", "a", "A", 0, 1, "no answer", kind=kind),))
         for kind in ("killed", "died")
@@ -183,7 +183,7 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
 
 
 @pytest.mark.parametrize("secret", ["", "x"])
-def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secret(
+def test_a_submission_is_graded_with_the_hidden_checks_and_with_inputs_of_the_secret(
     secret, monkeypatch
 ):
     hidden, homes = (("test_hat.py", b"checks"), ("data/hat.csv", b"1,2")), []
@@ -206,14 +206,14 @@ def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secr
     assert not homes[0].exists()
 
 
-def test_a_histogram_counts_every_score_and_all_the_points_among_the_best_tenth():
+def test_the_histogram_counts_every_score_and_full_points_in_the_last_bin():
     bins = overview.histogram([0.0, 4.9, 5.0, 24.9, 49.9, 50.0, 50.0], 50.0)
     assert [start for start, _ in bins] == list(range(0, 100, 10))
     assert [count for _, count in bins] == [2, 1, 0, 0, 1, 0, 0, 0, 0, 3]
     assert overview.histogram([0.0, 0.0], 0)[0] == (0, 2)
 
 
-def test_a_grader_can_be_sent_to_another_process():
+def test_a_grader_can_be_pickled():
     class_grader = classroom.Grader(HOMEWORK, GradingOptions())
     assert pickle.loads(pickle.dumps(class_grader.grade)).__self__ == class_grader
 
@@ -263,7 +263,7 @@ def grade(folder, capsys):
 
 
 @pytest.mark.grading
-def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
+def test_grading_a_class_writes_a_gradebook_and_a_page(folder, grade):
     assert "2 of 2 graded, 2 of them now" in grade()
     whole = {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()}
     rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
@@ -301,7 +301,7 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
 
 
 @pytest.mark.grading
-def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, grade):
+def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade):
     assert "1 of 2 graded, 1 of them now" in grade("--only", "B2")  # of team t
     assert "1 of 2 graded, 0 of them now" in grade("--since", "2026-10-27")
     assert "2 of 2 graded, 1 of them now" in grade("--since", "2026-10-25")
@@ -335,12 +335,12 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
         (["--cluster", "tcp://127.0.0.1:1", "--jobs", "2"], "--jobs and --cluster"),
     ],
 )
-def test_what_cannot_be_graded_is_told_in_a_line(more, said, grade):
+def test_an_ungradable_class_is_reported_in_one_line(more, said, grade):
     told = grade(*more, code=2)
     assert said in told and told.count("\n") == 1
 
 
-def test_hidden_checks_travel_without_what_python_has_compiled_of_them(tmp_path):
+def test_hidden_checks_are_sent_without_compiled_files(tmp_path):
     (tmp_path / "more" / "__pycache__").mkdir(parents=True)
     for name in ("test_a.py", "more/data.csv", "more/__pycache__/test_a.cpython-311.pyc"):
         (tmp_path / name).write_text(name)

@@ -43,9 +43,7 @@ def run(statements):
         (("import os as x", "x.sep = 1", F), ["import os as x", F]),
     ],
 )
-def test_of_other_cells_the_statements_that_are_needed_are_taken_and_imports_stand_first(
-    cells, expected
-):
+def test_only_needed_statements_of_other_cells_are_taken_with_imports_first(cells, expected):
     assert source(*cells) == expected
 
 
@@ -83,11 +81,11 @@ WRAP = "def wrap(g):\n    return g"
         (("k = 9", "for k in range(3):\n    x = k", F), ["for k in range(3):\n    x = k", F]),
     ],
 )
-def test_of_a_name_that_is_bound_again_what_makes_its_value_is_taken(cells, expected):
+def test_all_assignments_that_affect_a_value_are_taken(cells, expected):
     assert source(*cells) == expected
 
 
-def test_a_helper_in_the_tasks_own_cell_comes_before_one_of_another_cell():
+def test_a_helper_in_the_cell_of_the_task_takes_precedence():
     own = f"def x():\n    return 'own'\n\n{F}"
     for cells in ((own, "def x():\n    return 'other'"), ("def x():\n    return 'other'", own)):
         made = [Cell(text, "f" if text is own else "") for text in cells]
@@ -95,7 +93,7 @@ def test_a_helper_in_the_tasks_own_cell_comes_before_one_of_another_cell():
     assert source("def x():\n    return 1", "def x():\n    return 2", F)[0].endswith("2")
 
 
-def test_functions_that_are_only_called_keep_their_order_and_what_runs_at_once_comes_before():
+def test_functions_keep_their_order_unless_a_statement_calls_them_at_once():
     g = "def g():\n    return 1"
     assert source("def h():\n    return g()", g, "def f():\n    return h()") == [
         "def h():\n    return g()",
@@ -105,7 +103,7 @@ def test_functions_that_are_only_called_keep_their_order_and_what_runs_at_once_c
     assert source("x = g()", g, F) == [g, "x = g()", F]
 
 
-def test_what_is_made_by_a_call_stands_after_all_that_the_function_reads():
+def test_a_call_comes_after_everything_that_the_called_function_reads():
     cells = ("x = g()", "def g():\n    return list(y)", "y = [1]", "y.append(2)", "y.append(3)", F)
     assert run(source(*cells)) == [1, 2, 3]
     cells = (
@@ -120,12 +118,12 @@ def test_what_is_made_by_a_call_stands_after_all_that_the_function_reads():
     assert run(source(*cells)) == 4
 
 
-def test_an_odd_escape_is_the_students_own_business():
+def test_an_invalid_escape_in_a_string_is_kept():
     assert source("x = '\\d'", F) == ["x = '\\d'", F]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
-def test_lines_may_end_in_any_way_and_hold_a_form_feed(end):
+def test_any_line_ending_and_a_form_feed_are_accepted(end):
     assert source(f"x = 1{end}y = 2\x0c{end}x = x + y", F) == ["x = 1", "y = 2", "x = x + y", F]
 
 
@@ -145,11 +143,11 @@ def test_lines_may_end_in_any_way_and_hold_a_form_feed(end):
         ("x = (\n%time", "x = (\npass"),
     ],
 )
-def test_of_a_cell_what_only_a_notebook_understands_is_passed_over(text, expected):
+def test_notebook_magics_are_removed_from_a_cell(text, expected):
     assert closure.plain(text) == expected
 
 
-def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer():
+def test_given_cells_replace_their_copies_in_the_assignment_and_do_not_count_as_answers():
     given = [Cell("x = 'ours'", given=True), Cell("def f():\n    return 'ours'", "f", True)]
     cells = [Cell("x = 'theirs'", given=True), Cell(F, "f")]
     assert extract_sources(cells, ["f"], given)[0]["f"] == f"x = 'ours'\n\n{F}\n"
@@ -172,6 +170,6 @@ def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer
         (Cell("x = '\0'", "", False, "cell 6"), "cell 6 is no Python"),
     ],
 )
-def test_a_cell_that_is_no_python_is_told_with_its_line(cell, said):
+def test_a_cell_with_a_syntax_error_is_reported_with_its_line(cell, said):
     texts, problems = extract_sources([cell, Cell("def f(): 1")], ["f"])
     assert texts == {"f": "def f(): 1\n"} and len(problems) == 1 and problems[0].startswith(said)

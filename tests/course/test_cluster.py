@@ -99,14 +99,14 @@ def whole(home):
     return contents(home / "here")
 
 
-def test_a_cluster_gives_the_bytes_that_this_machine_gives(address, tmp_path):
+def test_a_cluster_gives_the_same_results_as_the_local_machine(address, tmp_path):
     done, results = graded(address, tmp_path)
     assert results == whole(tmp_path) and len(results) == 5 and all(one.is_new for one in done)
     again, same = graded(address, tmp_path)
     assert same == results and not any(one.is_new for one in again)
 
 
-def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path):
+def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
     def kill():
         while not (noted := errands.begun(tmp_path / "class")):
             time.sleep(0.05)
@@ -122,7 +122,7 @@ def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path
     assert results == whole(tmp_path) and all(one.path for one in done)
 
 
-def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_done(
+def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_graded(
     address, tmp_path
 ):
     done, results = graded(address, tmp_path, errands.deadly)
@@ -135,7 +135,7 @@ def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_do
     }
 
 
-def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_used(tmp_path):
+def test_jobs_that_share_a_worker_with_a_fatal_one_are_still_graded(tmp_path):
     with clustered(1, 4) as running:
         assert not running.scheduler.workers
         done, results = graded(running.scheduler_address, tmp_path, errands.crowded)
@@ -144,7 +144,7 @@ def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_use
     assert [owner for owner, *_ in errands.begun(tmp_path / "class")].count("s3") == 4
 
 
-def test_no_worker_has_more_pieces_than_threads(tmp_path):
+def test_no_worker_runs_more_jobs_than_it_has_threads(tmp_path):
     with clustered(
         2, 1, at_once=2
     ) as running:  # its own: where a worker was killed, there may be one too many
@@ -168,7 +168,7 @@ def alive(noted):
     return False
 
 
-def test_a_run_that_is_killed_is_finished_by_the_next_and_its_pieces_are_ended(address, tmp_path):
+def test_the_next_run_finishes_a_killed_run_whose_jobs_have_ended(address, tmp_path):
     script = RUN.format(tests=str(Path(__file__).parents[1]), address=address, folder=str(tmp_path))
     run = subprocess.Popen([sys.executable, "-c", script])
     while not (tmp_path / "results").is_dir() or not list((tmp_path / "results").glob("s*.json")):
@@ -181,7 +181,7 @@ def test_a_run_that_is_killed_is_finished_by_the_next_and_its_pieces_are_ended(a
     assert not any(map(alive, errands.begun(tmp_path / "class")))
 
 
-def test_a_submission_that_never_ends_is_ended(address, tmp_path):
+def test_a_submission_that_never_ends_is_stopped(address, tmp_path):
     (one,) = errands.make_jobs(tmp_path / "class", 1)
     with cluster.Cluster(address, errands.endless, timeout=0.5) as executor:
         (done,) = jobs.run_jobs([one], executor, tmp_path / "results")
@@ -189,13 +189,13 @@ def test_a_submission_that_never_ends_is_ended(address, tmp_path):
 
 
 @pytest.mark.parametrize("nowhere", ["tcp://127.0.0.1:1", "nowhere", "http://a:1"])
-def test_where_there_is_no_cluster_it_says_so(nowhere, tmp_path, monkeypatch):
+def test_a_missing_cluster_is_an_error(nowhere, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)  # it is not asked again and again
     with pytest.raises(ValueError, match="Dask cluster at"):
         graded(nowhere, tmp_path)
 
 
-def test_a_cluster_that_is_lost_is_told_of(tmp_path):
+def test_a_lost_cluster_is_an_error(tmp_path):
     with (
         clustered(0, 1) as running,
         pytest.raises(ValueError, match="is lost"),
@@ -212,7 +212,7 @@ def unable():
     raise RuntimeError("no strict tier here")
 
 
-def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_path):
+def test_a_different_hdrlab_on_the_cluster_is_an_error_with_both_versions(address, tmp_path):
     with Client(address, set_as_default=False) as client:
         client.wait_for_workers(2)
         client.run(rename, "0.0.7")
@@ -228,7 +228,7 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
         cluster.run_remote_job(task)
 
 
-def test_a_worker_that_cannot_do_the_work_is_named(address, tmp_path):
+def test_the_error_names_a_worker_without_the_tier(address, tmp_path):
     with pytest.raises(ValueError, match="tcp://.* cannot .*work: no strict tier here"):
         graded(address, tmp_path, check_available=unable)
 
@@ -239,7 +239,7 @@ def die_once(mark):
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def test_a_worker_that_is_lost_while_it_is_asked_ends_no_run(tmp_path):
+def test_a_worker_lost_during_the_check_does_not_end_the_run(tmp_path):
     with clustered(2, 1, at_once=2) as running:
         ready = partial(die_once, tmp_path / "died")
         done, results = graded(running.scheduler_address, tmp_path, check_available=ready)

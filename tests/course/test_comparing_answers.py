@@ -23,7 +23,7 @@ def refused(ask, *given, **named):
     return str(raised.value)
 
 
-def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_is_remembered():
+def test_require_raises_a_mismatch_with_its_message_and_details():
     compare.require(True, "it holds")
     compare.require([0], "something is there")
     with pytest.raises(AnswerMismatch, match="^it does not hold$") as raised:
@@ -51,7 +51,7 @@ def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_i
         (np.array(["a"]), "the answer: expected real numbers, got dtype <U1"),
     ],
 )
-def test_what_is_no_array_of_real_numbers_is_refused_by_what_it_is(came, said, notes):
+def test_an_answer_that_is_not_an_array_of_real_numbers_is_refused(came, said, notes):
     assert refused(numbers, came) == said and not notes
     assert refused(numbers, came, what="w") == said.replace("the answer", "w", 1)
 
@@ -59,7 +59,7 @@ def test_what_is_no_array_of_real_numbers_is_refused_by_what_it_is(came, said, n
 @pytest.mark.parametrize(
     "came", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)]
 )
-def test_numbers_of_any_real_kind_are_taken_as_they_are(came, notes):
+def test_real_numbers_of_any_type_are_accepted(came, notes):
     assert np.array_equal(numbers(came), came) and not notes
 
 
@@ -71,7 +71,7 @@ def test_numbers_of_any_real_kind_are_taken_as_they_are(came, notes):
         ([[True]], "w: list of 1 was taken for an array of shape (1, 1)"),
     ],
 )
-def test_a_list_of_numbers_is_taken_for_an_array_and_that_is_noted(came, said, notes):
+def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, said, notes):
     assert np.array_equal(numbers(came, what="w"), np.array(came)) and notes == [said]
 
 
@@ -86,7 +86,7 @@ def test_a_list_of_numbers_is_taken_for_an_array_and_that_is_noted(came, said, n
         ((2, 3), (1, 2, 1, 3)),
     ],
 )
-def test_axes_of_length_one_are_left_out_or_put_in_and_that_is_noted(shape, expected, notes):
+def test_axes_of_length_one_are_added_or_removed_with_a_note(shape, expected, notes):
     values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
     found = compare.as_shape(values, expected)
     assert found.shape == expected and found.ravel().tolist() == values.ravel().tolist()
@@ -105,17 +105,17 @@ def test_axes_of_length_one_are_left_out_or_put_in_and_that_is_noted(shape, expe
         ((1,), (2,)),
     ],
 )
-def test_another_shape_is_refused_with_both_shapes(shape, expected, notes):
+def test_a_wrong_shape_is_refused_with_both_shapes(shape, expected, notes):
     said = refused(compare.as_shape, np.zeros(shape), expected)
     assert said == f"the answer: expected shape {expected}, got shape {shape}" and not notes
 
 
-def test_the_same_shape_is_the_same_array_and_nothing_is_noted(notes):
+def test_an_array_of_the_right_shape_is_returned_without_a_note(notes):
     array = np.zeros((0, 1))
     assert compare.as_shape(array, (0, 1)) is array and not notes
 
 
-def test_of_several_parts_as_many_as_are_expected_are_taken():
+def test_the_expected_number_of_parts_is_required():
     assert parts((1, 2, 3), 2) == (1, 2) and parts([1, 2], 2) == (1, 2)
     assert refused(parts, (1,), 2) == "the answer: expected 2 parts, got tuple of 1"
     assert refused(parts, "abc", 2) == "the answer: expected 2 parts, got str of 3"
@@ -123,7 +123,7 @@ def test_of_several_parts_as_many_as_are_expected_are_taken():
     assert refused(parts, np.ones(3), 2, what="w") == "w: expected 2 parts, got one array"
 
 
-def test_states_are_what_a_generator_yielded_and_at_least_one():
+def test_at_least_one_state_is_required():
     assert states((1, 2)) == [1, 2] and states([0]) == [0]
     for came, named in (
         ([], "list of 0"),
@@ -181,7 +181,7 @@ def test_states_are_what_a_generator_yielded_and_at_least_one():
         ),
     ],
 )
-def test_a_value_may_be_off_by_the_tolerance_and_no_more_and_the_worst_is_named(
+def test_values_within_the_tolerance_pass_and_the_largest_error_is_reported(
     came, expected, tolerance, said
 ):
     came = np.array(came)
@@ -206,14 +206,14 @@ def test_a_value_may_be_off_by_the_tolerance_and_no_more_and_the_worst_is_named(
         ),
     ],
 )
-def test_values_outside_the_mask_may_be_anything(where, came, said):
+def test_values_outside_the_mask_are_ignored(where, came, said):
     if said:
         assert refused(same, np.array(came), [1, 2], 0, where=where) == f"the answer: {said}"
     else:
         assert same(np.array(came), [1, 2], 0, where=where).shape == (2,)
 
 
-def test_where_a_nan_is_expected_outside_the_mask_a_number_may_come():
+def test_an_expected_nan_outside_the_mask_is_ignored():
     assert same(np.array([5.0, 1]), [np.nan, 1], 0, where=[False, True]).tolist() == [5, 1]
     assert "at 1 places" in refused(same, np.array([5.0, 1]), [np.nan, 1], 0, where=[True, False])
 
@@ -231,7 +231,7 @@ def test_where_a_nan_is_expected_outside_the_mask_a_number_may_come():
         ((3, 3), {"kind": "curve"}, "curve"),
     ],
 )
-def test_a_difference_remembers_both_arrays_and_how_it_is_drawn(shape, named, kind):
+def test_a_mismatch_keeps_both_arrays_and_how_to_draw_them(shape, named, kind):
     with pytest.raises(AnswerMismatch) as raised:
         same(np.ones(shape), np.zeros(shape), 0.5, **named)
     assert raised.value.kind == kind
@@ -239,14 +239,14 @@ def test_a_difference_remembers_both_arrays_and_how_it_is_drawn(shape, named, ki
     assert raised.value.expected.shape == raised.value.came.shape == shape
 
 
-def test_of_an_answer_whose_shape_alone_is_known_finite_numbers_are_asked():
+def test_finite_requires_the_shape_and_finite_numbers():
     assert finite([[1, 2]], (2,)).tolist() == [1, 2]
     assert refused(finite, np.ones(3), (2,)) == "the answer: expected shape (2,), got shape (3,)"
     said = refused(finite, np.array([1, np.nan, np.inf]), (3,), what="w")
     assert said == "w: expected finite numbers, got 2 NaN or infinite ones"
 
 
-def test_answers_of_trusted_code_become_what_the_channel_brings():
+def test_answers_of_trusted_code_have_the_types_that_the_channel_gives():
     assert plain(None) is None and plain("ab") == "ab" and plain(b"ab") == b"ab"
     found = plain(([1, 2.5], iter([3]), (4,), 5))
     assert isinstance(found, tuple) and [type(one) for one in found] == [
@@ -267,10 +267,10 @@ def test_answers_of_trusted_code_become_what_the_channel_brings():
         ({}, "something else"),
     ],
 )
-def test_what_came_is_named_in_few_words(came, named):
+def test_the_message_names_the_type_of_the_answer(came, named):
     assert refused(parts, came, 1).endswith(f"got {named}")
 
 
-def test_a_mark_is_worth_what_is_said_and_needs_nothing_unless_told():
+def test_points_marks_a_check_with_its_points_and_optional_requirement():
     assert compare.points(4).mark.args == (4,) and compare.points(4).mark.kwargs == {"needs": ""}
     assert compare.points(1, needs="other").mark.kwargs == {"needs": "other"}

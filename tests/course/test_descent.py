@@ -73,7 +73,7 @@ def kernel(monkeypatch):
         os.close(left)
 
 
-def test_what_the_system_refuses_is_an_error_with_its_number_and_what_was_asked():
+def test_a_refused_system_call_raises_os_error_with_its_action():
     with pytest.raises(OSError, match="trick was refused") as raised:
         descent.check_result(descent._libc.prctl(-1, 0, 0, 0, 0), "a trick")
     assert raised.value.errno == errno.EINVAL
@@ -81,7 +81,7 @@ def test_what_the_system_refuses_is_an_error_with_its_number_and_what_was_asked(
 
 
 @pytest.mark.parametrize(("answer", "version"), [(-1, 0), (0, 0), (1, 1), (7, 7)])
-def test_a_kernel_without_landlock_has_version_zero(answer, version, kernel):
+def test_the_landlock_version_is_zero_without_landlock(answer, version, kernel):
     kernel.version = answer
     assert descent.landlock_version() == version
     assert kernel.asked == [("version", None, 0, 1)]
@@ -100,7 +100,7 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("version", KNOWN)
-def test_a_fence_handles_every_right_that_the_kernels_landlock_knows(version, kernel):
+def test_the_landlock_ruleset_handles_every_right_of_its_version(version, kernel):
     kernel.version = version
     descent.restrict_files([], [], [])
     rights = KNOWN[version]
@@ -114,7 +114,7 @@ def test_a_fence_handles_every_right_that_the_kernels_landlock_knows(version, ke
     ]
 
 
-def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(kernel, tmp_path):
+def test_landlock_rules_allow_reading_listing_and_writing_only_as_given(kernel, tmp_path):
     folder, file, listed, written = (
         tmp_path / name for name in ("folder", "file", "listed", "written")
     )
@@ -135,7 +135,7 @@ def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(ke
     assert [one[1] for one in asked if one[0] == "close"] == list(rights) and not kernel.opened
 
 
-def test_a_rule_is_about_the_place_that_was_opened_for_it(kernel, monkeypatch, tmp_path):
+def test_a_landlock_rule_refers_to_the_opened_path(kernel, monkeypatch, tmp_path):
     places = []
     monkeypatch.setattr(
         kernel,
@@ -147,7 +147,7 @@ def test_a_rule_is_about_the_place_that_was_opened_for_it(kernel, monkeypatch, t
     assert struct.unpack("=Qi", rule[3]) == (8, *places)
 
 
-def test_paths_are_bound_on_a_stage_of_this_process_alone(kernel, monkeypatch, tmp_path):
+def test_paths_are_bind_mounted_in_a_private_mount_namespace(kernel, monkeypatch, tmp_path):
     stage, folder, file = tmp_path / "stage", tmp_path / "folder", tmp_path / "file"
     for one in (stage, folder):
         one.mkdir()
@@ -174,7 +174,7 @@ def test_paths_are_bound_on_a_stage_of_this_process_alone(kernel, monkeypatch, t
     )
 
 
-def test_nothing_of_root_is_left_to_who_becomes_another_user(kernel):
+def test_becoming_a_user_drops_all_privileges_of_root(kernel):
     descent.become_user(60706)
     assert kernel.asked == [
         ("setgroups", []),
@@ -188,7 +188,7 @@ def order(**more):
     return json.dumps({"user": 5, "command": ["/bin/a", "b"], "environment": {"C": "d"}, **more})
 
 
-def test_an_order_without_a_stage_and_a_fence_becomes_the_user_and_starts_the_program(kernel):
+def test_without_mounts_and_landlock_the_program_starts_as_the_user(kernel):
     descent.main(order())
     assert [one[0] for one in kernel.asked] == [
         "setgroups",
@@ -200,7 +200,7 @@ def test_an_order_without_a_stage_and_a_fence_becomes_the_user_and_starts_the_pr
     assert kernel.asked[-1] == ("execve", "/bin/a", ["/bin/a", "b"], {"C": "d"})
 
 
-def test_an_order_with_both_is_done_in_the_order_that_root_needs(kernel, monkeypatch):
+def test_mounts_and_landlock_come_before_dropping_privileges(kernel, monkeypatch):
     monkeypatch.setattr(descent, "stage", lambda paths: kernel.said("stage", paths))
     monkeypatch.setattr(descent, "restrict_files", lambda **order: kernel.said("fence", order))
     fence = {"readable": ["r"], "listable": ["w"], "writable": []}
@@ -208,7 +208,7 @@ def test_an_order_with_both_is_done_in_the_order_that_root_needs(kernel, monkeyp
     assert kernel.asked[:3] == [("stage", ["/a"]), ("fence", fence), ("setgroups", [])]
 
 
-def test_homes_that_root_has_opened_stand_in_the_words_by_their_numbers(kernel, tmp_path):
+def test_opened_home_folders_are_passed_to_the_command_by_descriptor(kernel, tmp_path):
     names = [str(tmp_path / name) for name in ("a", "b")]
     for name in names:
         os.mkdir(name)
@@ -227,7 +227,7 @@ def test_homes_that_root_has_opened_stand_in_the_words_by_their_numbers(kernel, 
     )
 
 
-def test_it_is_run_as_a_file_with_its_order_as_the_only_word(monkeypatch):
+def test_descent_runs_as_a_script_with_one_argument(monkeypatch):
     kernel = Kernel()
     monkeypatch.setattr("ctypes.CDLL", lambda name, use_errno: kernel)
     for name in ("setgroups", "setresgid", "setresuid", "execve"):

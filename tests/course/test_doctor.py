@@ -22,7 +22,7 @@ from hdrlab.course.sandbox.session import Unavailable
         ("strict", Unavailable("needs more"), (False, True, "needs more")),
     ],
 )
-def test_a_finding_says_whether_a_tier_works_and_counts(tier, tried, finding, monkeypatch):
+def test_a_finding_says_whether_a_tier_works_and_is_for_credit(tier, tried, finding, monkeypatch):
     def trial(asked):
         if isinstance(tried, Exception):
             raise tried
@@ -57,7 +57,7 @@ def test_a_tier_is_tried_three_times(failures, tries, works, monkeypatch):
 
 
 @pytest.mark.parametrize(("tier", "broken"), [("strict", ["a wall"]), ("practice", [])])
-def test_a_trial_asks_a_function_to_break_out_where_there_are_walls(tier, broken, monkeypatch):
+def test_a_trial_tries_to_break_out_of_a_sandbox(tier, broken, monkeypatch):
     asked = []
     clock = iter((3.0, 4.5))
 
@@ -87,9 +87,7 @@ def test_a_trial_asks_a_function_to_break_out_where_there_are_walls(tier, broken
     assert asked == [({"ready", "break_out"}, f"{tier} sandbox"), "ready", *tried, "closed"]
 
 
-def test_what_would_help_is_told_by_the_reasons_first_line_and_the_systems_switches(
-    monkeypatch, tmp_path
-):
+def test_the_remedy_depends_on_the_reason_and_on_system_settings(monkeypatch, tmp_path):
     words = {"no bwrap": "install it", "libseccomp": "install that"}
     switches = [
         {"file": "a/b", "keeps": "0", "help": "switch it"},

@@ -49,7 +49,7 @@ def keeps_every_promise(functions, tasks, student):
 
 @pytest.mark.parametrize("student", ["ada", "grace"])
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_another_way_of_writing_it_keeps_every_promise(path, student):
+def test_an_equivalent_solution_passes_every_check(path, student):
     keeps_every_promise(scoring.functions(path), tasks_of(path), student)
 
 
@@ -100,7 +100,7 @@ WAYS = (reversed_order, helpers_apart, printing, as_one_script)
 @pytest.mark.parametrize(
     "path", [path for path in FILES if path.stem.endswith("_float32")], ids=lambda path: path.stem
 )
-def test_the_same_code_in_another_notebook_keeps_every_promise(path, way, tmp_path, capsys):
+def test_the_same_code_in_another_notebook_layout_passes_every_check(path, way, tmp_path, capsys):
     cells, name = way([cell.text for cell in reader.cells_of(path.read_bytes(), path.name)[0]])
     handed_in = tmp_path / name
     handed_in.write_text(notebook(cells) if name.endswith(".ipynb") else cells[0], encoding="utf8")
@@ -122,14 +122,14 @@ def notebook(cells):
 
 
 @pytest.mark.parametrize("homework", HOMEWORKS)
-def test_every_homework_has_five_ways_and_more(homework):
+def test_every_homework_has_more_than_five_equivalents(homework):
     assert (
         len([path for path in FILES if path.stem.startswith(f"{homework}_")]) + len(WAYS) >= 5 + 1
     )
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_the_ways_need_numpy_scipy_and_python_alone(path):
+def test_the_equivalents_import_only_numpy_scipy_and_the_standard_library(path):
     for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         names += [node.module] if isinstance(node, ast.ImportFrom) else []

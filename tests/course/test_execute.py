@@ -39,16 +39,14 @@ def assert_no_kernel_is_left(asking):
 @pytest.mark.skipif(
     os.name != "posix", reason="a system without sockets in files gives its kernels ports"
 )
-def test_a_kernel_listens_at_no_port_that_another_could_take_and_keeps_no_history(asking):
+def test_a_kernel_uses_no_network_port_and_keeps_no_history(asking):
     transport, folder, history = told(asking)
     assert (transport, history) == ("ipc", "False")
     assert not os.path.exists(folder)
     assert_no_kernel_is_left(asking)
 
 
-def test_a_temporary_folder_whose_path_is_too_long_for_a_socket_is_no_hindrance(
-    asking, monkeypatch
-):
+def test_a_kernel_starts_if_the_temporary_path_is_too_long_for_a_socket(asking, monkeypatch):
     long = asking.parent / ("long" * 25)
     long.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(long))
@@ -58,9 +56,7 @@ def test_a_temporary_folder_whose_path_is_too_long_for_a_socket_is_no_hindrance(
     assert_no_kernel_is_left(asking)
 
 
-def test_a_kernel_that_dies_before_it_answers_is_told_with_its_notebook_and_leaves_nothing(
-    asking, monkeypatch
-):
+def test_a_kernel_that_dies_at_start_is_reported_with_its_notebook(asking, monkeypatch):
     short = tempfile.mkdtemp(prefix="k")
     monkeypatch.setattr(tempfile, "tempdir", short)
     monkeypatch.setenv("PYTHONHOME", "/proc/nowhere")

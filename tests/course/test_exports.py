@@ -99,7 +99,7 @@ def test_a_source_notebook_has_points_locks_and_solutions(course):
     assert callable(scope["irradiance"]) and text.count("### BEGIN SOLUTION") == 1
 
 
-def test_what_the_plan_leaves_out_is_not_in_the_course(course):
+def test_tasks_that_the_plan_leaves_out_are_not_in_the_export(course):
     text = (course / "source" / "hw2" / "hw2.ipynb").read_text()
     assert "def gsolve" not in text and 'check(\\"gsolve\\")' not in text
 
@@ -204,7 +204,7 @@ def hat(n=256):
 
 
 @pytest.mark.grading
-def test_an_autograder_holds_hdrlab_its_checks_and_scripts_that_run(zipped):
+def test_an_autograder_contains_hdrlab_its_checks_and_runnable_scripts(zipped):
     folder, modes = zipped
     names = set(modes)
     assert modes["run_autograder"] & 0o111 and modes["setup.sh"] & 0o111
@@ -246,7 +246,7 @@ def handed_in(folder, tmp_path, name, text):
 
 
 @pytest.mark.grading
-def test_an_autograder_grades_with_the_files_of_its_zip_alone(zipped, tmp_path):
+def test_an_autograder_needs_only_the_files_of_its_zip(zipped, tmp_path):
     found = run(handed_in(zipped[0], tmp_path, "hw2.py", RIGHT))
     of = {
         task: [one for one in found["tests"] if one["name"].startswith(f"{task}:")]
@@ -264,25 +264,25 @@ def test_an_autograder_grades_with_the_files_of_its_zip_alone(zipped, tmp_path):
 
 
 @pytest.mark.grading
-def test_an_autograder_that_cannot_grade_says_so_and_gives_nothing(zipped, tmp_path):
+def test_an_autograder_that_cannot_grade_reports_why_and_gives_no_points(zipped, tmp_path):
     found = run(handed_in(zipped[0], tmp_path, "hw2.txt", RIGHT))
     assert found["score"] == 0 and "expected a notebook" in found["output"]
 
 
-def test_a_link_is_not_handed_in(tmp_path):
+def test_a_symbolic_link_is_not_accepted_as_a_submission(tmp_path):
     (tmp_path / "hw2.ipynb").symlink_to("/etc/hostname")
     with pytest.raises(ValueError, match="notebook"):
         autograder.handed_in(tmp_path)
 
 
-def test_two_notebooks_are_one_too_many(tmp_path):
+def test_two_notebooks_in_a_submission_are_an_error(tmp_path):
     for name in ("a.ipynb", "b.ipynb"):
         (tmp_path / name).write_text("{}")
     with pytest.raises(ValueError, match=".ipynb file"):
         autograder.handed_in(tmp_path)
 
 
-def test_a_notebook_in_capitals_is_handed_in_and_odd_names_are_told_as_harmless_text(tmp_path):
+def test_file_names_in_capitals_are_accepted_and_control_characters_are_not_printed(tmp_path):
     (tmp_path / "submission").mkdir()
     (tmp_path / "submission" / "HW2.IPYNB").write_text("{}")
     assert autograder.handed_in(tmp_path / "submission").name == "HW2.IPYNB"

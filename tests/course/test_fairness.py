@@ -37,7 +37,7 @@ WAYS = sorted(
 
 
 @pytest.mark.parametrize("path", WAYS, ids=lambda path: f"{path.parent.name}-{path.stem}")
-def test_a_right_answer_from_the_sheet_keeps_every_promise(path):
+def test_a_correct_solution_written_from_the_assignment_passes_every_check(path):
     share, said = asked(path)
     assert share == 1, {name: str(error) for name, error in said.items() if error}
 
@@ -56,12 +56,12 @@ def test_numbers_in_another_form_are_accepted_and_noted(came, noted):
 
 
 @pytest.mark.parametrize("came", [[1.0, [2.0]], [1.0, "2"], [[1.0, 2.0, 3.0, 4.0]], []])
-def test_what_is_no_such_list_is_not(came):
+def test_other_lists_are_not_accepted(came):
     with pytest.raises(compare.AnswerMismatch):
         compare.same(came, [1, 2], 0)
 
 
-def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
+def test_the_fairness_benchmark_gives_the_same_points_and_mistake_as_check():
     """Both have a sandbox, and one of them pytest."""
     fairness = pytest.importorskip("benchmarks.fairness")
     way, whole_sheet, task = (

@@ -83,9 +83,7 @@ NARROW = [
         ("supervisor", ("computing", "reading", "supervising"), []),
     ],
 )
-def test_a_filter_allows_what_is_listed_that_this_processor_has_and_refuses_all_else(
-    name, rooms, more, seccomp
-):
+def test_a_filter_allows_only_the_listed_system_calls(name, rooms, more, seccomp):
     assert filters.program(name) == b"a program"
     (made,) = Rules.made
     assert made.default == ("errno", errno.EPERM) and made.rules == [*numbers(*rooms), *more]
@@ -99,14 +97,14 @@ def test_a_filter_allows_what_is_listed_that_this_processor_has_and_refuses_all_
         ("0 1000 1\n60000 100000 800\n", [range(1), range(60000, 60800)]),
     ],
 )
-def test_the_users_that_there_are_stand_in_the_map_of_the_namespace(text, mapped, monkeypatch):
+def test_mapped_users_are_read_from_the_uid_map(text, mapped, monkeypatch):
     monkeypatch.setattr(
         Path, "read_text", lambda self: text if str(self) == "/proc/self/uid_map" else ""
     )
     assert users._mapped_users() == mapped
 
 
-def test_without_a_map_there_are_no_users(monkeypatch):
+def test_without_a_uid_map_no_user_can_be_leased(monkeypatch):
     def missing(self):
         raise FileNotFoundError
 
@@ -136,7 +134,7 @@ class Held:
         self.closed = True
 
 
-def test_a_lease_is_the_first_number_of_the_namespace_that_nobody_holds(monkeypatch):
+def test_a_lease_takes_the_first_free_user_id_of_the_namespace(monkeypatch):
     monkeypatch.setattr(users, "socket", SimpleNamespace(socket=Held, AF_UNIX=socket.AF_UNIX))
     monkeypatch.setattr(Held, "taken", {"\0hdrlab-user-60708"})
     monkeypatch.setattr(Held, "made", [])

@@ -56,16 +56,14 @@ def followed(monkeypatch, tmp_path):
     return followed
 
 
-def test_lines_come_as_they_are_whole(followed, tmp_path):
+def test_only_complete_lines_are_yielded(followed, tmp_path):
     told = followed(['{"a": 1}\n{"b"', ": 2}", '\n{"c": 3}\n'])
     assert next(told.lines) == {"a": 1} and not told.slept
     assert next(told.lines) == {"b": 2} and told.slept == [0.02] * 2
     assert list(told.lines) == [{"c": 3}] and told.done == ["kill", "wait"]
 
 
-def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(
-    followed, tmp_path, monkeypatch
-):
+def test_pytest_starts_in_an_empty_folder_with_a_clean_environment(followed, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTEST_ADDOPTS", "-x")
     monkeypatch.setenv("OF_MINE", "1")
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
@@ -104,7 +102,7 @@ def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(
         (5, "", "the checks could not be run: "),
     ],
 )
-def test_its_end_means_something_by_its_code(code, said, error, followed):
+def test_the_exit_code_decides_whether_the_run_was_an_error(code, said, error, followed):
     told = followed([json.dumps({"a": 1}) + "\n"], code, said)
     assert next(told.lines) == {"a": 1}
     if error is None:
@@ -114,7 +112,7 @@ def test_its_end_means_something_by_its_code(code, said, error, followed):
             next(told.lines)
 
 
-def test_when_its_time_is_over_it_is_ended_and_what_it_wrote_counts(followed):
+def test_after_the_timeout_the_process_is_killed_and_its_results_count(followed):
     told = followed(['{"a": 1}\n'] + [""] * 999, 7, patience=0.99)
     assert (
         list(told.lines) == [{"a": 1}]
@@ -123,7 +121,7 @@ def test_when_its_time_is_over_it_is_ended_and_what_it_wrote_counts(followed):
     )
 
 
-def test_who_listens_no_more_ends_it(followed):
+def test_closing_the_iterator_kills_the_process(followed):
     told = followed(['{"a": 1}\n'] + [""] * 9, 7)
     next(told.lines)
     told.lines.close()

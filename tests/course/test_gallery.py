@@ -22,7 +22,7 @@ some_ballots = st.lists(st.frozensets(st.sampled_from(IDS), max_size=3), max_siz
 
 
 @given(some_ballots)
-def test_places_count_who_has_more_votes_and_ties_share_one(cast):
+def test_places_follow_votes_and_ties_share_a_place(cast):
     rows = ballots.standings(IDS, cast)
     assert sorted(row.artifact for row in rows) == IDS
     for row in rows:
@@ -32,7 +32,7 @@ def test_places_count_who_has_more_votes_and_ties_share_one(cast):
 
 
 @given(some_ballots, st.randoms(use_true_random=False))
-def test_neither_the_order_of_ballots_nor_of_artifacts_changes_the_places(cast, random):
+def test_the_order_of_ballots_and_artifacts_does_not_change_places(cast, random):
     shuffled, ids = list(cast), list(IDS)
     random.shuffle(shuffled)
     random.shuffle(ids)
@@ -48,7 +48,7 @@ def test_another_vote_never_lowers_a_place(cast, one):
     assert after[one] <= before[one]
 
 
-def test_voters_see_the_wall_in_orders_of_their_own():
+def test_each_voter_sees_the_artifacts_in_a_different_order():
     orders = [tuple(tokens.shuffled(IDS, b"secret", f"voter {k}")) for k in range(200)]
     assert len(set(orders)) > 120  # of 720
     first = [sum(order[0] == one for order in orders) for one in IDS]
@@ -92,7 +92,7 @@ def test_nobody_has_more_votes_than_the_gallery_gives(tmp_path):
     assert refuse_ballot(tmp_path, lambda artifacts: list(artifacts.values())) == {"eve"}
 
 
-def test_a_new_title_keeps_the_votes_and_a_new_picture_begins_without(tmp_path):
+def test_a_new_title_keeps_the_votes_and_a_new_image_starts_with_none(tmp_path):
     room = small.make(tmp_path)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
@@ -106,7 +106,7 @@ def test_a_new_title_keeps_the_votes_and_a_new_picture_begins_without(tmp_path):
         assert len(store.artifacts(db)) == 4
 
 
-def test_the_gradebook_says_who_voted_and_not_for_what(tmp_path):
+def test_the_gradebook_lists_who_voted_but_not_the_votes(tmp_path):
     room = small.make(tmp_path)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
@@ -168,9 +168,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
 
 
 @pytest.mark.parametrize("version", [0, store.VERSION - 1, store.VERSION + 1])
-def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(
-    tmp_path, hdrlab, version
-):
+def test_a_gallery_of_another_version_is_refused_with_a_remedy(tmp_path, hdrlab, version):
     hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00")
     with closing(store.connect(tmp_path / "g")) as db:
         db.execute(f"PRAGMA user_version = {version}")
@@ -186,7 +184,7 @@ def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(
 
 @pytest.mark.grading
 @served
-def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path):
+def test_concurrent_voters_lose_no_ballot_and_none_counts_twice(tmp_path):
     from benchmarks import gallery as bench
 
     found = bench.load(tmp_path, "apart", 24, within=1.0, changes=2)
@@ -194,7 +192,7 @@ def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path)
     assert found["voters"] == 24
 
 
-def test_rows_of_the_benchmark_write_into_folders_of_their_own(tmp_path, monkeypatch):
+def test_gallery_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
     benchmark = pytest.importorskip("benchmarks.gallery", reason="the benchmarks are not installed")
     folders = []
     monkeypatch.setattr(
@@ -220,7 +218,7 @@ def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
 @pytest.mark.skipif(
     not Path("/proc/self/fd").is_dir(), reason="counts the descriptors of a server in /proc"
 )
-def test_voters_are_answered_while_others_hold_all_places_with_half_requests(tmp_path):
+def test_voters_are_served_while_incomplete_requests_hold_all_connections(tmp_path):
     from benchmarks import gallery as bench
 
     found = bench.load(tmp_path, "apart", 12, within=0.5, changes=1, slow=200, descriptors=400)

@@ -341,14 +341,14 @@ def test_a_link_as_an_artifact(tmp_path):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
 @pytest.mark.parametrize("kind", ["link", "pipe"])
 @pytest.mark.parametrize("ending", [".png", ".zip"])
-def test_what_is_no_plain_file_is_refused_before_it_is_opened(tmp_path, kind, ending):
+def test_links_and_pipes_are_refused_before_they_are_opened(tmp_path, kind, ending):
     odd = tmp_path / f"ann{ending}"
     os.mkfifo(odd) if kind == "pipe" else odd.symlink_to(handed_in(tmp_path / "other.zip"))
     with pytest.raises(ValueError, match="plain file"), collect.entry(odd, ROSTER):
         pass
 
 
-def test_of_a_text_beside_a_picture_only_the_beginning_is_read_and_no_link_is_followed(tmp_path):
+def test_only_the_start_of_a_caption_file_is_read_and_links_are_not_followed(tmp_path):
     small.picture(tmp_path / "ann.png")
     with open(tmp_path / "ann.txt", "w") as file:
         file.write("Dusk\nSeven frames.")
@@ -395,7 +395,7 @@ def test_anothers_artifact(tmp_path, students, name):
 @pytest.mark.parametrize(
     "name", ["submission.zip", "nobody/submission.zip", "anne.zip", "project_ann.zip"]
 )
-def test_an_artifact_of_nobody_is_refused_whoever_it_names(tmp_path, name):
+def test_an_artifact_without_an_owner_in_the_roster_is_refused(tmp_path, name):
     (tmp_path / "in" / name).parent.mkdir(parents=True)
     handed_in(tmp_path / "in" / name)
     ((path, owner),) = collect.sources([tmp_path / "in"])
@@ -582,7 +582,7 @@ def answer(connection):
     return came
 
 
-def test_when_it_is_full_the_oldest_half_request_makes_room(monkeypatch, caplog):
+def test_a_full_server_closes_the_oldest_incomplete_request(monkeypatch, caplog):
     monkeypatch.setattr(serve, "PATIENCE", 600.0)
     with served(8) as port:
         waiting = [ask(port, b"GET / HT") for _ in range(8)]
@@ -620,7 +620,7 @@ def test_a_full_log(tmp_path):
         root.setLevel(level)
 
 
-def test_connections_leave_descriptors_for_everything_else(monkeypatch):
+def test_the_connection_limit_leaves_file_descriptors_for_the_rest(monkeypatch):
     resource = pytest.importorskip("resource")
     limits = [(1024, 1024), (256, 4096), (20_000, 20_000), (1024, resource.RLIM_INFINITY)]
     for soft, hard in limits:
@@ -767,7 +767,7 @@ def test_formulas_in_a_table(tmp_path):
     assert "'=cmd|" in text and "'@SUM(A1)" in text and not re.search(r"(^|,)\"?[=@]", text, re.M)
 
 
-def test_what_is_being_written_when_the_gallery_ends_is_written_though_whoever_asked_has_gone(room):
+def test_a_write_in_progress_is_finished_when_the_gallery_stops(room):
     begun = threading.Event()
 
     def slowly(db):

@@ -49,7 +49,7 @@ JOB = GradingJob("t", "file", "key")
         ([("killed", ""), ("killed", ""), ("", "killed")], 3, None),
     ],
 )
-def test_a_function_that_was_killed_is_asked_again_and_believed_when_it_is_so_each_time(
+def test_a_killed_submission_is_graded_again_until_the_result_repeats(
     tries, tried, counts, monkeypatch
 ):
     made, asked = grader(monkeypatch, *(result("x", *kinds) for kinds in tries))
@@ -62,7 +62,7 @@ def test_a_function_that_was_killed_is_asked_again_and_believed_when_it_is_so_ea
 
 
 @pytest.mark.parametrize(("secret", "student"), [("", ""), ("s", "t")])
-def test_inputs_are_a_students_own_where_there_is_a_secret_and_hidden_checks_are_laid_beside(
+def test_a_secret_gives_each_student_their_own_inputs_and_hidden_checks_are_included(
     secret, student, monkeypatch
 ):
     files = [("test_a.py", b"1"), ("data/b/x.npy", b"2"), ("data/b/y.npy", b"3")]
@@ -74,7 +74,7 @@ def test_inputs_are_a_students_own_where_there_is_a_secret_and_hidden_checks_are
     assert asked == [("file", "", {})]
 
 
-def test_a_machine_without_the_tier_says_so_once(monkeypatch):
+def test_the_tier_of_a_machine_is_checked_once(monkeypatch):
     asked = []
     monkeypatch.setattr(
         run.doctor,
@@ -93,7 +93,7 @@ def test_a_machine_without_the_tier_says_so_once(monkeypatch):
     assert asked == ["some", "none"]
 
 
-def test_hidden_checks_travel_by_name_up_to_their_bound(tmp_path, monkeypatch):
+def test_hidden_checks_are_read_up_to_the_size_limit(tmp_path, monkeypatch):
     assert run.read_hidden_checks(None) == []
     for name in ("b.py", "a/c.npy", "a/__pycache__/c.pyc"):
         (tmp_path / "h" / name).parent.mkdir(parents=True, exist_ok=True)

@@ -56,7 +56,7 @@ def graded(tmp_path):
     return graded
 
 
-def test_the_library_has_all_points_and_the_blank_handout_none(tmp_path, graded):
+def test_the_library_earns_all_points_and_a_blank_none(tmp_path, graded):
     blocks = inline.inlined(
         {task.id: task.function for task in of("hw2", "hat", "irradiance").tasks}
     )
@@ -70,7 +70,7 @@ def test_the_library_has_all_points_and_the_blank_handout_none(tmp_path, graded)
     assert "hat is yours to write" in found.checks[0].message
 
 
-def test_points_of_the_plan_are_shared_out_by_those_of_the_checks(graded):
+def test_the_points_of_a_task_are_divided_among_its_checks(graded):
     homework = of("hw2", "hat")
     double = homework._replace(tasks=(homework.tasks[0]._replace(points=7.5),))
     found = graded(RIGHT, double)
@@ -78,7 +78,7 @@ def test_points_of_the_plan_are_shared_out_by_those_of_the_checks(graded):
     assert sum(one.max_points for one in found.checks) == 7.5
 
 
-def test_a_wrong_function_loses_what_it_breaks_and_is_recognised(graded):
+def test_a_wrong_function_loses_points_and_its_mistake_is_recognized(graded):
     wrong = RIGHT.replace("np.minimum(z, n - 1 - z)", "np.abs(z - (n - 1) / 2)")
     found = graded(wrong)
     assert 0 <= found.score < 10
@@ -87,7 +87,7 @@ def test_a_wrong_function_loses_what_it_breaks_and_is_recognised(graded):
     assert broken and all(len(one.hints) == 3 and one.message for one in broken)
 
 
-def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
+def test_a_mismatch_of_curves_is_drawn_with_an_alt_text(graded):
     wrong = solutions.texts(of("hw2", "gsolve"), ["gsolve_smoothness_not_weighted"])["gsolve"]
     found = graded(wrong, of("hw2", "gsolve"))
     drawn = [one.drawing for one in found.checks if one.drawing.frames]
@@ -100,7 +100,7 @@ def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
     )
 
 
-def test_a_difference_of_pictures_is_drawn_three_times(graded):
+def test_a_mismatch_of_images_is_drawn_as_expected_yours_and_difference(graded):
     wrong = "import numpy as np\ndef shrink(Y):\n"
     wrong += "    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
     found = graded(wrong, of("hw1", "shrink"))
@@ -121,7 +121,7 @@ def test_a_difference_of_pictures_is_drawn_three_times(graded):
         ("return np.ones(3)", "expected shape"),
     ],
 )
-def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, said):
+def test_a_function_without_a_valid_answer_fails_with_a_plain_message(graded, body, said):
     text = f"import numpy as np\ndef hat(n=256):\n    {body}\n"
     found = graded(text, conditions=replace(PRACTICE, timeout=1.0))
     assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[
@@ -129,7 +129,7 @@ def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, sai
     ].message
 
 
-def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_other_task(graded):
+def test_a_timeout_skips_the_rest_of_its_task_only(graded):
     endless = RIGHT + "def irradiance(*given):\n    while True: pass\n"
     found = graded(endless, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=1.0))
     first, *others = found.of("irradiance")
@@ -140,26 +140,26 @@ def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_
 
 
 @pytest.mark.parametrize("line", ["import cv2", "import hdrlab", "hat.weight = undefined"])
-def test_what_keeps_the_whole_task_from_running_is_told_once(graded, line):
+def test_an_error_that_breaks_every_check_is_reported_once(graded, line):
     found = graded(RIGHT.replace("    z = ", f"    {line}\n    z = "))
     first, *others = found.checks
     assert found.score == 0 and first.message and {one.follows for one in others} == {first.promise}
 
 
-def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
+def test_a_crash_fails_one_check_only(graded):
     dies_at_large = RIGHT.replace("    z = ", "    if n > 4000: import os; os._exit(0)\n    z = ")
     found = graded(dies_at_large)
     assert [one.outcome for one in found.checks].count("no answer") == 1 and 5 < found.score < 10
 
 
-def test_lambda_read_as_1_costs_half_and_is_told_once(graded):
+def test_ignoring_lambda_costs_half_the_points_and_is_reported_once(graded):
     wrong = solutions.texts(of("hw2", "gsolve"), ["gsolve_lambda_read_as_1"])["gsolve"]
     found = graded(wrong, of("hw2", "gsolve"), replace(PRACTICE, draw=False))
     assert 15 <= found.score < 20
     assert [one.follows for one in found.checks if one.outcome != "holds"].count("") == 1
 
 
-def test_a_missing_task_costs_its_own_points_alone(graded):
+def test_a_missing_task_costs_only_its_own_points(graded):
     found = graded(RIGHT, of("hw2", "hat", "irradiance"))
     assert found.score == 10 and any(
         "irradiance was not found" in problem for problem in found.problems
@@ -167,21 +167,21 @@ def test_a_missing_task_costs_its_own_points_alone(graded):
 
 
 @pytest.mark.parametrize("answer", ["[[1, 2], [3], 4]", "[[1], [[2]]]", "{'a': [1, [2]]}"])
-def test_a_ragged_answer_of_one_task_loses_no_other_tasks_sentence(graded, answer):
+def test_a_ragged_answer_does_not_affect_the_mistakes_of_other_tasks(graded, answer):
     wrong = RIGHT.replace("np.minimum(z, n - 1 - z)", "np.abs(z - (n - 1) / 2)")
     ragged = f"def irradiance(*given, **named):\n    return {answer}\n"
     found = graded(wrong + ragged, of("hw2", "hat", "irradiance"))
     assert list(found.misconceptions) == ["hat"] and results.points(found.of("irradiance"))[0] == 0
 
 
-def test_a_missing_task_is_said_once(graded):
+def test_a_missing_task_is_reported_once(graded):
     found = graded(RIGHT, of("hw2", "hat", "irradiance"))
     said = feedback.text(found), feedback.page(found)
     assert [text.count("was not found") for text in said] == [1, 1]
     assert not any(one.message for one in found.of("irradiance"))
 
 
-def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_path):
+def test_hidden_checks_count_and_students_see_only_their_outcome(graded, tmp_path):
     hidden = tmp_path / "hidden"
     hidden.mkdir()
     (hidden / "test_hat.py").write_text(
@@ -198,7 +198,7 @@ def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_
     assert "the secret" in feedback.text(found, private=True)
 
 
-def test_grading_again_gives_the_same_bytes_and_another_student_other_inputs(graded):
+def test_grading_is_repeatable_and_each_student_has_their_own_inputs(graded):
     wrong = RIGHT + "\ndef irradiance(Z, t, f, w):\n    return (w[Z] * f[Z]) @ t\n"
     conditions = replace(PRACTICE, student="ada", secret="salt")
     first, again = (graded(wrong, of("hw2", "hat", "irradiance"), conditions) for _ in range(2))
@@ -208,7 +208,7 @@ def test_grading_again_gives_the_same_bytes_and_another_student_other_inputs(gra
     assert other.seed != first.seed and other.score == first.score
 
 
-def test_results_grow_check_by_check(tmp_path):
+def test_results_are_yielded_check_by_check(tmp_path):
     file = tmp_path / "hw2.py"
     file.write_text(RIGHT)
     steps = list(grader.grade_steps(file, of("hw2", "hat"), PRACTICE))
@@ -219,7 +219,7 @@ def test_results_grow_check_by_check(tmp_path):
 @pytest.mark.skipif(
     not Path("/proc/self/environ").exists(), reason="processes are looked for in /proc"
 )
-def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
+def test_stopping_the_grading_leaves_no_files_or_processes(tmp_path, monkeypatch):
     """Neither a file nor a process: a function that never ends is at work at that moment."""
     scratch = tmp_path / "scratch"
     scratch.mkdir()
@@ -237,7 +237,7 @@ def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     assert processes.of(scratch) == [] and list(scratch.iterdir()) == []
 
 
-def test_a_tier_that_cannot_be_had_is_an_error_and_no_other_takes_its_place(graded, monkeypatch):
+def test_an_unavailable_tier_is_an_error_without_a_fallback(graded, monkeypatch):
     def refuse(tier):
         raise Unavailable(f"{tier} cannot be had")
 
@@ -246,7 +246,7 @@ def test_a_tier_that_cannot_be_had_is_an_error_and_no_other_takes_its_place(grad
         graded(RIGHT, conditions=GradingOptions())
 
 
-def test_what_stands_around_has_no_say(graded, tmp_path, monkeypatch):
+def test_pytest_settings_of_the_surroundings_do_not_change_a_score(graded, tmp_path, monkeypatch):
     """Neither a conftest nor options of pytest in this folder or in the environment change a score."""
     (tmp_path / "conftest.py").write_text("raise SystemExit")
     (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --nothing-of-this\n")
@@ -255,7 +255,7 @@ def test_what_stands_around_has_no_say(graded, tmp_path, monkeypatch):
     assert graded(RIGHT).score == 10
 
 
-def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(graded, tmp_path):
+def test_missing_checks_and_a_missing_hidden_folder_are_errors(graded, tmp_path):
     homework = of("hw2", "hat")
     unknown = homework._replace(tasks=(homework.tasks[0]._replace(id="nothing"),))
     with pytest.raises(ValueError, match="checks for hw2"):
@@ -264,14 +264,14 @@ def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(g
         graded(RIGHT, conditions=replace(PRACTICE, hidden=tmp_path / "missing"))
 
 
-def test_what_a_sheet_gives_is_known_to_the_grader():
+def test_the_grader_knows_the_code_that_the_assignment_gives():
     given = reader.given_cells("hw2")
     assert any("class Solution" in cell.text for cell in given) and all(
         cell.given for cell in given
     )
 
 
-def test_a_student_may_use_what_the_sheet_gives(graded):
+def test_students_can_use_the_code_that_the_assignment_gives(graded):
     text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
     start = text.index("class Solution")
     without = text[:start] + text[text.index("\n\ndef ", start) :]
@@ -285,7 +285,7 @@ def test_a_student_may_use_what_the_sheet_gives(graded):
         for name in HOMEWORKS
     ],
 )
-def test_in_a_sandbox_the_library_has_all_points_and_a_blank_none(name, tmp_path):
+def test_in_a_sandbox_the_library_earns_all_points_and_a_blank_none(name, tmp_path):
     try:
         tiers.choose("strict")
     except Unavailable as reason:

@@ -46,7 +46,7 @@ def came(found):
     return {team: one.received for team, one in found.submissions.items()}
 
 
-def test_a_late_file_in_a_folder_does_not_get_the_time_of_the_name_it_bears(find):
+def test_a_file_in_another_students_folder_does_not_get_a_received_time_by_its_name(find):
     found = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
     assert came(found) == {"b05": NOON, "b06": LATE}
     assert any("b06/b05_hw2.ipynb" in note and "not in the table" in note for note in found.notes)
@@ -54,7 +54,7 @@ def test_a_late_file_in_a_folder_does_not_get_the_time_of_the_name_it_bears(find
 
 
 @pytest.mark.parametrize("name", ["b05/hw2.ipynb", "./b05/hw2.ipynb", "b05\\hw2.ipynb"])
-def test_with_a_folder_for_each_student_every_row_can_be_given(find, name):
+def test_received_times_are_found_with_one_folder_per_student(find, name):
     found = find({"b05/hw2.ipynb": "x", "b06/hw2.ipynb": "y"}, {name: NOON, "b06/hw2.ipynb": NOON})
     assert came(found) == {"b05": NOON, "b06": NOON} and found.notes == ()
 
@@ -62,18 +62,18 @@ def test_with_a_folder_for_each_student_every_row_can_be_given(find, name):
 @pytest.mark.parametrize(
     "theirs", ["b05_hw2.ipynb", "B05_hw2.ipynb", "b05.ipynb", "hw2.ipynb", "t1_hw2.ipynb"]
 )
-def test_no_name_in_ones_own_folder_takes_a_row_that_is_anothers(find, theirs):
+def test_a_file_name_cannot_claim_the_received_time_of_another_student(find, theirs):
     found = find({f"b06/{theirs}": "y"}, {theirs: NOON})
     assert came(found) == {"b06": LATE}
     assert any("there is no such file" in note for note in found.notes)
 
 
-def test_a_row_by_bare_name_serves_its_owners_file_in_its_owners_folder(find):
+def test_a_received_time_without_a_folder_applies_to_the_file_in_the_folder_of_its_owner(find):
     found = find({"b05/b05_hw2.ipynb": "x"}, {"b05_hw2.ipynb": NOON})
     assert came(found) == {"b05": NOON} and found.notes == ()
 
 
-def test_a_row_without_a_file_and_a_file_without_a_row_are_noted(find):
+def test_received_times_without_a_file_and_files_without_a_time_are_noted(find):
     found = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
     assert any(note.startswith("b02.py") and "no such file" in note for note in found.notes)
     assert (
@@ -82,16 +82,16 @@ def test_a_row_without_a_file_and_a_file_without_a_row_are_noted(find):
     )
 
 
-def test_without_a_table_of_times_nothing_is_said_of_it(find):
+def test_without_a_table_of_received_times_there_is_no_note(find):
     assert find({"b05.py": "x"}).notes == ()
 
 
-def test_a_file_with_two_rows_is_refused(find):
+def test_two_received_times_for_one_file_are_an_error(find):
     with pytest.raises(ValueError, match="each file once"):
         find({"b05.py": "x"}, {"b05.py": NOON, "./b05.py": LATE})
 
 
-def test_a_composed_name_finds_its_row_in_the_other_form(find):
+def test_file_names_match_in_any_unicode_normalization(find):
     roster = Roster((Student("zo\u00e9", "Z", "zo\u00e9"),))
     found = find({"zoe\u0301_hw2.py": "x"}, {"zo\u00e9_hw2.py": NOON}, roster)
     assert came(found) == {"zo\u00e9": NOON}
@@ -99,14 +99,14 @@ def test_a_composed_name_finds_its_row_in_the_other_form(find):
 
 @pytest.mark.parametrize("name", ["b05", "B05", "\uff22\uff10\uff15"])
 @pytest.mark.parametrize("rest", ["_hw2.py", "-b06.py", ".py", " (1).py", "/b06.py", "/t1_hw2.py"])
-def test_a_file_is_of_the_name_that_it_begins_with_or_of_its_folder(find, name, rest):
+def test_a_file_belongs_to_the_student_that_its_name_or_folder_starts_with(find, name, rest):
     assert set(find({f"{name}{rest}": "x"}).submissions) == {"b05"}
 
 
 @pytest.mark.parametrize(
     "name", ["b055.py", "b0.py", "xb05.py", "\u200bb05.py", "b05\u0301.py", "nobody/b05.py"]
 )
-def test_a_name_that_is_not_quite_a_students_is_nobodys(find, name):
+def test_a_name_that_only_resembles_a_student_is_not_assigned(find, name):
     found = find({name: "x"})
     assert found.submissions == {} and "no student or team" in found.notes[0]
 
@@ -129,7 +129,7 @@ def awkward(kind, path):
 
 
 @pytest.mark.parametrize("kind", ["link", "pipe", "folder", "sparse", "document"])
-def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, kind):
+def test_an_ungradable_file_is_noted_and_other_submissions_are_found(find, tmp_path, kind):
     if kind == "pipe" and not hasattr(os, "mkfifo"):
         pytest.skip("this system has no named pipes")
     odd = tmp_path / "in" / "b05" / ("hw2.docx" if kind == "document" else "hw2.py")
@@ -140,7 +140,7 @@ def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, ki
     assert found.refused["b05"] == found.notes[0] and found.notes[0].startswith("b05/hw2")
 
 
-def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
+def test_a_folder_with_too_many_files_gives_one_note(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
     for k in range(class_folder.MAX_FILES_PER_FOLDER + 1):
         (tmp_path / "in" / "b05" / f"{k}.py").touch()
@@ -149,7 +149,7 @@ def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
     assert set(found.submissions) == {"b06"} and found.refused == {"b05": found.notes[0]}
 
 
-def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
+def test_an_unreadable_file_is_noted(find, monkeypatch):
     real = os.access
     monkeypatch.setattr(
         os, "access", lambda path, asked: "b05" not in str(path) and real(path, asked)
@@ -160,7 +160,7 @@ def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
     ) == {"b06"}
 
 
-def test_of_many_files_the_one_that_counts_is_read_alone(find, monkeypatch):
+def test_only_the_file_that_counts_is_read(find, monkeypatch):
     read = []
     monkeypatch.setattr(class_folder, "_digest", lambda path: read.append(path.name) or "digest")
     find({f"b05/{k}.py": "x" for k in range(9)} | {"b06.py": "y"})
@@ -168,14 +168,14 @@ def test_of_many_files_the_one_that_counts_is_read_alone(find, monkeypatch):
 
 
 @pytest.mark.parametrize("seconds", [316_000_000_000, 1e30, -1e15])
-def test_a_time_that_no_calendar_has_is_noted(seconds, monkeypatch):
+def test_an_impossible_modification_time_is_noted(seconds, monkeypatch):
     status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
     monkeypatch.setattr(os, "access", lambda *asked: True)
     odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
     assert "before the year 10000" in class_folder.find_problem(odd)
 
 
-def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):
+def test_an_ungradable_file_does_not_hide_an_earlier_valid_one(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
     awkward("link", tmp_path / "in" / "b05" / "later.py")
     found = find({"b05/hw2.py": "x"})

@@ -64,7 +64,7 @@ def bare(notebook):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_assignment_is_the_one_that_its_source_makes(made, name):
+def test_the_committed_assignment_is_up_to_date(made, name):
     file = materials.folder("assignments") / f"{name}.ipynb"
     assert handouts.to_text(made(name).assignment) == file.read_text(encoding="utf8"), (
         "hdrlab course build"
@@ -72,14 +72,14 @@ def test_the_assignment_is_the_one_that_its_source_makes(made, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_solution_is_the_one_that_its_source_makes(made, name):
+def test_the_committed_solution_is_up_to_date(made, name):
     assert bare(made(name).solution) == bare(committed(SOURCES, name)), (
         "hdrlab course build --solutions solutions"
     )
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_solution_was_run_and_keeps_every_promise(name):
+def test_the_committed_solution_was_run_and_passes_every_check(name):
     outputs = [
         output for cell in committed(SOURCES, name)["cells"] for output in cell.get("outputs", ())
     ]
@@ -96,14 +96,14 @@ def test_the_solution_was_run_and_keeps_every_promise(name):
     assert f"{name}: {whole} of {whole} points" in checked[-1]
 
 
-def test_tasks_are_worked_in_nineteen_lines_each_on_the_average():
+def test_solutions_have_nineteen_lines_per_task_on_average():
     cells = [cell for name in NAMES for cell in committed(SOURCES, name)["cells"]]
     worked = [cell["source"] for cell in cells if "task" in cell["metadata"].get("hdrlab", {})]
     assert len(worked) == 54 and sum(len("".join(one).splitlines()) for one in worked) <= 19 * 54
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_picture_of_a_solution_has_an_alt_text(name):
+def test_every_figure_of_a_solution_has_an_alt_text(name):
     pages = [
         "".join(output.get("data", {}).get("text/html", ""))
         for cell in committed(SOURCES, name)["cells"]
@@ -114,7 +114,7 @@ def test_every_picture_of_a_solution_has_an_alt_text(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_assignment_gives_no_solution_away(made, name):
+def test_an_assignment_contains_no_solution(made, name):
     """A task's cell has the signature, the docstring and the stub; nothing else of the function."""
     for cell in made(name).assignment["cells"]:
         task = cell["metadata"].get("hdrlab", {}).get("task")
@@ -125,7 +125,7 @@ def test_an_assignment_gives_no_solution_away(made, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name):
+def test_every_task_has_a_cell_a_check_and_its_points(made, name):
     cells = {cell["id"]: cell for cell in made(name).assignment["cells"]}
     prose = "\n".join(cell["source"] for cell in cells.values() if cell["cell_type"] == "markdown")
     for task in PLAN.homeworks[name].tasks:
@@ -139,7 +139,7 @@ def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name
     assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
 
 
-def test_what_the_plan_leaves_out_is_left_out_with_its_prose_and_its_pictures():
+def test_a_task_that_the_plan_leaves_out_disappears_with_its_prose_and_figures():
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     hw2 = PLAN.homeworks["hw2"]
     few = hw2._replace(
@@ -155,7 +155,7 @@ def test_what_the_plan_leaves_out_is_left_out_with_its_prose_and_its_pictures():
     )
 
 
-def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
+def test_check_uses_the_points_of_the_assignment(made, monkeypatch):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     hw2 = PLAN.homeworks["hw2"]
     ours = hw2._replace(tasks=(Task("hat", "core.weights.hat", 20.0),))
@@ -172,7 +172,7 @@ def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
     assert notebook.find_tasks("hw2")[0].points == 100
 
 
-def test_a_sheet_of_choices_says_how_many_points_count_and_check_counts_no_more(monkeypatch):
+def test_an_assignment_with_a_choice_limits_the_points_that_count(monkeypatch):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     hw4 = PLAN.homeworks["hw4"]
     sheet = handouts.handout((SOURCES / "hw4.py").read_text(encoding="utf8"), hw4).assignment
@@ -187,7 +187,7 @@ def test_a_sheet_of_choices_says_how_many_points_count_and_check_counts_no_more(
     assert notebook.find_tasks("hw4")[0] == hw4 and hw4.points == 100
 
 
-def test_any_two_or_three_of_the_four_papers_make_homework_4_whole():
+def test_two_or_three_of_the_four_papers_give_all_points_of_homework_4():
     hw4 = PLAN.homeworks["hw4"]
     papers = Counter()
     for task in hw4.tasks:
@@ -220,7 +220,7 @@ def test_an_assignment_marks_the_required_tasks(made):
         assert sum(head.endswith(" points, required)") for head in heads) == 1, name
 
 
-def test_the_projects_sheet_says_what_earns_how_many_points_by_hand(made):
+def test_the_project_assignment_contains_the_rubric(made):
     text = "".join(made("project").assignment["cells"][0]["source"])
     for one in PLAN.homeworks["project"].by_hand:
         assert f"- **{one.title}** ({one.points:g} points)\n  - {one.points:g}: " in text
@@ -231,7 +231,7 @@ def test_the_projects_sheet_says_what_earns_how_many_points_by_hand(made):
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
-def test_a_sheet_of_one_task_has_no_cell_that_needs_another(task):
+def test_an_assignment_with_one_task_runs_without_the_others(task):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     name = next(one for one in NAMES if task in PLAN.homeworks[one].tasks)
     alone = PLAN.homeworks[name]._replace(tasks=(task,))
@@ -245,7 +245,7 @@ def test_a_sheet_of_one_task_has_no_cell_that_needs_another(task):
 
 
 @pytest.mark.notebooks
-def test_building_writes_both_and_nothing_else(tmp_path):
+def test_building_writes_the_assignment_and_the_solution_only(tmp_path):
     """In a process of its own: notebooks are run with asyncio, and a browser may hold this one's loop."""
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     (tmp_path / "plan.toml").write_text(SHORT)

@@ -55,7 +55,7 @@ def strict():
 
 
 @pytest.mark.parametrize("name", hostile.CODE)
-def test_a_function_costs_its_call_and_no_more(name, strict):
+def test_a_hostile_function_fails_only_its_own_call(name, strict):
     kinds = KINDS.get(name, ())
     late = kinds == ("late",)
     patience = 0.3 if late else 3.0 if "late" in kinds else 20.0
@@ -73,7 +73,7 @@ def test_a_function_costs_its_call_and_no_more(name, strict):
     assert kind in KINDS.get(name, (False, True))
 
 
-def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict):
+def test_time_limits_of_a_check_and_of_a_submission_are_reported(strict):
     source = "import time\ndef hat(n):\n    time.sleep(0.08)\n    return n\n"
     said = []
     with Subject({"hat": source}, strict, 0.1) as subject:
@@ -88,7 +88,7 @@ def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict
     assert said[-1] == "hat: the 2 s for a whole submission are used up"
 
 
-def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
+def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 0.3) as subject:
         subject._session.cpu_seconds_left = 0.1
         said = []
@@ -106,7 +106,7 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
     assert said[1] == "hat: the 1.2 s of processor time for a whole submission are used up"
 
 
-def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):
+def test_a_process_at_its_processor_limit_counts_as_late(strict):
     with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 20.0) as subject:
         subject._session.cpu_seconds_left = 0.5
         with pytest.raises(NoAnswer, match="hat took longer than 1 s of processor time") as raised:
@@ -114,7 +114,7 @@ def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_kille
         assert raised.value.kind == "late"
 
 
-def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_ends_itself(strict):
+def test_a_killed_process_is_distinguished_from_one_that_exits(strict):
     with Subject({"hat": hostile.CODE["ends by itself"]}, strict, 5.0) as subject:
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
@@ -142,7 +142,7 @@ def _silent(running):
     return check
 
 
-def test_the_words_of_the_grader_in_an_exception_buy_no_second_try(tmp_path, monkeypatch):
+def test_an_exception_that_imitates_the_grader_gets_no_second_try(tmp_path, monkeypatch):
     tries = []
 
     def graded(path, homework, conditions):
@@ -170,7 +170,7 @@ def shown(text):
 
 
 @pytest.mark.parametrize("name", hostile.TEXTS)
-def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, strict, tmp_path):
+def test_printed_text_is_escaped_in_every_format(name, strict, tmp_path):
     with Subject({"hat": hostile.TEXTS[name]}, strict, 10.0) as subject:
         message = ""
         try:
@@ -190,7 +190,7 @@ def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, s
 
 
 @pytest.mark.parametrize("name", hostile.NASTY)
-def test_the_one_gate_takes_out_what_escaping_does_not_mend(name):
+def test_sanitizing_removes_what_escaping_cannot(name):
     text = hostile.NASTY[name]
     for once in (
         sanitize_text(text, 4000),
@@ -202,7 +202,7 @@ def test_the_one_gate_takes_out_what_escaping_does_not_mend(name):
     assert len(sanitize_line(text * 100, 80)) <= 80
 
 
-def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path, monkeypatch):
+def test_an_error_while_writing_feedback_is_a_note_of_that_student(tmp_path, monkeypatch):
     monkeypatch.setattr(feedback, "page", lambda _: "\ud800")
     (tmp_path / "b1.json").write_bytes(results.to_json(result()))
     done = classroom.write_feedback(
@@ -218,7 +218,7 @@ def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path,
     assert "its feedback could not be written" in done.problem
 
 
-def test_values_outside_of_arrays_are_counted_on_both_sides():
+def test_the_channel_limits_values_outside_arrays_on_both_sides():
     ours, theirs = socket.socketpair()
     with ours, theirs:
         with pytest.raises(

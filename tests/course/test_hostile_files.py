@@ -45,7 +45,7 @@ def spent():
 
 
 @pytest.mark.parametrize("name", hostile.FILES)
-def test_a_file_that_is_hard_to_read_costs_three_seconds_at_most_and_is_told(name, tmp_path):
+def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
     ending, made = hostile.FILES[name]
     file = tmp_path / f"hat{ending}"
     file.write_bytes(made())
@@ -88,7 +88,7 @@ RIGHT = {  # an honest file, as its author's editor has saved it
 
 
 @pytest.mark.parametrize("name", RIGHT)
-def test_an_honest_file_is_read_as_its_author_meant_it(name, tmp_path):
+def test_an_unusual_but_valid_file_is_read_correctly(name, tmp_path):
     ending, data = RIGHT[name]
     (tmp_path / f"hw2{ending}").write_bytes(data)
     found = reader.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
@@ -109,7 +109,7 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
 
 
 @pytest.mark.quick
-def test_a_reader_that_something_kills_does_not_blame_the_file(tmp_path, monkeypatch):
+def test_a_killed_reader_is_an_error_and_not_the_fault_of_the_file(tmp_path, monkeypatch):
     monkeypatch.setattr(reader, "_read_as_json", _killed)
     (tmp_path / "hw2.py").write_text(GOOD)
     with pytest.raises(ValueError, match="could not be read"):
@@ -121,7 +121,7 @@ def _killed(order):
 
 
 @pytest.mark.quick
-def test_a_reader_that_is_killed_from_outside_is_started_again(tmp_path, monkeypatch):
+def test_a_killed_reader_is_restarted(tmp_path, monkeypatch):
     (tmp_path / "hw2.py").write_text(GOOD)
     monkeypatch.setattr(reader, "_read_as_json", _killed_twice)
     assert set(reader.read(tmp_path / "hw2.py", "hw2", ["hat"]).sources) == {"hat"}
@@ -143,7 +143,7 @@ ROSTER = Roster((Student("b1", "Ada", "b1"), Student("b2", "Bo", "b2")))
 
 
 @pytest.mark.parametrize("name", hostile.ODD)
-def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_path):
+def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
     ending, made = hostile.ODD[name]
     made(tmp_path / f"b1_hw2{ending}")
     (tmp_path / "b2_hw2.py").write_text(GOOD)
@@ -160,7 +160,7 @@ def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_pa
         assert "b1" not in found.submissions and found.refused["b1"] in found.notes
 
 
-def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
+def test_a_readable_file_counts_if_a_later_one_is_refused(tmp_path):
     (tmp_path / "b1_hw2.py").write_text(GOOD)
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
     hostile.sparse(tmp_path / "b1_later.ipynb")
@@ -169,7 +169,7 @@ def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
     assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
 
 
-def test_a_time_beyond_the_year_9999_is_told(tmp_path, monkeypatch):
+def test_a_modification_time_after_the_year_9999_is_noted(tmp_path, monkeypatch):
     (tmp_path / "b1_hw2.py").write_text(GOOD)
     real = Path.lstat(tmp_path / "b1_hw2.py")
     monkeypatch.setattr(Path, "lstat", lambda path: os.stat_result(real[:7] + (0, 1 << 38, 0)))

@@ -33,7 +33,7 @@ def function(name, task, cells, folder):
 
 
 @pytest.mark.parametrize("one", KNOWN, ids=[one.name for one in KNOWN])
-def test_a_mistake_stands_by_itself(one, tmp_path):
+def test_a_known_mistake_runs_without_hdrlab(one, tmp_path):
     cells = solutions.texts(HOMEWORKS[OF_TASK[one.task]], [one.name])
     for text in cells.values():
         for node in ast.walk(ast.parse(text)):
@@ -53,7 +53,7 @@ def small(task):
 
 
 @pytest.mark.parametrize("one", HW2, ids=[one.name for one in HW2])
-def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
+def test_an_inlined_mistake_gives_the_same_answers_as_its_function(one, tmp_path):
     wrong = function(one.name, one.task, solutions.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
     for given, named in small(one.task):
         came, filed = (
@@ -63,7 +63,7 @@ def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
 
 
 @pytest.mark.parametrize("homework", HOMEWORKS.values(), ids=HOMEWORKS)
-def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(homework, tmp_path):
+def test_without_a_mistake_the_submission_is_the_solution(homework, tmp_path):
     cells = solutions.texts(homework)
     for name, text in (
         ("a.ipynb", solutions.notebook(homework, cells)),

@@ -17,7 +17,7 @@ TASKS = [task for homework in plan.read().homeworks.values() for task in homewor
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
-def test_every_task_stands_alone_with_numpy_and_scipy(task):
+def test_every_inlined_task_needs_only_numpy_and_scipy(task):
     block = inline.inlined({task.id: task.function})[task.id]
     scope = {}
     exec(block.text, scope)
@@ -34,7 +34,7 @@ def test_every_task_stands_alone_with_numpy_and_scipy(task):
     assert not set(unknown) - defined - set(dir(__builtins__)) - set(__builtins__)
 
 
-def test_what_is_copied_computes_what_the_library_does():
+def test_inlined_code_computes_the_same_as_the_library():
     scope = {}
     exec(inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text, scope)
     Z, B = np.random.default_rng(0).integers(0, 256, (80, 4)), np.log([1, 2, 4, 8])
@@ -46,14 +46,14 @@ def test_what_is_copied_computes_what_the_library_does():
         assert np.array_equal(ours, copied)
 
 
-def test_what_one_function_brings_is_not_brought_again():
+def test_shared_helpers_are_inlined_once():
     both = inline.inlined({"hat": "core.weights.hat", "gsolve": "response.debevec.gsolve"})
     assert not set(both["hat"].imports) & set(both["gsolve"].imports)
     alone = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"]
     assert len(both["gsolve"].text) < len(alone.text)
 
 
-def test_two_definitions_of_one_name_part_by_their_modules():
+def test_definitions_with_the_same_name_are_kept_apart_by_module():
     """Both operators are called tonemap, and each brings the types it needs."""
     both = inline.inlined({"photo": "tonemap.reinhard.tonemap", "slow": "tonemap.chiu.tonemap"})
     scope = {}
@@ -62,12 +62,12 @@ def test_two_definitions_of_one_name_part_by_their_modules():
     assert not np.allclose(scope["photo"](L), scope["slow"](L))
 
 
-def test_a_function_under_another_name_keeps_its_words():
+def test_a_renamed_function_keeps_its_docstring():
     block = inline.inlined({"tent": "core.weights.hat"})["tent"]
     assert "def tent(" in block.source and "[Debevec97 eq. 4]" in block.source
 
 
-def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
+def test_only_the_first_paragraph_of_a_docstring_is_inlined():
     text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
     first_line = (gsolve.__doc__ or "").splitlines()[0]
     assert first_line in text and "Parameters" not in text and ">>>" not in text
@@ -75,7 +75,7 @@ def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
-def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(task):
+def test_a_solution_has_the_signature_of_its_assignment_without_types_and_guards(task):
     text = inline.inlined({task.id: task.function})[task.id].text
     by_value = text
     for name, value in re.findall(
@@ -97,7 +97,7 @@ def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(
     assert "require_" not in text and "# noqa" not in text and "hdrlab" not in text
 
 
-def test_of_a_function_no_more_is_left_out_than_what_only_raises():
+def test_only_statements_that_just_raise_are_removed():
     kept = ["    if x > 9:", "        raise ValueError(x)", "    else:", "        x = 1"]
     kept += ["    if x > 5:", "        x = 2", "    return x"]
     guard = ["    if x < 0:", "        raise ValueError(x)", "    require_finite(x)"]
@@ -105,7 +105,7 @@ def test_of_a_function_no_more_is_left_out_than_what_only_raises():
     assert text.splitlines() == ["def f(x):", *kept]
 
 
-def test_a_class_that_the_notebook_gives_is_not_copied_again():
+def test_a_class_that_the_notebook_gives_is_not_inlined():
     functions, given = (
         {"gsolve": "response.debevec.gsolve"},
         stubs.classes("response.debevec.gsolve"),
@@ -114,7 +114,7 @@ def test_a_class_that_the_notebook_gives_is_not_copied_again():
     assert "class Solution" not in inline.inlined(functions, given)["gsolve"].text
 
 
-def test_imports_from_one_module_stand_in_one_line():
+def test_imports_from_one_module_are_merged_into_one_line():
     text = inline.inlined({"align": "align.mtb.align"})["align"].text
     modules = [
         line.partition(" import ")[0] for line in text.splitlines() if line.startswith("from ")
@@ -122,7 +122,7 @@ def test_imports_from_one_module_stand_in_one_line():
     assert len(modules) == len(set(modules))
 
 
-def test_a_function_that_is_not_there_is_an_error():
+def test_inlining_a_missing_function_is_an_error():
     with pytest.raises(ValueError, match="function .*library"):
         inline.inlined({"x": "response.debevec.nothing"})
     with pytest.raises(ValueError, match="module .*library"):

@@ -118,14 +118,14 @@ def inlined(tmp_path):
     return inlined
 
 
-def test_a_function_is_copied_with_comments_and_without_types_guards_and_the_rest_of_its_words(
+def test_a_function_is_inlined_with_comments_but_without_types_guards_and_long_docstrings(
     inlined,
 ):
     found = inlined({"other": ("own.py", OWN, "main"), "again2": ("own.py", OWN, "again")})
     assert found == {"other": FIRST, "again2": SECOND}
 
 
-def test_what_is_given_is_not_copied(inlined):
+def test_given_definitions_are_not_inlined(inlined):
     found = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])[
         "main"
     ]
@@ -133,7 +133,7 @@ def test_what_is_given_is_not_copied(inlined):
     assert "def again(x):" in found and "def main(" in found
 
 
-def test_two_helpers_of_one_name_part_by_their_files_and_two_alike_are_one(inlined):
+def test_helpers_with_the_same_name_are_renamed_by_file_and_identical_ones_shared(inlined):
     texts = {
         k: f"def helper():\n    return {k}\n\n\ndef main():\n    return helper()\n" for k in (1, 2)
     }
@@ -151,20 +151,20 @@ def test_two_helpers_of_one_name_part_by_their_files_and_two_alike_are_one(inlin
     }
 
 
-def test_two_functions_may_call_each_other(inlined):
+def test_mutually_recursive_functions_are_inlined(inlined):
     text = "def main(n):\n    return other(n)\n\n\ndef other(n):\n    return n and main(n - 1)\n"
     parts = text.removesuffix("\n").split("\n\n\n")
     assert inlined({"main": ("a.py", text, "main")}) == {"main": f"{parts[1]}\n\n{parts[0]}\n"}
 
 
-def test_a_comment_belongs_to_what_stands_below_it_and_to_nothing_else(inlined):
+def test_a_comment_belongs_to_the_definition_below_it(inlined):
     above = "# above\ndef main():\n    return 1\n"
     assert inlined({"main": ("a.py", above, "main")})["main"] == above
     below = "def main():\n    return 1\n\n\n# below\n"
     assert inlined({"main": ("b.py", below, "main")})["main"] == "def main():\n    return 1\n"
 
 
-def test_a_name_is_changed_where_it_is_the_definitions_and_nowhere_else(inlined):
+def test_renaming_changes_only_references_to_the_definition(inlined):
     text = 'def main(x, main=1):\n    """Return a main."""\n    return " main"\n'
     assert inlined({"a": ("a.py", text, "main")})["a"] == text.replace("def main", "def a")
     texts = {k: f'A = " A{k}"\n\n\ndef main():\n    return A\n' for k in (1, 2)}
@@ -172,7 +172,7 @@ def test_a_name_is_changed_where_it_is_the_definitions_and_nowhere_else(inlined)
     assert found["b"] == 'A_d = " A2"\n\ndef b():\n    return A_d\n'
 
 
-def test_of_each_docstring_within_a_definition_the_first_paragraph_stays(inlined):
+def test_nested_docstrings_keep_their_first_paragraph(inlined):
     def method(name, more):
         return f'    def {name}(self):\n        """Say {name}.{more}"""\n        return 1\n'
 
@@ -183,7 +183,7 @@ def test_of_each_docstring_within_a_definition_the_first_paragraph_stays(inlined
     assert found == whole("", method("a", ""), method("b", ""))
 
 
-def test_a_function_of_the_library_whose_name_is_taken_where_it_is_used_has_its_modules_too(
+def test_a_library_function_is_renamed_if_its_name_is_taken(
     inlined,
 ):
     text = "from hdrlab.core import weights\n\n\ndef main():\n    hat = weights.hat()\n    return hat\n"
@@ -237,7 +237,7 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
         (f"def f({LONG}):\n    return 1", None),
     ],
 )
-def test_on_the_board_stand_neither_types_nor_guards(text, board):
+def test_annotations_and_guards_are_stripped(text, board):
     found = library_source.strip_annotations(text)
     if text.startswith(f"def f({LONG}"):
         lines = found.splitlines()
@@ -247,7 +247,7 @@ def test_on_the_board_stand_neither_types_nor_guards(text, board):
         assert found == (text if board is None else board) + "\n"
 
 
-def test_a_signature_of_a_hundred_and_ten_letters_stays_on_one_line():
+def test_a_signature_of_110_characters_stays_on_one_line():
     for letters, lines in ((110, 1), (111, 3)):
         name = "n" * (letters - len("def f():"))
         assert (

@@ -55,7 +55,7 @@ def test_nothing_is_graded_twice(tmp_path):
     assert len(errands.begun(tmp_path / "class")) == len(results) == 5
 
 
-def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
+def test_only_changed_submissions_are_graded_again(tmp_path):
     graded(tmp_path)
     (tmp_path / "class" / "s4.py").write_text(f"{tmp_path / 'class' / 'begun'}\nother")
     again, results = graded(tmp_path)
@@ -80,14 +80,14 @@ class AtOnce:
 
 
 @pytest.mark.quick
-def test_an_older_result_that_somebody_removes_meanwhile_is_not_missed(tmp_path):
+def test_an_old_result_that_is_removed_meanwhile_is_no_error(tmp_path):
     former, *pieces = (jobs.GradingJob("s0", tmp_path, key) for key in ("old", "new"))
     jobs.write_private_file(old := jobs.result_path(tmp_path, former), b"{}")
     (done,) = jobs.run_jobs(pieces, AtOnce(old.unlink), tmp_path)
     assert list(tmp_path.iterdir()) == [done.path] and done.is_new
 
 
-def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
+def test_a_submission_that_kills_its_process_is_reported_and_others_are_graded(tmp_path):
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
     done, results = graded(tmp_path, errands.fatal)
@@ -100,7 +100,7 @@ def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_grade
     assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
 
 
-def test_a_submission_that_never_ends_is_ended(tmp_path):
+def test_an_endless_submission_is_stopped(tmp_path):
     one = errands.make_jobs(tmp_path / "class", 1)
     with processes.Processes(errands.endless, 1, timeout=0.5) as executor:
         (done,) = jobs.run_jobs(one, executor, tmp_path / "results")
@@ -108,7 +108,7 @@ def test_a_submission_that_never_ends_is_ended(tmp_path):
     assert list((tmp_path / "results").iterdir()) == []
 
 
-def test_an_error_is_told_of_in_a_line(tmp_path):
+def test_an_error_of_a_job_is_reported_in_one_line(tmp_path):
     done, results = graded(tmp_path, errands.failing)
     assert {one.problem for one in done} == {
         "it ended 3 times without a result: ValueError: expected this, got that"
@@ -116,7 +116,7 @@ def test_an_error_is_told_of_in_a_line(tmp_path):
     assert not results
 
 
-def test_two_runs_do_not_write_to_one_folder(tmp_path):
+def test_two_runs_cannot_write_to_the_same_folder(tmp_path):
     (tmp_path / "feedback").mkdir()
     (tmp_path / "feedback" / ".hdrlab-1234.html").write_text(
         "half of a page, by a run that was killed"
@@ -129,7 +129,7 @@ def test_two_runs_do_not_write_to_one_folder(tmp_path):
         pass
 
 
-def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
+def test_an_interrupted_run_stops_its_jobs(tmp_path):
     with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as executor:
         for one in errands.make_jobs(tmp_path / "class", 2):
             assert executor.start(one)
@@ -142,7 +142,7 @@ def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="kills a group of processes")
-def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
+def test_the_next_run_finishes_a_killed_run(tmp_path):
     (tmp_path / "whole").mkdir()
     _, whole = graded(tmp_path / "whole")
     rng, home = random.Random(5), tmp_path / "killed"
@@ -163,7 +163,7 @@ def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
     assert len(done) == 5 and all(one.path for one in done)
 
 
-def test_files_find_their_owners(tmp_path):
+def test_files_are_matched_with_their_owners(tmp_path):
     roster = Roster(
         (
             Student("b1", "A", "team1"),
