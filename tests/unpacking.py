@@ -2,7 +2,7 @@
 
 import pytest
 
-from hdrlab.course.submissions.archives.members import Limits, Refused
+from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRejected
 from hdrlab.course.submissions.archives.unpack import unpack
 
 TOLD = "it is damaged, or no .zip or .tar archive"
@@ -13,8 +13,8 @@ def taken(folder, data, **limits):
     archive, target = folder / "archive", folder / f"new{len(list(folder.iterdir()))}"
     archive.write_bytes(data)
     try:
-        found = unpack(archive, target, Limits(**limits))
-    except (Refused, OSError):
+        found = unpack(archive, target, ArchiveLimits(**limits))
+    except (ArchiveRejected, OSError):
         assert not target.exists() and not list(folder.glob(".unpack-*"))
         raise
     written = {str(path): (target / path).read_bytes() for path, _ in found}
@@ -25,6 +25,6 @@ def taken(folder, data, **limits):
 
 def refused(taken, data, **limits):
     """Return in which words an archive is refused."""
-    with pytest.raises(Refused) as raised:
+    with pytest.raises(ArchiveRejected) as raised:
         taken(data, **limits)
     return str(raised.value)

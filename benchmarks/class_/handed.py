@@ -27,7 +27,7 @@ from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.plan import Homework
 from hdrlab.course.students import csv_tables
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.packing import make_zip
 
 TESTS = ROOT / "tests"
 SHARES = {
@@ -131,7 +131,7 @@ def _right(homework: Homework) -> list[Made]:
         solutions.notebook(homework, cells).encode(),
         solutions.script(cells).encode(),
     )
-    archive = packed({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
+    archive = make_zip({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
     return [
         ("notebook", ".ipynb", notebook),
         ("script", ".py", script),

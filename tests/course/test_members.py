@@ -8,15 +8,20 @@ from pathlib import PurePosixPath
 import pytest
 
 from hdrlab.course.submissions.archives import members
-from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, Refused
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.members import (
+    LIMITS,
+    ArchiveLimits,
+    ArchiveRejected,
+    Member,
+)
+from hdrlab.course.submissions.archives.packing import make_zip
 
 
 def test_device_names_of_windows_are_refused_with_any_extension():
     ports = [f"{port}{k}" for port in ("com", "lpt") for k in "123456789"]
     for name in ["con", "prn", "aux", "nul", *ports]:
         for path in (name, f"{name.upper()}.txt", f"folder/{name}"):
-            with pytest.raises(Refused):
+            with pytest.raises(ArchiveRejected):
                 members.check_names([path])
 
 
@@ -47,7 +52,7 @@ def test_device_names_of_windows_are_refused_with_any_extension():
     ],
 )
 def test_a_name_that_no_submission_needs_is_refused_and_quoted(name):
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(ArchiveRejected) as refused:
         members.check_names([name])
     message = str(refused.value)
     assert members.quote_name(name) in message
@@ -92,7 +97,7 @@ def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
     ],
 )
 def test_two_names_that_are_one_file_on_some_system_are_refused_at_the_second(names, twice):
-    with pytest.raises(Refused, match="twice") as refused:
+    with pytest.raises(ArchiveRejected, match="twice") as refused:
         members.check_names([*names[:1], "between", *names[1:]])
     assert twice in str(refused.value)
 
@@ -108,24 +113,28 @@ def test_of_a_long_name_sixty_letters_are_shown():
 
 
 def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
-    members.check_count(3, Limits(members=3))
-    with pytest.raises(Refused, match="4 members.*3"):
-        members.check_count(4, Limits(members=3))
-    with pytest.raises(Refused, match="2 members"):
-        members.check_names(["../a", "b"], Limits(members=1))
+    members.check_count(3, ArchiveLimits(max_members=3))
+    with pytest.raises(ArchiveRejected, match="4 members.*3"):
+        members.check_count(4, ArchiveLimits(max_members=3))
+    with pytest.raises(ArchiveRejected, match="2 members"):
+        members.check_names(["../a", "b"], ArchiveLimits(max_members=1))
 
 
 def test_a_ratio_is_said_in_whole_times_also_of_nothing():
     big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
-    with pytest.raises(Refused, match="262144 times .*200"):
+    with pytest.raises(ArchiveRejected, match="262144 times .*200"):
         members.check_sizes(big, 4, LIMITS)
-    with pytest.raises(Refused, match="1048577 times .*200"):
+    with pytest.raises(ArchiveRejected, match="1048577 times .*200"):
         members.check_sizes(big, 0, LIMITS)
     members.check_sizes([Member(PurePosixPath("a"), 1 << 20)], 0, LIMITS)
-    with pytest.raises(Refused, match="'a' .*8 .*7"):
-        members.check_sizes([Member(PurePosixPath("a"), 8)], 8, Limits(one=7))
-    with pytest.raises(Refused, match="14 .*13"):
-        members.check_sizes([Member(PurePosixPath("a"), 7)] * 2, 8, Limits(one=7, total=13))
+    with pytest.raises(ArchiveRejected, match="'a' .*8 .*7"):
+        members.check_sizes([Member(PurePosixPath("a"), 8)], 8, ArchiveLimits(max_file_bytes=7))
+    with pytest.raises(ArchiveRejected, match="14 .*13"):
+        members.check_sizes(
+            [Member(PurePosixPath("a"), 7)] * 2,
+            8,
+            ArchiveLimits(max_file_bytes=7, max_total_bytes=13),
+        )
 
 
 @pytest.mark.parametrize("size", [0, 1, 65535, 65536, 65537, 200_000])
@@ -133,12 +142,12 @@ def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less
     size, tmp_path
 ):
     data = bytes(k % 251 for k in range(size))
-    members.write(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
+    members.write_member(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
     assert (tmp_path / "new" / "folder" / "a").read_bytes() == data
-    with pytest.raises(Refused, match=f"'b' .*larger .*{size} bytes"):
-        members.write(io.BytesIO(data + b"x"), tmp_path / "b", size)
-    with pytest.raises(Refused, match=f"'c' .*shorter .*{size + 1} bytes"):
-        members.write(io.BytesIO(data), tmp_path / "c", size + 1)
+    with pytest.raises(ArchiveRejected, match=f"'b' .*larger .*{size} bytes"):
+        members.write_member(io.BytesIO(data + b"x"), tmp_path / "b", size)
+    with pytest.raises(ArchiveRejected, match=f"'c' .*shorter .*{size + 1} bytes"):
+        members.write_member(io.BytesIO(data), tmp_path / "c", size + 1)
 
 
 class Endless(io.RawIOBase):
@@ -153,8 +162,8 @@ class Endless(io.RawIOBase):
 
 def test_of_what_never_ends_no_more_is_read_than_tells_that_it_is_too_large(tmp_path):
     source = Endless()
-    with pytest.raises(Refused, match="larger than the 10 bytes"):
-        members.write(source, tmp_path / "a", 10)
+    with pytest.raises(ArchiveRejected, match="larger than the 10 bytes"):
+        members.write_member(source, tmp_path / "a", 10)
     assert source.taken == 11
 
 
@@ -163,16 +172,16 @@ def test_a_member_takes_no_files_place_follows_no_link_and_cannot_be_run(tmp_pat
     (tmp_path / "link").symlink_to(tmp_path / "planted")
     for name in ("there", "link"):
         with pytest.raises(FileExistsError):
-            members.write(io.BytesIO(b"new"), tmp_path / name, 3)
+            members.write_member(io.BytesIO(b"new"), tmp_path / name, 3)
     assert (tmp_path / "there").read_bytes() == b"old" and not (tmp_path / "planted").exists()
-    members.write(io.BytesIO(b"new"), tmp_path / "a", 3)
+    members.write_member(io.BytesIO(b"new"), tmp_path / "a", 3)
     assert stat.S_IMODE((tmp_path / "a").stat().st_mode) & 0o133 == 0
 
 
 def test_what_is_packed_is_the_same_to_the_byte_in_every_year_and_says_what_can_be_run():
     files = {"run": b"#!", "b.PNG": b"0" * 99, "a.txt": b"0" * 99}
-    whole = packed(files, ["run"])
-    assert whole == packed(dict(reversed(files.items())), ("run",))
+    whole = make_zip(files, ["run"])
+    assert whole == make_zip(dict(reversed(files.items())), ("run",))
     with zipfile.ZipFile(io.BytesIO(whole)) as opened:
         told = [
             (one.filename, one.external_attr >> 16, one.compress_type) for one in opened.infolist()

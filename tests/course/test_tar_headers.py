@@ -13,7 +13,7 @@ from traps import info
 from unpacking import TOLD, refused
 
 from hdrlab.course.submissions.archives import tarball
-from hdrlab.course.submissions.archives.members import Limits, Refused
+from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRejected
 
 
 @pytest.fixture
@@ -44,7 +44,11 @@ def test_a_tar_is_read_from_header_to_header_whatever_the_sizes_are(size, taken)
     assert taken(header("folder", b"5") + whole) == {"a": data, "f/b": b"x"}
     assert taken(header("folder", b"5")) == {}
     said = f"'a' claims {size} bytes, expected at most {size - 1}"
-    assert refused(taken, whole, one=size - 1) == said if size else taken(whole, one=1)
+    assert (
+        refused(taken, whole, max_file_bytes=size - 1) == said
+        if size
+        else taken(whole, max_file_bytes=1)
+    )
 
 
 def test_a_tar_of_nothing_is_none(taken):
@@ -121,10 +125,10 @@ def test_headers_that_speak_of_others_are_no_members(taken):
     path = b"13 path=abcd\n"
     assert len(path) == 13
     named = header("p", b"x", 13) + block(path) + header("a", size=1) + block(b"1")
-    assert taken(named + END, members=1) == {"abcd": b"1"}
+    assert taken(named + END, max_members=1) == {"abcd": b"1"}
     long = header("././@LongLink", b"L", 5) + block(b"long\0") + header("a", size=1) + block(b"1")
-    assert taken(long + END, members=1) == {"long": b"1"}
-    assert refused(taken, named + long, members=1) == "it has 2 members, expected at most 1"
+    assert taken(long + END, max_members=1) == {"long": b"1"}
+    assert refused(taken, named + long, max_members=1) == "it has 2 members, expected at most 1"
     alone = "it holds no files, or is no .zip or .tar archive"
     assert refused(taken, header("p", b"x", 13) + block(path)) == alone
 
@@ -132,7 +136,8 @@ def test_headers_that_speak_of_others_are_no_members(taken):
 def test_folders_are_members_too(taken):
     folders = b"".join(header(name, b"5") for name in "bcd")
     assert (
-        refused(taken, folders + header("a"), members=3) == "it has 4 members, expected at most 3"
+        refused(taken, folders + header("a"), max_members=3)
+        == "it has 4 members, expected at most 3"
     )
 
 
@@ -140,14 +145,14 @@ def test_folders_are_members_too(taken):
 # and a record
 @pytest.mark.parametrize("more", [0, 512])
 def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(more, tmp_path):
-    limits = Limits(members=3, total=70_000, ratio=1)
+    limits = ArchiveLimits(max_members=3, max_total_bytes=70_000, max_compression_ratio=1)
     most = 70_000 + 3 * 1024 + 10240
     archive, fresh = tmp_path / "a", tmp_path / "fresh"
     fresh.mkdir()
     archive.write_bytes(header("a") + bytes(most - 512) + bytes(more))
     if more:
         with pytest.raises(
-            Refused, match=f"^it unpacks to more than {most} bytes, or 1 times its size$"
+            ArchiveRejected, match=f"^it unpacks to more than {most} bytes, or 1 times its size$"
         ):
             tarball.unpack(archive, fresh, limits)
     else:
@@ -160,14 +165,16 @@ def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_it
 ):
     most, data = 1 << 20, os.urandom(6000)
     whole = header("a", size=6000) + data + bytes(most - 6512)
-    assert taken(packing.compress(whole), ratio=1) == {"a": data}
+    assert taken(packing.compress(whole), max_compression_ratio=1) == {"a": data}
     larger = packing.compress(whole + b"\0")
     said = "it unpacks to more than {} bytes, or {} times its size".format
-    assert refused(taken, larger, ratio=1) == said(most, 1)
+    assert refused(taken, larger, max_compression_ratio=1) == said(most, 1)
     enough = most // len(larger) + 1
-    assert taken(larger, ratio=enough) == {"a": data}
-    assert refused(taken, larger, ratio=enough - 1) == said(most, enough - 1)
-    assert refused(taken, larger, ratio=enough, total=6000, members=1).startswith("it has")
-    assert refused(taken, larger, ratio=enough, total=8000, members=1) == said(
-        8000 + 1024 + 10240, enough
-    )
+    assert taken(larger, max_compression_ratio=enough) == {"a": data}
+    assert refused(taken, larger, max_compression_ratio=enough - 1) == said(most, enough - 1)
+    assert refused(
+        taken, larger, max_compression_ratio=enough, max_total_bytes=6000, max_members=1
+    ).startswith("it has")
+    assert refused(
+        taken, larger, max_compression_ratio=enough, max_total_bytes=8000, max_members=1
+    ) == said(8000 + 1024 + 10240, enough)

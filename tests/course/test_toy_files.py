@@ -48,7 +48,7 @@ def test_each_hands_in_what_the_list_says(short, monkeypatch):
     assert each["s01.py"] == ("s01.py", f"script {{'tasks': {tasks}, 'm': ['m']}}".encode(), 1, "a")
     assert each["s02.ipynb"].data == f"notebook hw2 {{'tasks': {tasks[:1]}, 'm': []}}".encode()
     assert each["s03.py"].data == toy_class.ATTACKS.read_bytes()
-    assert each["s04.zip"].data == toy_class.packed(
+    assert each["s04.zip"].data == toy_class.make_zip(
         {"hw2.ipynb": f"notebook hw2 {{'tasks': {tasks}, 'm': []}}".encode(), "other.txt": b"x"}
     )
     times = [(HOMEWORK.due + timedelta(hours=hours)).isoformat() for hours in (1, -2)]

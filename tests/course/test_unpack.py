@@ -2,15 +2,29 @@
 
 import stat
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 import pytest
 from traps import FILES, TRAPS, info, tarred, zipped
 
-from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, Refused, check_sizes
+from hdrlab.course.submissions.archives.members import (
+    LIMITS,
+    ArchiveLimits,
+    ArchiveRejected,
+    Member,
+    check_sizes,
+)
 from hdrlab.course.submissions.archives.unpack import unpack
 
-SMALL = Limits(members=20, total=200_000, one=100_000, depth=4, name=60, ratio=50)
+SMALL = ArchiveLimits(
+    max_members=20,
+    max_total_bytes=200_000,
+    max_file_bytes=100_000,
+    max_depth=4,
+    max_name_bytes=60,
+    max_compression_ratio=50,
+)
 
 
 @pytest.mark.parametrize("limits", [SMALL, LIMITS], ids=["small", "usual"])
@@ -20,7 +34,7 @@ def test_a_trap_is_refused_with_one_line_and_leaves_nothing(trap, limits, tmp_pa
     room.mkdir(parents=True)
     archive = tmp_path / "submission"
     TRAPS[trap](archive)
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(ArchiveRejected) as refused:
         unpack(archive, room / "new", limits)
     said = str(refused.value)
     assert said and len(said) < 200 and said.isprintable()
@@ -68,8 +82,8 @@ def test_a_zip_that_counts_its_members_wrongly_is_counted_again(tmp_path):
     at = data.rfind(b"PK\5\6")
     data[at + 8 : at + 12] = b"\1\0\1\0"  # it says that there is one
     archive.write_bytes(data)
-    with pytest.raises(Refused, match="members|files"):
-        unpack(archive, tmp_path / "out", Limits(members=4))
+    with pytest.raises(ArchiveRejected, match="members|files"):
+        unpack(archive, tmp_path / "out", ArchiveLimits(max_members=4))
     assert not (tmp_path / "out").exists()
 
 
@@ -82,9 +96,9 @@ def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kin
             zipped(archive, files)
         else:
             tarred(archive, [(info(name), data) for name, data in files.items()])
-    assert len(unpack(tmp_path / f"4.{kind}", tmp_path / "four", Limits(members=4))) == 4
-    with pytest.raises(Refused):
-        unpack(tmp_path / f"5.{kind}", tmp_path / "five", Limits(members=4))
+    assert len(unpack(tmp_path / f"4.{kind}", tmp_path / "four", ArchiveLimits(max_members=4))) == 4
+    with pytest.raises(ArchiveRejected):
+        unpack(tmp_path / f"5.{kind}", tmp_path / "five", ArchiveLimits(max_members=4))
 
 
 @pytest.mark.parametrize("mode", ["w:gz", "w:bz2", "w:xz"])
@@ -94,8 +108,8 @@ def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_w
     files = [(info(f"{k}.txt"), bytes(900_000)) for k in range(4)]
     archive, plain_tar = tarred(tmp_path / "packed", files, mode), tarred(tmp_path / "plain", files)
     assert len(unpack(plain_tar, tmp_path / "new")) == 4
-    with pytest.raises(Refused, match="it unpacks to more than"):
-        unpack(archive, tmp_path / "none", LIMITS._replace(ratio=50))
+    with pytest.raises(ArchiveRejected, match="it unpacks to more than"):
+        unpack(archive, tmp_path / "none", replace(LIMITS, max_compression_ratio=50))
 
 
 @pytest.mark.parametrize(
@@ -113,5 +127,5 @@ def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_w
 )
 def test_what_is_claimed_may_be_as_large_as_the_limits_and_no_byte_larger(sizes, packed, said):
     claimed = [Member(PurePosixPath(str(k)), size) for k, size in enumerate(sizes)]
-    with pytest.raises(Refused, match=said) if said else nullcontext():
+    with pytest.raises(ArchiveRejected, match=said) if said else nullcontext():
         check_sizes(claimed, packed, LIMITS)

@@ -13,7 +13,7 @@ from traps import entry, zipped
 from unpacking import TOLD, refused
 
 from hdrlab.course.submissions.archives import tarball
-from hdrlab.course.submissions.archives.members import Refused
+from hdrlab.course.submissions.archives.members import ArchiveRejected
 
 
 @pytest.fixture
@@ -30,9 +30,9 @@ def archive(*files, **knobs):
 
 def test_an_archive_of_as_many_bytes_as_are_allowed_is_opened(taken):
     whole = archive(("a", b"x"))
-    assert taken(whole, total=len(whole)) == {"a": b"x"}
+    assert taken(whole, max_total_bytes=len(whole)) == {"a": b"x"}
     said = f"it has {len(whole)} bytes, expected at most {len(whole) - 1}"
-    assert refused(taken, whole, total=len(whole) - 1) == said
+    assert refused(taken, whole, max_total_bytes=len(whole) - 1) == said
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_members_beside_each_other_share_nothing_and_one_byte_nearer_they_do(tak
         said = ""
         try:
             taken(bytes(packed))
-        except Refused as error:  # a newer reader may have another reason
+        except ArchiveRejected as error:  # a newer reader may have another reason
             said = str(error)
         assert (said == "'a' shares its bytes with another member") is shares
 
@@ -122,7 +122,7 @@ def test_a_list_may_claim_as_many_members_and_bytes_as_are_allowed(taken):
         (3, 3072, TOLD),
     ):
         struct.pack_into("<HL", whole, at + 10, count, size)
-        assert refused(taken, bytes(whole), members=3).startswith(said)
+        assert refused(taken, bytes(whole), max_members=3).startswith(said)
 
 
 def test_what_else_a_reader_cannot_do_with_it_is_told_in_eighty_characters(taken, monkeypatch):

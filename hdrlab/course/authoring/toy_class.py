@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from hdrlab.course import plan
 from hdrlab.course.authoring import solutions
 from hdrlab.course.students import csv_tables
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
@@ -49,7 +49,7 @@ def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
         )
         data = ATTACKS.read_bytes() if one.get("attacks") else text.encode()
         if beside := one.get("beside"):
-            data = packed(
+            data = make_zip(
                 {"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}}
             )
         yield Handed(name, data, one["hours"], one["about"])

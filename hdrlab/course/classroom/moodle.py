@@ -16,7 +16,7 @@ from hdrlab.course.classroom.marks import MAX_GRADEBOOK_BYTES, NOT_GRADED, Grade
 from hdrlab.course.plan import Homework
 from hdrlab.course.students import csv_tables
 from hdrlab.course.students.roster import Roster, fold
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 
 # Columns of a worksheet that may identify a student.
@@ -75,7 +75,7 @@ def write(
                 feedback_files[FEEDBACK_NAME.format(number[0])] = page.read_bytes()
         lines.append([line["identifier"], full_name, grade, line["last modified (grade)"]])
     csv_tables.write_csv(out / "moodle_worksheet.csv", WORKSHEET_COLUMNS, lines, private=True)
-    jobs.write_private_file(out / "moodle_feedback.zip", packed(feedback_files))
+    jobs.write_private_file(out / "moodle_feedback.zip", make_zip(feedback_files))
     return notes
 
 

@@ -22,9 +22,9 @@ from hdrlab.course.projects.words import ASKED
 from hdrlab.course.source_code import names
 from hdrlab.course.submissions.archives.members import (
     LIMITS,
-    Limits,
+    ArchiveLimits,
+    ArchiveRejected,
     Member,
-    Refused,
     check_names,
     check_sizes,
 )
@@ -216,15 +216,15 @@ def check_artifact(project: Project) -> PartReview:
     return PartReview(f"{project.name(project.artifact)}, {width} x {height}")
 
 
-def check_archive(project: Project, limits: Limits = LIMITS) -> PartReview:
+def check_archive(project: Project, limits: ArchiveLimits = LIMITS) -> PartReview:
     """Check that the course would accept an archive of the project."""
     members = [
         Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files
     ]
     try:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
-        check_sizes(members, limits.total, limits)
-    except Refused as reason:
+        check_sizes(members, limits.max_total_bytes, limits)
+    except ArchiveRejected as reason:
         return PartReview(problems=(f"The course would refuse the archive: {reason}.",))
     return PartReview()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import hdrlab
 from hdrlab.course.projects.project import MANIFEST, Project
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, metadata
 
@@ -106,7 +106,7 @@ def write(
     members = {MANIFEST: manifest_text.encode()}
     for file in packed_files:
         members[file.name] = file.data
-    data = packed(members)
+    data = make_zip(members)
     files.write(archive, data)
     return hashlib.sha256(data).hexdigest()
 

@@ -23,7 +23,7 @@ from hdrlab.course.sandbox import subprocess_runner
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.source_code import closure, names
 from hdrlab.course.submissions.archives import unpack
-from hdrlab.course.submissions.archives.members import Limits, Refused
+from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRejected
 from hdrlab.errors import InputError
 
 CODE_SUFFIXES = (".ipynb", ".py")
@@ -32,7 +32,7 @@ MAX_FILE_BYTES = 50_000_000  # a notebook with images has a few million
 MAX_CODE_CHARACTERS = 1_000_000  # in all cells
 MAX_SOURCE_CHARACTERS = 900_000  # of a task with everything that it needs
 # an archive may hold the notebook and the photos that it reads
-ARCHIVE_LIMITS = Limits(total=256 * 2**20)
+ARCHIVE_LIMITS = ArchiveLimits(max_total_bytes=256 * 2**20)
 READING_CPU_SECONDS = 2  # a finished homework takes 0.1 s
 UNPACKING_CPU_SECONDS = 3  # in addition, for an archive
 READING_MEMORY_BYTES = 500 * 2**20
@@ -160,7 +160,7 @@ def extract_code_file(path: Path, scratch: Path, homework: str) -> tuple[Path, s
         return path, ""
     try:
         members = unpack.unpack(path, scratch / "files", ARCHIVE_LIMITS)
-    except Refused as reason:
+    except ArchiveRejected as reason:
         return path, f"The archive is refused: {reason}."
     code_files = [member for member, _ in members if member.suffix.lower() in CODE_SUFFIXES]
     of_homework = [member for member in code_files if homework in member.name.lower()]

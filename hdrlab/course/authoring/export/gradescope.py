@@ -12,7 +12,7 @@ from pathlib import Path
 from hdrlab.course import materials
 from hdrlab.course.plan import PLAN, Plan, Task
 from hdrlab.course.sandbox.subprocess_runner import LIBRARY
-from hdrlab.course.submissions.archives.packing import packed
+from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.io.files import write
 
 SKIPPED = (".pyc", ".ipynb")
@@ -51,7 +51,7 @@ def export(
             **{f"hidden/{one.name}": one.read_bytes() for one in own},
             **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
         }
-        yield write(folder / f"{name}_autograder.zip", packed(files, PROGRAMS))
+        yield write(folder / f"{name}_autograder.zip", make_zip(files, PROGRAMS))
 
 
 def _own(task: Task) -> Iterator[tuple[str, bytes]]:

@@ -1,6 +1,7 @@
-"""Archives from strangers: opened where nothing in them can do harm, else refused in a line.
+"""Unpack archives from students without trust: unpack them whole, or reject them with one line.
 
-members   what an archive may hold, and how much of it
-tarball   tar, with and without compression
-unpack    any of them, into an empty folder
+members   what an archive may contain, and how much of it
+tarball   tar archives, compressed or not
+unpack    zip archives, and the function for all kinds of archives
+packing   zip archives that hdrlab writes
 """

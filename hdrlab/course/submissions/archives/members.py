@@ -1,133 +1,204 @@
-"""What the members of an archive may be: plain files with plain names, of sizes that a submission needs."""
+"""Check the members of an archive: plain files with plain names, of sizes that a submission needs."""
 
 import os
 import unicodedata
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, NamedTuple
 
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 
-DEVICES = {
+PORT_NUMBERS = range(1, 10)
+# Windows opens a device for a file of such a name, whatever its extension
+DEVICE_NAMES = {
     "con",
     "prn",
     "aux",
     "nul",
-    *(f"{port}{k}" for port in ("com", "lpt") for k in range(1, 10)),
+    *(f"com{number}" for number in PORT_NUMBERS),
+    *(f"lpt{number}" for number in PORT_NUMBERS),
 }
-PIECE = 1 << 16  # bytes read at a time
+# Unicode categories of control characters, of invisible format characters, and of half characters
+CONTROL_CATEGORIES = ("Cc", "Cf", "Cs")
+# read at a time
+CHUNK_BYTES = 64 * 2**10
+# archives that unpack to less may have any compression ratio
+MIN_CHECKED_RATIO_BYTES = 2**20
+MAX_SHOWN_NAME_CHARACTERS = 60
 
 
-class Refused(InputError):
-    """Why an archive is not unpacked, in one line."""
+class ArchiveRejected(InputError):
+    """Raised if an archive is not unpacked; the message says why, in one line."""
 
 
-class Limits(NamedTuple):
-    """The most that an archive may hold: members, bytes in all and of one, depth, bytes of a name, ratio."""
+@dataclass(frozen=True, kw_only=True)
+class ArchiveLimits:
+    """How much an archive may hold."""
 
-    members: int = 2000
-    total: int = 1 << 30
-    one: int = 1 << 29
-    depth: int = 12
-    name: int = 200
-    ratio: int = 200
+    max_members: int = 2000
+    max_total_bytes: int = 2**30
+    max_file_bytes: int = 2**29
+    # how many parts a path may have
+    max_depth: int = 12
+    # of a path, in UTF-8
+    max_name_bytes: int = 200
+    max_compression_ratio: int = 200
 
 
 class Member(NamedTuple):
-    """A file of an archive: its path inside, its claimed size."""
+    """A file of an archive: its path inside, and the size that the archive claims."""
 
     path: PurePosixPath
     size: int
 
 
-LIMITS = Limits()
+LIMITS = ArchiveLimits()
 
 
-def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosixPath]:
-    """Return the names of files as paths inside a folder, or raise Refused for the first that is none.
+def check_names(names: Sequence[str], limits: ArchiveLimits = LIMITS) -> list[PurePosixPath]:
+    """Return the names of files as paths inside a folder, or raise ArchiveRejected.
+
+    A name is rejected if it leads out of the folder, if it is not a plain name on every system, or
+    if it is the same file or folder as another name on some system.
 
     Examples
     --------
     >>> check_names(["report.html", "photographs/a.jpg"])[1].parts
     ('photographs', 'a.jpg')
-    >>> check_names(["../../etc/passwd"])
+    >>> check_names(["../x"])
     Traceback (most recent call last):
-    hdrlab.course.submissions.archives.members.Refused: '../../etc/passwd' leads out of the archive's folder
+    hdrlab.course.submissions.archives.members.ArchiveRejected: '../x' leads out of the archive's folder
     """
     check_count(len(names), limits)
-    paths = [_path(name, limits) for name in names]
-    kinds: dict[str, bool] = {}  # folded path -> whether it is a file
+    paths = [_check_name(name, limits) for name in names]
+    # by normalized path: whether it is a file, or a folder
+    is_file_by_path: dict[str, bool] = {}
     for path in paths:
-        for part in [*list(path.parents)[:-1], path]:
-            key, is_file = unicodedata.normalize("NFC", str(part)).casefold(), part == path
-            if key in kinds and (is_file or kinds[key]):
-                raise Refused(
-                    f"{quote_name(str(path))} is there twice, or differs from another by case"
-                )
-            kinds[key] = is_file
+        # without the last parent, which is the folder that all paths are relative to
+        folders = list(path.parents)[:-1]
+        for folder in folders:
+            key = _normalize(folder)
+            # two files may share a folder
+            if is_file_by_path.get(key, False):
+                raise _duplicate_name(path)
+            is_file_by_path[key] = False
+        key = _normalize(path)
+        if key in is_file_by_path:
+            raise _duplicate_name(path)
+        is_file_by_path[key] = True
     return paths
 
 
-def _path(name: str, limits: Limits) -> PurePosixPath:
-    """Return one name as a path of plain parts."""
-    shown, path = quote_name(name), PurePosixPath(name)
-    if name.startswith(("/", "\\")) or name[1:2] == ":":
-        raise Refused(f"{shown} is an absolute name")
+def _normalize(path: PurePosixPath) -> str:
+    """Return a text that is the same for paths that are one file on some system."""
+    return unicodedata.normalize("NFC", str(path)).casefold()
+
+
+def _duplicate_name(path: PurePosixPath) -> ArchiveRejected:
+    """Return the error for a path that is there twice."""
+    name = quote_name(str(path))
+    return ArchiveRejected(f"{name} is there twice, or differs from another by case")
+
+
+def _check_name(name: str, limits: ArchiveLimits) -> PurePosixPath:
+    """Return a name as a path of plain parts, or raise ArchiveRejected."""
+    quoted = quote_name(name)
+    path = PurePosixPath(name)
+    has_drive = name[1:2] == ":"
+    if name.startswith(("/", "\\")) or has_drive:
+        raise ArchiveRejected(f"{quoted} is an absolute name")
     if ".." in name.replace("\\", "/").split("/"):
-        raise Refused(f"{shown} leads out of the archive's folder")
-    if "\\" in name or any(unicodedata.category(letter) in ("Cc", "Cf", "Cs") for letter in name):
-        raise Refused(f"{shown} has a backslash or a control character in its name")
-    if not path.parts or len(name.encode()) > limits.name or len(path.parts) > limits.depth:
-        raise Refused(f"{shown} is empty, too long, or too deep")
+        raise ArchiveRejected(f"{quoted} leads out of the archive's folder")
+    has_control_character = any(
+        unicodedata.category(character) in CONTROL_CATEGORIES for character in name
+    )
+    if "\\" in name or has_control_character:
+        raise ArchiveRejected(f"{quoted} has a backslash or a control character in its name")
+    is_too_long = len(name.encode()) > limits.max_name_bytes
+    is_too_deep = len(path.parts) > limits.max_depth
+    if not path.parts or is_too_long or is_too_deep:
+        raise ArchiveRejected(f"{quoted} is empty, too long, or too deep")
     for part in path.parts:
-        if part.split(".")[0].casefold() in DEVICES or part[-1] in ". " or ":" in part:
-            raise Refused(f"{shown} is a device's name on some systems")
+        is_device = part.split(".")[0].casefold() in DEVICE_NAMES
+        # Windows drops a dot or a space at the end, and a colon begins the name of a stream
+        if is_device or part.endswith((".", " ")) or ":" in part:
+            raise ArchiveRejected(f"{quoted} is not a plain file name on every system")
     return path
 
 
 def quote_name(name: str) -> str:
-    """Return a member's name as a message can show it."""
-    return repr(sanitize_line(name.encode("utf8", "replace").decode("utf8"), 60))
+    """Return a member's name in quotes, shortened and without control characters, for a message."""
+    # "replace", because a name may contain half characters
+    encodable = name.encode("utf8", "replace").decode("utf8")
+    return repr(sanitize_line(encodable, MAX_SHOWN_NAME_CHARACTERS))
 
 
-def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
-    """Raise Refused where claimed sizes are too large, singly, together, or for the bytes of the archive."""
+def check_count(count: int, limits: ArchiveLimits) -> None:
+    """Raise ArchiveRejected if there are too many members."""
+    if count > limits.max_members:
+        raise ArchiveRejected(f"it has {count} members, expected at most {limits.max_members}")
+
+
+def check_sizes(members: Sequence[Member], packed_bytes: int, limits: ArchiveLimits) -> None:
+    """Raise ArchiveRejected if claimed sizes are too large.
+
+    Parameters
+    ----------
+    members : sequence of Member
+        The files of the archive.
+    packed_bytes : int
+        The size of the archive itself.
+    limits : ArchiveLimits
+        How large one file and all files may be, and how many times larger than the archive.
+    """
     for path, size in members:
-        if size > limits.one:
-            raise Refused(
-                f"{quote_name(str(path))} claims {size} bytes, expected at most {limits.one}"
+        if size > limits.max_file_bytes:
+            name = quote_name(str(path))
+            raise ArchiveRejected(
+                f"{name} claims {size} bytes, expected at most {limits.max_file_bytes}"
             )
     total = sum(size for _, size in members)
-    if total > limits.total:
-        raise Refused(f"its files claim {total} bytes together, expected at most {limits.total}")
-    if total > (1 << 20) and total > limits.ratio * packed:
-        times = total // (packed or 1)
-        raise Refused(f"it unpacks to {times} times its size, expected at most {limits.ratio}")
+    if total > limits.max_total_bytes:
+        raise ArchiveRejected(
+            f"its files claim {total} bytes together, expected at most {limits.max_total_bytes}"
+        )
+    max_unpacked_bytes = limits.max_compression_ratio * packed_bytes
+    if total > MIN_CHECKED_RATIO_BYTES and total > max_unpacked_bytes:
+        ratio = total // max(packed_bytes, 1)
+        raise ArchiveRejected(
+            f"it unpacks to {ratio} times its size, expected at most {limits.max_compression_ratio}"
+        )
 
 
-def write(source: IO[bytes], place: Path, size: int) -> None:
-    """Write a member of exactly the claimed size into a new file, without its rights and times."""
-    place.parent.mkdir(parents=True, exist_ok=True)
-    flags = (
-        os.O_WRONLY
-        | os.O_CREAT
-        | os.O_EXCL
-        | getattr(os, "O_NOFOLLOW", 0)
-        | getattr(os, "O_BINARY", 0)
-    )
-    with os.fdopen(os.open(place, flags, 0o644), "wb") as file:
-        left = size
-        while piece := source.read(min(PIECE, left + 1)):
-            left -= len(piece)
-            if left < 0:
-                raise Refused(f"{quote_name(place.name)} is larger than the {size} bytes it claims")
-            file.write(piece)
-    if left:
-        raise Refused(f"{quote_name(place.name)} is shorter than the {size} bytes it claims")
+def write_member(source: IO[bytes], path: Path, size: int) -> None:
+    """Write a member into a new file, without the permissions and times that the archive gives.
 
-
-def check_count(count: int, limits: Limits) -> None:
-    """Raise Refused for too many members."""
-    if count > limits.members:
-        raise Refused(f"it has {count} members, expected at most {limits.members}")
+    Parameters
+    ----------
+    source : file
+        The content of the member.
+    path : Path
+        The file to create. It must not exist.
+    size : int
+        The size that the archive claims. ArchiveRejected is raised if the content is larger or
+        smaller; no more than one byte beyond the size is read.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # fails if the file exists, and follows no link
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+    # not every system has these two
+    flags |= getattr(os, "O_NOFOLLOW", 0)
+    flags |= getattr(os, "O_BINARY", 0)
+    bytes_left = size
+    with os.fdopen(os.open(path, flags, 0o644), "wb") as file:
+        while chunk := source.read(min(CHUNK_BYTES, bytes_left + 1)):
+            bytes_left -= len(chunk)
+            if bytes_left < 0:
+                name = quote_name(path.name)
+                raise ArchiveRejected(f"{name} is larger than the {size} bytes it claims")
+            file.write(chunk)
+    if bytes_left > 0:
+        name = quote_name(path.name)
+        raise ArchiveRejected(f"{name} is shorter than the {size} bytes it claims")

@@ -1,4 +1,4 @@
-"""Archives of tar, compressed or not, judged before the reader of the standard library sees them."""
+"""Unpack tar archives, compressed or not, and check their headers before tarfile reads them."""
 
 import bz2
 import gzip
@@ -12,84 +12,139 @@ from pathlib import Path
 from typing import IO, Any
 
 from hdrlab.course.submissions.archives import members
-from hdrlab.course.submissions.archives.members import PIECE, Limits, Member, Refused, quote_name
+from hdrlab.course.submissions.archives.members import (
+    CHUNK_BYTES,
+    MIN_CHECKED_RATIO_BYTES,
+    ArchiveLimits,
+    ArchiveRejected,
+    Member,
+    quote_name,
+)
 
-# by the first bytes of an archive
+# by the first bytes of a compressed archive
 OPENERS: dict[bytes, Any] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\0": lzma.open}
-HEADER = 1 << 16  # bytes of a header of tar: a long name, and not a bomb
-# types of headers that change what follows: of a member, of all, and Solaris' of a member
-PAX = b"xgX"
+MAX_MAGIC_BYTES = 6
+
+# Extended headers, which change the members after them: their types are x for the next member, g
+# for all, and X for the next one by Solaris.
+PAX_TYPES = b"xgX"
+# headers with a long name or a long link target for the next member, by GNU
+LONG_NAME_TYPES = b"LK"
+# of the content of these headers, which tarfile reads into memory
+MAX_EXTENDED_HEADER_BYTES = 64 * 2**10
+
+# fields of a header block
+SIZE_FIELD = slice(124, 136)
+TYPE_FIELD = slice(156, 157)
+MAGIC_FIELD = slice(257, 262)
+MAGIC = b"ustar"
 
 
-def unpack(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
-    """Write the files of a tar into a folder that is there and empty, and return them."""
-    with tempfile.TemporaryFile(dir=fresh.parent) as plain_tar:
-        packed = archive.stat().st_size
-        _inflate(archive, plain_tar, packed, limits)
+def unpack(archive: Path, folder: Path, limits: ArchiveLimits) -> list[Member]:
+    """Unpack a tar archive into an empty folder, and return its files.
+
+    Raises
+    ------
+    ArchiveRejected
+        If it contains something that no submission needs.
+    """
+    packed_bytes = archive.stat().st_size
+    with tempfile.TemporaryFile(dir=folder.parent) as plain_tar:
+        _decompress(archive, plain_tar, packed_bytes, limits)
         _check_headers(plain_tar, limits)
         plain_tar.seek(0)
-        with closing(tarfile.open(fileobj=plain_tar, mode="r:")) as opened:
-            infos = [info for info in opened.getmembers() if not info.isdir()]
+        with closing(tarfile.open(fileobj=plain_tar, mode="r:")) as tar:
+            infos = [info for info in tar.getmembers() if not info.isdir()]
             for info in infos:
-                if not info.isreg() or info.issparse():
-                    what = "link" if info.issym() or info.islnk() else "device or a sparse file"
-                    raise Refused(f"{quote_name(info.name)} is a {what}, expected plain files")
+                _check_kind(info)
             paths = members.check_names([info.name for info in infos], limits)
-            found = [Member(path, info.size) for path, info in zip(paths, infos, strict=True)]
-            members.check_sizes(found, packed, limits)
-            for info, member in zip(infos, found, strict=True):
-                source = opened.extractfile(info)
-                assert source is not None  # a plain file has one
-                members.write(source, fresh / member.path, member.size)
-    return found
+            files = [Member(path, info.size) for path, info in zip(paths, infos, strict=True)]
+            members.check_sizes(files, packed_bytes, limits)
+            for info, file in zip(infos, files, strict=True):
+                source = tar.extractfile(info)
+                # it is None for folders and devices only
+                assert source is not None
+                members.write_member(source, folder / file.path, file.size)
+    return files
 
 
-def _inflate(archive: Path, target: IO[bytes], packed: int, limits: Limits) -> None:
-    """Write the archive without its compression, up to what the limits allow."""
-    with open(archive, "rb") as file:
-        magic = file.read(6)
-    opener = next((one for start, one in OPENERS.items() if magic.startswith(start)), open)
-    most = limits.total + limits.members * 2 * tarfile.BLOCKSIZE + tarfile.RECORDSIZE
-    most = min(most, max(limits.ratio * packed, 1 << 20)) if opener is not open else most
+def _check_kind(info: tarfile.TarInfo) -> None:
+    """Raise ArchiveRejected if a member is not a plain file."""
+    if info.isreg() and not info.issparse():
+        return
+    kind = "link" if info.issym() or info.islnk() else "device or a sparse file"
+    raise ArchiveRejected(f"{quote_name(info.name)} is a {kind}, expected plain files")
+
+
+def _decompress(archive: Path, target: IO[bytes], packed_bytes: int, limits: ArchiveLimits) -> None:
+    """Write the archive without its compression, or raise ArchiveRejected if it gets too large."""
+    opener = _find_opener(archive)
+    # for each member its header, and padding to a whole block; at the end, padding to a record
+    overhead = limits.max_members * 2 * tarfile.BLOCKSIZE + tarfile.RECORDSIZE
+    max_bytes = limits.max_total_bytes + overhead
+    if opener is not open:
+        max_unpacked_bytes = limits.max_compression_ratio * packed_bytes
+        max_bytes = min(max_bytes, max(max_unpacked_bytes, MIN_CHECKED_RATIO_BYTES))
     with opener(archive, "rb") as source:
-        while piece := source.read(PIECE):
-            if target.tell() + len(piece) > most:
-                raise Refused(
-                    f"it unpacks to more than {most} bytes, or {limits.ratio} times its size"
+        while chunk := source.read(CHUNK_BYTES):
+            if target.tell() + len(chunk) > max_bytes:
+                raise ArchiveRejected(
+                    f"it unpacks to more than {max_bytes} bytes, "
+                    f"or {limits.max_compression_ratio} times its size"
                 )
-            target.write(piece)
+            target.write(chunk)
 
 
-def _check_headers(file: IO[bytes], limits: Limits) -> None:
-    """Raise Refused for too many headers, and for one too large for the reader to take into memory."""
-    count = 0
-    for kind, size in _headers(file):
-        if kind in PAX + b"LK" and size > HEADER:
-            raise Refused(f"a header of it claims {size} bytes, expected at most {HEADER}")
-        count += kind not in PAX + b"LK"
-    if not count:
-        raise Refused("it holds no files, or is no .zip or .tar archive")
-    members.check_count(count, limits)
+def _find_opener(archive: Path) -> Any:
+    """Return the function that opens an archive, decided by its first bytes."""
+    with open(archive, "rb") as file:
+        first_bytes = file.read(MAX_MAGIC_BYTES)
+    for magic, opener in OPENERS.items():
+        if first_bytes.startswith(magic):
+            return opener
+    return open
 
 
-def _headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:
-    """Yield type and size of the blocks that begin the members of a tar."""
-    at = 0
+def _check_headers(file: IO[bytes], limits: ArchiveLimits) -> None:
+    """Raise ArchiveRejected if there are too many members, or a header is too large for memory."""
+    member_count = 0
+    for kind, size in _iter_headers(file):
+        if kind not in PAX_TYPES + LONG_NAME_TYPES:
+            member_count += 1
+        elif size > MAX_EXTENDED_HEADER_BYTES:
+            raise ArchiveRejected(
+                f"a header of it claims {size} bytes, expected at most {MAX_EXTENDED_HEADER_BYTES}"
+            )
+    if member_count == 0:
+        raise ArchiveRejected("it holds no files, or is no .zip or .tar archive")
+    members.check_count(member_count, limits)
+
+
+def _iter_headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:
+    """Yield the type and the size of each header block of a tar archive."""
     file.seek(0, os.SEEK_END)
     end = file.tell()
-    while at + tarfile.BLOCKSIZE <= end:
-        file.seek(at)
+    position = 0
+    while position + tarfile.BLOCKSIZE <= end:
+        file.seek(position)
         block = file.read(tarfile.BLOCKSIZE)
+        # a block of zeros ends the archive
         if not block.strip(b"\0"):
             return
-        if block[257:262] != b"ustar":
-            raise Refused("it is damaged, or no .zip or .tar archive (a header without its mark)")
-        size = tarfile.nti(block[124:136])  # type: ignore[attr-defined]
+        if block[MAGIC_FIELD] != MAGIC:
+            raise ArchiveRejected(
+                "it is damaged, or no .zip or .tar archive (a header without its mark)"
+            )
+        size = tarfile.nti(block[SIZE_FIELD])  # type: ignore[attr-defined]
         if size < 0:
-            raise Refused("a header of it claims a size below zero")
-        if block[156:157] in PAX and b" size=" in file.read(min(size, HEADER)):
-            raise Refused(
-                "a header of it changes the size of a member"
-            )  # what follows could hide in it
-        yield block[156:157], size
-        at += tarfile.BLOCKSIZE * (1 + -(-size // tarfile.BLOCKSIZE))
+            raise ArchiveRejected("a header of it claims a size below zero")
+        kind = block[TYPE_FIELD]
+        if kind in PAX_TYPES:
+            content = file.read(min(size, MAX_EXTENDED_HEADER_BYTES))
+            # a member could hide in the content of another whose size is changed
+            if b" size=" in content:
+                raise ArchiveRejected("a header of it changes the size of a member")
+        yield kind, size
+        # the content is padded to whole blocks
+        content_blocks = -(-size // tarfile.BLOCKSIZE)
+        position += tarfile.BLOCKSIZE * (1 + content_blocks)

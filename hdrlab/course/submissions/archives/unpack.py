@@ -1,10 +1,11 @@
-"""Archives that students send, unpacked without trust: .zip, .tar and compressed .tar.
+"""Unpack archives that students send, without trust: .zip, .tar and compressed .tar.
 
-All of a list is judged before the first byte is written. What is judged: names (absolute, with ..
-or a backslash, twice, alike but for case, with control characters), kinds (links and devices are no
-submissions), sizes (claimed and real ones), counts, depths, ratios of compression, entries that
-share bytes, encryption. An archive is taken whole or refused whole, with one line that says why. An
-archive inside it is a file.
+The whole list of members is checked before the first byte is written: names (absolute, with .., a
+backslash or control characters, duplicate, or differing only in case), kinds (no links, no
+devices), sizes, counts, depths, compression ratios, entries that share bytes, and encryption. While
+the files are written, their real sizes are checked, too. An archive is either unpacked whole or
+rejected whole, with one line that says why. An archive inside an archive is treated as a plain
+file.
 """
 
 import errno
@@ -20,9 +21,16 @@ from pathlib import Path
 
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.submissions.archives import members, tarball
-from hdrlab.course.submissions.archives.members import LIMITS, Limits, Member, Refused, quote_name
+from hdrlab.course.submissions.archives.members import (
+    LIMITS,
+    ArchiveLimits,
+    ArchiveRejected,
+    Member,
+    quote_name,
+)
 
-DAMAGE = (
+# what the readers of the standard library raise for a damaged archive
+READER_ERRORS = (
     OSError,
     EOFError,
     ValueError,
@@ -31,118 +39,175 @@ DAMAGE = (
     MemoryError,
     IndexError,
     struct.error,
-)
-FAULTS = (
-    *DAMAGE,
     tarfile.TarError,
     zipfile.BadZipFile,
     lzma.LZMAError,
     zlib.error,
-)  # of the readers
-LOCAL = 30  # bytes of the header that stands before a member of a zip
-ENTRY = 1024  # bytes of its entry in the list, at most: 46, a name, and what some programs add
+)
+MAX_REASON_CHARACTERS = 80
+
+# the first bytes of a zip archive, with and without members
+MEMBER_SIGNATURE = b"PK\3\4"
+END_SIGNATURE = b"PK\5\6"
+# for a zip archive of more than 4 GB or 65535 members, before the end record
+ZIP64_SIGNATURE = b"PK\6\7"
+ZIP64_LOCATOR_BYTES = 20
+# the header that stands before a member, at least
+MEMBER_HEADER_BYTES = 30
+# a member's entry in the list: 46 bytes, a name, and what some programs add
+MAX_LIST_ENTRY_BYTES = 1024
+# the record at the end of the list, without its comment
+END_RECORD_BYTES = 22
+MAX_COMMENT_BYTES = 2**16
+# where in the end record the number of members and the size of the list are
+END_RECORD_COUNT_OFFSET = 10
+# flag of an entry
+ENCRYPTED_FLAG = 0x1
+# Unix file types, in the uppermost bits of an entry's attributes
+FILE_TYPE_SHIFT = 28
+UNKNOWN_TYPE = 0
+REGULAR_FILE_TYPE = 0o10
+LINK_TYPE = 0o12
 
 
-def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> list[Member]:
-    """Unpack an archive into a folder that does not exist yet, and return its files.
+def unpack(archive: str | Path, target: str | Path, limits: ArchiveLimits = LIMITS) -> list[Member]:
+    """Unpack an archive into a new folder, and return its files.
 
     Parameters
     ----------
-    archive : .zip, .tar, .tar.gz, .tgz, .tar.bz2 or .tar.xz, told by its content
-    target : the new folder; it is there when all of it is, and not before
-    limits : what is too much
+    archive : str or Path
+        A .zip, .tar, .tar.gz, .tgz, .tar.bz2 or .tar.xz file. Its content decides which, not its
+        name.
+    target : str or Path
+        The folder to create. It appears when all files are written.
+    limits : ArchiveLimits
+        How much the archive may hold.
 
     Raises
     ------
-    Refused
-        For an archive that is damaged, or holds what no submission needs; nothing is left behind.
+    ArchiveRejected
+        If the archive is damaged or holds something that no submission needs. Nothing is left
+        behind.
     FileExistsError
-        Where `target` is there.
+        If `target` exists.
     """
-    archive, target = Path(archive), Path(target)
+    archive = Path(archive)
+    target = Path(target)
     if target.exists():
-        raise FileExistsError(f"expected a folder that is not there yet, got {target}")
-    if (size := archive.stat().st_size) > limits.total:
-        raise Refused(f"it has {size} bytes, expected at most {limits.total}")
+        raise FileExistsError(f"expected a folder that does not exist yet, got {target}")
+    packed_bytes = archive.stat().st_size
+    if packed_bytes > limits.max_total_bytes:
+        raise ArchiveRejected(
+            f"it has {packed_bytes} bytes, expected at most {limits.max_total_bytes}"
+        )
     with tempfile.TemporaryDirectory(prefix=".unpack-", dir=target.parent) as scratch:
-        fresh = Path(scratch) / "files"
-        fresh.mkdir()
+        folder = Path(scratch) / "files"
+        folder.mkdir()
         try:
-            found = (_zip if _is_zip(archive) else tarball.unpack)(archive, fresh, limits)
-        except FAULTS as error:
-            # a full disk is not the archive's fault; a place before its beginning is
-            if isinstance(error, Refused) or getattr(error, "errno", None) not in (
-                None,
-                errno.EINVAL,
-            ):
+            if _is_zip(archive):
+                files = _unpack_zip(archive, folder, limits)
+            else:
+                files = tarball.unpack(archive, folder, limits)
+        except ArchiveRejected:
+            raise
+        except READER_ERRORS as error:
+            if _is_fault_of_system(error):
                 raise
-            why = sanitize_line(str(error) or type(error).__name__, 80)
-            raise Refused(f"it is damaged, or no .zip or .tar archive ({why})") from None
-        os.rename(fresh, target)
-    return found
+            reason = sanitize_line(str(error) or type(error).__name__, MAX_REASON_CHARACTERS)
+            raise ArchiveRejected(f"it is damaged, or no .zip or .tar archive ({reason})") from None
+        os.rename(folder, target)
+    return files
+
+
+def _is_fault_of_system(error: BaseException) -> bool:
+    """Return whether an error comes from the system, such as a full disk, and not from the archive.
+
+    An archive may lead its reader to a place before the start of the file, which is EINVAL.
+    """
+    error_number = getattr(error, "errno", None)
+    return error_number not in (None, errno.EINVAL)
 
 
 def _is_zip(archive: Path) -> bool:
+    """Return whether a file starts as a zip archive."""
     with open(archive, "rb") as file:
-        return file.read(4) in (b"PK\3\4", b"PK\5\6")
+        return file.read(len(MEMBER_SIGNATURE)) in (MEMBER_SIGNATURE, END_SIGNATURE)
 
 
-def _zip(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
-    _check_list(archive, limits)
-    with zipfile.ZipFile(archive) as opened:
-        infos = [info for info in opened.infolist() if not info.is_dir()]
-        members.check_count(len(opened.infolist()), limits)
+def _unpack_zip(archive: Path, folder: Path, limits: ArchiveLimits) -> list[Member]:
+    """Unpack a zip archive into an empty folder, and return its files."""
+    _check_list_size(archive, limits)
+    with zipfile.ZipFile(archive) as zip_file:
+        # again, because the end record may lie about the number of members
+        members.check_count(len(zip_file.infolist()), limits)
+        infos = [info for info in zip_file.infolist() if not info.is_dir()]
         if not infos:
-            raise Refused("it holds no files")
+            raise ArchiveRejected("it holds no files")
         for info in infos:
             _check_entry(info)
+        # the original name: zipfile cuts names at a null character
         paths = members.check_names([info.orig_filename for info in infos], limits)
-        found = [Member(path, info.file_size) for path, info in zip(paths, infos, strict=True)]
-        members.check_sizes(found, archive.stat().st_size, limits)
-        _check_apart(infos, opened.start_dir)
-        for info, member in zip(infos, found, strict=True):
-            with opened.open(info) as source:
-                members.write(source, fresh / member.path, member.size)
-    return found
+        files = [Member(path, info.file_size) for path, info in zip(paths, infos, strict=True)]
+        members.check_sizes(files, archive.stat().st_size, limits)
+        _check_overlaps(infos, zip_file.start_dir)
+        for info, file in zip(infos, files, strict=True):
+            with zip_file.open(info) as source:
+                members.write_member(source, folder / file.path, file.size)
+    return files
 
 
 def _check_entry(info: zipfile.ZipInfo) -> None:
-    """Raise Refused for an entry that is a link or a device, or is encrypted."""
-    kind = info.external_attr >> 28  # the file type of Unix, 0 where the archive was made elsewhere
-    if kind not in (0, 0o10):
-        what = "link" if kind == 0o12 else "device"
-        raise Refused(f"{quote_name(info.filename)} is a {what}, expected plain files")
-    if info.flag_bits & 0x1:
-        raise Refused(f"{quote_name(info.filename)} is encrypted")
+    """Raise ArchiveRejected if an entry is a link, a device or encrypted."""
+    # it is unknown if the archive was not made on Unix
+    file_type = info.external_attr >> FILE_TYPE_SHIFT
+    if file_type not in (UNKNOWN_TYPE, REGULAR_FILE_TYPE):
+        kind = "link" if file_type == LINK_TYPE else "device"
+        raise ArchiveRejected(f"{quote_name(info.filename)} is a {kind}, expected plain files")
+    if info.flag_bits & ENCRYPTED_FLAG:
+        raise ArchiveRejected(f"{quote_name(info.filename)} is encrypted")
     if "\0" in info.orig_filename:
-        raise Refused(f"{quote_name(info.orig_filename)} has a control character in its name")
+        name = quote_name(info.orig_filename)
+        raise ArchiveRejected(f"{name} has a control character in its name")
 
 
-def _check_apart(infos: Sequence[zipfile.ZipInfo], end: int) -> None:
-    """Raise Refused where entries share bytes: so a bomb of one kernel claims many files."""
-    starts = sorted(
-        (info.header_offset, info.compress_size + LOCAL, info.filename) for info in infos
+def _check_overlaps(infos: Sequence[zipfile.ZipInfo], list_start: int) -> None:
+    """Raise ArchiveRejected if entries share bytes, as in a small archive that unpacks to very much.
+
+    Parameters
+    ----------
+    infos : sequence of ZipInfo
+        The entries.
+    list_start : int
+        Where the list of members starts, behind all entries.
+    """
+    in_order = sorted(
+        infos, key=lambda info: (info.header_offset, info.compress_size, info.filename)
     )
-    for (start, size, name), after in zip(
-        starts, [*(at for at, *_ in starts[1:]), end], strict=True
-    ):
-        if start + size > after:
-            raise Refused(f"{quote_name(name)} shares its bytes with another member")
+    next_starts = [info.header_offset for info in in_order[1:]]
+    next_starts.append(list_start)
+    for info, next_start in zip(in_order, next_starts, strict=True):
+        end = info.header_offset + MEMBER_HEADER_BYTES + info.compress_size
+        if end > next_start:
+            name = quote_name(info.filename)
+            raise ArchiveRejected(f"{name} shares its bytes with another member")
 
 
-def _check_list(archive: Path, limits: Limits) -> None:
-    """Raise Refused for a list of members that the reader could not hold in memory."""
+def _check_list_size(archive: Path, limits: ArchiveLimits) -> None:
+    """Raise ArchiveRejected if the list of members is missing, or too large for memory."""
+    # the end record, its comment, and what may stand before them
+    tail_bytes = MAX_COMMENT_BYTES + 64
     with open(archive, "rb") as file:
-        file.seek(max(0, archive.stat().st_size - (1 << 16) - 64))
+        file.seek(max(0, archive.stat().st_size - tail_bytes))
         tail = file.read()
-    at = tail.rfind(b"PK\5\6")
-    if at < 0 or len(tail) < at + 22:
-        raise Refused("it is cut short: its list of members is missing")
-    count, size = struct.unpack_from("<HL", tail, at + 10)
-    if b"PK\6\7" in tail[max(0, at - 20) : at]:
-        raise Refused("it is a zip for more than 4 GB or 65535 members")
+    end_record = tail.rfind(END_SIGNATURE)
+    if end_record < 0 or len(tail) < end_record + END_RECORD_BYTES:
+        raise ArchiveRejected("it is cut short: its list of members is missing")
+    if ZIP64_SIGNATURE in tail[max(0, end_record - ZIP64_LOCATOR_BYTES) : end_record]:
+        raise ArchiveRejected("it is a zip for more than 4 GB or 65535 members")
+    count, list_bytes = struct.unpack_from("<HL", tail, end_record + END_RECORD_COUNT_OFFSET)
     members.check_count(count, limits)
-    if size > limits.members * ENTRY:
-        raise Refused(
-            f"its list of members takes {size} bytes, expected at most {limits.members * ENTRY}"
+    max_list_bytes = limits.max_members * MAX_LIST_ENTRY_BYTES
+    if list_bytes > max_list_bytes:
+        raise ArchiveRejected(
+            f"its list of members takes {list_bytes} bytes, expected at most {max_list_bytes}"
         )
