@@ -68,16 +68,15 @@ def contrast(F: F32) -> F32:
 def saturation(F: F32) -> F32:
     """Return S, the standard deviation of R, G and B [Mertens07]; 1 where there are no colours.
 
-    As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of
-    the three it would be what rounding left, and decide alone in places that are gray in every
-    photograph.
+    Computed as ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3, it is exactly 0 in a gray pixel.
+    Computed from the mean of the three, rounding would leave a rest, which would decide alone in
+    places that are gray in every photograph.
     """
     if len(F) == 1:
         return np.ones_like(F[0])
-    a, b = (
-        F[0] - F[1],
-        F[1] - F[2],
-    )  # the third difference is -(a + b), and the sum 2 (a (a + b) + b b)
+    a = F[0] - F[1]
+    b = F[1] - F[2]
+    # the third difference is -(a + b), so the squares sum to 2 (a (a + b) + b b)
     return np.sqrt((a * (a + b) + b * b) * np.float32(2 / 9))
 
 
@@ -135,7 +134,7 @@ def fuse_steps(
 def fuse(
     images: ArrayLike, *, contrast: float = 1.0, saturation: float = 1.0, exposedness: float = 1.0
 ) -> F32:
-    """Return one picture that takes each place from the photographs that show it best.
+    """Fuse photographs of one scene: each region comes from the photographs that show it best.
 
     Parameters
     ----------

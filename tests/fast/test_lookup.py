@@ -17,10 +17,6 @@ def test_values_are_interpolated_between_knots_and_constant_beyond_them(n):
     )
 
 
-def test_a_knot_is_read_as_it_is():
+def test_values_at_knots_are_exact():
     knots = np.float32([3, -1, 4, 1, 5])
     assert np.array_equal(lookup.interpolate(lookup.tabulate(knots), np.arange(5)), knots)
-
-
-def test_a_line_holds_a_knot_and_the_rise_to_the_next():
-    assert lookup.tabulate([1, 3, 2]).tolist() == [1 + 2j, 3 - 1j, 2 + 0j]

@@ -355,7 +355,7 @@ def test_contradictions_of_clipped_frames_are_found_except_at_misaligned_edges()
 
 
 @pytest.mark.parametrize("w", [np.zeros(256), -np.ones(256), np.ones((256, 3))])
-def test_weights_that_are_all_0_raise_an_error(moving, w):
+def test_invalid_weights_raise_an_error(moving, w):
     images, times = moving.bracket.images, moving.bracket.times
     E = merge_with_quality(images, times, FILM).E
     taken = frames.calibrate_frames(images, times, FILM, E)

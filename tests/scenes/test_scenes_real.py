@@ -60,7 +60,7 @@ def test_a_smaller_shape_is_the_mean_of_levels(taken):
 
 
 @pytest.mark.parametrize("shape", [(2001, 1500), (0, 240), (320,)])
-def test_a_larger_shape_than_that_of_the_photos_raises_an_error(shape):
+def test_an_invalid_shape_raises_an_error(shape):
     with pytest.raises(ValueError, match="shape"):
         scenes.photographs(shape)
 
