@@ -192,7 +192,7 @@ def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
         (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
         (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
         (["-o", "frames", "--times", "1,4"], "frames is read and would be lost"),
-        (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a frame for each"),
+        (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "each of the 7 times"),
         (
             ["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"],
             "expected a rate",

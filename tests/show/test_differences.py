@@ -1,4 +1,4 @@
-"""Pictures of a difference: whatever came, something true is drawn, with words for who cannot see it."""
+"""Figures of a failed check: expected, answer, difference, and their alt texts."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from hdrlab.show.plots import differences
 IMAGE = np.linspace(0, 1, 48).reshape(6, 8)
 
 
-def test_three_pictures_and_the_worst_pixel_is_named_and_ringed():
+def test_image_shows_expected_answer_and_difference_with_a_ring_at_the_worst_pixel():
     came = IMAGE.copy()
     came[4, 5] += 0.5
     shown = differences.image(IMAGE, came, what="the map")
@@ -21,7 +21,7 @@ def test_three_pictures_and_the_worst_pixel_is_named_and_ringed():
     assert np.allclose(dark.mean(axis=0), [4.5 / 6 * height, 5.5 / 8 * width], atol=3)
 
 
-def test_expected_and_yours_share_their_black_and_white():
+def test_expected_and_answer_have_the_same_scale():
     came = np.clip(2 * IMAGE, 0, None)
     expected, yours, _ = (
         web.decode_picture(frame).astype(int) for frame in differences.image(IMAGE, came).frames
@@ -30,7 +30,7 @@ def test_expected_and_yours_share_their_black_and_white():
 
 
 @pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 1e300])
-def test_a_value_that_is_no_number_is_the_worst_and_does_not_hide_the_rest(odd):
+def test_value_that_is_not_finite_counts_as_worst_and_does_not_change_the_scale(odd):
     came = IMAGE.copy()
     came[2, 3] = odd
     shown = differences.image(IMAGE, came)
@@ -39,7 +39,7 @@ def test_a_value_that_is_no_number_is_the_worst_and_does_not_hide_the_rest(odd):
     assert "at 19 they differ by" in curve.alts[0]
 
 
-def test_light_over_many_decades_is_drawn_on_a_logarithmic_scale():
+def test_values_over_many_decades_have_a_logarithmic_scale():
     light = np.geomspace(1e-3, 1e3, 48).reshape(6, 8)
     shown = differences.image(light, light * 1.1)
     assert "logarithmic" in shown.alts[0]
@@ -48,7 +48,7 @@ def test_light_over_many_decades_is_drawn_on_a_logarithmic_scale():
     )  # else all but the last row is black
 
 
-def test_colour_is_drawn_in_colour_and_its_worst_channel_counts():
+def test_worst_channel_of_a_color_image_counts():
     colour = np.repeat(IMAGE[..., None], 3, axis=-1)
     came = colour.copy()
     came[1, 1, 2] -= 0.25
@@ -56,30 +56,30 @@ def test_colour_is_drawn_in_colour_and_its_worst_channel_counts():
     assert "row 1, column 1" in shown.alts[2] and "off by 0.25" in shown.alts[2]
 
 
-def test_an_even_picture_and_nothing_but_nan_are_drawn_too():
+def test_constant_image_and_all_nan_can_be_drawn():
     for came in (np.zeros((4, 4)), np.full((4, 4), np.nan)):
         assert len(differences.image(np.zeros((4, 4)), came).frames) == 3
         assert differences.curve(np.zeros(16), came.ravel()).frames[0]
 
 
-def test_a_large_picture_is_made_small():
+def test_large_image_is_reduced():
     shown = differences.image(np.zeros((900, 1200)), np.ones((900, 1200)))
     assert max(web.decode_picture(shown.frames[0]).shape) < 900
 
 
-def test_two_curves_that_coincide_to_the_eye_are_told_apart_below_them():
+def test_difference_below_two_curves_shows_small_deviations():
     g = np.log((np.arange(256) + 1) / 128)
-    alike, apart = (
-        differences.curve(g, g + off, what="g").frames[0] for off in (0, 0.01 * np.sin(g))
-    )
-    alike, apart = (web.decode_picture(one).astype(int) for one in (alike, apart))
+    equal = differences.curve(g, g, what="g").frames[0]
+    different = differences.curve(g, g + 0.01 * np.sin(g), what="g").frames[0]
+    alike = web.decode_picture(equal).astype(int)
+    apart = web.decode_picture(different).astype(int)
     lower = 2 * len(alike) // 3
     changed = (np.abs(alike - apart).max(axis=-1) > 60).sum(axis=1)
     assert changed[lower:].sum() > 2 * changed[:lower].sum()  # above, only the ring has moved
 
 
 @pytest.mark.parametrize("came", [np.zeros((5, 8)), np.zeros(48)])
-def test_another_shape_is_an_error(came):
+def test_answer_of_another_shape_is_rejected(came):
     with pytest.raises(ValueError, match="of one shape"):
         differences.image(IMAGE, came)
     with pytest.raises(ValueError, match="of one length"):

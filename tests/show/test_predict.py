@@ -1,4 +1,4 @@
-"""Questions that take the answer before the picture comes: what they hand over, and what they refuse."""
+"""Questions that readers answer before they see the result."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from hdrlab.show.widgets import predict
 RAMP = np.repeat(np.arange(0, 240, 2, dtype=np.uint8)[None], 40, axis=0)
 
 
-def test_a_choice_carries_its_pictures_and_which_is_true():
+def test_choice_has_its_pictures_and_the_true_answer():
     pictures = [np.full((30, 40), level, np.uint8) for level in (50, 150)]
     asked = predict.choice("Which is brighter?", 1, ["left", "right"], pictures=pictures)
     assert (asked.truth, asked.told) == (1, "right.")
@@ -21,13 +21,13 @@ def test_a_choice_carries_its_pictures_and_which_is_true():
     ("truth", "between", "scale"),
     [(3, (0, 7), [0, 7, 1]), (11.4, (0, 20), [0, 20, 0.2]), (0.02, (0, 0.1), [0, 0.1, 0.001])],
 )
-def test_a_number_is_asked_in_whole_steps_where_it_is_whole_and_else_in_a_hundred(
+def test_scale_of_a_number_has_whole_steps_for_integers_and_otherwise_a_hundred(
     truth, between, scale
 ):
     assert predict.number("How many?", truth, between).scale == pytest.approx(scale)
 
 
-def test_a_curve_is_asked_on_axes_that_leave_room_and_thinned_to_what_a_page_can_draw():
+def test_curve_has_margins_and_at_most_257_points():
     x = np.arange(65536)
     asked = predict.curve("Draw it.", x, np.sqrt(x), names=("level", "light"))
     xs, ys = asked.truth
@@ -44,13 +44,13 @@ def test_a_curve_is_asked_on_axes_that_leave_room_and_thinned_to_what_a_page_can
         ([5, 5], [4.8, 5.2]),
     ],
 )
-def test_the_ends_of_a_curves_scale_are_round_numbers_beyond_the_curve(y, ends):
+def test_scale_of_a_curve_ends_on_round_numbers_beyond_the_curve(y, ends):
     low, high = predict.curve("Draw it.", [0, 1], y, names=("x", "y")).scale[2:]
     assert [low, high] == pytest.approx(ends) and low < min(y) <= max(y) < high
 
 
 @pytest.mark.parametrize("size", [(40, 120), (1200, 1950), (7, 5)])
-def test_the_mask_of_a_place_is_as_large_as_its_picture_and_loses_no_pixel(size):
+def test_mask_of_a_place_has_the_size_of_its_picture_and_keeps_single_pixels(size):
     mask = np.zeros(size, bool)
     mask[size[0] // 2, size[1] // 2] = True
     asked = predict.place("Where?", mask, np.zeros(size, np.uint8), alt="Night")
@@ -74,12 +74,12 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_a_question_that_has_no_answer_is_refused(what):
+def test_questions_with_bad_answers_are_rejected(what):
     with pytest.raises(InputError):
         REFUSED[what]()
 
 
-def test_where_no_widget_is_shown_the_answer_is_there_to_be_opened():
+def test_question_without_a_widget_has_an_answer_that_opens_on_a_click():
     asked = predict.number(
         "How many stops?", 11.4, (0, 20), unit="stops", because="A photograph holds <8."
     )

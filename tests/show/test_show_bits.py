@@ -1,4 +1,4 @@
-"""lectures.bits: the bits drawn are those of the file, and the words beside them say what they mean."""
+"""Drawings of the bits of numbers and of RGBE pixels, and of the bytes of a scanline."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def drawn(ax):
     return "".join(bit for _, _, bit in sorted(placed))
 
 
-def test_the_slides_first_pixel_is_its_four_bytes_and_their_values():
+def test_rgbe_shows_the_four_bytes_of_the_slides_pixel_and_their_values():
     ax = bits.rgbe(np.array([145, 215, 87, 149], np.uint8))
     assert drawn(ax) == "10010001" + "11010111" + "01010111" + "10010101"
     said = texts(ax)
@@ -29,7 +29,7 @@ def test_the_slides_first_pixel_is_its_four_bytes_and_their_values():
 
 
 @given(st.tuples(*[st.integers(0, 255)] * 4))
-def test_what_stands_beside_a_mantissa_is_what_the_file_says(pixel):
+def test_values_beside_the_mantissas_are_those_that_rgbe_decodes(pixel):
     given_ = np.array(pixel, np.uint8)
     E = rgbe.to_radiance(given_[None, None])[0, 0]
     said = [text.split("so ")[1] for text in texts(bits.rgbe(given_)) if "so " in text]
@@ -37,7 +37,7 @@ def test_what_stands_beside_a_mantissa_is_what_the_file_says(pixel):
 
 
 @pytest.mark.parametrize("pixel", [np.zeros(3, np.uint8), np.zeros(4), [1, 2, 3, 4]])
-def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
+def test_rgbe_rejects_anything_but_four_bytes(pixel):
     with pytest.raises(ValueError, match="pixel"):
         bits.rgbe(pixel)
 
@@ -46,31 +46,31 @@ def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
     ("size", "kind", "word"), [(16, np.float16, np.uint16), (32, np.float32, np.uint32)]
 )
 @pytest.mark.parametrize("value", [0.7, -3.0, 1e-6, 0.0, 12345.0])
-def test_a_number_is_drawn_as_it_is_stored(size, kind, word, value):
+def test_number_shows_the_bits_of_numpys_format(size, kind, word, value):
     wanted = f"{int(kind(value).view(word)):0{size}b}"
     assert drawn(bits.number(value, bits=size)) == wanted
 
 
 @pytest.mark.parametrize("value", [0.7, 1e-6, 3e-5, 1000.0])
-def test_power_times_mantissa_is_the_number(value):
+def test_power_of_two_times_mantissa_is_the_number(value):
     said = texts(bits.number(value))
     power = next(text.split("^")[1] for text in said if "2^" in text)
     times = next(text.split()[1] for text in said if text.startswith("times"))
     assert 2.0 ** int(power) * float(times) == pytest.approx(float(np.float16(value)), rel=1e-6)
 
 
-def test_beyond_the_largest_half_stands_infinity():
+def test_number_beyond_the_largest_half_is_infinity():
     said = texts(bits.number(1e5))
     assert any("infinity" in text for text in said) and not any("times" in text for text in said)
     assert "100000" in said[-1] and "inf" in said[-1]
 
 
-def test_other_sizes_are_refused():
+def test_number_rejects_other_sizes():
     with pytest.raises(ValueError, match="16 or 32 bits.*64"):
         bits.number(1.0, bits=64)
 
 
-def test_a_scanline_shows_as_many_bytes_as_are_known():
+def test_scanline_shows_as_many_bytes_as_are_decoded():
     planes = np.arange(40, dtype=np.uint8).reshape(4, 10)
     figure = bits.scanline(planes, 23)
     shown = [ax.patches[0].get_data().values.tolist() for ax in figure.axes]
@@ -80,12 +80,12 @@ def test_a_scanline_shows_as_many_bytes_as_are_known():
 @pytest.mark.parametrize(
     ("planes", "done"), [(np.zeros((3, 5)), 0), (np.zeros((4, 5)), 21), (np.zeros(20), 0)]
 )
-def test_what_is_no_scanline_is_refused(planes, done):
+def test_scanline_rejects_other_shapes_and_too_many_bytes(planes, done):
     with pytest.raises(ValueError, match="planes"):
         bits.scanline(planes, done)
 
 
-def test_every_drawing_becomes_a_picture_of_one_width():
+def test_all_drawings_of_bits_have_the_same_width():
     made = [
         bits.rgbe(np.zeros(4, np.uint8)),
         bits.number(1.0),

@@ -1,4 +1,4 @@
-"""The drawings of curves: what is on the axes, that labels stay apart, and what they refuse to draw."""
+"""Plots of labeled curves."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def legend(ax):
     return [text.get_text() for text in ax.get_legend().get_texts()]
 
 
-def test_curves_keep_their_numbers_and_each_has_a_label_a_colour_and_a_style():
+def test_lines_draws_each_curve_with_its_own_label_color_and_style():
     given = {name: PLACES * k for k, name in enumerate("abcdef")}
     ax = curves.lines(PLACES, given, **NAMES)
     assert (
@@ -27,32 +27,32 @@ def test_curves_keep_their_numbers_and_each_has_a_label_a_colour_and_a_style():
     assert len(looks) == len({line.get_color() for line in ax.lines}) == 6
 
 
-def test_a_second_call_goes_on_with_the_next_colour():
+def test_second_call_on_the_same_axes_continues_with_the_next_color():
     ax = curves.lines(PLACES, {"a": PLACES}, **NAMES)
     assert curves.lines(PLACES, {"b": PLACES}, ax=ax, **NAMES) is ax
     assert len({line.get_color() for line in ax.lines}) == 2 and legend(ax) == ["a", "b"]
 
 
-def test_fixed_axes_stay_where_they_are_put():
+def test_limits_fix_the_y_axis():
     ax = curves.lines(PLACES, {"a": 100 * PLACES}, limits=(0, 5), **NAMES)
     assert ax.get_ylim() == (0, 5)
 
 
-def test_a_logarithmic_axis_has_ticks_with_plain_numbers():
+def test_ticks_of_a_logarithmic_axis_are_plain_numbers():
     ax = curves.lines(PLACES, {"a": 10.0**-PLACES}, scale="log", **NAMES)
     pictures.render(ax)
     shown = [tick.get_text() for tick in ax.get_yticklabels()]
     assert "0.01" in shown and not any("$" in text for text in shown)
 
 
-def test_more_curves_than_colours_or_curves_of_another_length_are_refused():
-    with pytest.raises(ValueError, match="6 curves in one picture.*7"):
+def test_lines_rejects_more_than_six_curves_and_curves_of_another_length():
+    with pytest.raises(ValueError, match="6 curves.*7"):
         curves.lines(PLACES, {str(k): PLACES for k in range(7)}, **NAMES)
-    with pytest.raises(ValueError, match=r"at the \(10,\) places"):
+    with pytest.raises(ValueError, match=r"\(10,\)"):
         curves.lines(PLACES, {"a": PLACES[1:]}, **NAMES)
 
 
-def test_a_deviation_of_a_stop_is_a_stop_high_and_the_truth_lies_on_zero():
+def test_deviation_of_a_response_that_is_one_stop_off_is_one():
     ax = curves.deviations({"right": LINEAR, "twice": LINEAR + np.log(2)}, LINEAR, limit=2)
     _, right, twice = ax.lines  # the first is the line of zero
     assert np.allclose(right.get_ydata(), 0) and np.allclose(twice.get_ydata(), 1)
@@ -64,16 +64,16 @@ def test_a_deviation_of_a_stop_is_a_stop_high_and_the_truth_lies_on_zero():
     )
 
 
-def test_a_bundle_holds_every_curve_and_leaves_the_colours_to_those_with_a_name():
+def test_bundle_draws_all_curves_and_uses_no_color_of_the_named_ones():
     ax = curves.bundle(PLACES, [PLACES, 2 * PLACES, 3 * PLACES], label="three", **NAMES)
     curves.lines(PLACES, {"mean": 2 * PLACES}, ax=ax, **NAMES)
     (drawn,) = (one for one in ax.collections if isinstance(one, LineCollection))
     assert len(drawn.get_segments()) == 3 and np.allclose(drawn.get_segments()[2][:, 1], 3 * PLACES)
-    assert legend(ax) == ["three", "mean"] and ax.lines[0].get_color() == curves.LINES[0][0]
+    assert legend(ax) == ["three", "mean"] and ax.lines[0].get_color() == curves.LINE_STYLES[0][0]
     assert ax.get_ylim()[1] >= 27
 
 
-def test_quotients_of_the_right_curve_lie_on_their_ratios():
+def test_quotients_of_the_true_curve_equal_the_ratios():
     R = np.array([0.5, 0.25])
     X = np.geomspace(0.1, 1, 30)[:, None] * [0.125, 0.25, 1]
     ax = curves.quotients(np.sqrt(X), X, R)
@@ -82,12 +82,12 @@ def test_quotients_of_the_right_curve_lie_on_their_ratios():
     assert legend(ax) == ["R₁ = 0.500", "R₂ = 0.250"]
 
 
-def test_samples_that_a_frame_clips_have_no_quotient():
+def test_samples_that_are_clipped_in_a_frame_have_no_quotient():
     M = np.array([[0.1, 0.2], [0.4, np.nan], [0.0, 0.0]])
     ax = curves.quotients(M, M, [0.5])
     assert ax.lines[0].get_xdata().tolist() == [0.2]
 
 
-def test_quotients_that_do_not_fit_together_are_refused():
+def test_quotients_rejects_arrays_of_different_shapes():
     with pytest.raises(ValueError, match=r"M and f\(M\) \(N, P\) and R \(P - 1,\)"):
         curves.quotients(np.ones((4, 3)), np.ones((4, 3)), [0.5])

@@ -1,4 +1,4 @@
-"""lectures.homographies: what differs is coloured, what is not compared gray, the error above it."""
+"""Drawings of registration by light."""
 
 import numpy as np
 import pytest
@@ -18,25 +18,25 @@ def title(drawn):
     return drawn.figure.axes[0].get_title()
 
 
-def test_after_the_true_move_nothing_differs_and_the_title_says_so():
+def test_error_after_the_true_homography_is_zero():
     assert title(drawn.difference(X, TRUE)) == "error e = 0.0000"
     d, e = drawn.differences(X, np.eye(3))
     assert e == pytest.approx(np.mean(d**2)) and f"{e:.4f}" in title(drawn.difference(X, np.eye(3)))
 
 
-def test_what_one_photograph_does_not_show_is_gray():
+def test_pixels_outside_of_a_photo_are_gray():
     shown = drawn.difference(X, TRUE).images[0].get_array()
     assert np.all(shown[-1] == 128) and np.all(shown[:, 0] == 128) and not np.all(shown[40] == 128)
 
 
-def test_the_brighter_photograph_is_told_by_its_colour():
+def test_color_shows_which_photo_is_brighter():
     for k, warm in ((0.8, True), (1.25, False)):
         ax = drawn.difference(np.stack([X[0], X[0] * np.float32(k)]), np.eye(3))
         pixel = ax.images[0].get_array()[5, 5]
         assert (pixel[0] > pixel[2]) == warm
 
 
-def test_the_highest_correlation_is_drawn_where_it_is():
+def test_maximum_of_the_drawn_correlation_is_at_the_true_shift():
     figure = drawn.correlation(cerman.correlation(X), marks={"true": (-3, 4)})
     image, (line,) = figure.axes[0].images[0], figure.axes[0].lines
     y, x = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
@@ -47,7 +47,7 @@ def test_the_highest_correlation_is_drawn_where_it_is():
     )
 
 
-def test_a_level_shows_its_picture_and_every_step_of_its_error():
+def test_level_shows_the_difference_and_the_error_of_every_step():
     state = cerman.State(
         level=2, X=X, path=np.zeros((5, 3)), errors=np.geomspace(0.1, 0.01, 5), H=TRUE
     )
@@ -57,7 +57,7 @@ def test_a_level_shows_its_picture_and_every_step_of_its_error():
     assert pictures.render(figure).ndim == 3
 
 
-def test_what_is_no_pair_and_no_correlation_is_refused():
+def test_difference_and_correlation_reject_arrays_of_another_shape():
     with pytest.raises(ValueError, match="light of two photographs"):
         drawn.difference(X[0], TRUE)
     with pytest.raises(ValueError, match="at shifts -n to n"):

@@ -1,4 +1,4 @@
-"""lectures.merging: answers lie where g and the times put them, bounds where they must, and no NaN."""
+"""Plots of a pixel's radiance as estimated from each photo."""
 
 import numpy as np
 import pytest
@@ -21,12 +21,12 @@ def lines(ax):
     return {line.get_label(): line for line in ax.lines}
 
 
-def test_an_answer_is_g_less_ln_t_in_stops():
+def test_measurement_is_g_minus_ln_t_in_stops():
     (dots,) = (c for c in drawn().collections if c.get_label() == "measured")
     assert dots.get_offsets().tolist() == [[1.0, pytest.approx(-1.0)]]
 
 
-def test_a_black_level_is_an_arrow_down_from_level_1_and_a_white_one_up_from_the_cut():
+def test_dark_and_clipped_pixels_are_arrows_down_and_up_from_their_bounds():
     ax = drawn()
     down, up = lines(ax)["at most"], lines(ax)["at least"]
     at_most, at_least = np.log2(1 / 128 / 0.25), np.log2(250 / 128 / 4)
@@ -39,34 +39,34 @@ def test_a_black_level_is_an_arrow_down_from_level_1_and_a_white_one_up_from_the
     ]
 
 
-def test_the_bar_of_an_answer_spans_the_light_that_is_rounded_to_its_level():
+def test_bar_of_a_measurement_spans_the_light_that_rounds_to_its_pixel_value():
     bar = next(c for c in drawn().collections if hasattr(c, "get_segments")).get_segments()[0]
     assert np.allclose(2 ** bar[:, 1] * 128, [63.5, 64.5], atol=0.01)
 
 
-def test_an_answer_is_the_larger_the_more_it_weighs():
+def test_dots_are_larger_for_larger_weights():
     dots = next(
         c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "measured"
     )
     assert np.all(np.diff(dots.get_sizes()) > 0)
 
 
-def test_merged_and_truth_are_lines_from_the_middle():
+def test_merged_and_true_value_are_lines_in_stops_from_the_middle():
     ax = drawn(middle=np.log(2), truth=np.log(8))
     assert lines(ax)["merged"].get_ydata()[0] == pytest.approx(-2)
     assert lines(ax)["truth"].get_ydata()[0] == pytest.approx(2)
 
 
-def test_each_column_says_its_time_and_level():
+def test_ticks_show_exposure_times_and_pixel_values():
     labels = [text.get_text() for text in drawn().get_xticklabels()]
     assert labels == ["1/4 s\n0", "1 s\n64", "4 s\n255"]
 
 
 @pytest.mark.parametrize("levels", [[0, 0, 0], [255, 255, 255], [100, 120, 140]])
-def test_pixels_of_one_kind_are_drawn_too(levels):
+def test_only_dark_clipped_or_measured_pixels_can_be_drawn(levels):
     assert pictures.render(drawn(np.array(levels))).std() > 0
 
 
-def test_levels_without_a_time_each_are_refused():
+def test_draw_measurements_rejects_pixel_values_without_times():
     with pytest.raises(ValueError, match=r"Z and B \(P,\)"):
         merging.draw_measurements(Z[:2], B, G, W, 0.0)

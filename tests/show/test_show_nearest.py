@@ -1,7 +1,7 @@
-"""Pictures on Axes: to the bit what matplotlib draws, wherever they lie and whatever they hold.
+"""`nearest.show` draws the same pixels as `imshow`.
 
-Where the centre of a screen's pixel lies on the edge between two of the picture's, either may be
-taken: the sizes here avoid that.
+Where the center of a screen pixel is on the edge between two image pixels, either is right. The
+sizes here avoid that.
 """
 
 import io
@@ -37,7 +37,7 @@ def same(picture, **knobs):
 
 @pytest.mark.papers
 @pytest.mark.parametrize("shape", [(1, 1), (7, 401), (191, 287), (200, 300), (500, 900)])
-def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_larger_and_smaller_and_as_it_is(shape):
+def test_show_equals_imshow_bit_for_bit_for_images_of_all_sizes(shape):
     rng = np.random.default_rng(1)
     assert same(rng.integers(0, 256, (*shape, 3), dtype=np.uint8))
     assert same(rng.normal(size=shape), colours="viridis", norm=Normalize(-2, 2))
@@ -45,20 +45,20 @@ def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_larger_and_smaller_and_a
 
 @pytest.mark.papers
 @pytest.mark.parametrize("seed", range(12))
-def test_a_picture_is_drawn_to_the_bit_as_by_matplotlib_wherever_the_axes_lie(seed):
+def test_show_equals_imshow_bit_for_bit_for_axes_at_any_place(seed):
     rng = np.random.default_rng(seed)
     place = (*rng.uniform(0, 0.3, 2), *rng.uniform(0.3, 0.7, 2))
     picture = rng.integers(0, 256, (*rng.integers(3, 300, 2), 3), dtype=np.uint8)
     assert same(picture, place=place, inches=tuple(rng.uniform(2, 6, 2)))
 
 
-def test_what_is_not_a_number_has_the_colour_that_the_colours_give_it():
+def test_nan_has_the_same_color_as_with_imshow():
     v = np.arange(60.0).reshape(6, 10)
     v[2, 3:5] = np.nan
     assert same(v, colours="PuOr_r", norm=Normalize(0, 60))
 
 
-def test_a_part_of_a_picture_is_shown_where_the_axes_end_within_it():
+def test_limits_inside_the_image_show_the_same_part_as_imshow():
     picture = np.random.default_rng(2).integers(0, 256, (40, 60, 3), dtype=np.uint8)
     assert same(picture, limits=((5.2, 31), (33.3, 8)))
     assert same(picture, limits=((100, 200), (100, 200)))  # none of it
@@ -67,12 +67,12 @@ def test_a_part_of_a_picture_is_shown_where_the_axes_end_within_it():
     )
 
 
-def test_a_picture_fills_the_extent_that_it_is_given():
+def test_extent_has_the_same_meaning_as_with_imshow():
     ramp = np.linspace(0, 1, 100)[None]
     assert same(ramp, colours="viridis", norm=Normalize(0, 1), extent=(-3, 5, 0, 1))
 
 
-def test_a_picture_is_in_a_drawing_of_lines_too():
+def test_image_is_part_of_an_svg():
     ax, file = Figure((3, 2)).add_axes((0, 0, 1, 1)), io.BytesIO()
     show(ax, np.eye(4), colours="gray")
     ax.figure.savefig(file, format="svg")

@@ -1,4 +1,4 @@
-"""hdrlab.show.plots.lectures.skins: the plane of chrominance and the skin locus, drawn."""
+"""Plots of skin colors."""
 
 import computed_skin
 import numpy as np
@@ -10,7 +10,7 @@ from hdrlab.show.plots.lectures import skins
 TRAINING = computed_skin.synthetic(3000)
 
 
-def test_the_ellipse_lies_at_its_reach_from_the_mean():
+def test_ellipse_has_the_given_mahalanobis_distance_from_the_mean():
     known = skin.DEFAULT
     edge = (
         np.column_stack(skins.chrominance(TRAINING, known, reach=2.0).lines[1].get_data())
@@ -20,13 +20,15 @@ def test_the_ellipse_lies_at_its_reach_from_the_mean():
     assert np.allclose(distance, 2.0)
 
 
-def test_the_dots_are_pixels_and_not_too_many():
+def test_dots_are_a_limited_number_of_the_pixels():
     ax = skins.chrominance(TRAINING, skin.DEFAULT)
     dots = np.column_stack(ax.lines[0].get_data())
-    assert 1000 < len(dots) <= skins.MOST and np.allclose(dots[1], skin.chrominance(TRAINING[2]))
+    assert 1000 < len(dots) <= skins.MAX_DOTS and np.allclose(
+        dots[1], skin.chrominance(TRAINING[2])
+    )
 
 
-def test_pixels_between_the_drawn_parabolas_are_those_of_the_locus():
+def test_drawn_parabolas_enclose_the_pixels_of_the_skin_locus():
     ax = skins.locus(TRAINING)
     r, g = ax.lines[0].get_data()
     upper, lower = (np.interp(r, *line.get_data()) for line in ax.lines[1:])
@@ -35,6 +37,6 @@ def test_pixels_between_the_drawn_parabolas_are_those_of_the_locus():
 
 
 @pytest.mark.parametrize("bad", [np.zeros((4, 4)), np.zeros((0, 3))])
-def test_what_are_no_pixels_is_refused(bad):
+def test_locus_rejects_arrays_without_rgb_pixels(bad):
     with pytest.raises(ValueError, match="pixels"):
         skins.locus(bad)

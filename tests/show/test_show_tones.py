@@ -1,4 +1,4 @@
-"""hdrlab.show.plots.tones: maps with a scale, trimmed histograms, and curves that became bands."""
+"""Plots of tone mapping: maps with a scale, trimmed histograms, and bands."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def colours_of(figure, k=0):
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_maps_stand_under_their_names_above_one_scale_with_its_label(count):
+def test_maps_have_their_names_and_one_labeled_scale(count):
     names = ["base", "detail", "k"][:count]
     figure = tones.maps(dict.fromkeys(names, RAMP), label="decades")
     assert [ax.get_title() for ax in figure.axes[:-1]] == names
@@ -33,27 +33,27 @@ def test_pixels_of_a_map_are_square():
     assert box.width / box.height == pytest.approx(36 / 24, rel=0.01)
 
 
-def test_zero_is_nearly_white_on_a_signed_map_and_its_ends_differ():
+def test_signed_map_is_white_at_zero_violet_below_and_orange_above():
     v = np.array([[-2.0, 0.0, 1.0, 2.0]])
     low, zero, _, high = colours_of(tones.maps({"": v}, label="stops", signed=True))[0, :, :3]
     assert zero.min() > 0.93 and np.abs(low - high).max() > 0.3
     assert low[2] > low[0] and high[0] > high[2]  # violet below, orange above
 
 
-def test_several_maps_share_one_scale():
+def test_several_maps_have_the_same_scale():
     figure = tones.maps({"little": RAMP, "much": RAMP * 2}, label="decades")
     little, much = (ax.images[0].norm for ax in figure.axes[:2])
     assert (little.vmin, little.vmax) == (much.vmin, much.vmax)
 
 
-def test_the_given_span_holds_whatever_the_values_are():
+def test_span_fixes_the_ends_of_the_scale():
     norms = [
         tones.maps({"": RAMP * k}, label="x", span=(0, 2)).axes[0].images[0].norm for k in (1, 5)
     ]
     assert all((norm.vmin, norm.vmax) == (0, 2) for norm in norms)
 
 
-def test_each_class_has_its_name_and_a_colour_of_its_own():
+def test_each_class_has_its_own_name_and_color():
     index = np.arange(8).reshape(2, 4)
     figure = tones.maps({"": index}, label="width, pixels", names=[1, 2, 3, 4, 5, 6, 7, 43])
     labels = [text.get_text() for text in figure.axes[-1].get_xticklabels()]
@@ -61,7 +61,7 @@ def test_each_class_has_its_name_and_a_colour_of_its_own():
     assert len(np.unique(colours_of(figure).reshape(-1, 4), axis=0)) == 8
 
 
-def test_a_constant_map_and_one_with_nan_are_drawn():
+def test_constant_map_can_be_drawn_and_nan_is_gray():
     assert pictures.render(tones.maps({"": np.ones((8, 12))}, label="x")).std() > 0
     v = RAMP.copy()
     v[0, 0] = np.nan
@@ -71,12 +71,12 @@ def test_a_constant_map_and_one_with_nan_are_drawn():
 @pytest.mark.parametrize(
     "each", [{}, {"a": np.zeros(4)}, {"a": RAMP, "b": RAMP[1:]}, dict.fromkeys("abcd", RAMP)]
 )
-def test_what_is_no_row_of_maps_is_refused_with_what_came(each):
+def test_maps_rejects_none_too_many_and_maps_of_different_shapes(each):
     with pytest.raises(ValueError, match="maps"):
         tones.maps(each, label="x")
 
 
-def test_a_trimmed_histogram_shows_what_was_what_is_left_and_the_ceiling():
+def test_trims_shows_the_histogram_before_and_after_and_the_ceiling():
     f = np.array([3.0, 9.0, 5.0])
     ax = tones.trims([0, 1, 2, 3], f, np.minimum(f, 4), ceiling=4)
     was, left = (patch.get_data().values for patch in ax.patches)
@@ -85,17 +85,17 @@ def test_a_trimmed_histogram_shows_what_was_what_is_left_and_the_ceiling():
     assert "ceiling" in ax.get_legend().get_texts()[-1].get_text()
 
 
-def test_before_the_first_trim_there_is_no_ceiling():
+def test_trims_draws_no_ceiling_before_the_first_trim():
     ax = tones.trims([0, 1, 2], [3, 4], [3, 4])
     assert not ax.lines and ax.get_ylim()[1] > 4
 
 
-def test_a_histogram_needs_one_edge_more_than_bins():
+def test_trims_rejects_edges_that_do_not_fit_the_bins():
     with pytest.raises(ValueError, match="one edge more"):
         tones.trims([0, 1, 2], [3, 4, 5], [3, 4, 5])
 
 
-def test_a_curve_is_a_line_and_an_operator_a_band():
+def test_bands_draws_a_global_curve_narrow_and_a_local_operator_wide():
     L = np.geomspace(1, 1024, 64 * 64).astype(np.float32).reshape(64, 64)
     one = curves.tonemap(L)
     many = np.clip(one * np.linspace(0.5, 1, 64, dtype=np.float32), 0, 1)
@@ -108,12 +108,12 @@ def test_a_curve_is_a_line_and_an_operator_a_band():
     )  # 10 stops in all, the median at 0
 
 
-def test_bands_are_drawn_in_levels_as_the_display_gets_them():
+def test_bands_are_in_srgb_encoded_display_values():
     ax = tones.bands({"gray": ([1.0, 2.0], [0.18, 0.5], [0.18, 0.5])}, middle=1)
     assert np.allclose(ax.lines[0].get_ydata(), 255 * encode_srgb(np.array([0.18, 0.5])))
     assert ax.lines[0].get_xdata().tolist() == [0, 1]
 
 
-def test_bands_want_an_operator():
+def test_bands_rejects_an_empty_mapping():
     with pytest.raises(ValueError, match="1 to 5 operators"):
         tones.bands({})

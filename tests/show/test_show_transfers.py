@@ -1,4 +1,4 @@
-"""The drawings of two photographs compared: counts, ranks, stairs and equations lie where they belong."""
+"""Plots that compare two photos: comparagram, ranks, staircase, ladders, equations."""
 
 import numpy as np
 import pytest
@@ -22,42 +22,44 @@ def two(k=2):
     return [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1, k)]
 
 
-def test_a_comparagram_has_the_first_frame_across_and_the_second_up():
+def test_comparagram_has_the_first_frame_on_x_and_the_second_on_y():
     A, B = np.full((4, 4), 30, np.uint8), np.full((4, 4), 200, np.uint8)
     ax = transfers.comparagram(comparagram(A, B))
     shown = ax.images[0].get_array()
     assert shown[200, 30] == 16 and np.ma.count(np.ma.masked_invalid(shown)) == 1
-    assert ax.get_xlabel() == "level m in frame A" and ax.get_ylabel() == "level z in frame B"
+    assert "frame A" in ax.get_xlabel() and "frame B" in ax.get_ylabel()
 
 
-def test_the_colours_of_a_comparagram_are_not_spent_on_clipped_pixels():
+def test_color_scale_of_a_comparagram_ignores_clipped_pixels():
     J = np.zeros((256, 256))
-    J[255, 255], J[100, 120], J[50, 60] = 1e6, 400, 2
+    J[255, 255] = 1e6
+    J[100, 120] = 400
+    J[50, 60] = 2
     ax = transfers.comparagram(J)
     norm = ax.images[0].norm
     assert norm.vmax == 400 and norm.vmin == 2
     assert legend(ax) == ["10", "100"] and ax.get_legend().get_title().get_text() == "pixels"
 
 
-def test_the_counts_of_a_comparagram_stand_where_it_has_no_ridge():
+def test_legend_of_a_comparagram_does_not_cover_the_ridge():
     brighter = np.roll(np.eye(256), 20, axis=1)
     places = [transfers.comparagram(J).get_legend()._loc for J in (brighter, brighter.T)]
     assert places == [Legend.codes["lower right"], Legend.codes["upper left"]]
 
 
-def test_the_transfer_lies_on_its_comparagram():
+def test_transfer_is_drawn_on_its_comparagram():
     ax = transfers.comparagram(np.eye(256), T=LEVELS / 2)
     assert all(np.array_equal(line.get_ydata(), LEVELS / 2) for line in ax.lines)
     assert legend(ax) == ["1", "T, from the histograms"]
 
 
 @pytest.mark.parametrize("J", [np.zeros((256, 256)), np.ones((4, 5)), np.ones(256)])
-def test_what_is_no_comparagram_is_refused(J):
+def test_comparagram_rejects_arrays_that_are_not_square_or_empty(J):
     with pytest.raises(ValueError, match=r"comparagram \(n, n\) with counts in it"):
         transfers.comparagram(J)
 
 
-def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
+def test_ranks_connects_pixel_values_of_equal_rank():
     h = two()
     ax = transfers.ranks(*h, 40, transfer.brightness_transfer(*h))
     way = ax.lines[2]
@@ -67,7 +69,7 @@ def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
     assert "40" in legend(ax)[2] and "80" in legend(ax)[2]
 
 
-def test_a_level_that_the_other_frame_clips_has_no_way_down():
+def test_ranks_shows_that_a_pixel_value_is_clipped_in_the_other_frame():
     h = two(4)
     clipped = np.concatenate([h[1][:200], [h[1][200:].sum()], np.zeros(55, int)])
     T = np.where(LEVELS < 50, transfer.brightness_transfer(h[0], clipped), np.nan)
@@ -75,15 +77,15 @@ def test_a_level_that_the_other_frame_clips_has_no_way_down():
     assert "clipped" in legend(ax)[2] and set(ax.lines[2].get_xdata()) == {90}
 
 
-def test_stairs_go_from_the_diagonal_down_to_the_transfer_and_back():
+def test_staircase_alternates_between_the_diagonal_and_the_transfer():
     s = np.array([240.0, 120, 60])
     ax = transfers.staircase(LEVELS / 2, s)
     x, y = ax.lines[2].get_data()
     assert list(zip(x, y, strict=True)) == [(240, 240), (240, 120), (120, 120), (120, 60), (60, 60)]
-    assert legend(ax)[2] == "3 levels"
+    assert legend(ax)[2].startswith("3 ")
 
 
-def test_a_ladder_of_a_power_law_lies_on_a_line_with_its_exponent():
+def test_ladder_of_a_power_law_is_a_line_whose_slope_is_the_exponent():
     s = 240 * 0.5 ** (0.45 * np.arange(8))
     ax = transfers.ladders({"gamma": (s, 0.5)})
     points, line = ax.lines
@@ -93,16 +95,17 @@ def test_a_ladder_of_a_power_law_lies_on_a_line_with_its_exponent():
     ) and points.get_xdata().tolist() == list(range(0, -8, -1))
 
 
-def test_equations_are_drawn_less_a_multiple_and_those_thrown_out_are_told_apart():
+def test_equations_subtracts_a_multiple_and_marks_rejected_equations():
     x, used = np.arange(1.0, 11), np.arange(10) != 4
     ax = transfers.equations(x, 4 * x + np.where(used, 0, 9), used, 4.02, against=4)
     out, kept, line = ax.lines
     assert out.get_ydata().tolist() == [9] and np.allclose(kept.get_ydata(), 0)
     assert np.allclose(line.get_ydata(), [0, 0.2])
-    assert legend(ax) == ["1 removed", "9 in use", "k = 4.0200"] and "4 ×" in ax.get_ylabel()
+    assert [label.split()[0] for label in legend(ax)] == ["1", "9", "k"]
+    assert "4 ×" in ax.get_ylabel()
 
 
-def test_every_drawing_becomes_a_picture():
+def test_every_plot_of_a_transfer_can_be_rendered():
     h = two()
     T = transfer.brightness_transfer(*h)
     for ax in (

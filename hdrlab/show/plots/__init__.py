@@ -1,12 +1,12 @@
-"""Arrays -> matplotlib Axes, with units on every axis and colours that colour-blind readers tell apart.
+"""Plots of arrays on matplotlib Axes, with units, in colors that color-blind readers can distinguish.
 
 g    response        (256,) or (256, 3), ln exposure of each pixel level
 Z    pixel levels    (N, P): sample i in frame j
 lE   ln irradiance   (N,)
 B    ln exposure times (P,)
 
-Every function draws on a new figure of its own, or on `ax` where it takes one, and returns the
-Axes; nothing is shown or written here.
+Every function draws on a new figure, or on `ax` if it takes one, and returns the Axes. No function
+shows or writes a figure.
 """
 
 from collections.abc import Sequence
@@ -22,19 +22,27 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.errors import InputError
 from hdrlab.show.plots import reuse
 
-Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
-Ends = tuple[float, float] | None  # of an axis, where they are fixed
-
-# Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
-CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
-GRAY = (("", "#1A1A1A", "-"),)
-COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-SAMPLES = tuple(zip(COLOURS, "os^Dv*", strict=True))
-# ... and of curves: colours and line styles differ together
+# Left, bottom, width and height, as fractions of a figure.
+Place = tuple[float, float, float, float]
+# The fixed ends of an axis, or None.
+Ends = tuple[float, float] | None
+# A line style of matplotlib: its name, or an offset and the lengths of dashes and gaps.
 Dashes = str | tuple[int, tuple[float, ...]]
-STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
-LINES = tuple(zip(("#1A1A1A", *COLOURS[:5]), STYLES, strict=True))
-NARROW: dict[str, Any] = {
+
+# Okabe and Ito's colors. Line styles and markers differ too, so that plots can be read in gray.
+COLORS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+BLACK = "#1A1A1A"
+GRID_COLOR = "#D9D9D9"
+# Name, color and line style of each channel.
+CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
+GRAY_CHANNEL = (("", BLACK, "-"),)
+# Color and marker of each of a few samples.
+SAMPLE_STYLES = tuple(zip(COLORS, "os^Dv*", strict=True))
+# Color and line style of each of a few curves.
+LINE_DASHES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
+LINE_STYLES = tuple(zip((BLACK, *COLORS[:5]), LINE_DASHES, strict=True))
+# Options of a narrow legend.
+NARROW_LEGEND: dict[str, Any] = {
     "handlelength": 1.2,
     "columnspacing": 1.0,
     "borderaxespad": 0.2,
@@ -43,9 +51,9 @@ NARROW: dict[str, Any] = {
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
-    """Return the Axes of a new figure (inches), always in the same place: played steps do not jump."""
+    """Return the Axes of a new figure (inches), at the same place in every figure of a size."""
 
-    def made() -> list[Axes]:
+    def make() -> list[Axes]:
         figure = Figure(figsize=(width, height), dpi=100)
         left = 0.75
         bottom = 0.6
@@ -58,25 +66,27 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
             1 - (bottom + top) / height,
         )
         ax = figure.add_axes(place)
-        ax.grid(color="#D9D9D9", linewidth=0.6)
+        ax.grid(color=GRID_COLOR, linewidth=0.6)
         ax.set_axisbelow(True)
         return [ax]
 
-    return reuse.take((width, height), made)[0]
+    return reuse.take((width, height), make)[0]
 
 
 def picture_axes(width: float, height: float, place: Place) -> Axes:
-    """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
-    size = (width, height)
-    return reuse.take(
-        (*size, *place), lambda: [bare(Figure(figsize=size, dpi=100).add_axes(place))]
-    )[0]
+    """Return bare Axes for an image, at a place in a figure of this size (inches)."""
+
+    def make() -> list[Axes]:
+        figure = Figure(figsize=(width, height), dpi=100)
+        return [bare(figure.add_axes(place))]
+
+    return reuse.take((width, height, *place), make)[0]
 
 
 def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
-    """Return bare Axes for each of some maps, and those of the scale that they share, without an axis up."""
+    """Return bare Axes for several maps, and Axes for their color scale, which has no y axis."""
 
-    def made() -> list[Axes]:
+    def make() -> list[Axes]:
         figure = Figure(figsize=(width, height), dpi=100)
         maps = [bare(figure.add_axes(place)) for place in places]
         scale = figure.add_axes(bar)
@@ -84,19 +94,20 @@ def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place
         scale.yaxis.set_visible(False)
         return [*maps, scale]
 
-    return reuse.take((width, height, *chain(*places, bar)), made)
+    return reuse.take((width, height, *chain(*places, bar)), make)
 
 
 def bare(ax: Axes) -> Axes:
-    """Take the frame and the ticks from Axes that hold a picture; a title then need not look for ticks."""
+    """Remove the frame and the ticks from Axes that show an image, and return the Axes."""
     ax.set_axis_off()
+    # Without visible axes, matplotlib places titles faster.
     ax.xaxis.set_visible(False)
     ax.yaxis.set_visible(False)
     return ax
 
 
 def fix_limits(ax: Axes, span: Ends = None, limits: Ends = None) -> None:
-    """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""
+    """Fix the ends of x (`span`) and of y (`limits`), so that a slider does not move the ticks."""
     if span is not None:
         ax.set_xlim(span)
     if limits is not None:
@@ -104,15 +115,16 @@ def fix_limits(ax: Axes, span: Ends = None, limits: Ends = None) -> None:
 
 
 def logarithmic(ax: Axes, which: str = "x", numbers: Any = "{x:g}") -> Axes:
-    """Return Axes of decades; minor ticks and powers in mathematical type take longer than all the rest."""
+    """Give an axis a logarithmic scale, and return the Axes."""
     ax.set(**{f"{which}scale": "log"})
+    # Minor ticks and powers in mathematical type would take longer to draw than all the rest.
     ax.minorticks_off()
     getattr(ax, f"{which}axis").set_major_formatter(numbers)
     return ax
 
 
 def with_legend(ax: Axes, place: Any) -> Axes:
-    """Return the Axes with a legend, through which a little of what it covers can be seen."""
+    """Add a legend that is slightly transparent, and return the Axes."""
     ax.legend(loc=place, framealpha=0.9)
     return ax
 
@@ -131,26 +143,27 @@ def seconds(time: float) -> str:
 
 
 def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | None = None) -> Axes:
-    """Draw response curves, ln exposure across, pixel level up; one line per channel."""
+    """Draw response curves, pixel value over ln exposure, with a line per channel."""
     curves = np.asarray(g, dtype=np.float64)
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
-    channels = CHANNELS if curves.ndim == 2 else GRAY
+    channels = CHANNELS if curves.ndim == 2 else GRAY_CHANNEL
+    columns = curves.reshape(len(curves), -1).T
     levels = np.arange(len(curves))
-    for (name, colour, style), curve in zip(
-        channels, curves.reshape(len(curves), -1).T, strict=True
-    ):
-        ax.plot(curve, levels, style, color=colour, linewidth=1.8, label=f"{label} {name}".strip())
-    return with_legend(ax, "upper left") if label or curves.ndim == 2 else ax
+    for (name, color, style), curve in zip(channels, columns, strict=True):
+        ax.plot(curve, levels, style, color=color, linewidth=1.8, label=f"{label} {name}".strip())
+    if label or curves.ndim == 2:
+        with_legend(ax, "upper left")
+    return ax
 
 
 def samples(
     Z: ArrayLike, lE: ArrayLike, B: ArrayLike, *, g: ArrayLike | None = None, span: Ends = None
 ) -> Axes:
-    """Draw each sample i as its points (lE_i + B_j, Z_ij): with the right lE they all lie on one curve, g.
+    """Draw each sample i as its points (lE_i + B_j, Z_ij), which with the right lE form one curve, g.
 
-    Up to six samples have a colour and a marker each; more are drawn alike. `span` fixes the
+    Up to six samples have a color and a marker each; more are drawn alike. `span` fixes the
     exposure axis.
     """
     Z = np.asarray(Z)
@@ -162,34 +175,34 @@ def samples(
         )
     ax = _exposure_axes(axes(), span, 256)
     x = lE[:, None] + B
-    if g is not None:  # above the points, which would hide it
-        ax.plot(
-            g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g"
-        )
-    if len(Z) <= len(SAMPLES):
-        for i, (colour, marker) in enumerate(SAMPLES[: len(Z)]):
-            ax.plot(
-                x[i], Z[i], "-", marker=marker, color=colour, linewidth=0.8, label=f"pixel {i + 1}"
-            )
+    if g is not None:
+        levels = np.arange(len(np.asarray(g)))
+        above_the_points = 3
+        ax.plot(g, levels, color=BLACK, linewidth=1.5, zorder=above_the_points, label="g")
+    if len(Z) <= len(SAMPLE_STYLES):
+        for i, (color, marker) in enumerate(SAMPLE_STYLES[: len(Z)]):
+            label = f"pixel {i + 1}"
+            ax.plot(x[i], Z[i], "-", marker=marker, color=color, linewidth=0.8, label=label)
     else:
         ax.plot(x.ravel(), Z.ravel(), ".", color="#56B4E9", markersize=5, label=f"{len(Z)} pixels")
     return with_legend(ax, "upper left")
 
 
 def system(A: ArrayLike) -> Axes:
-    """Draw where a matrix is not zero: an equation across, an unknown down."""
+    """Draw a dot for each element of a matrix that is not zero, with the equations as rows."""
     A = np.asarray(A)
     ax = axes(4.2, 5.4)
-    ax.plot(*np.nonzero(A)[::-1], ".", color="#1A1A1A", markersize=2)
+    rows, columns = np.nonzero(A)
+    ax.plot(columns, rows, ".", color=BLACK, markersize=2)
     ax.set(xlabel="unknown (column of A)", ylabel="equation (row of A)")
     ax.set(xlim=(-3, A.shape[1] + 2), ylim=(A.shape[0] + 2, -3))
     return ax
 
 
 def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
-    """Draw the photographs in rows, each under its exposure time and, where given, its offset (dy, dx)."""
+    """Draw the photos in rows, each with its exposure time and, if given, its offset (dy, dx)."""
     count = len(bracket.images)
-    (h, w) = bracket.images.shape[1:3]
+    h, w = bracket.images.shape[1:3]
     rows = -(-count // columns)
     width = 1.75
     title = 0.25 if offsets is None else 0.4
@@ -206,8 +219,11 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
         ax = figure.add_axes(place)
         step = max(1, w // 350)
         ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
-        moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
-        ax.set_title(seconds(time) + moved, fontsize=11, pad=3)
+        title_text = seconds(time)
+        if offsets is not None:
+            dy, dx = np.asarray(offsets)[j]
+            title_text += f"\ndy {dy:+d}, dx {dx:+d} px"
+        ax.set_title(title_text, fontsize=11, pad=3)
         bare(ax)
     return figure
 

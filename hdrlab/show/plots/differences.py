@@ -18,6 +18,8 @@ MIN_SIDE_PIXELS = 200  # a smaller image is enlarged, so that single pixels can 
 MAX_SIDE_PIXELS = 480
 MAX_LINEAR_RATIO = 300.0  # beyond this ratio of largest to smallest the scale is logarithmic
 MISSING_GRAY = 128
+MIN_RING_RADIUS = 9
+RING_HALF_WIDTH = 1.6
 PIXEL_LEVELS = 256
 MAX_AXIS_LABEL_LENGTH = 28
 
@@ -142,10 +144,12 @@ def _ringed(colours: figures.Image, place: tuple[int, int]) -> figures.Image:
     """Return the picture in large with a ring around a pixel of the small one."""
     large = _large(colours).copy()
     scale = len(large) / len(colours)
-    y, x = (np.arange(length)[:, None] for length in large.shape[:2])
-    away = np.hypot(y - (place[0] + 0.5) * scale, (x - (place[1] + 0.5) * scale).T)
-    radius = max(0.9 * scale, 9)
-    large[np.abs(away - radius) < 1.6] = 0
+    height, width = large.shape[:2]
+    dy = np.arange(height)[:, None] - (place[0] + 0.5) * scale
+    dx = np.arange(width)[None, :] - (place[1] + 0.5) * scale
+    distance = np.hypot(dy, dx)
+    radius = max(0.9 * scale, MIN_RING_RADIUS)
+    large[np.abs(distance - radius) < RING_HALF_WIDTH] = 0
     return large
 
 

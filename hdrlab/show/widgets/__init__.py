@@ -1,15 +1,15 @@
-"""Widgets: steps to play, parameters to tune, pictures to compare, and the Detail Brush.
+"""Widgets for notebooks: play steps, tune parameters, compare pictures, ask questions, brush.
 
-play   draws every state once and moves through the frames in the browser: at once, and with no kernel too
-tune   calls a function on each move of a slider; its pictures are stored for a page that has no kernel
-wipe   two pictures with a movable edge between them: `show.widgets.compared`
-blink  pictures in one place, one after the other: `show.widgets.compared`
-predict  a question that takes the answer before the picture comes: `show.widgets.predict`
-brush  the Detail Brush over a radiance map: `show.widgets.lens`
+play     draws every state once; the browser moves through the frames, without a kernel
+tune     calls a function for each move of a slider; pages without a kernel show stored pictures
+wipe     two pictures with a movable edge between them: `show.widgets.compared`
+blink    pictures that blink at one place: `show.widgets.compared`
+predict  a question to answer before the result is shown: `show.widgets.predict`
+brush    the Detail Brush over a radiance map: `show.widgets.lens`
 
-The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a
-generator of yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an
-Axes or a Figure.
+`play` and `tune` work with every algorithm: `states` is any iterable (the library's
+`<verb>_steps`, or your own generator), `f` is any function, and `draw` returns a uint8 image (H, W)
+or (H, W, 3), an Axes or a Figure.
 """
 
 import gc
@@ -19,7 +19,7 @@ from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any, TypeVar
 
-import anywidget  # noqa: F401  first, so that it is named where it is missing
+import anywidget  # noqa: F401  first, so that the error names it if it is missing
 import traitlets
 from threadpoolctl import ThreadpoolController
 
@@ -44,21 +44,24 @@ __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "pl
 
 State = TypeVar("State")
 
-THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
-STORED = 48  # pictures of a slider that are made while a reader waits, for most of them a second
-HEAVIEST = 500_000  # bytes of them, on a page where nobody waits and more of them are made
-MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
+# The threads of the linear algebra libraries that are loaded by now.
+BLAS_THREADS = ThreadpoolController()
+# Stored pictures of `tune` by default: readers wait for most of them about a second.
+DEFAULT_STORED_PICTURES = 48
+MAX_STORED_BYTES = 500_000
+# Frames of `play`: a page with more opens slowly, and a generator may never end.
+MAX_FRAMES = 200
 
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Let Python look for garbage after an answer, and not in the midst of it: a plot leaves plenty."""
-    was = gc.isenabled()
+    """Pause the garbage collector, which would otherwise interrupt the drawing of a plot."""
+    was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if was:
+        if was_enabled:
             gc.enable()
 
 
@@ -91,52 +94,56 @@ def play(
     states : iterable
         The states of an algorithm, 1 to 200 of them.
     draw : function
-        Takes a state, and returns a uint8 picture, an Axes or a Figure. The Axes of `plots` are
-        drawn on again for the next picture, so it must not keep them.
+        Takes a state, and returns a uint8 image, an Axes or a Figure. The Axes of `plots` are
+        reused for the next frame, so `draw` must not keep them.
     alt : str, or function of a state
-        What the picture shows. To a str the step's number is added.
+        What the picture shows. hdrlab adds the step's number to a str.
     name : str
         What the slider counts.
 
     Raises
     ------
-    ValueError
+    InputError
         For no states or too many, an empty alt text, or a `draw` that returns something else.
 
     Examples
     --------
     >>> import numpy as np
-    >>> player = play(range(3), lambda k: np.full((4, 4), 80 * k, np.uint8), alt="A square, ever lighter")
+    >>> def square(k):
+    ...     return np.full((4, 4), 80 * k, np.uint8)
+    >>> player = play(range(3), square, alt="A square that gets lighter")
     >>> player.alts[1]
-    'A square, ever lighter, step 2'
+    'A square that gets lighter, step 2'
     """
     frames = []
     alts = []
     kept = reuse.Kept()
     areas = list[list[float]]()
-    for k, state in enumerate(islice(states, MOST + 1)):
-        frame, areas = reuse.draw_reusing(
-            draw, state, lambda drawn: (encode(drawn), picture_areas(drawn)), kept
-        )
+
+    def finish(drawn: object) -> tuple[bytes, list[list[float]]]:
+        return encode(drawn), picture_areas(drawn)
+
+    for number, state in enumerate(islice(states, MAX_FRAMES + 1), 1):
+        frame, areas = reuse.draw_reusing(draw, state, finish, kept)
         frames.append(frame)
-        alts.append(
-            require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}"
-        )
-    if not 0 < len(frames) <= MOST:
-        raise InputError(
-            f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}"
-        )
+        if callable(alt):
+            alts.append(require_alt(alt(state)))
+        else:
+            alts.append(f"{require_alt(alt)}, {name} {number}")
+    if not 0 < len(frames) <= MAX_FRAMES:
+        got = "more" if frames else "none"
+        raise InputError(f"expected 1 to {MAX_FRAMES} states to play, got {got}")
     return Player(frames=frames, alts=alts, name=name, areas=areas)
 
 
 class Tuner(Widget):
-    """Sliders on a function's parameters: `at` is where they stand, `frame` the picture of `shown`."""
+    """Sliders for a function's parameters: `at` are their positions, `frame` the picture of `shown`."""
 
     _esm = script("tune.js")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     # each position's text
     values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)
-    # The browser moves this, and knows.
+    # The browser moves the sliders, so it needs no echo.
     at = traitlets.List(traitlets.Int()).tag(sync=True, echo_update=False)
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
     frame = traitlets.Bytes().tag(sync=True)  # as `web.encode_frame` makes it
@@ -160,32 +167,28 @@ class Tuner(Widget):
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The values at which the sliders stand, by name."""
+        """The current values of the sliders, by name."""
         return positions.values(self._grids, self.at)
 
     def still(self) -> Picture:
-        """Return the picture of where the sliders start."""
+        """Return the picture of the sliders' first positions."""
         return Picture(tuple(self.stored[:1]), (self.alt,), ("",), areas=(self.areas,))
 
     def _answer(self, _: object) -> None:
-        """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
+        """Show the picture of the current positions; in a burst of moves, only the last one counts."""
         at = list(self.at)
         frame = self.frame
         problem = ""
         with undisturbed():
             try:
                 frame = web.encode_frame(self._picture(at))
-            except (
-                Exception
-            ) as error:  # it may be a student's function: its words belong beside the slider
+            except Exception as error:  # it may be a student's function: show its error
                 problem = f"{type(error).__name__}: {error}"
             with self.hold_sync():
-                self.frame, self.shown, self.problem, self.answers = (
-                    frame,
-                    at,
-                    problem,
-                    self.answers + 1,
-                )
+                self.frame = frame
+                self.shown = at
+                self.problem = problem
+                self.answers += 1
 
 
 def tune(
@@ -194,11 +197,11 @@ def tune(
     /,
     *,
     alt: str,
-    stored: int = STORED,
+    stored: int = DEFAULT_STORED_PICTURES,
     point: tuple[str, str] | None = None,
     **ranges: Any,
 ) -> Tuner:
-    """Return a widget with a slider per parameter, which shows draw(f(...)) of where the sliders stand.
+    """Return a widget with a slider for each parameter, which shows draw(f(...)).
 
     Parameters
     ----------
@@ -206,24 +209,24 @@ def tune(
         Its parameters named in `ranges` get sliders, which start at its defaults, or else in the
         middle.
     draw : function
-        Takes what `f` returns; else as for `play`.
+        Takes what `f` returns, and returns an image as for `play`.
     alt : str
-        What the picture shows; the parameters' values are added.
+        What the picture shows; the widget adds the values of the parameters.
     stored : int
-        The most pictures that are computed now, for a page without a kernel: all positions, or else
-        a grid of them, of at most 0.5 MB. Lower it where `f` takes long. The environment variable
-        HDRLAB_STORED overrules it, as for the site, where nobody waits. A position at which `f`
-        fails has none.
+        The largest number of pictures that are computed in advance, for pages without a kernel: all
+        positions, or an even grid of them, of at most 0.5 MB. Pass a smaller number if `f` is slow.
+        The environment variable HDRLAB_STORED overrides it, for example for the site. Positions at
+        which `f` raises an error are left out.
     point : (down, right), optional
-        Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets,
-        too.
+        Two of the parameters, fractions of the picture from 0 to 1, that a click on the picture
+        sets as well.
     **ranges : (low, high), (low, high, step), or a list of values
-        A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the
-        very values.
+        A tuple is a range, of integers if both ends are integers, and in 100 steps otherwise. A
+        list contains the values themselves.
 
     Raises
     ------
-    ValueError
+    InputError
         For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty
         alt text, or a `draw` that returns something else.
 
@@ -237,7 +240,7 @@ def tune(
     {'level': 100}
     """
     require_alt(alt)
-    grids = {name: positions.grid(name, given) for name, given in ranges.items()}
+    grids = {name: positions.grid(name, choices) for name, choices in ranges.items()}
     if not grids:
         raise InputError("expected at least one range, such as smoothness=(1, 100), got none")
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
@@ -248,21 +251,32 @@ def tune(
     kept = reuse.Kept()
 
     def picture(at: list[int], finish: Callable[[object], Any] = render) -> Any:
-        with THREADS.limit(
-            limits=1
-        ):  # its systems are small: threads would only wait for each other
+        # The systems are small, so that threads would only wait for each other.
+        with BLAS_THREADS.limit(limits=1):
             return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
-    at = positions.start(f, grids)
-    most = int(os.environ.get("HDRLAB_STORED", stored))
-    first, areas = picture(at, lambda drawn: (render(drawn), picture_areas(drawn)))
-    stored_at = [at]
+    def finish_first(drawn: object) -> tuple[web.Image, list[list[float]]]:
+        return render(drawn), picture_areas(drawn)
+
+    start = positions.start(f, grids)
+    first, areas = picture(start, finish_first)
+    stored_at = [start]
     frames = [encode_change(first)]
-    for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:
-        with suppress(Exception):  # what a student's function refuses is told when it is asked for
+    max_pictures = int(os.environ.get("HDRLAB_STORED", stored))
+    max_pictures = min(max_pictures, MAX_STORED_BYTES // len(frames[0]))
+    for position in positions.beforehand(grids, start, max_pictures)[1:]:
+        with suppress(Exception):  # the widget shows the error when a reader moves there
             frames.append(encode_change(picture(position), first))
             stored_at.append(position)
-    told = {"point": list(point or ()), "areas": areas, "frame": web.encode_frame(first)}
     return Tuner(
-        picture, grids, at=at, shown=at, alt=alt, stored_at=stored_at, stored=frames, **told
+        picture,
+        grids,
+        at=start,
+        shown=start,
+        alt=alt,
+        stored_at=stored_at,
+        stored=frames,
+        point=list(point or ()),
+        areas=areas,
+        frame=web.encode_frame(first),
     )

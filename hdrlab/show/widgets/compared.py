@@ -1,10 +1,10 @@
-"""Pictures of one scene, compared pixel by pixel: with a movable edge, or by blinking.
+"""Widgets that compare pictures of one scene: with a movable edge, or by blinking.
 
 picture  (H, W) or (H, W, 3) uint8, or an Axes or a Figure; all of one size
-values   (H, W) or (H, W, 3), any linear unit: what a pixel stands for, read out beside its levels
+values   (H, W) or (H, W, 3), any linear unit: values such as radiance that belong to the pixels
 
-Both zoom to single pixels and read out the one under the pointer or under the cross that the arrow
-keys move. All of it happens in the browser, on a page without a kernel too.
+Both widgets zoom to single pixels. They show the pixel value, and `values`, under the pointer or
+under a cross that the arrow keys move. They need no kernel.
 """
 
 from collections.abc import Sequence
@@ -20,13 +20,14 @@ from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.widgets.scripts import Widget, script
 
-# pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open
-SIDE = 2000
-SHORTEST = 0.2  # seconds: more than three flashes in a second can harm a reader [WCAG 2.3.1]
+# Larger pictures are reduced to the means of k x k pixels, so that a page stays quick to open.
+MAX_PICTURE_SIDE = 2000
+# More than three flashes in a second can cause seizures [WCAG 2.3.1].
+MIN_PERIOD_SECONDS = 0.2
 
 
 class Comparison(Widget):
-    """Pictures of one size, with what their pixels stand for."""
+    """Pictures of one size, with values that belong to their pixels."""
 
     pictures = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP, without loss
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
@@ -44,14 +45,14 @@ class Comparison(Widget):
 
 
 class Wiper(Comparison):
-    """Two pictures: the first up to the `edge`, a share of the width, and the second from there on."""
+    """Two pictures, the first left of the `edge`, a fraction of the width, the second right of it."""
 
     _esm = script("half.js", "viewer.js", "wipe.js")
     edge = traitlets.Float(0.5).tag(sync=True)
 
 
 class Blinker(Comparison):
-    """Pictures in one place, of which `index` is shown; they change every `period` seconds while playing."""
+    """Pictures that blink: one at a time, `index`, for `period` seconds each."""
 
     _esm = script("half.js", "viewer.js", "blink.js")
     index = traitlets.Int(0).tag(sync=True)
@@ -77,16 +78,14 @@ def wipe(
     labels : two str
         What each picture is.
     values : array (H, W[, 3]), or a list of two such arrays
-        What the pixels stand for, such as the radiance map both pictures were made from, or each
-        one's own.
+        Values of the pixels to show, such as the radiance map of both pictures, or a map for each.
     unit : str
-        What `values` are.
+        The quantity of `values`.
 
     Raises
     ------
-    ValueError
-        For pictures or values that do not fit together, an empty alt text, or labels that are not
-        two.
+    InputError
+        For pictures or values of different sizes, an empty alt text, or not exactly two labels.
 
     Examples
     --------
@@ -94,7 +93,7 @@ def wipe(
     >>> wipe(dark, light, alt="A gray wall", labels=["1/60 s", "1/15 s"]).labels
     ['1/60 s', '1/15 s']
     """
-    return Wiper(**_traits([a, b], alt, labels, values, unit))
+    return Wiper(**_make_traits([a, b], alt, labels, values, unit))
 
 
 def blink(
@@ -107,7 +106,7 @@ def blink(
     values: ArrayLike | Sequence[ArrayLike] | None = None,
     unit: str = "radiance",
 ) -> Blinker:
-    """Return a widget that shows one picture in the place of the other: what differs jumps to the eye.
+    """Return a widget that shows pictures in turn at the same place, so that differences stand out.
 
     Parameters
     ----------
@@ -117,18 +116,17 @@ def blink(
     labels : a str for each picture
         What each picture is; by default A, B and so on.
     period : float
-        Seconds that each picture stands while they blink, 0.2 or more.
+        Seconds for which each picture is shown, 0.2 or more.
     values : array (H, W[, 3]), or a list of such arrays, one for each picture
-        What the pixels stand for, such as the radiance map all pictures were made from, or each
-        one's own.
+        Values of the pixels to show, such as the radiance map of all pictures, or a map for each.
     unit : str
-        What `values` are.
+        The quantity of `values`.
 
     Raises
     ------
-    ValueError
-        For pictures or values that do not fit together, an empty alt text, labels that are not one
-        for each picture, or a period so short that the flashes can harm.
+    InputError
+        For pictures or values of different sizes, an empty alt text, a wrong number of labels, or a
+        period below 0.2 seconds, whose flashes can cause seizures.
 
     Examples
     --------
@@ -136,49 +134,64 @@ def blink(
     >>> blink(dark, light, alt="A gray wall").labels
     ['A', 'B']
     """
-    if not SHORTEST <= period < np.inf:
+    if not MIN_PERIOD_SECONDS <= period < np.inf:
         raise InputError(
-            f"expected a period of {SHORTEST} s or more: faster flashes can harm, got {period}"
+            f"expected a period of {MIN_PERIOD_SECONDS} s or more, because faster flashes can harm, "
+            f"got {period}"
         )
-    labels = [chr(ord("A") + k) for k in range(2 + len(more))] if labels is None else labels
-    return Blinker(period=period, **_traits([a, b, *more], alt, labels, values, unit))
+    pictures = [a, b, *more]
+    if labels is None:
+        labels = [chr(ord("A") + k) for k in range(len(pictures))]
+    return Blinker(period=period, **_make_traits(pictures, alt, labels, values, unit))
 
 
-def _traits(
-    drawn: list[object], alt: str, labels: Sequence[str], values: Any, unit: str
+def _make_traits(
+    drawings: list[object], alt: str, labels: Sequence[str], values: Any, unit: str
 ) -> dict[str, Any]:
-    pictures = [render(one) for one in drawn]
+    """Return the traits of a Comparison, or raise an InputError if its parts do not fit."""
+    pictures = [render(drawing) for drawing in drawings]
     sizes = [picture.shape[:2] for picture in pictures]
     if len(set(sizes)) > 1:
         raise InputError(f"expected pictures of one size, got {', '.join(map(str, sizes))}")
     if isinstance(labels, str) or len(labels) != len(pictures) or not all(labels):
         raise InputError(f"expected a label for each of {len(pictures)} pictures, got {labels!r}")
-    read = [_readout(one, sizes[0]) for one in _each(values, len(pictures))]
+    halves = []
+    scales = []
+    channels = []
+    for array in _list_values(values, len(pictures)):
+        _require_values(array, sizes[0])
+        data, scale = web.encode_halves(fit(array.astype(np.float32), MAX_PICTURE_SIDE))
+        halves.append(data)
+        scales.append(scale)
+        channels.append(3 if array.ndim == 3 else 1)
     return {
-        "pictures": [web.encode_webp(fit(picture, SIDE), lossless=True) for picture in pictures],
+        "pictures": [
+            web.encode_webp(fit(picture, MAX_PICTURE_SIDE), lossless=True) for picture in pictures
+        ],
         "alt": require_alt(alt),
         "labels": list(labels),
-        **{name: [one[name] for one in read] for name in ("values", "scales", "channels")},
+        "values": halves,
+        "scales": scales,
+        "channels": channels,
         "unit": unit,
     }
 
 
-def _each(values: Any, count: int) -> list[Array]:
+def _list_values(values: Any, count: int) -> list[Array]:
+    """Return the arrays of values: none, one for all pictures, or one for each."""
     if values is None:
         return []
-    each = list(values) if isinstance(values, list | tuple) else [values]
-    if len(each) not in (1, count):
+    arrays = list(values) if isinstance(values, list | tuple) else [values]
+    if len(arrays) not in (1, count):
         raise InputError(
-            f"expected values for each of {count} pictures, or one array, got {len(each)}"
+            f"expected values for each of {count} pictures, or one array, got {len(arrays)}"
         )
-    return [np.asarray(one) for one in each]
+    return [np.asarray(array) for array in arrays]
 
 
-def _readout(values: Array, size: tuple[int, ...]) -> dict[str, Any]:
-    fits = (
-        values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
-    )
-    if not fits or not np.isfinite(values).all():
+def _require_values(values: Array, size: tuple[int, ...]) -> None:
+    """Raise an InputError if values are not finite numbers with the size of the pictures."""
+    has_right_shape = values.shape[:2] == size and values.shape[2:] in ((), (3,))
+    is_number = values.dtype.kind in "uif"
+    if not has_right_shape or not is_number or not np.isfinite(values).all():
         raise InputError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
-    data, scale = web.encode_halves(fit(values.astype(np.float32), SIDE))
-    return {"values": data, "scales": scale, "channels": 3 if values.ndim == 3 else 1}

@@ -1,12 +1,10 @@
-"""The Detail Brush in the browser: `tonemap.brush.lens` follows the pointer over a radiance map.
+"""The Detail Brush as a widget: `tonemap.brush.lens` follows the pointer over a radiance map.
 
-E  radiance  (H, W) or (H, W, 3), any linear unit; it travels as half floats, scaled to use their range
+E  radiance  (H, W) or (H, W, 3), any linear unit; the page stores it as scaled half floats
 
-The script computes what `tonemap.brush` does, by the same formulas, for each frame of the display:
-the test compares them pixel by pixel.
+The script uses the formulas of `tonemap.brush` for each frame of the display. A test compares the
+two pixel by pixel.
 """
-
-from typing import Any
 
 import traitlets
 
@@ -18,13 +16,16 @@ from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.widgets.scripts import Widget, script
 
-SIDE = 1536  # pixels: a larger map is shown by means of k x k pixels
-SIZES = (64, 512)  # sides of the brush, pixels
-MAGNIFICATIONS = (1, 8)
+# A larger map is reduced to the means of k x k pixels.
+MAX_MAP_SIDE = 1536
+# The smallest and the largest value of each parameter.
+SIZE_RANGE = (64, 512)
+MAGNIFICATION_RANGE = (1, 8)
+LIMIT_RANGE = (1, 16)
 
 
 class Brush(Widget):
-    """A radiance map, the picture of it that lies around the brush, and where the brush is."""
+    """A radiance map, the picture that surrounds the brush, and the place of the brush."""
 
     _esm = script("half.js", "brush.js")
     radiance = traitlets.Bytes().tag(sync=True)  # half floats (H, W, channels)
@@ -39,7 +40,7 @@ class Brush(Widget):
     limit = traitlets.Float(4.0).tag(sync=True)
 
     def still(self) -> Picture:
-        """Return the picture that lies around the brush."""
+        """Return the picture that surrounds the brush."""
         return Picture((self.picture,), (self.alt,), ("",))
 
 
@@ -52,28 +53,29 @@ def brush(
     magnification: int = 1,
     limit: float = 4.0,
 ) -> Brush:
-    """Return a widget with a brush that equalises the window under it, wherever it is moved.
+    """Return a widget with a brush that equalizes the histogram of the window under it.
 
     Parameters
     ----------
     E : (H, W) or (H, W, 3)
-        Radiance; a map of more than 1536 pixels on a side is shown by means of k x k pixels.
+        Radiance; a map of more than 1536 pixels on a side is reduced to means of k x k pixels.
     alt : str
         What the map shows; the place of the brush is added.
     picture : uint8 (H, W) or (H, W, 3), optional
-        What is seen around the brush; by default `pipeline.develop(E)`.
+        The picture that surrounds the brush; by default `pipeline.develop(E)`.
     size : int
         Side of the brush in pixels, 64 to 512; a slider changes it.
     magnification : int
         Pixels shown for each pixel of E along a side, 1 to 8; a slider changes it.
     limit : float
-        How many times an even share a bin of the histogram may count, 1 to 16; a slider changes it.
+        Largest count of a histogram bin, as a multiple of the mean count, 1 to 16; a slider changes
+        it.
 
     Raises
     ------
-    ValueError
+    InputError
         For radiance that is not finite or negative, an empty alt text, a picture of another size,
-        or knobs out of range.
+        or parameters out of range.
 
     Examples
     --------
@@ -83,18 +85,32 @@ def brush(
     [120, 160]
     """
     E = as_radiance(E)
-    knobs = {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)}
-    for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16)}).items():
-        if not low <= value <= high:
-            raise InputError(f"expected {name} from {low} to {high}, got {value}")
-    around = fit(pipeline.develop(E) if picture is None else render(picture), SIDE)
-    E = fit(E, SIDE)
-    if around.shape[:2] != E.shape[:2]:
+    _require_in_range("size", size, SIZE_RANGE)
+    _require_in_range("magnification", magnification, MAGNIFICATION_RANGE)
+    _require_in_range("limit", limit, LIMIT_RANGE)
+    image = pipeline.develop(E) if picture is None else render(picture)
+    image = fit(image, MAX_MAP_SIDE)
+    E = fit(E, MAX_MAP_SIDE)
+    if image.shape[:2] != E.shape[:2]:
         raise InputError(
-            f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}"
+            f"expected a picture of the size of E, {E.shape[:2]}, got {image.shape[:2]}"
         )
+    height, width = E.shape[:2]
     data, scale = web.encode_halves(E)
-    traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit}
-    traits |= {"shape": [*E.shape[:2], 3 if E.ndim == 3 else 1], "radiance": data, "scale": scale}
-    traits |= {"centre": [E.shape[0] // 2, E.shape[1] // 2], "alt": require_alt(alt)}
-    return Brush(picture=web.encode_webp(around, quality=90), **traits)
+    return Brush(
+        radiance=data,
+        scale=scale,
+        shape=[height, width, 3 if E.ndim == 3 else 1],
+        picture=web.encode_webp(image, quality=90),
+        alt=require_alt(alt),
+        centre=[height // 2, width // 2],
+        size=size,
+        magnification=magnification,
+        limit=limit,
+    )
+
+
+def _require_in_range(name: str, value: float, ends: tuple[int, int]) -> None:
+    low, high = ends
+    if not low <= value <= high:
+        raise InputError(f"expected {name} from {low} to {high}, got {value}")

@@ -1,10 +1,10 @@
-"""Questions that take the answer before the picture comes, and then lay the truth over it.
+"""Questions that readers answer before they see the result, which is then shown with their answer.
 
-    predict.number("How many stops lie between the window and the bench?", 11.4, (0, 20),
+    predict.number("How many stops are between the window and the bench?", 11.4, (0, 20),
     unit="stops")
 
-The answer is given by pointer, finger or keys, and skipped by one click; a page without a kernel
-will do. What was answered stays in the notebook's own state, and goes nowhere else.
+Readers answer with pointer, finger or keys, or skip the question with one click. This needs no
+kernel. The answer stays in the notebook's own state and is sent nowhere.
 """
 
 from collections.abc import Sequence
@@ -21,19 +21,21 @@ from hdrlab.show.pictures import render, require_alt
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.widgets.scripts import Widget, script
 
-SIDE = 960  # pixels: a larger picture is shown by means of k x k pixels
-POSITIONS = 100  # of a number's slider
+# A larger picture is reduced to the means of k x k pixels.
+MAX_PICTURE_SIDE = 960
+SLIDER_STEPS = 100
+MAX_CURVE_POINTS = 257
 
 
 class Prediction(Widget):
-    """A question, what is true, and what was answered: `given` is None before that, and if it was skipped."""
+    """A question, the true answer `truth`, and the reader's answer `given`, None until there is one."""
 
     _esm = script("predict.js")
     kind = traitlets.Unicode().tag(sync=True)  # choice, number, curve or place
     question = traitlets.Unicode().tag(sync=True)
     because = traitlets.Unicode().tag(sync=True)
     truth = traitlets.Any().tag(sync=True)
-    told = traitlets.Unicode().tag(sync=True)  # the truth in words, where it has some
+    told = traitlets.Unicode().tag(sync=True)  # the true answer in words, for some kinds
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     scale = traitlets.List(traitlets.Float()).tag(sync=True)
     unit = traitlets.Unicode().tag(sync=True)
@@ -43,7 +45,7 @@ class Prediction(Widget):
     done = traitlets.Bool(False).tag(sync=True)
 
     def fallback(self) -> tuple[str, str]:
-        """Return the question, and its answer to be opened."""
+        """Return the question with an answer that opens on a click, as HTML, and the question."""
         answer = escape(f"{self.told} {self.because}".strip())
         opened = f"<details><summary>Answer</summary>{answer}</details>"
         return f"<p>{escape(self.question)}</p>{opened}", self.question
@@ -57,42 +59,54 @@ def choice(
     pictures: Sequence[object] = (),
     because: str = "",
 ) -> Prediction:
-    """Return a question that is answered by one of several labels, with a picture each, or without.
+    """Return a multiple-choice question, with or without a picture for each label.
 
     Parameters
     ----------
     question : str
     truth : int
-        Which label is right, from 0.
-    labels : str each, at least two
+        Index of the right label.
+    labels : at least two str
     pictures : a uint8 picture, Axes or Figure for each label, or none
     because : str
-        A sentence that is shown with the truth.
+        A sentence that is shown with the answer.
 
     Raises
     ------
-    ValueError
-        For labels that do not fit the truth or the pictures.
+    InputError
+        For fewer than two labels, a truth without a label, or another number of pictures.
 
     Examples
     --------
     >>> choice("Which is brighter?", 0, ["the sky", "the wall"]).labels
     ['the sky', 'the wall']
     """
-    if len(labels) < 2 or truth not in range(len(labels)) or len(pictures) not in (0, len(labels)):
-        wanted = "two or more labels, one of them true, and no pictures or one each"
+    has_truth = len(labels) >= 2 and truth in range(len(labels))
+    if not has_truth or len(pictures) not in (0, len(labels)):
         raise InputError(
-            f"expected {wanted}, got {len(labels)} labels, {len(pictures)} pictures, {truth=}"
+            "expected two or more labels, one of them true, and no pictures or one each, "
+            f"got {len(labels)} labels, {len(pictures)} pictures, {truth=}"
         )
-    shown = [web.encode_webp(fit(render(one), SIDE // 2), lossless=True) for one in pictures]
-    parts = {"labels": list(labels), "alts": list(labels), "pictures": shown}
-    return ask("choice", question, int(truth), f"{labels[truth]}.", because, **parts)
+    encoded = []
+    for picture in pictures:
+        small = fit(render(picture), MAX_PICTURE_SIDE // 2)
+        encoded.append(web.encode_webp(small, lossless=True))
+    return ask(
+        "choice",
+        question,
+        int(truth),
+        f"{labels[truth]}.",
+        because,
+        labels=list(labels),
+        alts=list(labels),
+        pictures=encoded,
+    )
 
 
 def number(
     question: str, truth: float, between: tuple[float, float], *, unit: str = "", because: str = ""
 ) -> Prediction:
-    """Return a question that is answered by a number on a scale; within a tenth of the scale is near.
+    """Return a question whose answer is a number on a scale; an error below a tenth of it is small.
 
     Parameters
     ----------
@@ -101,12 +115,12 @@ def number(
     between : the ends of the scale
     unit : str
     because : str
-        A sentence that is shown with the truth.
+        A sentence that is shown with the answer.
 
     Raises
     ------
-    ValueError
-        Where the truth does not lie on the scale.
+    InputError
+        For a truth that is not on the scale.
 
     Examples
     --------
@@ -114,32 +128,34 @@ def number(
     11.4
     """
     low, high = map(float, between)
+    truth = float(truth)
     if not low <= truth <= high or low == high:
         raise InputError(f"expected a truth between {low:g} and {high:g}, got {truth}")
-    whole = all(one.is_integer() for one in (float(truth), low, high)) and high - low <= POSITIONS
-    scale = [low, high, 1.0 if whole else (high - low) / POSITIONS]
-    told = f"{truth:.3g} {unit}".strip() + "."
-    return ask("number", question, float(truth), told, because, scale=scale, unit=unit)
+    is_whole = truth.is_integer() and low.is_integer() and high.is_integer()
+    has_whole_steps = is_whole and high - low <= SLIDER_STEPS
+    step = 1.0 if has_whole_steps else (high - low) / SLIDER_STEPS
+    answer = f"{truth:.3g} {unit}".strip() + "."
+    return ask("number", question, truth, answer, because, scale=[low, high, step], unit=unit)
 
 
 def curve(
     question: str, x: ArrayLike, y: ArrayLike, *, names: tuple[str, str], because: str = ""
 ) -> Prediction:
-    """Return a question that is answered by drawing: y over x, on axes a little larger, with round ends.
+    """Return a question whose answer is a drawn curve y over x, on axes with round ends.
 
     Parameters
     ----------
     question : str
     x, y : (n,) float
         The true curve, x rising.
-    names : of x and of y, with their units
+    names : the names of x and of y, with their units
     because : str
-        A sentence that is shown with the truth.
+        A sentence that is shown with the answer.
 
     Raises
     ------
-    ValueError
-        For numbers that are no curve.
+    InputError
+        For x that does not rise, y that is not finite, or arrays of different lengths.
 
     Examples
     --------
@@ -148,46 +164,50 @@ def curve(
     """
     x = np.asarray(x, np.float64)
     y = np.asarray(y, np.float64)
-    if (
-        x.shape != y.shape
-        or x.ndim != 1
-        or len(x) < 2
-        or np.any(np.diff(x) <= 0)
-        or not np.isfinite(y).all()
-    ):
+    has_points = x.shape == y.shape and x.ndim == 1 and len(x) >= 2
+    if not has_points or np.any(np.diff(x) <= 0) or not np.isfinite(y).all():
         raise InputError(
             f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}"
         )
-    few = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int))
-    room = 0.1 * (np.ptp(y) or 1.0)
-    step = 2 * 10.0 ** np.floor(np.log10(room))
-    low = step * np.floor((y.min() - room) / step)
-    high = step * np.ceil((y.max() + room) / step)
-    scale = [float(x[0]), float(x[-1]), float(low), float(high)]
-    parts = {"scale": scale, "labels": list(names), "alts": [f"Axes: {names[1]} over {names[0]}"]}
-    return ask("curve", question, [x[few].tolist(), y[few].tolist()], "", because, **parts)
+    indices = np.linspace(0, len(x) - 1, MAX_CURVE_POINTS).round().astype(int)
+    indices = np.unique(indices)
+    margin = 0.1 * (np.ptp(y) or 1.0)
+    step = 2 * 10.0 ** np.floor(np.log10(margin))
+    low = step * np.floor((y.min() - margin) / step)
+    high = step * np.ceil((y.max() + margin) / step)
+    x_name, y_name = names
+    return ask(
+        "curve",
+        question,
+        [x[indices].tolist(), y[indices].tolist()],
+        "",
+        because,
+        scale=[float(x[0]), float(x[-1]), float(low), float(high)],
+        labels=[x_name, y_name],
+        alts=[f"Axes: {y_name} over {x_name}"],
+    )
 
 
 def place(
     question: str, mask: ArrayLike, picture: object, *, alt: str, because: str = ""
 ) -> Prediction:
-    """Return a question that is answered by marking a pixel: the right ones are those of the mask.
+    """Return a question whose answer is a place in a picture; right are the pixels of the mask.
 
     Parameters
     ----------
     question : str
     mask : (H, W) bool
     picture : (H, W) or (H, W, 3) uint8
-        Where to mark it.
+        The picture in which readers mark a pixel.
     alt : str
         What the picture shows.
     because : str
-        A sentence that is shown with the truth.
+        A sentence that is shown with the answer.
 
     Raises
     ------
-    ValueError
-        For a mask that is empty or does not fit the picture, or an empty alt text.
+    InputError
+        For a mask that is empty or has another size than the picture, or an empty alt text.
 
     Examples
     --------
@@ -195,27 +215,34 @@ def place(
     >>> place("Where?", wall > 50, wall, alt="A wall").kind
     'place'
     """
-    right = np.asarray(mask)
-    drawn = render(picture)
-    if right.dtype != bool or right.shape != drawn.shape[:2] or not right.any():
+    is_right = np.asarray(mask)
+    image = render(picture)
+    if is_right.dtype != bool or is_right.shape != image.shape[:2] or not is_right.any():
         raise InputError(
-            f"expected a mask {drawn.shape[:2]} with some pixels, got {describe(mask)}"
+            f"expected a mask {image.shape[:2]} with some pixels, got {describe(mask)}"
         )
-    small = fit(drawn, SIDE)
-    k = -(-max(right.shape) // SIDE)
-    rows, columns = (k * side for side in small.shape[:2])
-    held = right[:rows, :columns].reshape(-1, k, columns // k, k).any(axis=(1, 3))
-    shown = [
-        web.encode_webp(small),
-        web.encode_webp(np.where(held, 255, 0).astype(np.uint8), lossless=True),
-    ]
-    return ask("place", question, 0, "", because, pictures=shown, alts=[require_alt(alt)])
+    small = fit(image, MAX_PICTURE_SIDE)
+    height, width = small.shape[:2]
+    k = -(-max(is_right.shape) // MAX_PICTURE_SIDE)
+    blocks = is_right[: k * height, : k * width].reshape(-1, k, width, k)
+    small_mask = np.where(blocks.any(axis=(1, 3)), 255, 0).astype(np.uint8)
+    return ask(
+        "place",
+        question,
+        0,
+        "",
+        because,
+        pictures=[web.encode_webp(small), web.encode_webp(small_mask, lossless=True)],
+        alts=[require_alt(alt)],
+    )
 
 
-def ask(kind: str, question: str, truth: Any, told: str, because: str, **parts: Any) -> Prediction:
-    """Return the widget of a kind."""
+def ask(
+    kind: str, question: str, truth: Any, answer: str, because: str, **traits: Any
+) -> Prediction:
+    """Return a question of a kind, with the true answer as a value and in words."""
     if not question.strip():
         raise InputError("expected a question, got an empty one")
     return Prediction(
-        kind=kind, question=question, truth=truth, told=told, because=because, **parts
+        kind=kind, question=question, truth=truth, told=answer, because=because, **traits
     )

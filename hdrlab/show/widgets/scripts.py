@@ -1,4 +1,4 @@
-"""What all widgets share: scripts and a style sheet that load nothing from elsewhere, and a still picture."""
+"""The parts that all widgets share: their scripts, their style sheet, and a still picture."""
 
 from pathlib import Path
 from typing import Any
@@ -9,30 +9,34 @@ from hdrlab.io import web
 from hdrlab.show.pictures import Picture, encode
 from hdrlab.show.plots.figures import fit
 
-HERE = Path(__file__).parent
-STYLE = HERE / "widgets.css"
-SIDE = 960  # pixels of a still picture: it travels beside the widget in every saved notebook
+SCRIPT_FOLDER = Path(__file__).parent
+STYLE_SHEET = SCRIPT_FOLDER / "widgets.css"
+# Every saved notebook contains the still picture as well as the widget.
+MAX_STILL_SIDE = 960
 
 
 def script(*names: str) -> str:
-    """Return one module of these files, after what all widgets share: a widget's script imports nothing."""
-    return "".join((HERE / name).read_text("utf-8") for name in ("canvas.js", *names))
+    """Return the shared script and the named ones as one module, which imports nothing."""
+    return "".join((SCRIPT_FOLDER / name).read_text("utf-8") for name in ("canvas.js", *names))
 
 
 class Widget(anywidget.AnyWidget):
-    """A widget that is a still picture with alt text wherever a saved notebook is read without its model."""
+    """A widget that falls back to a still picture with alt text where no script can show it."""
 
-    _css = STYLE
+    _css = STYLE_SHEET
 
     def still(self) -> Picture:
-        """Return what the widget shows before anything is moved."""
+        """Return the widget's first picture, before the reader moves anything."""
         raise NotImplementedError
 
     def fallback(self) -> tuple[str, str]:
         """Return the still picture as HTML and as text."""
         still = self.still()
-        frames = tuple(encode(fit(web.decode_picture(frame), SIDE)) for frame in still.frames)
-        return still._replace(frames=frames)._repr_html_(), repr(still)
+        frames = []
+        for frame in still.frames:
+            image = web.decode_picture(frame)
+            frames.append(encode(fit(image, MAX_STILL_SIDE)))
+        return still._replace(frames=tuple(frames))._repr_html_(), repr(still)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> tuple[dict[str, Any], dict[str, Any]]:
         data, metadata = super()._repr_mimebundle_(**kwargs) or ({}, {})

@@ -137,5 +137,8 @@ def scan_ratios(M: F64, R: ArrayLike, order: int) -> F64:
     """Return the `brightness_error` of the best c at each of the ratios R (K,), for two frames M (N, 2)."""
     samples = neighbours(M, order)
     M = M[in_range(M)[:, 0]]
-    each = np.atleast_1d(R)[:, None]
-    return np.array([brightness_error(M, r, coefficients(gram(*samples, r))) for r in each])
+    errors = []
+    for ratio in np.atleast_1d(R)[:, None]:
+        c = coefficients(gram(*samples, ratio))
+        errors.append(brightness_error(M, ratio, c))
+    return np.array(errors)

@@ -1,11 +1,11 @@
-"""Alignment by bitmaps -> pictures and drawings: where two bitmaps differ, nine offsets at once, all.
+"""Draw alignment by bitmaps: differing bits, the nine offsets of a level, errors of all offsets.
 
-bits     of one photograph   (2, H, W) bool: bitmap, and exclusion bitmap, True where compared
+bits     of one photo        (2, H, W) bool: bitmap, and exclusion bitmap, True where compared
 state    of `align.mtb`      one level of one pair
-errors   (2 n + 1, 2 n + 1)  bits that differ / bits compared, dy down and dx across, -n to n pixels
+errors   (2 n + 1, 2 n + 1)  bits that differ / bits compared, at offsets (dy, dx) from -n to n
 
-Bits that agree are white or nearly black, those that differ orange, and what is not compared is
-blue; in gray the four part as well.
+Bits that agree are white or nearly black, bits that differ are orange, and bits that are not
+compared are blue. The four colors also differ in gray.
 """
 
 from collections.abc import Mapping
@@ -21,127 +21,160 @@ from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import ArrayLike, Mask, NDArray, describe
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.errors import InputError
-from hdrlab.show.plots import nearest, picture_axes
-from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
+from hdrlab.show.plots import BLACK, nearest, picture_axes
+from hdrlab.show.plots.lectures.offsets import WIDTH_INCHES, draw_offsets
 
 Offset = tuple[int, int]
-AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
-DIFFER = (230, 159, 0)
-OUTSIDE = (0, 90, 160)
-CENTRE = "#808080"
-BEST = "#D55E00"
+# The colors of bits that are both 0, and of bits that are both 1.
+EQUAL_BIT_COLORS = ((26, 26, 26), (255, 255, 255))
+DIFFERENT_BIT_COLOR = (230, 159, 0)
+EXCLUDED_BIT_COLOR = (0, 90, 160)
+CENTER_COLOR = "#808080"
+BEST_OFFSET_COLOR = "#D55E00"
+OTHER_OFFSET_COLOR = "#D9D9D9"
+# All titles of `validated` have this number of lines, so that a slider does not move the image.
+FAILURE_LINES = 2
+FAILURE_LINE_LETTERS = 68
 
 
 def overlay(
     fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None
 ) -> NDArray[np.uint8]:
-    """Return two bitmaps (H, W) as one picture (H, W, 3); `compared` (H, W) is False where no bit counts."""
+    """Return two bitmaps (H, W) as one image (H, W, 3); `compared` is False for excluded bits."""
     a = np.asarray(fixed, bool)
     b = np.asarray(moved, bool)
-    if (
-        a.ndim != 2
-        or a.shape != b.shape
-        or (compared is not None and np.shape(compared) != a.shape)
-    ):
+    has_other_mask = compared is not None and np.shape(compared) != a.shape
+    if a.ndim != 2 or a.shape != b.shape or has_other_mask:
         raise InputError(
             f"expected two bitmaps (H, W) of one size, got {describe(a)} and {describe(b)}"
         )
-    picture = np.array(AGREE, np.uint8)[a.astype(int)]
-    picture[a != b] = DIFFER
+    image = np.array(EQUAL_BIT_COLORS, np.uint8)[a.astype(int)]
+    image[a != b] = DIFFERENT_BIT_COLOR
     if compared is not None:
-        picture[~np.asarray(compared, bool)] = OUTSIDE
-    return picture
+        image[~np.asarray(compared, bool)] = EXCLUDED_BIT_COLOR
+    return image
 
 
 def difference(fixed: Mask, moving: Mask, offset: Offset, *, title: str = "") -> Axes:
-    """Draw the difference of two photographs' bits, the second moved by an offset, under its error."""
-    ax = _under(fixed.shape[1] / fixed.shape[2], above=0.32 + 0.21 * title.count("\n"))
-    nearest.show(ax, _picture(fixed, moving, offset))
-    off = 100 * mtb.error(fixed, moving, offset)
-    ax.set_title(title or f"moved by {_pair(offset)}: {off:.2f} % of the bits differ", fontsize=11)
+    """Draw the difference of two photos' bits after an offset, with the error as its title."""
+    height, width = fixed.shape[1:]
+    ax = _titled_axes(height / width, title_height=0.32 + 0.21 * title.count("\n"))
+    nearest.show(ax, _overlay_at(fixed, moving, offset))
+    percent = 100 * mtb.error(fixed, moving, offset)
+    default_title = f"moved by {_format_offset(offset)}: {percent:.2f} % of the bits differ"
+    ax.set_title(title or default_title, fontsize=11)
     return ax
 
 
 def validated(state: mtb.State, validation: Validation) -> Axes:
-    """Draw what still differs at the end of a search, under what was found and why not to trust it."""
-    found = f"found {_pair(state.offset)}, {100 * validation.after:.2f} % of the bits differ"
-    said = wrap(validation.failure or "no reason not to trust it", 68)
-    title = "\n".join([found, *said, *[""] * (2 - len(said))])  # of one height, whatever it says
-    return difference(state.fixed, state.moving, state.offset, title=title)
+    """Draw the remaining difference after a search, with its result and why it may be wrong."""
+    percent = 100 * validation.after
+    result = f"found {_format_offset(state.offset)}, {percent:.2f} % of the bits differ"
+    lines = [result, *wrap(validation.failure or "the result is plausible", FAILURE_LINE_LETTERS)]
+    while len(lines) < 1 + FAILURE_LINES:
+        lines.append("")
+    return difference(state.fixed, state.moving, state.offset, title="\n".join(lines))
 
 
 def nine(state: mtb.State) -> Figure:
-    """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
-    (height, width) = state.fixed.shape[1:]
+    """Draw the nine offsets of a level, the center in a gray frame and the best in an orange one."""
+    height, width = state.fixed.shape[1:]
     gap = 0.06
-    centre = next(iter(state.errors))
-    side = (WIDTH - 4 * gap) / 3
-    tall = side * height / width
-    figure = Figure(figsize=(WIDTH, 3 * (tall + 0.25) + 0.45), dpi=100)
-    total = figure.get_size_inches()[1]
+    center = next(iter(state.errors))
+    image_width = (WIDTH_INCHES - 4 * gap) / 3
+    image_height = image_width * height / width
+    figure_height = 3 * (image_height + 0.25) + 0.45
+    figure = Figure(figsize=(WIDTH_INCHES, figure_height), dpi=100)
     for offset, error in sorted(state.errors.items()):
-        row = offset[0] - centre[0] + 1
-        column = offset[1] - centre[1] + 1
-        left = gap + column * (side + gap)
-        top = 0.4 + row * (tall + 0.25)
-        place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
+        row = offset[0] - center[0] + 1
+        column = offset[1] - center[1] + 1
+        left = gap + column * (image_width + gap)
+        top = 0.4 + row * (image_height + 0.25)
+        place = (
+            left / WIDTH_INCHES,
+            1 - (top + 0.22 + image_height) / figure_height,
+            image_width / WIDTH_INCHES,
+            image_height / figure_height,
+        )
         ax = figure.add_axes(place)
-        nearest.show(ax, _picture(state.fixed, state.moving, offset))
-        ax.set_title(f"{_pair(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
+        nearest.show(ax, _overlay_at(state.fixed, state.moving, offset))
+        ax.set_title(f"{_format_offset(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
         ax.set(xticks=(), yticks=())
-        framed = BEST if offset == state.offset else CENTRE if offset == centre else "#D9D9D9"
-        for edge in ax.spines.values():
-            edge.set(color=framed, linewidth=1 if framed == "#D9D9D9" else 3)
-    said = f"level {state.level}, {width} × {height} pixels: offsets (dy, dx), and how many bits differ"
-    figure.suptitle(said, fontsize=11, y=1 - 0.12 / total, va="top")
+        color = OTHER_OFFSET_COLOR
+        line_width = 1
+        if offset == state.offset:
+            color = BEST_OFFSET_COLOR
+            line_width = 3
+        elif offset == center:
+            color = CENTER_COLOR
+            line_width = 3
+        for spine in ax.spines.values():
+            spine.set(color=color, linewidth=line_width)
+    size = f"level {state.level}, {width} × {height} pixels"
+    title = f"{size}: offsets (dy, dx) and the fraction of bits that differ"
+    figure.suptitle(title, fontsize=11, y=1 - 0.12 / figure_height, va="top")
     return figure
 
 
 def surface(errors: ArrayLike, *, marks: Mapping[str, Offset] | None = None) -> Figure:
-    """Return the errors of all offsets as a map, with named offsets marked on it."""
-    found = np.asarray(errors, np.float64)
-    if found.ndim != 2 or found.shape[0] != found.shape[1] or len(found) % 2 == 0:
-        raise InputError(f"expected errors (2 n + 1, 2 n + 1), got {describe(found)}")
-    return draw_offsets(100 * found, "bits that differ, %", marks)
+    """Draw the errors of all offsets as a map, with named offsets marked on it."""
+    errors = np.asarray(errors, np.float64)
+    if errors.ndim != 2 or errors.shape[0] != errors.shape[1] or len(errors) % 2 == 0:
+        raise InputError(f"expected errors (2 n + 1, 2 n + 1), got {describe(errors)}")
+    return draw_offsets(100 * errors, "bits that differ, %", marks)
 
 
 def words(rows: dict[str, ArrayLike]) -> Figure:
-    """Return rows of bits, each under the other beside its name: 1 is white and 0 dark, as in pictures."""
-    each = {name: np.asarray(row, bool) for name, row in rows.items()}
-    lengths = {row.shape for row in each.values()}
-    if len(lengths) != 1 or len(next(iter(lengths))) != 1:
-        raise InputError(f"expected rows of one length, got {sorted(lengths)}")
-    (count,) = next(iter(lengths))
-    figure = Figure(figsize=(WIDTH, 0.34 * len(each) + 0.15), dpi=100)
+    """Draw rows of bits with their names: 1 is white and 0 dark, as in bitmaps."""
+    bit_rows = {name: np.asarray(row, bool) for name, row in rows.items()}
+    shapes = {row.shape for row in bit_rows.values()}
+    if len(shapes) != 1 or len(next(iter(shapes))) != 1:
+        raise InputError(f"expected rows of one length, got {sorted(shapes)}")
+    count = len(next(iter(bit_rows.values())))
+    figure = Figure(figsize=(WIDTH_INCHES, 0.34 * len(bit_rows) + 0.15), dpi=100)
     ax = figure.add_axes((0.26, 0.03, 0.73, 0.94))
-    for y, row in enumerate(each.values()):
+    for y, row in enumerate(bit_rows.values()):
         for x, bit in enumerate(row.tolist()):
-            ax.add_patch(
-                Rectangle((x, y), 1, 1, facecolor="#FFFFFF" if bit else "#404040", edgecolor=CENTRE)
-            )
-            dark = "#1A1A1A" if bit else "#FFFFFF"
+            box_color = "#FFFFFF" if bit else "#404040"
+            text_color = BLACK if bit else "#FFFFFF"
+            ax.add_patch(Rectangle((x, y), 1, 1, facecolor=box_color, edgecolor=CENTER_COLOR))
             ax.text(
-                x + 0.5, y + 0.5, str(int(bit)), color=dark, fontsize=10, ha="center", va="center"
+                x + 0.5,
+                y + 0.5,
+                str(int(bit)),
+                color=text_color,
+                fontsize=10,
+                ha="center",
+                va="center",
             )
-    ax.set(xlim=(-0.1, count + 0.1), ylim=(len(each) + 0.1, -0.1), xticks=())
-    ax.set_yticks(np.arange(len(each)) + 0.5, list(each), fontsize=10)
+    ax.set(xlim=(-0.1, count + 0.1), ylim=(len(bit_rows) + 0.1, -0.1), xticks=())
+    ax.set_yticks(np.arange(len(bit_rows)) + 0.5, list(bit_rows), fontsize=10)
     ax.tick_params(length=0)
-    for edge in ax.spines.values():
-        edge.set_visible(False)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
     return figure
 
 
-def _picture(fixed: Mask, moving: Mask, offset: Offset) -> NDArray[np.uint8]:
-    bits, kept = (shift_layer(one, offset) for one in moving)
-    return overlay(fixed[0], bits, fixed[1] & kept)
+def _overlay_at(fixed: Mask, moving: Mask, offset: Offset) -> NDArray[np.uint8]:
+    """Return the overlay of two photos' bits, the second moved by an offset."""
+    bits = shift_layer(moving[0], offset)
+    is_compared = shift_layer(moving[1], offset)
+    return overlay(fixed[0], bits, fixed[1] & is_compared)
 
 
-def _under(ratio: float, *, above: float) -> Axes:
-    """Return bare Axes for a picture of this height over width, with room for a title."""
-    tall = (WIDTH - 0.1) * ratio
-    total = tall + above + 0.05
-    return picture_axes(WIDTH, total, (0.05 / WIDTH, 0.05 / total, 1 - 0.1 / WIDTH, tall / total))
+def _titled_axes(ratio: float, *, title_height: float) -> Axes:
+    """Return bare Axes for an image with this ratio of height to width, and room for a title."""
+    image_height = (WIDTH_INCHES - 0.1) * ratio
+    height = image_height + title_height + 0.05
+    place = (
+        0.05 / WIDTH_INCHES,
+        0.05 / height,
+        1 - 0.1 / WIDTH_INCHES,
+        image_height / height,
+    )
+    return picture_axes(WIDTH_INCHES, height, place)
 
 
-def _pair(offset: Offset) -> str:
-    return "({:d}, {:d})".format(*offset)
+def _format_offset(offset: Offset) -> str:
+    dy, dx = offset
+    return f"({dy:d}, {dx:d})"
