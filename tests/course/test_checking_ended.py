@@ -24,6 +24,15 @@ def checking(tmp_path):
     compare.notes.clear()
 
 
+def end_check(checking, check, raised):
+    """Let pytest report that a check has ended, with what it raised or None."""
+    call = SimpleNamespace(when="call", excinfo=raised and SimpleNamespace(value=raised))
+    report = checking.pytest_runtest_makereport(check, call)
+    next(report)
+    with pytest.raises(StopIteration):
+        report.send("report")
+
+
 @pytest.mark.parametrize(
     ("when", "raised", "written"),
     [
@@ -45,7 +54,7 @@ def test_a_check_is_reported_after_its_call_or_a_failed_setup(when, raised, writ
 
 def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(checking):
     compare.notes += ["b", "a", "b", "n" * 2000]
-    checking._ended(item(subject=Asked(said="<f at 0x7fab> " + "s" * 4000)), None)
+    end_check(checking, item(subject=Asked(said="<f at 0x7fab> " + "s" * 4000)), None)
     (line,) = checking.lines()
     assert line == {
         "ended": "/checks/test_hat.py::test_a_promise",
@@ -80,7 +89,7 @@ def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(c
     ],
 )
 def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, message, checking):
-    checking._ended(item(), raised)
+    end_check(checking, item(), raised)
     (line,) = checking.lines()
     assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (
         outcome,
@@ -91,13 +100,21 @@ def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, mess
     assert checking.failed == {"hat"} and checking.late == ({"hat"} if kind == "late" else set())
 
 
-def test_a_mismatch_message_describes_the_array_that_the_student_returned():
-    told = plugin._message(AnswerMismatch("w: no", came=np.ones(3)))
-    assert told.startswith("w: no\nYours: shape (3,)")
-    assert plugin._message(AnswerMismatch("n" * 1600, came=np.ones(3))).startswith(
-        "n" * 1500 + "\nYours"
-    )
-    assert plugin._message(AnswerMismatch("w: no", came=np.array(1.0))) == "w: no"
+@pytest.mark.parametrize(
+    ("words", "came", "message"),
+    [
+        ("w: no", np.ones(3), "w: no\nYours: shape (3,)"),
+        ("n" * 1600, np.ones(3), "n" * 1500 + "\nYours"),
+        ("w: no", np.array(1.0), "w: no"),
+    ],
+)
+def test_a_mismatch_message_describes_the_array_that_the_student_returned(
+    words, came, message, checking
+):
+    end_check(checking, item(), AnswerMismatch(words, came=came))
+    (line,) = checking.lines()
+    assert line["message"].startswith(message)
+    assert ("Yours" in line["message"]) is (came.ndim > 0)
 
 
 @pytest.mark.parametrize(
@@ -116,30 +133,35 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
     monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
     truth, came = np.zeros(shape), np.ones(shape, np.float32)
     error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
-    checking._ended(item(), error)
+    end_check(checking, item(), error)
     checking.job["draw"] = False
-    checking._ended(item(), error)
+    end_check(checking, item(), error)
     first, second = (one["differs"] for one in checking.lines())
     assert second is None and (first is not None) is drawn
     if drawn:
         texts = [base64.b64encode(one.astype("<f8").tobytes()).decode() for one in (truth, came)]
         assert first == {"kind": kind, "shape": list(shape), "expected": texts[0], "came": texts[1]}
-    assert plugin._differs(AnswerMismatch("no", expected=truth, kind="curve")) is None
-    assert plugin._differs(AnswerMismatch("no", came=truth, kind="curve")) is None
+
+
+@pytest.mark.parametrize("given", ["expected", "came"])
+def test_nothing_is_drawn_unless_both_answers_are_known(given, checking):
+    end_check(checking, item(), AnswerMismatch("no", kind="curve", **{given: np.zeros(3)}))
+    (line,) = checking.lines()
+    assert line["differs"] is None
 
 
 def test_hidden_checks_are_not_used_to_recognize_a_mistake(checking):
     hidden = item(folder=Path("/hidden"), subject=Asked(1))
-    checking._ended(hidden, AssertionError())
+    end_check(checking, hidden, AssertionError())
     assert not checking.failed and not checking.calls
-    checking._ended(item(subject=Asked(*range(15))), None)
-    checking._ended(item(subject=Asked(*range(15))), None)
+    end_check(checking, item(subject=Asked(*range(15))), None)
+    end_check(checking, item(subject=Asked(*range(15))), None)
     assert [answer for *_, answer in checking.calls["hat"]] == [*range(15), *range(5)]
     assert checking.calls["hat"][1] == ((1,), {}, 1)
 
 
 def test_an_unavailable_sandbox_is_reported_without_failing_a_check(checking):
-    checking._ended(item(subject=Asked(1)), Unavailable("no walls"))
+    end_check(checking, item(subject=Asked(1)), Unavailable("no walls"))
     assert checking.lines() == [{"unavailable": "no walls"}] and not checking.failed
 
 
@@ -155,7 +177,7 @@ def test_mistakes_of_failed_tasks_are_recognized_and_an_error_affects_one_task_o
         )
 
     monkeypatch.setattr(misconceptions, "closest", closest)
-    checking._ended(item(subject=Asked(5)), AssertionError())
+    end_check(checking, item(subject=Asked(5)), AssertionError())
     checking.failed |= {"gsolve", "unknown"}
     checking.pytest_sessionfinish(None)
     assert checking.lines()[1:] == [{"recognised": "hat", "sentence": "A sentence.", "once": False}]

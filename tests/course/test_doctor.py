@@ -1,8 +1,5 @@
 """What the doctor finds of a tier: what is tried and how often, and in which words it is told."""
 
-from pathlib import Path
-from types import SimpleNamespace
-
 import pytest
 
 from hdrlab.course.checks.subject import NoAnswer
@@ -11,80 +8,80 @@ from hdrlab.course.sandbox import practice, tiers
 from hdrlab.course.sandbox.session import Unavailable
 
 
+class Trial:
+    """A sandbox that is tried: `ends` are how its starts end, `broken` is what breaks out of it."""
+
+    def __init__(self, ends=(), broken=()):
+        self.ends = list(ends)
+        self.broken = list(broken)
+        self.starts = 0
+        self.tried_to_break_out = False
+
+    def __call__(self, sources, sandbox):
+        return self
+
+    def __enter__(self):
+        self.starts += 1
+        error = self.ends.pop(0) if self.ends else None
+        if error is not None:
+            raise error
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def ready(self):
+        pass
+
+    def break_out(self, secret, target):
+        self.tried_to_break_out = True
+        return self.broken
+
+
+@pytest.fixture
+def examine(monkeypatch):
+    """examine(tier, trial) -> what the doctor finds of a tier whose sandbox is a Trial."""
+
+    def examine(tier, trial):
+        monkeypatch.setattr(doctor, "Subject", trial)
+        monkeypatch.setattr(tiers, "choose", lambda tier: f"{tier} sandbox")
+        return doctor.examine(tier)
+
+    return examine
+
+
+def test_a_tier_that_starts_and_holds_works(examine):
+    finding = examine("strict", Trial())
+    assert finding.tier == "strict" and finding.works and finding.credit
+
+
+def test_a_tier_that_something_breaks_out_of_does_not_work_and_each_breach_is_named(examine):
+    finding = examine("strict", Trial(broken=["read a secret", "wrote a file"]))
+    assert not finding.works
+    assert "read a secret" in finding.says and "wrote a file" in finding.says
+    assert "report this" in finding.remedy
+
+
+def test_the_practice_tier_gives_no_credit_and_says_what_it_does_not_stop(examine, monkeypatch):
+    monkeypatch.setattr(practice, "DOES_NOT_STOP", ["reading files"])
+    trial = Trial()
+    finding = examine("practice", trial)
+    assert finding.works and not finding.credit and "reading files" in finding.says
+    assert not trial.tried_to_break_out
+
+
 @pytest.mark.parametrize(
-    ("tier", "tried", "finding"),
-    [
-        ("strict", ([], 0.126), (True, True, "started in 0.13 s, and nothing got out")),
-        ("strict", (["a", "b"], 0.1), (False, True, "it started, but a and b")),
-        ("practice", (["a"], 1.0), (True, False, "started in 1.00 s. It does not stop: x; y")),
-        ("practice", OSError("no room"), (False, False, "no room")),
-        ("container", NoAnswer("late", "late"), (False, True, "late")),
-        ("strict", Unavailable("needs more"), (False, True, "needs more")),
-    ],
+    "error", [OSError("no room"), NoAnswer("it was late", "late"), Unavailable("needs more")]
 )
-def test_a_finding_says_whether_a_tier_works_and_is_for_credit(tier, tried, finding, monkeypatch):
-    def trial(asked):
-        if isinstance(tried, Exception):
-            raise tried
-        return tried
-
-    monkeypatch.setattr(doctor, "_try_repeatedly", trial)
-    monkeypatch.setattr(practice, "DOES_NOT_STOP", ["x", "y"])
-    found = doctor.examine(tier)
-    assert (found.tier, found.works, found.credit, found.says) == (tier, *finding)
-    assert ("report this" in found.remedy) is ("it started, but" in found.says)
+def test_a_tier_that_never_starts_does_not_work_and_the_reason_is_told(error, examine):
+    finding = examine("container", Trial(ends=[error] * 10))
+    assert not finding.works and str(error) in finding.says
 
 
-@pytest.mark.parametrize(
-    ("failures", "tries", "works"), [(0, 1, True), (2, 3, True), (3, 3, False)]
-)
-def test_a_tier_is_tried_three_times(failures, tries, works, monkeypatch):
-    asked = []
-
-    def trial(tier):
-        asked.append(tier)
-        if len(asked) <= failures:
-            raise NoAnswer("ended", "killed")
-        return [], 0.0
-
-    monkeypatch.setattr(doctor, "_try_once", trial)
-    if works:
-        assert doctor._try_repeatedly("strict") == ([], 0.0)
-    else:
-        with pytest.raises(NoAnswer):
-            doctor._try_repeatedly("strict")
-    assert asked == ["strict"] * tries
-
-
-@pytest.mark.parametrize(("tier", "broken"), [("strict", ["a wall"]), ("practice", [])])
-def test_a_trial_tries_to_break_out_of_a_sandbox(tier, broken, monkeypatch):
-    asked = []
-    clock = iter((3.0, 4.5))
-
-    class Asked:
-        def __init__(self, sources, sandbox):
-            asked.append((set(sources), sandbox))
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *error):
-            asked.append("closed")
-
-        def ready(self):
-            asked.append("ready")
-
-        def break_out(self, secret, target):
-            asked.append((secret, target))
-            return ["a wall"]
-
-    monkeypatch.setattr(doctor, "Subject", Asked)
-    monkeypatch.setattr(doctor, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
-    monkeypatch.setattr(tiers, "choose", lambda tier: f"{tier} sandbox")
-    assert doctor._try_once(tier) == (broken, 1.5)
-    file = bytes(Path(doctor.__file__).resolve())
-    tried = [(file, b"/tmp/hdrlab-doctor")] if broken else []
-    assert asked == [({"ready", "break_out"}, f"{tier} sandbox"), "ready", *tried, "closed"]
+@pytest.mark.parametrize("error", [NoAnswer("ended", "killed"), Unavailable("no memory")])
+def test_a_tier_that_fails_once_is_tried_again(error, examine):
+    trial = Trial(ends=[error])
+    assert examine("strict", trial).works and trial.starts == 2
 
 
 def test_the_remedy_depends_on_the_reason_and_on_system_settings(monkeypatch, tmp_path):
