@@ -170,11 +170,14 @@ def test_options_are_checked_before_any_work_is_done():
 
 
 def test_values_of_a_light_meter_scale_the_map_and_its_deviation(taken):
-    state = pipeline.measure_deviation(pipeline.assemble(taken, align="none"))
+    state = pipeline.assemble(taken, align="none")
+    state = replace(state, s=0.1 * state.E)
     y, x = np.argwhere(state.quality == 0)[0]
     scaled = pipeline.calibrate(state, int(x), int(y), 100.0)
     factor = scaled.E[y, x] / state.E[y, x]
+    assert factor != pytest.approx(1)
     assert np.allclose(scaled.E, state.E * factor, rtol=1e-5)
+    assert np.allclose(scaled.s, state.s * factor, rtol=1e-5)
     unmeasured = np.argwhere(state.quality != 0)
     if len(unmeasured):
         y, x = unmeasured[0]
