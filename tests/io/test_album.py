@@ -36,7 +36,7 @@ def read_noting(folder, *args):
     return read_bracket(folder, *args, note=notes.append), notes
 
 
-def test_side_cars_and_suffixes_in_capitals_are_no_hindrance(tmp_path):
+def test_sidecar_files_are_ignored_and_suffixes_may_be_uppercase(tmp_path):
     bracket_in(tmp_path, suffix="JPG")
     for name in (
         "IMG_0000.xmp",
@@ -51,7 +51,7 @@ def test_side_cars_and_suffixes_in_capitals_are_no_hindrance(tmp_path):
     assert len(bracket.names) == 3 and notes == []
 
 
-def test_of_a_pair_one_is_taken_and_a_note_says_which(tmp_path):
+def test_one_format_is_used_of_photos_that_exist_in_two_with_a_note(tmp_path):
     bracket_in(bracket_in(tmp_path), suffix="webp")
     (tmp_path / "IMG_0002.webp").unlink()
     bracket, notes = read_noting(tmp_path)
@@ -63,7 +63,7 @@ def test_of_a_pair_one_is_taken_and_a_note_says_which(tmp_path):
 @pytest.mark.parametrize(
     "copy", ["IMG_0001-edited", "IMG_0001_thumb", "IMG_E0001", "IMG_0001~2", "img_0001 HDR"]
 )
-def test_an_edited_copy_is_left_out_with_a_note(tmp_path, copy):
+def test_edited_copies_are_skipped_with_a_note(tmp_path, copy):
     save(bracket_in(tmp_path) / f"{copy}.jpg", 255 - RGB, seconds=1.0)
     bracket, notes = read_noting(tmp_path)
     assert len(bracket.names) == 3
@@ -72,14 +72,14 @@ def test_an_edited_copy_is_left_out_with_a_note(tmp_path, copy):
     assert "IMG_0001" in notes[0]
 
 
-def test_names_that_only_look_alike_stay(tmp_path):
+def test_photos_with_similar_names_are_not_skipped(tmp_path):
     for j, name in enumerate(["a", "a1", "a10", "ab", "frame", "frame hdr 2"]):
         save(tmp_path / f"{name}.jpg", seconds=2.0**j)
     bracket, notes = read_noting(tmp_path)
     assert len(bracket.names) == 6 and notes == []
 
 
-def test_a_thumbnail_in_the_folder_is_left_out_with_a_note(tmp_path):
+def test_thumbnails_are_skipped_with_a_note(tmp_path):
     save(bracket_in(tmp_path) / "small.jpg", RGB[::4, ::4].copy(), seconds=1.0)
     bracket, notes = read_noting(tmp_path)
     assert len(bracket.names) == 3
@@ -87,7 +87,7 @@ def test_a_thumbnail_in_the_folder_is_left_out_with_a_note(tmp_path):
     assert "small.jpg" in notes[0]
 
 
-def test_a_picture_of_cmyk_in_the_folder_is_left_out_with_a_note(tmp_path):
+def test_cmyk_images_are_skipped_with_a_note(tmp_path):
     Image.fromarray(RGB).convert("CMYK").save(bracket_in(tmp_path) / "poster.jpg")
     bracket, notes = read_noting(tmp_path)
     assert len(bracket.names) == 3 and len(notes) == 1
@@ -95,13 +95,13 @@ def test_a_picture_of_cmyk_in_the_folder_is_left_out_with_a_note(tmp_path):
     assert "CMYK" in notes[0]
 
 
-def test_in_python_a_note_is_a_warning(tmp_path):
+def test_notes_are_warnings_by_default(tmp_path):
     save(bracket_in(tmp_path) / "small.jpg", RGB[::4, ::4].copy(), seconds=1.0)
     with pytest.warns(UserWarning, match="small.jpg"):
         read_bracket(tmp_path)
 
 
-def test_frames_turned_differently_by_exif_alone_are_turned_as_most_are(tmp_path):
+def test_odd_exif_orientation_is_replaced_by_that_of_most_frames(tmp_path):
     for j, orientation in enumerate((1, 6, 1)):
         save(tmp_path / f"{j}.png", RGB, seconds=2.0**j, orientation=orientation)
     bracket, notes = read_noting(tmp_path)
@@ -110,14 +110,14 @@ def test_frames_turned_differently_by_exif_alone_are_turned_as_most_are(tmp_path
     assert "1.png" in notes[0]
 
 
-def test_frames_that_were_turned_and_say_so_are_each_turned_their_way(tmp_path):
+def test_frames_that_were_rotated_keep_their_own_orientation(tmp_path):
     save(tmp_path / "0.png", RGB, seconds=1.0)
     save(tmp_path / "1.png", np.ascontiguousarray(np.rot90(RGB)), seconds=2.0, orientation=6)
     bracket, notes = read_noting(tmp_path)
     assert all(np.array_equal(image, RGB) for image in bracket.images) and notes == []
 
 
-def test_what_a_camera_had_put_together_is_told_in_one_line(tmp_path):
+def test_photos_that_the_camera_merged_are_noted_in_one_line(tmp_path):
     for j in range(3):
         exif = tags(2.0**j)
         exif.get_ifd(0x8769)[0xA401] = 3
@@ -128,7 +128,7 @@ def test_what_a_camera_had_put_together_is_told_in_one_line(tmp_path):
     )
 
 
-def test_photographs_a_folder_further_down_are_named_where_they_are_looked_for(tmp_path):
+def test_error_for_a_folder_without_photos_names_its_subfolders(tmp_path):
     (tmp_path / "frames").mkdir()
     bracket_in(tmp_path / "frames")
     with pytest.raises(ValueError, match="folders frames"):

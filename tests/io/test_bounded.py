@@ -34,13 +34,13 @@ def two_parts(path):
 
 
 @pytest.mark.parametrize("read", [exr.read, exr.read_dtypes])
-def test_the_second_part_of_an_exr_never_stands_for_a_damaged_first(tmp_path, read):
+def test_second_part_of_an_exr_does_not_replace_a_damaged_first_part(tmp_path, read):
     two_parts(tmp_path / "parts.exr")
     with pytest.raises(ValueError, match=r"parts\.exr: .*OpenEXR file, it is cut short or damaged"):
         read(tmp_path / "parts.exr")
 
 
-def test_a_display_window_far_beyond_the_data_is_refused_and_a_frame_is_not(tmp_path):
+def test_huge_display_window_is_rejected_and_a_border_is_not(tmp_path):
     for rows, refused in ((300, False), (1_000_000, True)):
         window = (np.array([0, 0], np.int32), np.array([16, rows], np.int32))
         header = {
@@ -57,7 +57,7 @@ def test_a_display_window_far_beyond_the_data_is_refused_and_a_frame_is_not(tmp_
             assert exr.read(tmp_path / "window.exr").shape == (rows + 1, 17)
 
 
-def test_files_read_at_once_leave_the_streams_as_they_were(tmp_path):
+def test_reading_exr_files_in_threads_restores_stdout(tmp_path):
     radiance.write_radiance(tmp_path / "one.exr", np.ones((40, 50, 3)))
     stream, before = sys.stdout, threading.active_count()
 
@@ -73,13 +73,15 @@ def test_files_read_at_once_leave_the_streams_as_they_were(tmp_path):
     assert sys.stdout is stream and threading.active_count() == before
 
 
-def test_values_at_the_end_of_float32_are_repaired_to_numbers():
+def test_sanitize_gives_finite_values_near_the_largest_float32():
     E = np.full((9, 9, 3), 3e38, np.float32)
-    E[4, 4], E[2, 2, 0], E[6, 6] = np.nan, -3e38, np.inf
+    E[4, 4] = np.nan
+    E[2, 2, 0] = -3e38
+    E[6, 6] = np.inf
     assert np.isfinite(gamut.sanitize(E).E).all() and gamut.sanitize(E).E.min() >= 0
 
 
-def test_a_list_of_times_is_read_line_by_line_and_a_line_of_any_length_is_not(tmp_path):
+def test_lists_of_times_may_be_long_but_not_their_lines(tmp_path):
     file = tmp_path / "times.txt"
     file.write_text("".join(f"f{j}.jpg 1/{j + 1}\n" for j in range(3000)))
     assert len(times.read_times(file).seconds) == 3000
@@ -88,7 +90,7 @@ def test_a_list_of_times_is_read_line_by_line_and_a_line_of_any_length_is_not(tm
         times.read_times(file)
 
 
-def test_damage_at_the_end_of_rgbe_names_the_file(tmp_path):
+def test_error_for_damage_at_the_end_of_rgbe_names_the_file(tmp_path):
     file = tmp_path / "end.hdr"
     rgbe.write(file, np.random.default_rng(0).random((20, 30, 3)))
     file.write_bytes(file.read_bytes() + bytes(50))
@@ -96,7 +98,7 @@ def test_damage_at_the_end_of_rgbe_names_the_file(tmp_path):
         rgbe.read(file)
 
 
-def test_what_a_terminal_would_obey_is_written_out(tmp_path, capsys):
+def test_messages_contain_no_control_characters_and_are_short(tmp_path, capsys):
     (tmp_path / "a.hdr").write_bytes(b"#?RADIANCE\nFORMAT=\x1b]0;owned\x07red\n\n-Y 1 +X 1\n")
     for command in (
         ["info", tmp_path / "a.hdr"],
@@ -109,14 +111,14 @@ def test_what_a_terminal_would_obey_is_written_out(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("suffix", [".pfm", ".exr"])
-def test_a_black_map_is_converted_and_called_black(tmp_path, capsys, suffix):
+def test_convert_accepts_an_all_black_map(tmp_path, capsys, suffix):
     radiance.write_radiance(tmp_path / "black.pfm", np.zeros((20, 30, 3)))
     with pytest.raises(SystemExit) as stop:
         cli.run(["convert", str(tmp_path / "black.pfm"), str(tmp_path / f"out{suffix}")])
     assert not stop.value.code and "30 x 20, all black" in capsys.readouterr().out
 
 
-def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeypatch):
+def test_error_for_a_full_disk_names_the_file(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
@@ -134,7 +136,7 @@ def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeyp
     assert not list(tmp_path.iterdir())
 
 
-def test_pictures_in_notebooks_are_read_as_pictures_alone():
+def test_decode_picture_accepts_only_web_formats():
     shown = io.BytesIO()
     Image.new("RGB", (4, 3), (9, 8, 7)).save(shown, "TIFF")
     with pytest.raises(OSError, match="cannot identify"):
@@ -142,7 +144,7 @@ def test_pictures_in_notebooks_are_read_as_pictures_alone():
     assert web.decode_picture(web.encode_webp(np.zeros((4, 5, 3), np.uint8))).shape == (4, 5, 3)
 
 
-def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
+def test_photo_that_does_not_fit_into_memory_is_an_error_that_names_it(tmp_path, monkeypatch):
     photos.write_picture(tmp_path / "a.png", np.zeros((4, 5, 3), np.uint8))
     monkeypatch.setitem(codecs.DECODERS, "PNG", lambda *_: (_ for _ in ()).throw(MemoryError()))
     with pytest.raises(ValueError, match=r"a\.png: .* memory"):
@@ -161,12 +163,12 @@ def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
     ],
     ids=["a hundred levels", "falling", "complex", "beyond float32", "masked", "objects"],
 )
-def test_a_response_that_means_nothing_makes_no_map(g):
+def test_merge_rejects_invalid_responses(g):
     with pytest.raises(InputError):
         merge(np.zeros((2, 4, 5), np.uint8), [0.1, 1], g)
 
 
-def test_a_tile_far_beyond_its_picture_is_refused_before_it_is_made(tmp_path):
+def test_tiff_tile_far_larger_than_the_image_is_rejected_before_memory_is_allocated(tmp_path):
     path = tmp_path / "tile.tif"
     tifffile.imwrite(
         path, np.zeros((24, 34, 3), np.uint8), photometric="rgb", tile=(16, 16), compression="zlib"
@@ -181,7 +183,7 @@ def test_a_tile_far_beyond_its_picture_is_refused_before_it_is_made(tmp_path):
 
 
 @pytest.mark.parametrize("exposure", ["1e-320", "1e300"])
-def test_an_exposure_beyond_float32_is_refused_and_divides_nothing(tmp_path, exposure):
+def test_rgbe_exposure_beyond_float32_is_rejected(tmp_path, exposure):
     path = tmp_path / "a.hdr"
     path.write_bytes(
         f"#?RADIANCE\nEXPOSURE={exposure}\n\n-Y 1 +X 1\n".encode() + bytes([9, 9, 9, 128])
@@ -190,7 +192,7 @@ def test_an_exposure_beyond_float32_is_refused_and_divides_nothing(tmp_path, exp
         rgbe.read(path)
 
 
-def test_what_stands_in_a_list_of_times_is_told_in_few_letters(tmp_path):
+def test_errors_for_lists_of_times_are_short(tmp_path):
     path = tmp_path / "times.txt"
     for line in ("a.jpg " + "9" * 5000, "a.jpg 1 " + "8" * 3000 + " 9 9", "a.jpg 3[" + "[" * 3000):
         path.write_text(line)

@@ -37,13 +37,13 @@ def bracket(tmp_path_factory):
 
 
 @pytest.mark.parametrize("suffix", FORMS)
-def test_a_curve_reads_back_as_it_was_written(suffix, tmp_path):
+def test_curves_survive_a_round_trip(suffix, tmp_path):
     write_curve(tmp_path / f"g{suffix}", RGB)
     f, g = np.exp(read_curve(tmp_path / f"g{suffix}")), np.exp(RGB)
     assert f.shape == g.shape and np.allclose(f, g, rtol=EXACT[suffix], atol=1e-9)
 
 
-def test_our_own_files_keep_every_bit(tmp_path):
+def test_csv_keeps_every_bit(tmp_path):
     g = RGB + np.random.default_rng(1).normal(0, 1e-3, RGB.shape)
     g -= g[128]
     write_curve(tmp_path / "g.csv", g)
@@ -59,19 +59,19 @@ def test_gray_curves_and_16_bits_keep_their_shape(suffix, n, tmp_path):
     assert np.allclose(read_curve(tmp_path / f"g{suffix}"), g, atol=1e-8)
 
 
-def test_the_table_is_a_line_per_level_under_a_header_with_its_unit(tmp_path):
+def test_csv_has_a_header_with_units_and_a_line_for_each_pixel_value(tmp_path):
     write_curve(tmp_path / "g.csv", RGB)
     lines = (tmp_path / "g.csv").read_text().splitlines()
     assert lines[0] == "level,red (ln exposure),green (ln exposure),blue (ln exposure)"
     assert lines[129] == "128,0.0,0.0,0.0" and len(lines) == 257
 
 
-def test_curves_of_another_unit_are_brought_to_0_at_the_middle_level(tmp_path):
+def test_read_curve_shifts_curves_to_0_at_the_middle_pixel_value(tmp_path):
     write_curve(tmp_path / "g.m", RGB + [1.0, -2.0, 3.0])
     assert np.allclose(read_curve(tmp_path / "g.m"), RGB, atol=1e-8)
 
 
-def test_levels_without_exposure_are_filled_from_their_neighbours(tmp_path):
+def test_pixel_values_without_exposure_are_interpolated(tmp_path):
     """pfstools writes 0, and -6 for its logarithm, where a calibration found nothing."""
     write_curve(tmp_path / "g.m", GRAY)
     lines = (tmp_path / "g.m").read_text().splitlines()
@@ -94,7 +94,7 @@ def test_levels_without_exposure_are_filled_from_their_neighbours(tmp_path):
     ],
 )
 @pytest.mark.parametrize("suffix", FORMS)
-def test_what_is_no_response_is_not_written(suffix, g, expected, tmp_path):
+def test_write_curve_rejects_invalid_responses(suffix, g, expected, tmp_path):
     (tmp_path / f"g{suffix}").write_text("precious")
     with pytest.raises(ValueError, match=re.escape(expected)):
         write_curve(tmp_path / f"g{suffix}", g)
@@ -102,7 +102,7 @@ def test_what_is_no_response_is_not_written(suffix, g, expected, tmp_path):
     assert [one.name for one in tmp_path.iterdir()] == [f"g{suffix}"]
 
 
-def test_a_name_says_which_format():
+def test_suffix_selects_the_format():
     assert suffix_of("a/room.old.CSV") == ".csv" and suffix_of("room.m") == ".m"
     for wrong in ("room.txt", "room", "folder.csv/room"):
         with pytest.raises(ValueError, match=".csv, .m"):
@@ -110,7 +110,7 @@ def test_a_name_says_which_format():
 
 
 @pytest.mark.parametrize("suffix", FORMS)
-def test_a_file_that_is_cut_short_is_refused_wherever_it_ends(suffix, tmp_path):
+def test_truncated_curves_are_rejected(suffix, tmp_path):
     path = tmp_path / f"g{suffix}"
     write_curve(path, RGB)
     data = path.read_bytes()
@@ -144,7 +144,9 @@ values = st.one_of(st.sampled_from(b"\n\r ,.-e019#\x00\xff"), st.integers(0, 255
 @settings(
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
-def test_a_damaged_file_reads_as_a_response_or_is_refused(whole, suffix, changes, length, inserted):
+def test_damaged_curve_is_read_as_a_valid_response_or_rejected(
+    whole, suffix, changes, length, inserted
+):
     data = bytearray((whole / f"g{suffix}").read_bytes())
     for place, value in changes:
         data[place % len(data)] = value
@@ -159,7 +161,7 @@ def test_a_damaged_file_reads_as_a_response_or_is_refused(whole, suffix, changes
     assert g.shape in ((256,), (256, 3)) and np.isfinite(g).all()
 
 
-def test_a_file_that_claims_more_than_any_response_is_refused(tmp_path):
+def test_curve_files_that_are_too_large_are_rejected(tmp_path):
     with open(tmp_path / "g.csv", "wb") as file:
         file.truncate(1 << 30)
     with pytest.raises(ValueError, match="bytes"):
@@ -169,7 +171,7 @@ def test_a_file_that_claims_more_than_any_response_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "text", ["level,red\n", "a,b,c\n", "", "level,gray (ln exposure)\n0,1\n2,3\n"]
 )
-def test_another_table_is_no_response(text, tmp_path):
+def test_other_tables_are_rejected_as_curves(text, tmp_path):
     (tmp_path / "g.csv").write_text(text)
     with pytest.raises(InputError):
         read_curve(tmp_path / "g.csv")
@@ -191,7 +193,7 @@ def pfstools(bracket, *options):
     return pfm.read(out)
 
 
-def test_pfstools_writes_what_we_read_and_reads_what_we_write(bracket, tmp_path):
+def test_curves_can_be_exchanged_with_pfstools(bracket, tmp_path):
     """Their map under our copy of their curve is theirs, up to a factor per channel."""
     theirs = pfstools(bracket, "-s", tmp_path / "theirs.m")
     g = read_curve(tmp_path / "theirs.m")

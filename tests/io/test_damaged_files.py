@@ -87,7 +87,7 @@ changes = st.lists(
 @settings(
     max_examples=60, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
-def test_a_damaged_file_reads_or_is_refused(folder, name, changes, length, inserted):
+def test_damaged_files_are_read_or_rejected(folder, name, changes, length, inserted):
     data = bytearray((folder / name).read_bytes())
     for place, value in changes:
         data[place % len(data)] = value
@@ -110,7 +110,7 @@ def test_a_damaged_file_reads_or_is_refused(folder, name, changes, length, inser
 @settings(
     max_examples=30, deadline=20_000, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
-def test_any_bytes_after_a_good_beginning_read_or_are_refused(folder, name, data):
+def test_random_bytes_after_a_valid_beginning_are_read_or_rejected(folder, name, data):
     path = folder / f"begun-{name}"
     path.write_bytes((folder / name).read_bytes()[:60] + data)
     try:

@@ -9,7 +9,7 @@ from hdrlab.errors import FileFormatError
 from hdrlab.io import files, photos, radiance, response_files, times
 
 
-def test_a_file_takes_its_name_when_it_is_complete(tmp_path):
+def test_file_appears_under_its_name_when_it_is_complete(tmp_path):
     path = tmp_path / "out.hdr"
     with files.replacing(path) as name:
         name.write_bytes(b"whole")
@@ -18,7 +18,7 @@ def test_a_file_takes_its_name_when_it_is_complete(tmp_path):
 
 
 @pytest.mark.parametrize("error", [ValueError, OSError, KeyboardInterrupt])
-def test_a_failed_or_interrupted_write_loses_nothing_and_leaves_nothing(tmp_path, error):
+def test_failed_or_interrupted_write_keeps_the_old_file_and_no_temporary_file(tmp_path, error):
     path = tmp_path / "out.hdr"
     path.write_bytes(b"old")
     with pytest.raises(error), files.replacing(path) as name:
@@ -27,7 +27,7 @@ def test_a_failed_or_interrupted_write_loses_nothing_and_leaves_nothing(tmp_path
     assert path.read_bytes() == b"old" and os.listdir(tmp_path) == ["out.hdr"]
 
 
-def test_a_missing_folder_is_named_before_anything_is_written(tmp_path):
+def test_missing_folder_is_reported_before_anything_is_written(tmp_path):
     with (
         pytest.raises(FileNotFoundError, match="no folder .*missing"),
         files.replacing(tmp_path / "missing/out.hdr"),
@@ -35,12 +35,12 @@ def test_a_missing_folder_is_named_before_anything_is_written(tmp_path):
         pytest.fail("the block ran")
 
 
-def test_a_folder_is_not_replaced(tmp_path):
+def test_folder_is_not_replaced_by_a_file(tmp_path):
     with pytest.raises(ValueError, match="name .*file"), files.replacing(tmp_path):
         pytest.fail("the block ran")
 
 
-def test_a_device_is_not_replaced():
+def test_device_is_not_replaced_by_a_file():
     with (
         pytest.raises(ValueError, match="name .*file"),
         files.replacing(os.devnull),
@@ -48,7 +48,7 @@ def test_a_device_is_not_replaced():
         pytest.fail("the block ran")
 
 
-def test_a_link_stays_a_link(tmp_path):
+def test_writing_through_a_link_replaces_its_target(tmp_path):
     (tmp_path / "target.txt").write_text("old")
     (tmp_path / "link.txt").symlink_to("target.txt")
     with files.replacing(tmp_path / "link.txt") as name:
@@ -56,7 +56,7 @@ def test_a_link_stays_a_link(tmp_path):
     assert (tmp_path / "link.txt").is_symlink() and (tmp_path / "target.txt").read_text() == "new"
 
 
-def test_a_new_file_has_the_permissions_of_any_new_file(tmp_path):
+def test_new_file_has_default_permissions(tmp_path):
     (tmp_path / "plain.txt").write_text("")
     with files.replacing(tmp_path / "ours.txt") as name:
         name.write_text("")
@@ -64,7 +64,7 @@ def test_a_new_file_has_the_permissions_of_any_new_file(tmp_path):
     assert len(modes) == 1
 
 
-def test_a_claim_beyond_the_limit_or_beyond_the_file_is_refused(tmp_path):
+def test_check_size_rejects_sizes_beyond_the_limit_or_the_file(tmp_path):
     path = tmp_path / "small.bin"
     path.write_bytes(bytes(100))
     files.check_size(path, 10, 10, 100)
@@ -76,7 +76,7 @@ def test_a_claim_beyond_the_limit_or_beyond_the_file_is_refused(tmp_path):
         files.check_size(path, 10, 10, 101)
 
 
-def test_a_full_disk_is_reported_and_a_system_that_cannot_reserve_is_not(tmp_path, monkeypatch):
+def test_reserve_reports_only_a_full_disk(tmp_path, monkeypatch):
     def refuse(number):
         def fallocate(*_):
             raise OSError(number, os.strerror(number))
@@ -102,7 +102,7 @@ def test_a_full_disk_is_reported_and_a_system_that_cannot_reserve_is_not(tmp_pat
         ("x.csv", response_files.read_curve),
     ],
 )
-def test_a_folder_with_the_name_of_a_file_is_refused_by_name(name, read, tmp_path):
+def test_readers_reject_a_folder_with_the_name_of_a_file(name, read, tmp_path):
     (tmp_path / name).mkdir()
     with pytest.raises(FileFormatError, match=rf"{name}: .*folder"):
         read(tmp_path / name)

@@ -227,7 +227,7 @@ def table():
     return {row[0]: row[1:] for row in rows[2:]}
 
 
-def test_every_row_has_files_here_and_each_that_says_no_has_none_that_is_read():
+def test_table_of_formats_lists_what_can_be_read():
     assert list(table()) == list(FILES)
     for row, (photograph, light, _) in table().items():
         dtypes = [{one for _, _, *said in FILES[row] for one in said[k : k + 1]} for k in (0, 1)]
@@ -236,7 +236,7 @@ def test_every_row_has_files_here_and_each_that_says_no_has_none_that_is_read():
 
 
 @pytest.mark.parametrize(("row", "name", "make", "photograph", "light"), EACH)
-def test_another_programs_file_is_read_as_the_table_says_or_refused_by_name(
+def test_files_of_other_programs_are_read_as_documented_or_rejected_by_name(
     row, name, make, photograph, light, tmp_path
 ):
     path = tmp_path / name
@@ -284,7 +284,7 @@ WRITTEN = {
 }
 
 
-def test_what_the_table_says_is_written_is_written_here_and_nothing_else():
+def test_table_of_formats_lists_what_can_be_written():
     assert {row for row, (*_, written) in table().items() if written != "no"} == set(WRITTEN)
     assert not {".webp", ".heic", ".dng"} & ({*photos.PICTURES} | {*radiance.SUFFIXES})
 
@@ -293,7 +293,7 @@ def test_what_the_table_says_is_written_is_written_here_and_nothing_else():
     ("name", "options", "decode"),
     [pytest.param(*one, id=f"{row[:8]}-{one[0]}") for row, many in WRITTEN.items() for one in many],
 )
-def test_what_is_written_another_program_reads(name, options, decode, tmp_path):
+def test_other_programs_can_read_written_files(name, options, decode, tmp_path):
     if options is None:
         radiance.write_radiance(tmp_path / name, E)
     else:
@@ -315,7 +315,7 @@ def program(folder, *words):
 
 @pytest.mark.parametrize("light", [E, E[..., 0]], ids=["RGB", "gray"])
 @pytest.mark.parametrize("half", [False, True])
-def test_pfstools_reads_the_values_of_an_exr_of_ours(light, half, tmp_path):
+def test_pfstools_reads_written_exr_files(light, half, tmp_path):
     radiance.write_radiance(tmp_path / "ours.exr", light, half=half)
     frame = program(tmp_path, "pfsinexr", "ours.exr")
     subprocess.run(
@@ -326,7 +326,7 @@ def test_pfstools_reads_the_values_of_an_exr_of_ours(light, half, tmp_path):
     assert np.allclose(came, light, rtol=1e-3 if half else 1e-4)  # it goes by XYZ
 
 
-def test_djxl_and_jxlinfo_read_a_jxl_of_ours_to_the_bit(tmp_path):
+def test_djxl_reads_written_jxl_files_bit_for_bit(tmp_path):
     screens.write_jxl(tmp_path / "ours.jxl", E)
     program(tmp_path, "djxl", "ours.jxl", "theirs.pfm")
     assert np.array_equal(radiance.read_radiance(tmp_path / "theirs.pfm"), E)
@@ -340,7 +340,7 @@ def test_djxl_and_jxlinfo_read_a_jxl_of_ours_to_the_bit(tmp_path):
     ids=" ".join,
 )
 @pytest.mark.parametrize("levels", [RGB, RGB[..., 1].copy(), DEEP], ids=["RGB", "gray", "16 bits"])
-def test_a_photograph_of_cjxl_is_read(levels, options, tmp_path):
+def test_photos_written_by_cjxl_are_read(levels, options, tmp_path):
     (tmp_path / "a.png").write_bytes(imagecodecs.png_encode(levels))
     program(tmp_path, "cjxl", "a.png", "a.jxl", *options)
     Z = photos.read_photo(tmp_path / "a.jxl")
@@ -349,7 +349,7 @@ def test_a_photograph_of_cjxl_is_read(levels, options, tmp_path):
     assert off == 0 if options[1] == "0" else off < 0.03
 
 
-def test_a_jpeg_that_cjxl_packs_keeps_its_pixels_and_tells_its_exposure(tmp_path):
+def test_jpeg_repacked_by_cjxl_keeps_pixels_and_exposure(tmp_path):
     tags = Image.Exif()
     tags[0x0112] = 6
     tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
@@ -366,7 +366,7 @@ def test_a_jpeg_that_cjxl_packs_keeps_its_pixels_and_tells_its_exposure(tmp_path
 
 
 @pytest.mark.parametrize("depth", [8, 16])
-def test_display_p3_of_cjxl_is_converted_as_the_profile_of_a_png_is(depth, tmp_path):
+def test_display_p3_of_jxl_is_converted_as_in_png(depth, tmp_path):
     """Against the primaries' own matrix, in linear light [SMPTE EG 432-1, IEC 61966-2-1]."""
     levels = RGB if depth == 8 else DEEP
     (tmp_path / "a.ppm").write_bytes(
@@ -385,9 +385,7 @@ def test_display_p3_of_cjxl_is_converted_as_the_profile_of_a_png_is(depth, tmp_p
 
 
 @pytest.mark.parametrize("distance", [0, 0.1])
-def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_refused(
-    distance, tmp_path
-):
+def test_map_written_by_cjxl_is_read_unless_nonlinear_or_animated(distance, tmp_path):
     radiance.write_radiance(tmp_path / "a.pfm", E)
     where = [f"-d {distance}", "-x color_space=RGB_D65_SRG_Rel_Lin", "--progressive_dc=1"]
     program(tmp_path, "cjxl", "a.pfm", "a.jxl", *where[0].split(), *where[1].split())
@@ -402,7 +400,7 @@ def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_r
 
 
 @pytest.mark.parametrize("suffix", [".webp", ".heic", ".jfif"])
-def test_a_picture_of_a_kind_that_is_not_written_is_refused_in_one_line(suffix, tmp_path):
+def test_write_picture_rejects_other_formats(suffix, tmp_path):
     with pytest.raises(ValueError, match=rf"a\{suffix}: .*picture file \(.*\).*\{suffix}"):
         photos.write_picture(tmp_path / f"a{suffix}", RGB)
     assert not list(tmp_path.iterdir())

@@ -40,7 +40,7 @@ def header(*fields, frame=((1, 1),)):
 @pytest.mark.parametrize(
     "knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str
 )
-def test_a_header_says_what_the_decoder_gives(dtype, knobs, tmp_path):
+def test_header_states_what_the_decoder_returns(dtype, knobs, tmp_path):
     """All forms of a size: multiples of 8, each ratio of width and height, small, large, and gray."""
     shapes = [
         (8, 8, 3),
@@ -62,7 +62,7 @@ def test_a_header_says_what_the_decoder_gives(dtype, knobs, tmp_path):
 
 
 @pytest.mark.parametrize("depth", range(9, 17))
-def test_levels_of_any_depth_above_8_bits_fill_16(depth, tmp_path):
+def test_depths_above_8_bits_are_scaled_to_16_bits(depth, tmp_path):
     codes = np.linspace(0, 2**depth - 1, 12 * 17 * 3).astype(np.uint16).reshape(12, 17, 3)
     Z = photos.read_photo(written(tmp_path / "x.jxl", codes, lossless=True, bitspersample=depth))
     assert Z.dtype == np.uint16 and Z.max() == 65535 and not Z.min()
@@ -70,7 +70,7 @@ def test_levels_of_any_depth_above_8_bits_fill_16(depth, tmp_path):
 
 
 @pytest.mark.parametrize("levels", [RGB, RGB[..., 1], RGB.astype(np.uint16) * 257])
-def test_a_photograph_is_read_to_the_level(levels, tmp_path):
+def test_lossless_photos_are_read_exactly(levels, tmp_path):
     path = written(tmp_path / "x.jxl", levels, lossless=True)
     Z = photos.read_photo(path)
     assert Z.dtype == levels.dtype and np.array_equal(Z, levels)
@@ -91,7 +91,7 @@ def boxed(data, tags):
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
-def test_one_that_was_a_jpeg_stands_upright(orientation, tmp_path):
+def test_repacked_jpeg_is_upright(orientation, tmp_path):
     tags = Image.Exif()
     tags[0x0112] = orientation
     Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(
@@ -103,7 +103,7 @@ def test_one_that_was_a_jpeg_stands_upright(orientation, tmp_path):
     assert one.shape == other.shape and np.abs(one - other).mean() < 2
 
 
-def test_its_exif_tells_the_exposure_and_its_own_header_how_it_is_turned(tmp_path):
+def test_exposure_is_from_exif_and_orientation_from_the_codestream(tmp_path):
     tags = Image.Exif()
     tags[0x0112] = 6
     tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
@@ -114,7 +114,7 @@ def test_its_exif_tells_the_exposure_and_its_own_header_how_it_is_turned(tmp_pat
     assert np.array_equal(photos.read_photo(tmp_path / "x.jxl"), RGB)
 
 
-def test_a_folder_of_them_is_a_bracket(tmp_path):
+def test_folder_of_jxl_photos_is_a_bracket(tmp_path):
     for name, t in ("a", 1), ("b", 4):
         written(
             tmp_path / f"{name}.jxl", np.minimum(RGB // 5 * t, 255).astype(np.uint8), lossless=True
@@ -124,7 +124,7 @@ def test_a_folder_of_them_is_a_bracket(tmp_path):
 
 
 @pytest.mark.parametrize("light", [E, E[..., 0]])
-def test_a_map_comes_back_to_the_bit(light, tmp_path):
+def test_radiance_map_survives_a_round_trip_bit_for_bit(light, tmp_path):
     path = written(tmp_path / "x.jxl", light, lossless=True)
     assert np.array_equal(radiance.read_radiance(path), light)
     assert describe_file(path)["values"] == "float32"
@@ -132,7 +132,7 @@ def test_a_map_comes_back_to_the_bit(light, tmp_path):
     assert np.array_equal(radiance.read_radiance(path), E)
 
 
-def test_a_map_whose_values_are_no_radiance_is_refused_and_can_be_cleaned(tmp_path):
+def test_map_with_invalid_values_is_rejected_unless_cleaned(tmp_path):
     path = written(tmp_path / "x.jxl", np.where(E > 100, -1, E).astype(np.float32), lossless=True)
     with pytest.raises(ValueError, match=r"x\.jxl: .*clean=True repairs them"):
         radiance.read_radiance(path)
@@ -166,9 +166,7 @@ SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
         ([(0, 1), (2, 2), (10_000, 18), (1, 3), (1, 1), (1, 1)], "cut short or damaged"),
     ],
 )
-def test_what_is_not_read_is_refused_by_name_before_a_pixel_is_decoded(
-    fields, said, tmp_path, monkeypatch
-):
+def test_unsupported_jxl_files_are_rejected_before_decoding(fields, said, tmp_path, monkeypatch):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
     (tmp_path / "odd.jxl").write_bytes(header(*fields))
     for read in (photos.read_photo, radiance.read_radiance):
@@ -212,7 +210,7 @@ PLACED = [(1, 1), *[(0, 10)] * 2, *[(3, 2), (30_000 - 18_688, 30)] * 2, (0, 2), 
     ],
     ids=["larger", "kept", "one of several"],
 )
-def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_them(
+def test_odd_frames_that_take_libjxl_hours_are_rejected_before_decoding(
     frame, tmp_path, monkeypatch
 ):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
@@ -224,7 +222,7 @@ def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_
 @pytest.mark.parametrize(
     "passes", [[(0, 2)], [(2, 2), (1, 2), (0, 4), (1, 2), (3, 2), (5, 3)]], ids=["1", "3"]
 )
-def test_a_frame_of_several_passes_is_a_picture(passes, tmp_path):
+def test_frames_with_several_passes_are_accepted(passes, tmp_path):
     frame = [
         (0, 1),
         (0, 2),
@@ -242,7 +240,7 @@ def test_a_frame_of_several_passes_is_a_picture(passes, tmp_path):
     assert read_header(tmp_path / "x.jxl").shape == (12, 17, 3)
 
 
-def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
+def test_codestream_is_read_from_its_own_boxes_only(tmp_path):
     """What looks like a codestream within EXIF is none; and what several boxes hold is one."""
     data, decoy = (
         imagecodecs.jpegxl_encode(RGB, lossless=True),
@@ -263,13 +261,13 @@ def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
 
 
 @pytest.mark.parametrize("curve", [[(2, 2), (14, 4)], [(3, 2), (0, 6)]], ids=["PQ", "HLG"])
-def test_codes_of_pq_and_hlg_are_named(curve, tmp_path):
+def test_pq_and_hlg_encoding_is_noted(curve, tmp_path):
     fields = [*SIZE, *AS_USUAL, *U8, *SRGB, (1, 2), (0, 1), *curve, (1, 2), (0, 2), (1, 1)]
     (tmp_path / "x.jxl").write_bytes(header(*fields))
     assert "PQ or HLG" in read_header(tmp_path / "x.jxl").processing
 
 
-def test_one_that_is_cut_short_is_refused_by_name(tmp_path):
+def test_truncated_jxl_is_rejected_by_name(tmp_path):
     for pixels, read in (RGB, photos.read_photo), (E, radiance.read_radiance):
         data = imagecodecs.jpegxl_encode(pixels, lossless=True)
         for size in (2, 12, 40, len(data) // 2, len(data) - 9):

@@ -143,7 +143,7 @@ def test_exposure_is_read_from_exif_of_every_format(tmp_path, suffix):
     assert np.array_equal(read_photo(path), RGB8) or suffix == "jpg"
 
 
-def test_damaged_exif_does_not_spoil_the_photograph(tmp_path):
+def test_photo_with_damaged_exif_is_read(tmp_path):
     Image.fromarray(RGB8).save(tmp_path / "x.png", exif=b"Exif\0\0II*\0\xff\xff\xff\xff" + bytes(9))
     assert (
         np.array_equal(read_photo(tmp_path / "x.png"), RGB8)
@@ -157,7 +157,7 @@ def bracket_of(folder, times=(0.25, 1.0, 4.0), image=RGB8, **tags):
     return folder
 
 
-def test_a_folder_is_its_photographs_from_the_shortest_to_the_longest(tmp_path):
+def test_bracket_of_a_folder_is_sorted_by_exposure_time(tmp_path):
     bracket_of(tmp_path)
     for name in "list.csv", "notes.txt", "map.hdr", "map.exr", ".hidden.png":
         (tmp_path / name).write_text("not a photograph")
@@ -176,31 +176,31 @@ def test_a_folder_is_its_photographs_from_the_shortest_to_the_longest(tmp_path):
     assert np.array_equal(read_bracket([tmp_path]).images, bracket.images)
 
 
-def test_times_in_a_sequence_follow_the_photographs_as_given(tmp_path):
+def test_times_in_a_sequence_are_in_the_order_of_the_paths(tmp_path):
     bracket_of(tmp_path)
     bracket = read_bracket([tmp_path / "b.png", tmp_path / "c.png"], [8, 2])
     assert bracket.names == ("c.png", "b.png") and bracket.times.tolist() == [2, 8]
 
 
-def test_a_list_beats_exif(tmp_path):
+def test_list_of_times_takes_precedence_over_exif(tmp_path):
     bracket_of(tmp_path)
     (tmp_path / "times.txt").write_text("a.png 1\nb.png 2\nc.png 4\n")
     assert read_bracket(tmp_path, tmp_path / "times.txt").names == ("c.png", "b.png", "a.png")
 
 
-def test_aperture_and_iso_count_in_the_exposure(tmp_path):
+def test_aperture_and_iso_change_the_equivalent_exposure(tmp_path):
     save(tmp_path / "a.jpg", RGB8, seconds=0.5, f_number=8.0, iso=100)
     save(tmp_path / "b.jpg", RGB8, seconds=0.5, f_number=4.0, iso=200)
     assert read_bracket(tmp_path).times == pytest.approx([0.5, 4])
 
 
 @pytest.mark.parametrize("f_number", [0.0, None])
-def test_a_lens_without_contacts_never_gives_infinity(tmp_path, f_number):
+def test_f_number_of_0_or_infinity_is_ignored(tmp_path, f_number):
     bracket_of(tmp_path, f_number=f_number, iso=100)
     assert read_bracket(tmp_path).times.tolist() == [0.25, 1, 4]
 
 
-def test_pixels_of_the_mask_colour_are_not_valid(tmp_path):
+def test_pixels_of_the_mask_color_are_not_valid(tmp_path):
     image = RGB8.copy()
     image[2:5, 3:9] = (0, 0, 255)
     for name in "ab":
@@ -211,13 +211,13 @@ def test_pixels_of_the_mask_colour_are_not_valid(tmp_path):
     assert valid.shape == (2, 13, 21) and np.array_equal(valid[0], expected)
 
 
-def test_a_mask_colour_needs_colour_photographs(tmp_path):
+def test_mask_color_is_rejected_for_gray_photos(tmp_path):
     bracket_of(tmp_path, image=RGB8[..., 0])
     with pytest.raises(ValueError, match=r"\(0, 0, 255\).*gray"):
         read_bracket(tmp_path, mask=(0, 0, 255))
 
 
-def test_progress_sees_each_photograph_once(tmp_path):
+def test_progress_iterates_over_each_photo_once(tmp_path):
     seen = []
 
     def watch(paths):
@@ -229,13 +229,13 @@ def test_progress_sees_each_photograph_once(tmp_path):
     assert sorted(seen) == ["a.png", "b.png", "c.png"]
 
 
-def test_a_folder_without_photographs_is_named(tmp_path):
+def test_error_names_a_folder_without_photos(tmp_path):
     (tmp_path / "list.csv").write_text("file,exposure_time_s\n")
     with pytest.raises(ValueError, match=re.escape(str(tmp_path))):
         read_bracket(tmp_path)
 
 
-def test_one_photograph_is_no_bracket(tmp_path):
+def test_bracket_of_one_photo_is_rejected(tmp_path):
     path = save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     for paths in path, [path], tmp_path:
         with pytest.raises(ValueError, match="photographs.*a.jpg"):
@@ -244,13 +244,13 @@ def test_one_photograph_is_no_bracket(tmp_path):
         read_bracket([])
 
 
-def test_a_missing_photograph_is_missing(tmp_path):
+def test_missing_photo_raises_file_not_found_error(tmp_path):
     path = save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     with pytest.raises(FileNotFoundError, match="b.jpg"):
         read_bracket([path, tmp_path / "b.jpg"])
 
 
-def test_a_folder_among_photographs_is_refused(tmp_path):
+def test_folder_among_photos_is_rejected(tmp_path):
     with pytest.raises(ValueError, match=re.escape(str(tmp_path))):
         read_bracket([tmp_path, tmp_path])
 
@@ -263,7 +263,7 @@ def test_a_folder_among_photographs_is_refused(tmp_path):
         (RGB16, RGB8, "8 or all of 16 bits.*a.png is .* 16 bits, .*b.png is .* 8 bits"),
     ],
 )
-def test_frames_that_do_not_go_together_are_both_named(tmp_path, first, second, says):
+def test_error_names_both_frames_that_do_not_match(tmp_path, first, second, says):
     for name, image in ("a.png", first), ("b.png", second):
         cv2.imwrite(str(tmp_path / name), np.ascontiguousarray(image))
     with pytest.raises(ValueError, match=says):
@@ -271,7 +271,7 @@ def test_frames_that_do_not_go_together_are_both_named(tmp_path, first, second, 
 
 
 @pytest.mark.parametrize("missing", [None, 0.0])
-def test_a_photograph_without_a_time_is_named_with_the_way_out(tmp_path, missing):
+def test_error_names_a_photo_without_exposure_time_and_what_to_do(tmp_path, missing):
     save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     save(tmp_path / "b.jpg", RGB8, seconds=missing)
     with pytest.raises(ValueError, match="b.jpg.*EXIF.*--times"):
@@ -294,7 +294,7 @@ def test_a_photograph_without_a_time_is_named_with_the_way_out(tmp_path, missing
         ("YCbCr", "tif", "YCBCR"),
     ],
 )
-def test_other_kinds_of_pixels_are_refused_by_name(tmp_path, mode, suffix, says):
+def test_unsupported_pixel_types_are_rejected_by_name(tmp_path, mode, suffix, says):
     path = tmp_path / f"x.{suffix}"
     image = Image.fromarray(RGB8).convert(mode)
     if mode.endswith("A"):
@@ -304,7 +304,7 @@ def test_other_kinds_of_pixels_are_refused_by_name(tmp_path, mode, suffix, says)
         read_photo(path)
 
 
-def test_other_kinds_of_tiff_and_png_are_refused_by_name(tmp_path):
+def test_unsupported_tiff_and_png_files_are_rejected_by_name(tmp_path):
     tifffile.imwrite(tmp_path / "x.tif", RGB8.astype(np.float32), photometric="rgb")
     with pytest.raises(ValueError, match="x.tif: .*gray or RGB of 8 or 16 bits.*3 x float32, RGB"):
         read_photo(tmp_path / "x.tif")
@@ -319,14 +319,14 @@ def test_other_kinds_of_tiff_and_png_are_refused_by_name(tmp_path):
 @pytest.mark.parametrize(
     "data", [b"", b"GIF89a", b"#?RADIANCE\n", b"a text that is longer than any header is"]
 )
-def test_what_is_no_photograph_is_refused_by_name(tmp_path, data):
+def test_other_files_are_rejected_as_photos_by_name(tmp_path, data):
     (tmp_path / "x.jpg").write_bytes(data)
     with pytest.raises(ValueError, match="x.jpg: .*photograph .TIFF, JPEG, PNG, .* got b"):
         read_photo(tmp_path / "x.jpg")
 
 
 @pytest.mark.parametrize("suffix", ["jpg", "png", "tif"])
-def test_a_photograph_that_is_cut_short_is_refused(tmp_path, suffix):
+def test_truncated_photos_are_rejected(tmp_path, suffix):
     path = tmp_path / f"x.{suffix}"
     write_picture(path, RNG.integers(0, 256, (60, 80, 3), np.uint8))
     data = path.read_bytes()
@@ -339,7 +339,7 @@ def test_a_photograph_that_is_cut_short_is_refused(tmp_path, suffix):
             read_photo(path)
 
 
-def test_a_thumbnail_in_the_exif_does_not_hide_that_a_jpeg_is_cut_short(tmp_path):
+def test_truncated_jpeg_with_an_exif_thumbnail_is_rejected(tmp_path):
     Image.fromarray(RGB8).save(tmp_path / "x.jpg", exif=b"Exif\0\0" + b"\xff\xd8\xff\xda\xff\xd9")
     data = (tmp_path / "x.jpg").read_bytes()
     (tmp_path / "x.jpg").write_bytes(data[:-20])
@@ -350,7 +350,7 @@ def test_a_thumbnail_in_the_exif_does_not_hide_that_a_jpeg_is_cut_short(tmp_path
 @pytest.mark.parametrize(
     ("width", "height"), [(65536, 32768), (2**31 - 1, 1), (30000, 3000), (12000, 11000)]
 )
-def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, width, height):
+def test_header_with_an_absurd_size_allocates_no_memory(tmp_path, width, height):
     with pytest.raises(ValueError, match="x.png: its header claims"):
         read_photo(png(tmp_path / "x.png", width, height))
     tifffile.imwrite(tmp_path / "x.tif", RGB8, photometric="rgb")
@@ -369,13 +369,13 @@ def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, width, height):
 
 @pytest.mark.parametrize("suffix", ["png", "tif", "tiff"])
 @pytest.mark.parametrize("name", ["rgb8", "gray8"])
-def test_a_picture_that_is_written_reads_back(tmp_path, suffix, name):
+def test_pictures_survive_a_round_trip(tmp_path, suffix, name):
     write_picture(tmp_path / f"x.{suffix}", IMAGES[name])
     assert np.array_equal(read_photo(tmp_path / f"x.{suffix}"), IMAGES[name])
     assert np.array_equal(iio.imread(tmp_path / f"x.{suffix}"), IMAGES[name])
 
 
-def test_a_jpeg_that_is_written_looks_the_same(tmp_path):
+def test_written_jpeg_is_close_to_the_picture(tmp_path):
     smooth = cv2.GaussianBlur(RGB8, (0, 0), 3)
     write_picture(tmp_path / "x.JPG", smooth)
     assert np.abs(read_photo(tmp_path / "x.JPG").astype(int) - smooth).max() <= 4
@@ -385,7 +385,7 @@ def test_a_jpeg_that_is_written_looks_the_same(tmp_path):
     ("name", "image"),
     [("x.png", RGB16), ("x.png", RGB8[..., :2]), ("x.png", RGB8[:0]), ("x.bmp", RGB8), ("x", RGB8)],
 )
-def test_what_is_no_picture_is_not_written(tmp_path, name, image):
+def test_write_picture_rejects_other_arrays_and_suffixes(tmp_path, name, image):
     with pytest.raises(ValueError, match="picture"):
         write_picture(tmp_path / name, image)
     assert not list(tmp_path.iterdir())
@@ -414,6 +414,6 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
     )
 
 
-def test_the_crusader_bracket_without_times_says_what_to_do(shared):
+def test_error_for_the_crusader_bracket_without_times_says_what_to_do(shared):
     with pytest.raises(ValueError, match="1.jpeg.*EXIF.*--times"):
         read_bracket(shared("crusader") / "frames")

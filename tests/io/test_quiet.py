@@ -30,7 +30,7 @@ def damaged_exr(path):
     path.write_bytes(data)
 
 
-def test_a_damaged_map_is_refused_in_our_words_alone(tmp_path, capfd):
+def test_reading_a_damaged_map_prints_nothing_of_the_codecs(tmp_path, capfd):
     damaged_exr(tmp_path / "x.exr")
     with pytest.raises(ValueError, match=r"x\.exr"):
         exr.read(tmp_path / "x.exr")
@@ -38,7 +38,7 @@ def test_a_damaged_map_is_refused_in_our_words_alone(tmp_path, capfd):
     assert capfd.readouterr() == ("", "of ours")
 
 
-def test_a_damaged_photograph_is_refused_in_our_words_alone(tmp_path):
+def test_reading_a_damaged_photo_prints_nothing_of_the_codecs(tmp_path):
     (tmp_path / "x.png").write_bytes(base64.b64decode(DAMAGED_PNG))
     read = "import sys; from hdrlab.io.photos import read_photo; read_photo(sys.argv[1])"
     command = [sys.executable, "-c", read, str(tmp_path / "x.png")]

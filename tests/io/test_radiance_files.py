@@ -14,7 +14,7 @@ E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_every_suffix_reads_what_it_wrote(tmp_path, suffix):
+def test_every_format_survives_a_round_trip(tmp_path, suffix):
     gray = E[..., 0].copy()
     write_radiance(tmp_path / f"x{suffix}", gray)
     read = read_radiance(tmp_path / f"x{suffix}")
@@ -23,19 +23,19 @@ def test_every_suffix_reads_what_it_wrote(tmp_path, suffix):
     )
 
 
-def test_the_suffix_may_be_in_capitals(tmp_path):
+def test_suffixes_may_be_uppercase(tmp_path):
     write_radiance(tmp_path / "x.EXR", E)
     assert np.array_equal(read_radiance(tmp_path / "x.EXR"), E)
 
 
 @pytest.mark.parametrize("name", ["x.png", "x", "x.hdr.gz"])
-def test_another_suffix_is_refused_by_name(tmp_path, name):
+def test_other_suffixes_are_rejected_by_name(tmp_path, name):
     for act in read_radiance, lambda path: write_radiance(path, E):
         with pytest.raises(ValueError, match=f"{name}: .*radiance file .*.hdr"):
             act(tmp_path / name)
 
 
-def test_half_floats_are_for_exr_alone(tmp_path):
+def test_half_floats_are_rejected_for_other_formats_than_exr(tmp_path):
     write_radiance(tmp_path / "x.exr", np.ones((2, 2)), half=True)
     assert exr.read_dtypes(tmp_path / "x.exr") == ("float16",)
     with pytest.raises(ValueError, match="x.hdr: .*.exr file for half floats"):
@@ -49,14 +49,14 @@ def spoiled(path):
     return path
 
 
-def test_values_that_are_no_radiance_are_counted_and_refused(tmp_path):
+def test_invalid_values_are_rejected_with_their_counts(tmp_path):
     with pytest.raises(
         ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*clean=True"
     ):
         read_radiance(spoiled(tmp_path / "x.pfm"))
 
 
-def test_cleaning_fills_nan_from_around_it_and_makes_infinity_the_largest_and_negative_values_0(
+def test_cleaning_repairs_nan_infinity_and_negative_values(
     tmp_path,
 ):
     path = spoiled(tmp_path / "x.pfm")
@@ -66,13 +66,13 @@ def test_cleaning_fills_nan_from_around_it_and_makes_infinity_the_largest_and_ne
     assert np.isnan(pfm.read(path)[0, 0])
 
 
-def test_cleaning_leaves_radiance_as_it_is(tmp_path):
+def test_cleaning_does_not_change_valid_radiance(tmp_path):
     write_radiance(tmp_path / "x.exr", E)
     assert np.array_equal(read_radiance(tmp_path / "x.exr", clean=True), E)
 
 
 @pytest.mark.parametrize("suffix", [".hdr", ".pfm", ".exr", ".png"])
-def test_a_missing_file_or_folder_is_missing(tmp_path, suffix):
+def test_missing_file_or_folder_raises_file_not_found_error(tmp_path, suffix):
     with pytest.raises(FileNotFoundError):
         describe_file(tmp_path / f"x{suffix}")
     if suffix in SUFFIXES:
@@ -100,7 +100,7 @@ def test_a_missing_file_or_folder_is_missing(tmp_path, suffix):
         (".tiff", {"format": "TIFF", "channels": 3, "values": "float32"}),
     ],
 )
-def test_a_file_describes_itself(tmp_path, suffix, says):
+def test_describe_file_states_format_size_and_values(tmp_path, suffix, says):
     path = tmp_path / f"x{suffix}"
     if "orientation" in says:
         write_picture(path, E.astype(np.uint8))
@@ -111,6 +111,6 @@ def test_a_file_describes_itself(tmp_path, suffix, says):
     assert {key: said[key] for key in says} == says
 
 
-def test_a_photograph_describes_its_exposure(shared):
+def test_describe_file_states_the_exposure_of_a_photo(shared):
     said = describe_file(shared("frobisher") / "IMG_2600.jpg")
     assert (said["seconds"], said["f_number"], said["iso"]) == (0.125, 8, 100)

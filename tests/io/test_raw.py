@@ -77,19 +77,19 @@ def unit(value):
     return value / (SATURATED - BLACK) * 65535
 
 
-def test_values_are_linear_above_black_and_balanced(tmp_path):
+def test_raw_values_are_linear_above_black_and_white_balanced(tmp_path):
     for value in 100, 400, 1600:
         Z = read_photo(dng(tmp_path / "x.dng", flat(value)))
         assert Z.dtype == np.uint16 and Z.shape == (64, 96, 3)
         assert middle(Z) == pytest.approx(unit(value), rel=0.01)
 
 
-def test_a_dark_frame_and_a_bright_one_are_developed_alike(tmp_path):
+def test_dark_and_bright_raw_frames_are_developed_alike(tmp_path):
     dark, bright = (read_photo(dng(tmp_path / f"{v}.dng", flat(v))) for v in (50, 3200))
     assert middle(bright) / middle(dark) == pytest.approx(64, rel=0.02)
 
 
-def test_a_pixel_clipped_in_one_colour_is_white_in_all(tmp_path):
+def test_pixel_clipped_in_one_color_is_white(tmp_path):
     scene = flat((800, 4500, 800)).copy()
     scene[:, :48] = (800, 1900, 800)
     Z = read_photo(dng(tmp_path / "x.dng", scene, matrix=CAMERA))
@@ -99,12 +99,12 @@ def test_a_pixel_clipped_in_one_colour_is_white_in_all(tmp_path):
     )
 
 
-def test_the_white_balance_does_not_tint_what_is_clipped(tmp_path):
+def test_white_balance_does_not_tint_clipped_pixels(tmp_path):
     Z = read_photo(dng(tmp_path / "x.dng", flat(20000), matrix=CAMERA))
     assert np.all(Z == 65535)
 
 
-def test_colours_are_those_that_libraw_mixes(tmp_path):
+def test_colors_equal_those_of_libraw(tmp_path):
     scene = (
         np.random.default_rng(0).integers(200, 1500, (8, 12, 3)).repeat(8, axis=0).repeat(8, axis=1)
     )
@@ -126,7 +126,7 @@ def test_orientation_is_applied(tmp_path):
     assert read_header(path).shape == read_photo(path).shape == (96, 64, 3)
 
 
-def test_a_bracket_is_linear_and_has_the_times_that_the_camera_wrote(tmp_path):
+def test_raw_bracket_is_linear_and_has_the_cameras_times(tmp_path):
     for name, value, seconds in (
         ("a.dng", 1600, (1, 15)),
         ("b.dng", 400, (1, 60)),
@@ -142,7 +142,7 @@ def test_a_bracket_is_linear_and_has_the_times_that_the_camera_wrote(tmp_path):
     assert exposure == pytest.approx([exposure[1]] * 3, rel=0.01)
 
 
-def test_raw_and_other_photographs_are_not_mixed(tmp_path):
+def test_bracket_of_raw_and_other_photos_is_rejected(tmp_path):
     dng(tmp_path / "a.dng", flat(100))
     write_picture(tmp_path / "b.jpg", np.zeros((64, 96, 3), np.uint8))
     with pytest.raises(
@@ -152,13 +152,13 @@ def test_raw_and_other_photographs_are_not_mixed(tmp_path):
 
 
 @pytest.mark.parametrize("data", [b"", b"not a photograph", b"II*\0" + bytes(100)])
-def test_what_is_no_raw_file_is_refused_by_name(tmp_path, data):
+def test_other_files_are_rejected_as_raw_by_name(tmp_path, data):
     (tmp_path / "x.nef").write_bytes(data)
     with pytest.raises(ValueError, match="x.nef: .*RAW photograph"):
         read_photo(tmp_path / "x.nef")
 
 
-def test_a_raw_file_that_is_cut_short_is_refused(tmp_path):
+def test_truncated_raw_is_rejected(tmp_path):
     path = dng(tmp_path / "x.dng", flat(100))
     data = path.read_bytes()
     path.write_bytes(data[: len(data) // 2])
@@ -166,12 +166,12 @@ def test_a_raw_file_that_is_cut_short_is_refused(tmp_path):
         read_photo(path)
 
 
-def test_a_missing_raw_file_is_missing(tmp_path):
+def test_missing_raw_file_raises_file_not_found_error(tmp_path):
     with pytest.raises(FileNotFoundError, match="x.dng"):
         read_photo(tmp_path / "x.dng")
 
 
-def test_without_rawpy_the_error_says_what_to_install(tmp_path, monkeypatch):
+def test_error_without_rawpy_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rawpy", None)
     (tmp_path / "x.dng").write_bytes(b"II*\0")
     with pytest.raises(ValueError, match=r'pip install "hdrlab\[raw\]"'):
@@ -194,14 +194,14 @@ def linear_dng(path, values, **packed):
     return path
 
 
-def test_a_linear_dng_has_no_mosaic_and_is_linear_too(tmp_path):
+def test_linear_dng_without_a_mosaic_is_read(tmp_path):
     for value in 100, 400, 1600:
         Z = read_photo(linear_dng(tmp_path / "x.dng", flat(value)))
         assert Z.dtype == np.uint16 and Z.shape == (64, 96, 3)
         assert middle(Z) == pytest.approx(unit(value), rel=0.02)
 
 
-def test_a_linear_dng_and_a_mosaic_of_one_scene_go_together(tmp_path):
+def test_linear_dng_and_mosaic_of_one_scene_agree(tmp_path):
     dng(tmp_path / "a.dng", flat(400)), linear_dng(tmp_path / "b.dng", flat(100))
     bracket = read_bracket([tmp_path / "a.dng", tmp_path / "b.dng"], {"a.dng": 1.0, "b.dng": 0.25})
     assert bracket.linear and middle(bracket.images[1]) / middle(
@@ -210,7 +210,7 @@ def test_a_linear_dng_and_a_mosaic_of_one_scene_go_together(tmp_path):
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
-def test_a_dng_of_jpeg_xl_is_refused_by_name_with_what_to_do(order, tmp_path):
+def test_dng_with_jpeg_xl_is_rejected_with_advice(order, tmp_path):
     if order == "<":
         path = linear_dng(tmp_path / "pro.dng", flat(400), compression=52546, tile=(32, 32))
         assert np.allclose(
@@ -229,7 +229,7 @@ def test_a_dng_of_jpeg_xl_is_refused_by_name_with_what_to_do(order, tmp_path):
         assert "\n" not in str(refused.value)
 
 
-def test_a_damaged_dng_that_is_not_of_jpeg_xl_is_not_said_to_be(tmp_path):
+def test_other_damaged_dng_is_not_reported_as_jpeg_xl(tmp_path):
     path = dng(tmp_path / "x.dng", flat(100))
     path.write_bytes(path.read_bytes()[:400])
     with pytest.raises(ValueError, match=r"x\.dng") as refused:

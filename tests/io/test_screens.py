@@ -50,7 +50,7 @@ def light(E, headroom=8.0):
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("primaries", ["bt2020", "p3"])
-def test_an_avif_is_within_a_code_of_1023_of_its_light_in_the_mean(place, primaries, tmp_path):
+def test_mean_error_of_avif_is_below_one_code_value_of_1023(place, primaries, tmp_path):
     E = scene(place)
     data = tonemap(tmp_path, E, "room.avif", "--primaries", primaries).read_bytes()
     codes = 1023 * screens.signal(light(E), primaries=primaries)
@@ -61,9 +61,7 @@ def test_an_avif_is_within_a_code_of_1023_of_its_light_in_the_mean(place, primar
 
 
 @pytest.mark.parametrize(("primaries", "colour", "matrix"), [("bt2020", 9, 9), ("p3", 12, 6)])
-def test_an_avif_says_its_primaries_pq_and_its_matrix_in_full_range(
-    primaries, colour, matrix, tmp_path
-):
+def test_avif_states_primaries_pq_matrix_and_full_range(primaries, colour, matrix, tmp_path):
     data = tonemap(tmp_path, scene(), "room.avif", "--primaries", primaries).read_bytes()
     at = data.index(b"nclx") + 4
     assert data[at : at + 7] == bytes((0, colour, 0, 16, 0, matrix, 0x80))
@@ -73,7 +71,7 @@ def test_an_avif_says_its_primaries_pq_and_its_matrix_in_full_range(
 
 
 @pytest.mark.parametrize(("primaries", "number"), [("bt2020", 9), ("p3", 12)])
-def test_a_png_holds_every_code_of_16_bits_and_says_what_they_mean(primaries, number, tmp_path):
+def test_png_has_exact_16_bit_code_values_and_a_cicp_chunk(primaries, number, tmp_path):
     E = scene()
     path = tonemap(tmp_path, E, "room.png", "--to", "png", "--primaries", primaries)
     codes = np.rint(65535 * screens.signal(light(E), primaries=primaries))
@@ -88,7 +86,7 @@ def test_a_png_holds_every_code_of_16_bits_and_says_what_they_mean(primaries, nu
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_a_jpeg_xl_keeps_all_light_to_the_bit(place, tmp_path):
+def test_jpeg_xl_is_lossless(place, tmp_path):
     E = scene(place)
     came = imagecodecs.jpegxl_decode(
         tonemap(tmp_path, E, "room.jxl", "--headroom", "2").read_bytes()
@@ -101,7 +99,7 @@ def test_a_jpeg_xl_keeps_all_light_to_the_bit(place, tmp_path):
     )  # one factor, and nothing is cut
 
 
-def test_a_jpeg_xl_says_that_its_floats_are_linear(tmp_path):
+def test_jpeg_xl_states_that_its_floats_are_linear(tmp_path):
     """Its header in bits: floats of 32 bits, not by XYB, by number RGB, D65, sRGB, linear."""
     data = tonemap(tmp_path, scene(shape=(96, 96)), "room.jxl").read_bytes()
     bits = "".join(f"{one:08b}"[::-1] for one in data[data.index(b"\xff\x0a") + 2 :][:16])
@@ -117,7 +115,7 @@ def test_white_has_the_signal_of_bt_2408():
     assert screens.signal(np.ones((1, 1, 3))) == pytest.approx(0.58, abs=0.002)
 
 
-def test_a_red_of_srgb_is_mixed_of_wider_primaries():
+def test_srgb_red_is_converted_to_bt_2020_primaries():
     """ITU-R BT.2087 table 2; gray stays gray."""
     from hdrlab.tonemap.transfer import pq_inverse
 
@@ -127,7 +125,7 @@ def test_a_red_of_srgb_is_mixed_of_wider_primaries():
     assert mixed[1] == pytest.approx(0.5, abs=1e-5)
 
 
-def test_the_light_of_a_map_is_as_bright_as_its_picture_and_ends_at_the_headroom():
+def test_light_has_the_brightness_of_the_picture_and_is_limited_by_the_headroom():
     E = scene()
     picture = pipeline.develop(E, "reinhard")
     hdr, L = screens.light(picture, E, headroom=4), colour.luminance
@@ -137,22 +135,20 @@ def test_the_light_of_a_map_is_as_bright_as_its_picture_and_ends_at_the_headroom
     assert np.log(whole[lit]).mean() == pytest.approx(np.log(Ld[lit]).mean(), abs=1e-4)
 
 
-def test_a_gray_map_has_three_channels_alike(tmp_path):
+def test_gray_map_gives_three_equal_channels(tmp_path):
     path = tonemap(tmp_path, scene()[..., 1], "wall.avif")
     came = imagecodecs.avif_decode(path.read_bytes()).astype(int)
     assert np.abs(np.ptp(came, axis=-1)).max() <= 4
 
 
-def test_light_beyond_10_000_cd_m2_has_the_largest_code():
+def test_light_above_10000_cd_m2_has_the_largest_signal():
     assert screens.signal(np.full((1, 1, 3), 1e6)).max() == 1
 
 
 @pytest.mark.parametrize(
     ("to", "name"), [("avif", "room.png"), ("png", "room.jpg"), ("jxl", "room.exr")]
 )
-def test_a_suffix_of_another_kind_is_refused_in_one_line_and_nothing_is_written(
-    to, name, tmp_path, capsys
-):
+def test_tonemap_rejects_a_suffix_that_does_not_fit_the_kind(to, name, tmp_path, capsys):
     radiance.write_radiance(tmp_path / "map.exr", scene(shape=(12, 16)))
     with pytest.raises(SystemExit) as ended:
         run(["tonemap", str(tmp_path / "map.exr"), "-o", str(tmp_path / name), "--to", to])
@@ -161,12 +157,12 @@ def test_a_suffix_of_another_kind_is_refused_in_one_line_and_nothing_is_written(
     assert [one.name for one in tmp_path.iterdir()] == ["map.exr"]
 
 
-def test_a_png_without_to_is_a_picture_of_8_bits_as_before(tmp_path):
+def test_tonemap_writes_8_bit_png_by_default(tmp_path):
     data = tonemap(tmp_path, scene(), "room.png").read_bytes()
     assert data[24] == 8 and b"cICP" not in data
 
 
-def test_what_is_there_stays_where_the_codec_fails(tmp_path):
+def test_failing_codec_keeps_the_old_file(tmp_path):
     (tmp_path / "room.png").write_bytes(b"before")
     with pytest.raises((ValueError, RuntimeError)):
         files.write_png(tmp_path / "room.png", np.zeros((4, 6, 7)))
@@ -174,9 +170,7 @@ def test_what_is_there_stays_where_the_codec_fails(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["room.avif", "room.png"])
-def test_codes_of_pq_are_told_of_where_a_file_is_described_and_where_it_stands_in_a_bracket(
-    name, tmp_path, capsys
-):
+def test_pq_encoding_is_noted_by_info_and_in_a_bracket(name, tmp_path, capsys):
     folder = tmp_path / "bracket"
     folder.mkdir()
     path = tonemap(tmp_path, scene(), name, "--to", name[-4:].strip("."))
@@ -189,7 +183,7 @@ def test_codes_of_pq_are_told_of_where_a_file_is_described_and_where_it_stands_i
     assert "PQ or HLG" in describe_file(path)["processing"]
 
 
-def test_a_gain_map_is_named_where_its_file_is_described_and_a_plain_picture_says_nothing(tmp_path):
+def test_info_names_a_gain_map(tmp_path):
     E = scene()
     path = tonemap(tmp_path, E, "room.jpg", "--to", "ultrahdr")
     assert "gain map" in describe_file(path)["processing"]
@@ -197,7 +191,7 @@ def test_a_gain_map_is_named_where_its_file_is_described_and_a_plain_picture_say
         assert "processing" not in describe_file(tonemap(tmp_path, E, name))
 
 
-def test_a_gain_map_that_does_not_say_its_meaning_is_refused_with_what_to_do(tmp_path):
+def test_gain_map_without_metadata_is_rejected_with_advice(tmp_path):
     """Apple's: a second JPEG whose XMP names it, and no numbers."""
     parts = []
     for segments in (b"", b"http://ns.apple.com/HDRGainMap/1.0/"):

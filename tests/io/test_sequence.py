@@ -50,7 +50,7 @@ def folder(tmp_path):
 
 
 @WITH_FILMS
-def test_a_film_comes_back(tmp_path):
+def test_film_survives_a_round_trip(tmp_path):
     frames = moving()
     assert sequence.write(tmp_path / "film.mp4", iter(frames), rate=12) == 6
     back = np.stack(list(sequence.read(tmp_path / "film.mp4")))
@@ -59,7 +59,7 @@ def test_a_film_comes_back(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
 
 
-def test_an_animation_shows_the_frames(tmp_path):
+def test_gif_contains_the_frames(tmp_path):
     frames = moving()
     assert sequence.write(tmp_path / "film.gif", iter(frames), rate=12) == 6
     assert np.abs(shown(tmp_path / "film.gif").astype(int) - frames).mean() < 3
@@ -67,7 +67,7 @@ def test_an_animation_shows_the_frames(tmp_path):
 
 
 @WITH_FILMS
-def test_gray_frames_of_odd_sides_are_written_too(tmp_path):
+def test_gray_frames_with_odd_sides_can_be_written(tmp_path):
     for suffix in (".gif", ".mp4"):
         sequence.write(tmp_path / f"film{suffix}", moving(3, (31, 45))[..., 0])
     (height, width, _) = next(sequence.read(tmp_path / "film.mp4")).shape
@@ -75,7 +75,7 @@ def test_gray_frames_of_odd_sides_are_written_too(tmp_path):
     assert shown(tmp_path / "film.gif").shape == (3, 31, 45, 3)
 
 
-def test_a_folder_is_read_in_the_order_of_its_names_one_at_a_time(folder):
+def test_folder_is_read_frame_by_frame_in_the_order_of_names(folder):
     frames = sequence.read(folder)
     first = next(frames)
     (folder / "05.png").unlink()  # what has not been reached is not yet read
@@ -84,7 +84,7 @@ def test_a_folder_is_read_in_the_order_of_its_names_one_at_a_time(folder):
         list(frames)
 
 
-def test_frames_of_two_sizes_are_refused_by_number(folder):
+def test_error_for_frames_of_different_sizes_names_the_frame(folder):
     write_picture(folder / "03.png", np.zeros((10, 10, 3), np.uint8))
     with pytest.raises(ValueError, match="one size and depth.*frame 4"):
         list(sequence.read(folder))
@@ -92,7 +92,7 @@ def test_frames_of_two_sizes_are_refused_by_number(folder):
 
 @WITH_FILMS
 @pytest.mark.parametrize("content", [b"", b"no film at all", b"GIF89a", None])
-def test_a_damaged_film_is_refused(content, tmp_path):
+def test_damaged_films_are_rejected(content, tmp_path):
     file = tmp_path / "film.mp4"
     if content is None:
         sequence.write(file, moving())
@@ -121,26 +121,26 @@ def test_a_damaged_film_is_refused(content, tmp_path):
         lambda folder: sequence.write_maps(folder, [np.ones((4, 4), np.float32)]),
     ],
 )
-def test_what_means_nothing_is_refused_and_nothing_is_left(call, folder):
+def test_bad_arguments_are_rejected_and_nothing_is_written(call, folder):
     before = sorted(path.name for path in folder.iterdir())
     with pytest.raises(InputError):
         call(folder)
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
-def test_a_film_that_is_not_there_is_said(tmp_path):
+def test_missing_film_raises_file_not_found_error(tmp_path):
     with pytest.raises(FileNotFoundError, match="there is no such file"):
         sequence.read(tmp_path / "film.mp4")
 
 
-def test_without_the_extra_a_film_says_what_is_missing(tmp_path, monkeypatch):
+def test_error_without_pyav_names_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "av", None)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ValueError, match=r"hdrlab\[video\]"):
         sequence.write(tmp_path / "film.mp4", moving())
 
 
-def test_maps_are_written_all_or_none(tmp_path):
+def test_write_maps_writes_all_maps_or_none(tmp_path):
     maps = [np.full((4, 5), level, np.float32) for level in (1, 2)]
     assert sequence.write_maps(tmp_path / "maps", maps) == 2
     assert [path.name for path in sorted((tmp_path / "maps").iterdir())] == ["0001.exr", "0002.exr"]
@@ -162,7 +162,7 @@ def told(capsys, *arguments):
     return end.value.code or 0, *capsys.readouterr()
 
 
-def test_the_command_makes_a_film_of_a_folder(folder, tmp_path, capsys):
+def test_video_makes_a_film_from_a_folder(folder, tmp_path, capsys):
     out = tmp_path / "out.gif"
     code, said, _ = told(
         capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear", "--rate", 10
@@ -171,7 +171,7 @@ def test_the_command_makes_a_film_of_a_folder(folder, tmp_path, capsys):
     assert len(shown(out)) == 6
 
 
-def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
+def test_video_makes_a_folder_of_radiance_maps(folder, tmp_path, capsys):
     out = tmp_path / "maps"
     code, said, _ = told(
         capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear"
@@ -203,7 +203,7 @@ def test_the_command_makes_maps_of_frames(folder, tmp_path, capsys):
         ),
     ],
 )
-def test_the_command_says_in_one_line_what_is_wrong(
+def test_video_reports_bad_input_in_one_line(
     arguments, says, folder, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
@@ -212,7 +212,7 @@ def test_the_command_says_in_one_line_what_is_wrong(
     assert [path.name for path in tmp_path.iterdir()] == ["frames"]
 
 
-def test_maps_do_not_join_what_lies_in_a_folder(folder, tmp_path, capsys):
+def test_video_does_not_write_maps_into_a_folder_that_is_not_empty(folder, tmp_path, capsys):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.txt").write_text("mine")
     code, _, complaint = told(capsys, "video", folder, "-o", tmp_path / "full", "--times", "1,4")
@@ -220,7 +220,7 @@ def test_maps_do_not_join_what_lies_in_a_folder(folder, tmp_path, capsys):
     assert [path.name for path in (tmp_path / "full").iterdir()] == ["mine.txt"]
 
 
-def test_a_bar_shows_the_progress_and_ctrl_c_leaves_what_was_there(tmp_path):
+def test_video_shows_progress_and_keeps_the_old_file_on_ctrl_c(tmp_path):
     pty = pytest.importorskip("pty", reason="there are no such terminals here")
     place, out = tmp_path / "frames", tmp_path / "out.gif"
     place.mkdir()

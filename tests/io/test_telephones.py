@@ -77,7 +77,7 @@ def profile(primaries, gamma=None):
 
 
 @pytest.mark.parametrize("suffix", ["webp", "avif", "heic", "jfif", "JPG", "HEIC", "WebP"])
-def test_each_format_of_a_telephone_is_read_with_its_exposure(tmp_path, suffix):
+def test_formats_of_phones_are_read_with_their_exposure(tmp_path, suffix):
     path = save(tmp_path / f"x.{suffix}")
     assert (
         read_header(path).exposure == pytest.approx((0.25, 2, 80))
@@ -90,7 +90,7 @@ def test_each_format_of_a_telephone_is_read_with_its_exposure(tmp_path, suffix):
 
 @pytest.mark.parametrize("suffix", ["webp", "avif"])
 @pytest.mark.parametrize("orientation", range(1, 9))
-def test_exif_orientation_of_a_new_format_is_applied(tmp_path, suffix, orientation):
+def test_exif_orientation_is_applied_to_webp_and_avif(tmp_path, suffix, orientation):
     path = save(tmp_path / f"x.{suffix}", orientation=orientation)
     upright = np.asarray(cv2.imread(str(save(tmp_path / "x.jpg", orientation=orientation))))[
         ..., ::-1
@@ -100,7 +100,7 @@ def test_exif_orientation_of_a_new_format_is_applied(tmp_path, suffix, orientati
     assert np.abs(read.astype(int) - upright).mean() < 3
 
 
-def test_a_heic_stands_upright_by_its_own_turn_and_not_twice(tmp_path):
+def test_heic_is_rotated_only_once(tmp_path):
     """HEIF turns by a property of its own; EXIF beside it, which iPhones write, does not count again."""
     for quarter_turns, orientation in (1, 8), (3, 6):
         heif = pillow_heif.from_pillow(
@@ -114,14 +114,14 @@ def test_a_heic_stands_upright_by_its_own_turn_and_not_twice(tmp_path):
 
 @pytest.mark.parametrize("named", ["x.jpg", "x.png", "x.tif"])
 @pytest.mark.parametrize("kind", ["HEIF", "WEBP", "AVIF", "PNG", "JPEG"])
-def test_a_file_is_what_its_bytes_say_whatever_its_name(tmp_path, named, kind):
+def test_format_is_detected_from_the_content_not_the_name(tmp_path, named, kind):
     path = save(tmp_path / named, format=kind)
     assert read_header(path).kind == kind
     assert np.abs(read_photo(path).astype(int) - RGB).mean() < 2
 
 
 @pytest.mark.parametrize("bits", [10, 12])
-def test_avif_keeps_all_its_bits_and_white_is_white(tmp_path, bits):
+def test_avif_keeps_all_bits_and_white_is_the_maximum(tmp_path, bits):
     levels = (DEEP << (bits - 10)).clip(0, 2**bits - 1)
     levels[0, 0] = 2**bits - 1
     how = {"bitspersample": bits, "primaries": 1, "transfer": 13, "matrix": 0, "pixelformat": "444"}
@@ -130,7 +130,7 @@ def test_avif_keeps_all_its_bits_and_white_is_white(tmp_path, bits):
     assert np.array_equal(read >> (16 - bits), levels) and read[0, 0].tolist() == [65535] * 3
 
 
-def test_heic_keeps_ten_bits_and_white_is_white(tmp_path):
+def test_heic_keeps_ten_bits_and_white_is_the_maximum(tmp_path):
     levels = DEEP << 6
     levels[:16, :16] = 65535
     heif = pillow_heif.from_bytes("RGB;16", RGB.shape[1::-1], levels.tobytes())
@@ -145,7 +145,7 @@ def film(data):
     return data + b"\0\0\0\x18ftypmp42" + RNG.bytes(2000) + b"\xff\xda" + RNG.bytes(900)
 
 
-def test_a_motion_photo_is_its_photograph(tmp_path):
+def test_photo_of_a_motion_photo_is_read(tmp_path):
     for seed in range(20):
         image = np.random.default_rng(seed).integers(0, 256, (16, 24, 3), np.uint8)
         plain = save(tmp_path / "plain.jpg", image, progressive=bool(seed % 2))
@@ -153,7 +153,7 @@ def test_a_motion_photo_is_its_photograph(tmp_path):
         assert np.array_equal(read_photo(tmp_path / "moving.jpg"), read_photo(plain))
 
 
-def test_a_motion_photo_whose_photograph_is_cut_short_is_damaged(tmp_path):
+def test_motion_photo_with_a_truncated_photo_is_rejected(tmp_path):
     data = save(tmp_path / "x.jpg").read_bytes()
     (tmp_path / "x.jpg").write_bytes(data[:-200] + bytes(300))
     with pytest.raises(ValueError, match="x.jpg: it is cut short or damaged"):
@@ -161,7 +161,7 @@ def test_a_motion_photo_whose_photograph_is_cut_short_is_damaged(tmp_path):
 
 
 @pytest.mark.parametrize("deep", [False, True])
-def test_an_alpha_channel_that_is_opaque_is_no_hindrance(tmp_path, deep):
+def test_opaque_alpha_channels_are_ignored(tmp_path, deep):
     image = np.uint16(RGB) * 257 if deep else RGB
     alpha = np.full((*RGB.shape[:2], 1), np.iinfo(image.dtype).max, image.dtype)
     cv2.imwrite(str(tmp_path / "x.png"), np.dstack([image[..., ::-1], alpha]))
@@ -181,7 +181,7 @@ def test_an_alpha_channel_that_is_opaque_is_no_hindrance(tmp_path, deep):
 
 @pytest.mark.parametrize("name", ["x.png", "x.tif", "x.jpg", "x.webp", "x.avif", "x.heic"])
 @pytest.mark.parametrize(("primaries", "gamma"), [(P3, None), (ADOBE, 563 / 256)])
-def test_colours_of_another_space_are_converted_in_linear_light(tmp_path, name, primaries, gamma):
+def test_colors_of_other_profiles_are_converted_in_linear_light(tmp_path, name, primaries, gamma):
     image = np.uint8(
         np.rint(0.5 * RGB + 0.5 * RGB.mean(axis=-1, keepdims=True))
     )  # sRGB can show these colours
@@ -197,7 +197,7 @@ def test_colours_of_another_space_are_converted_in_linear_light(tmp_path, name, 
     assert np.abs(read_photo(path) - 255 * encode_srgb(light.clip(0, 1))).max() < 1.2
 
 
-def test_sixteen_bits_of_adobe_rgb_are_converted_to_a_fraction_of_a_level(tmp_path):
+def test_16_bit_adobe_rgb_is_converted_with_a_small_error(tmp_path):
     image = np.uint16(RGB) * 200 + 3000
     tifffile.imwrite(
         tmp_path / "x.tif", image, photometric="rgb", iccprofile=profile(ADOBE, 563 / 256)
@@ -209,7 +209,7 @@ def test_sixteen_bits_of_adobe_rgb_are_converted_to_a_fraction_of_a_level(tmp_pa
     )
 
 
-def test_a_camera_that_says_adobe_rgb_in_exif_alone_is_believed(tmp_path):
+def test_adobe_rgb_stated_only_in_exif_is_converted(tmp_path):
     exif = tags()
     exif.get_ifd(0x8769)[0xA005] = {1: "R03"}
     Image.fromarray(RGB).save(tmp_path / "a.png", exif=exif)
@@ -221,19 +221,19 @@ def test_a_camera_that_says_adobe_rgb_in_exif_alone_is_believed(tmp_path):
     assert np.abs(read_photo(tmp_path / "a.png").astype(int) - RGB).max() > 5
 
 
-def test_the_curve_of_a_profile_is_left_to_the_response(tmp_path):
+def test_curve_of_a_profile_with_srgb_primaries_is_not_applied(tmp_path):
     save(tmp_path / "x.png", icc_profile=profile(gamut.SRGB, 1.8))
     assert np.array_equal(read_photo(tmp_path / "x.png"), RGB)
 
 
-def test_a_damaged_profile_is_named_and_not_ignored(tmp_path):
+def test_damaged_profile_is_an_error_that_names_the_photo(tmp_path):
     save(tmp_path / "x.png", icc_profile=profile(P3)[:200] + bytes(300))
     with pytest.raises(ValueError, match="x.png: .*profile"):
         read_photo(tmp_path / "x.png")
 
 
 @pytest.mark.parametrize(("dtype", "share"), [(np.uint8, 80), (np.uint16, 100)])
-def test_a_bracket_in_display_p3_and_in_srgb_gives_one_radiance_map(tmp_path, dtype, share):
+def test_brackets_in_display_p3_and_srgb_give_the_same_radiance_map(tmp_path, dtype, share):
     """Within 1 %: all of a map of 16 bits; four fifths of one of 8, whose two roundings are the rest."""
     E, white = (decode_srgb(RGB / 255) + 0.02) ** 2, np.iinfo(dtype).max
     to_p3 = np.linalg.inv(gamut.conversion_matrix(P3))
@@ -254,7 +254,7 @@ def test_a_bracket_in_display_p3_and_in_srgb_gives_one_radiance_map(tmp_path, dt
 
 
 @pytest.mark.parametrize("suffix", ["webp", "avif", "heic", "jpg"])
-def test_a_new_format_that_is_cut_short_is_refused_by_name(tmp_path, suffix):
+def test_truncated_webp_avif_and_heic_are_rejected_by_name(tmp_path, suffix):
     path = tmp_path / f"x.{suffix}"
     image = RNG.integers(0, 256, (60, 80, 3), np.uint8)
     save(path, image, icc_profile=profile(P3))
@@ -265,14 +265,14 @@ def test_a_new_format_that_is_cut_short_is_refused_by_name(tmp_path, suffix):
             read_photo(path)
 
 
-def test_without_pillow_heif_an_error_says_what_to_install(tmp_path, monkeypatch):
+def test_error_without_pillow_heif_says_what_to_install(tmp_path, monkeypatch):
     path = save(tmp_path / "x.heic")
     monkeypatch.setitem(__import__("sys").modules, "pillow_heif", None)
     with pytest.raises(ValueError, match=r'pip install "hdrlab\[heic\]"'):
         read_photo(path)
 
 
-def test_a_picture_written_here_has_no_profile_and_stays_as_it_is(tmp_path):
+def test_written_pictures_without_a_profile_are_not_converted(tmp_path):
     write_picture(tmp_path / "x.png", RGB)
     assert read_header(tmp_path / "x.png").icc == b"" and np.array_equal(
         read_photo(tmp_path / "x.png"), RGB

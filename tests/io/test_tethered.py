@@ -95,9 +95,7 @@ def names(path):
     return sorted(one.name for one in path.iterdir())
 
 
-def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_scene(
-    lens, tmp_path, capsys
-):
+def test_shoot_takes_a_bracket_around_the_metered_time_and_assembles_it(lens, tmp_path, capsys):
     room, E = tmp_path / "room", tmp_path / "room.hdr"
     assert shoot("-o", room, "--frames", 5, "--stops", 2.5, "--assemble", E) == 0
     assert lens == [0.0001, 0.0025, 0.01, 0.05, 1.0]
@@ -112,7 +110,7 @@ def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_sce
     )
 
 
-def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
+def test_list_of_times_has_the_exact_shutter_times(lens, tmp_path):
     assert shoot("-o", tmp_path / "room", "--frames", 3) == 0
     rows = (tmp_path / "room/exposures.csv").read_text().split("\n")
     assert rows[0] == "file,exposure_time_s" and rows[-1] == "" and len(rows) == 5
@@ -120,7 +118,7 @@ def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
         assert float(row.split(",")[1]) == pytest.approx(exposure.true_time(nominal), rel=1e-5)
 
 
-def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
+def test_camera_settings_are_restored_at_the_end(folder, tmp_path):
     def settings(camera):
         return [
             camera._find_setting(one).get_value()
@@ -142,7 +140,7 @@ def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
     assert found == [["Off", "0.1000s", "f/2.8"], before]
 
 
-def test_what_the_camera_does_not_let_be_set_is_to_be_fixed_by_hand(folder):
+def test_note_names_settings_that_must_be_fixed_on_the_camera(folder):
     refusing = mock.Mock(side_effect=gphoto2.GPhoto2Error(-1))
     with tethered.connected() as camera:
         camera._device = mock.Mock(wraps=camera._device, set_single_config=refusing)
@@ -201,7 +199,7 @@ def place(name):
     return found
 
 
-def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(
+def test_meter_is_read_at_the_iso_of_the_photos_and_settings_are_restored(
     tmp_path, monkeypatch, capsys
 ):
     camera = Automatic()
@@ -216,9 +214,7 @@ def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(
     )
 
 
-def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_silent(
-    tmp_path, monkeypatch
-):
+def test_all_files_of_a_photo_are_saved_although_events_never_stop(tmp_path, monkeypatch):
     monkeypatch.setattr(gphoto2, "Camera", Automatic)
     with tethered.connected() as camera:
         files = camera.photograph("1/4", tmp_path / "01")
@@ -228,7 +224,7 @@ def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_si
     ]
 
 
-def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, tmp_path):
+def test_disconnected_cable_keeps_the_photos_taken_so_far(folder, tmp_path):
     words = ["shoot", "-o", "room", "--frames", "4", "--assemble", "room.hdr"]
     command = [
         sys.executable,
@@ -254,7 +250,7 @@ def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, tmp_path):
         (-7, "asleep"),
     ],
 )
-def test_an_error_of_the_camera_says_what_to_look_at(folder, tmp_path, code, meaning):
+def test_camera_errors_say_what_to_check(folder, tmp_path, code, meaning):
     with tethered.connected() as camera:
         broken = mock.Mock(wraps=camera._device)
         broken.capture.side_effect = gphoto2.GPhoto2Error(code)
@@ -264,14 +260,14 @@ def test_an_error_of_the_camera_says_what_to_look_at(folder, tmp_path, code, mea
     assert names(tmp_path) == ["camera"]
 
 
-def test_without_a_camera_one_line_says_so(tmp_path, monkeypatch, capsys):
+def test_shoot_without_a_camera_is_a_one_line_error(tmp_path, monkeypatch, capsys):
     missing = mock.Mock(init=mock.Mock(side_effect=gphoto2.GPhoto2Error(-105)))
     monkeypatch.setattr(gphoto2, "Camera", lambda: missing)
     assert shoot("-o", tmp_path / "room") == 2
     assert "connect one by USB" in capsys.readouterr().err and not (tmp_path / "room").exists()
 
 
-def test_without_the_extra_it_is_named(tmp_path, monkeypatch, capsys):
+def test_shoot_without_gphoto2_names_the_extra(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(common, "find_spec", lambda name: None)
     assert shoot("-o", tmp_path / "room") == 2
     assert 'pip install "hdrlab[camera]"' in capsys.readouterr().err
@@ -284,14 +280,14 @@ def test_without_the_extra_it_is_named(tmp_path, monkeypatch, capsys):
         (["--assemble", "map.txt"], "expected a radiance file"),
     ],
 )
-def test_what_cannot_be_is_refused_before_the_first_photograph(
+def test_bad_options_are_rejected_before_the_first_photo(
     folder, lens, tmp_path, capsys, arguments, why
 ):
     assert shoot("-o", tmp_path / "room", *arguments) == 2
     assert why in capsys.readouterr().err and lens == [] and not (tmp_path / "room").exists()
 
 
-def test_a_folder_that_holds_something_is_not_written_to(folder, lens, tmp_path, capsys):
+def test_shoot_rejects_a_folder_that_is_not_empty(folder, lens, tmp_path, capsys):
     assert shoot("-o", folder) == 2
     assert (
         "new or empty" in capsys.readouterr().err and lens == [] and names(folder) == ["scene.jpg"]
@@ -301,9 +297,7 @@ def test_a_folder_that_holds_something_is_not_written_to(folder, lens, tmp_path,
 @pytest.mark.parametrize(
     ("sent", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)]
 )
-def test_a_run_that_is_stopped_keeps_whole_photographs_and_their_times(
-    folder, tmp_path, sent, code
-):
+def test_interrupted_shoot_keeps_complete_photos_and_their_times(folder, tmp_path, sent, code):
     room = tmp_path / "room"
     process = subprocess.Popen(
         [sys.executable, "-c", SLOW, "shoot", "-o", str(room), "--frames", "6"]

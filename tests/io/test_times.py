@@ -27,28 +27,28 @@ def wrote(tmp_path, text, name="times.txt"):
     return path
 
 
-def test_rationals_are_read():
+def test_rational_exif_values_are_read():
     said = read_exposure(exif(TIME=IFDRational(1, 60), NUMBER=IFDRational(28, 10), SPEED=200))
     assert said == Exposure(pytest.approx(1 / 60), pytest.approx(2.8), 200)
 
 
-def test_apex_values_serve_where_plain_ones_are_missing():
+def test_apex_values_are_used_if_plain_ones_are_missing():
     said = read_exposure(exif(TV=IFDRational(6, 1), AV=IFDRational(3, 1)))
     assert said == Exposure(1 / 64, pytest.approx(2**1.5), None)
     assert read_exposure(exif(TIME=IFDRational(0, 1), TV=IFDRational(-2, 1))).seconds == 4
     assert read_exposure(exif(TV=IFDRational(0, 1))).seconds == 1
 
 
-def test_plain_values_come_before_apex_values():
+def test_plain_values_take_precedence_over_apex_values():
     said = read_exposure(exif(TIME=IFDRational(1, 50), TV=IFDRational(6, 1)))
     assert said.seconds == pytest.approx(1 / 50)
 
 
-def test_the_exposure_bias_is_no_time():
+def test_exposure_bias_is_not_used_as_a_time():
     assert read_exposure(exif(BIAS=IFDRational(-2, 1))) == Exposure(None, None, None)
 
 
-def test_an_iso_speed_beyond_16_bits_is_taken_from_the_newer_tag():
+def test_iso_speed_beyond_16_bits_is_read_from_the_newer_tag():
     image = exif(SPEED=65535)
     assert read_exposure(image).iso is None
     image.get_ifd(0x8769)[34866] = 102400
@@ -58,7 +58,7 @@ def test_an_iso_speed_beyond_16_bits_is_taken_from_the_newer_tag():
 @pytest.mark.parametrize(
     "nothing", [IFDRational(0, 1), IFDRational(1, 0), IFDRational(0, 0), "", (), b"x"]
 )
-def test_values_of_zero_and_infinity_say_nothing(nothing):
+def test_exif_values_of_zero_and_infinity_are_ignored(nothing):
     said = read_exposure(exif(TIME=nothing, NUMBER=nothing, SPEED=nothing))
     assert said == Exposure(None, None, None)
 
@@ -74,20 +74,20 @@ def test_equivalent_exposure_is_t_S_over_N_squared_relative_to_the_first(values)
 
 @pytest.mark.parametrize("f_number", [None, 8.0])
 @pytest.mark.parametrize("iso", [None, 100.0])
-def test_what_no_photograph_states_is_the_same_in_all(f_number, iso):
+def test_f_number_or_iso_that_no_photo_states_is_assumed_constant(f_number, iso):
     assert equivalent_seconds(
         NAMES, [Exposure(1.0, f_number, iso), Exposure(2.0, f_number, iso)]
     ) == [1, 2]
 
 
-def test_what_only_some_photographs_state_is_an_error():
+def test_f_number_or_iso_that_only_some_photos_state_is_an_error():
     with pytest.raises(ValueError, match="b.jpg.*f-number.*--times"):
         equivalent_seconds(NAMES, [Exposure(1.0, 8.0, 100), Exposure(2.0, None, 100)])
     with pytest.raises(ValueError, match="a.jpg.*ISO speed"):
         equivalent_seconds(NAMES, [Exposure(1.0, 8.0, None), Exposure(2.0, 8.0, 100)])
 
 
-def test_a_missing_time_is_named_with_the_way_out():
+def test_error_names_a_photo_without_time_and_what_to_do():
     with pytest.raises(ValueError, match="b.jpg.*EXIF.*--times"):
         equivalent_seconds(NAMES, [Exposure(1.0), Exposure(None, 8.0, 100)])
 
@@ -128,23 +128,23 @@ def test_bare_numbers_are_seconds_or_one_over_seconds(tmp_path):
         "# by hand\n\nname, shutter speed\na.jpg, 1/60\n\nb 1.jpg, 1/2",
     ],
 )
-def test_lists_are_read_as_people_write_them(tmp_path, text):
+def test_lists_of_times_are_read_in_many_notations(tmp_path, text):
     seconds, inverse = read_times(wrote(tmp_path, text))
     assert seconds == {"a.jpg": pytest.approx(1 / 60), "b 1.jpg": 0.5} and inverse is None
 
 
-def test_a_third_column_of_f_numbers_or_iso_speeds_counts(tmp_path):
+def test_third_column_is_f_number_or_iso(tmp_path):
     assert read_times(wrote(tmp_path, "a 1/60 8\nb 1/60 4")).seconds["b"] == pytest.approx(4 / 60)
     assert read_times(wrote(tmp_path, "a 1/60 100\nb 1/60 400")).seconds["b"] == pytest.approx(
         4 / 60
     )
 
 
-def test_a_list_may_leave_out_suffixes_and_folders_and_capitals(tmp_path):
+def test_names_in_a_list_may_lack_suffix_folder_and_case(tmp_path):
     assert bracket_times(NAMES, [], wrote(tmp_path, "photos/A.JPG 1/2\nb 1/4"))[0] == [0.5, 0.25]
 
 
-def test_exif_decides_between_seconds_and_one_over_seconds(tmp_path):
+def test_exif_decides_between_seconds_and_1_over_seconds(tmp_path):
     path, stated = wrote(tmp_path, "a.jpg 60\nb.jpg 15"), [Exposure(1 / 50), Exposure(1 / 13)]
     assert bracket_times(NAMES, stated, path) == (
         [pytest.approx(1 / 60), pytest.approx(1 / 15)],
@@ -154,12 +154,12 @@ def test_exif_decides_between_seconds_and_one_over_seconds(tmp_path):
     assert bracket_times(NAMES, [Exposure(), Exposure()], path)[1] == [1 / 60, 1 / 15]
 
 
-def test_numbers_that_do_not_follow_the_brightness_are_asked_for_again():
+def test_ambiguous_numbers_that_do_not_follow_the_brightness_are_rejected():
     with pytest.raises(ValueError, match="write them as 1/60 or as 0.5 s"):
         are_inverse([1, 2, 4, 8], [30, 90, 20, 60])
 
 
-def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_path):
+def test_debevecs_list_has_inverse_times_and_f_stops(tmp_path):
     text = "# Filename exposure 1/shutter f/stop gain ND\na.png 4 0.25 8 0 0\nb.png 1 0.25 16 0 0\n"
     assert read_times(wrote(tmp_path, text)).seconds == {"a.png": 4, "b.png": 1}
 
@@ -182,18 +182,18 @@ def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_pa
         ("file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n", "b.jpg.*ISO"),
     ],
 )
-def test_a_wrong_list_of_times_names_the_file_the_line_and_the_value(tmp_path, text, says):
+def test_error_for_a_list_of_times_names_file_line_and_value(tmp_path, text, says):
     with pytest.raises(InputError, match=f"times.txt.*{says}"):
         read_times(wrote(tmp_path, text))
 
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "file,exposure_time_s\n"])
-def test_an_empty_list_of_times_is_refused_by_name(tmp_path, text):
+def test_empty_list_of_times_is_rejected_by_name(tmp_path, text):
     with pytest.raises(FileFormatError, match="times.txt.*empty"):
         read_times(wrote(tmp_path, text))
 
 
-def test_a_list_that_is_not_text_is_refused(tmp_path):
+def test_binary_list_of_times_is_rejected(tmp_path):
     path = tmp_path / "times.txt"
     path.write_bytes(b"\xff\xd8\xff\xe0")
     with pytest.raises(ValueError, match="text file"):
@@ -202,7 +202,7 @@ def test_a_list_that_is_not_text_is_refused(tmp_path):
 
 @pytest.mark.papers
 @given(st.text(max_size=200))
-def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
+def test_any_text_is_read_as_a_list_or_raises_value_error(tmp_path_factory, text):
     path = tmp_path_factory.mktemp("lists") / "times.txt"
     path.write_text(text, encoding="utf-8", errors="replace")
     try:
@@ -213,7 +213,7 @@ def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
         assert times and all(t > 0 and math.isfinite(t) for t in times.values())
 
 
-def test_explicit_times_beat_exif(tmp_path):
+def test_explicit_times_take_precedence_over_exif(tmp_path):
     stated = [Exposure(1.0, 8.0, 100), Exposure(2.0, 4.0, 100)]
     assert bracket_times(NAMES, stated, None)[0] == [1, pytest.approx(8)]
     assert bracket_times(NAMES, stated, [3, 4])[0] == [3, 4]
@@ -221,18 +221,18 @@ def test_explicit_times_beat_exif(tmp_path):
     assert bracket_times(NAMES, stated, wrote(tmp_path, "b.jpg 1/4\na.jpg 1/2\n"))[0] == [0.5, 0.25]
 
 
-def test_a_photograph_that_the_list_does_not_name_is_named(tmp_path):
+def test_error_names_a_photo_that_is_missing_in_the_list(tmp_path):
     with pytest.raises(ValueError, match="times.txt: .*time for each photograph.*none for b.jpg"):
         bracket_times(NAMES, [], wrote(tmp_path, "a.jpg 2\n"))
 
 
 @pytest.mark.parametrize("wrong", [0, -1, math.nan, math.inf])
-def test_times_that_are_not_positive_are_refused_by_name(wrong):
+def test_times_that_are_not_positive_are_rejected_by_name(wrong):
     with pytest.raises(ValueError, match="b.jpg: .*positive exposure time.*--times FILE"):
         bracket_times(NAMES, [], [1, wrong])
 
 
-def test_as_many_times_as_photographs_are_expected():
+def test_wrong_number_of_times_is_rejected():
     with pytest.raises(ValueError, match="2 exposure times, one per photograph.*3"):
         bracket_times(NAMES, [], [1, 2, 3])
 

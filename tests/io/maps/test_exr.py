@@ -23,7 +23,7 @@ def window(left, top, right, bottom):
 
 
 @pytest.mark.parametrize(("E", "name"), [(RGB, "RGB"), (GRAY, "Y")])
-def test_openexr_reads_ours_and_we_read_openexrs_bit_for_bit(tmp_path, E, name):
+def test_exr_files_can_be_exchanged_with_openexr_bit_for_bit(tmp_path, E, name):
     exr.write(tmp_path / "ours.exr", E)
     with OpenEXR.File(str(tmp_path / "ours.exr")) as file:
         theirs = file.channels()[name].pixels
@@ -41,7 +41,7 @@ def test_half_float_and_unsigned_channels_become_float32(tmp_path, dtype, name):
     assert set(exr.read_dtypes(tmp_path / "x.exr")) == {np.dtype(dtype).name}
 
 
-def test_alpha_is_left_out(tmp_path):
+def test_alpha_channel_is_dropped(tmp_path):
     RGBA = np.concatenate([RGB, np.full_like(RGB[..., :1], 0.5)], axis=-1)
     assert np.array_equal(exr.read(wrote(tmp_path / "a.exr", {"RGBA": RGBA})), RGB)
     assert np.array_equal(
@@ -54,7 +54,7 @@ COMPRESSIONS = ["NO", "RLE", "ZIPS", "ZIP", "PIZ"]
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
 @pytest.mark.parametrize("separate", [True, False])
-def test_every_lossless_compression_reads(tmp_path, compression, separate):
+def test_all_lossless_compressions_are_read(tmp_path, compression, separate):
     channels = {c: RGB[..., k].copy() for k, c in enumerate("RGB")} if separate else {"RGB": RGB}
     path = wrote(
         tmp_path / "x.exr", channels, compression=getattr(OpenEXR, f"{compression}_COMPRESSION")
@@ -63,7 +63,7 @@ def test_every_lossless_compression_reads(tmp_path, compression, separate):
 
 
 @pytest.mark.parametrize("offset", [(0, 0), (3, -2), (-5, 4)])
-def test_a_cropped_data_window_stands_in_the_display_window_with_zeros_around(tmp_path, offset):
+def test_smaller_data_window_is_padded_with_zeros(tmp_path, offset):
     x, y = offset
     header = {
         "dataWindow": window(10 + x, 20 + y, 13 + x, 22 + y),
@@ -76,19 +76,19 @@ def test_a_cropped_data_window_stands_in_the_display_window_with_zeros_around(tm
     assert np.array_equal(E, expected)
 
 
-def test_a_data_window_beyond_the_display_window_is_cut(tmp_path):
+def test_larger_data_window_is_cropped(tmp_path):
     header = {"dataWindow": window(-2, -3, 18, 33), "displayWindow": window(0, 0, 9, 39)}
     E = exr.read(wrote(tmp_path / "x.exr", {"RGB": RGB}, **header))
     assert np.array_equal(E[:34], RGB[3:, 2:12]) and not E[34:].any() and E.shape == (40, 10, 3)
 
 
-def test_a_data_window_outside_the_display_window_is_refused(tmp_path):
+def test_data_window_outside_of_the_display_window_is_rejected(tmp_path):
     header = {"dataWindow": window(50, 0, 70, 36), "displayWindow": window(0, 0, 9, 9)}
     with pytest.raises(ValueError, match="x.exr: .*pixels in its display window"):
         exr.read(wrote(tmp_path / "x.exr", {"RGB": RGB}, **header))
 
 
-def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
+def test_half_floats_keep_three_digits_and_reject_larger_values(tmp_path):
     path = tmp_path / "x.exr"
     exr.write(path, RGB, half=True)
     assert np.array_equal(exr.read(path), RGB.astype(np.float16))
@@ -98,20 +98,20 @@ def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
     assert exr.read(path) == 65504
 
 
-def test_what_is_no_radiance_is_not_written(tmp_path):
+def test_write_rejects_invalid_radiance(tmp_path):
     for value, says in (np.nan, "1 NaN"), (np.inf, "1 infinite"), (-1, "1 negative"):
         with pytest.raises(ValueError, match=says):
             exr.write(tmp_path / "x.exr", [[1.0, value]])
     assert not list(tmp_path.iterdir())
 
 
-def test_other_channels_are_refused_by_name(tmp_path):
+def test_other_channels_are_rejected_by_name(tmp_path):
     path = wrote(tmp_path / "x.exr", {"U": GRAY, "V": GRAY})
     with pytest.raises(ValueError, match="x.exr: .*channels R, G, B or Y.*U, V"):
         exr.read(path)
 
 
-def test_subsampled_channels_are_refused_by_name(tmp_path):
+def test_subsampled_channels_are_rejected_by_name(tmp_path):
     path = wrote(tmp_path / "x.exr", {"Y": GRAY[:36, :20].copy()})
     data = bytearray(path.read_bytes())
     at = data.index(b"chlist\0") + len(b"chlist\0") + 4 + len(b"Y\0") + 8
@@ -123,18 +123,18 @@ def test_subsampled_channels_are_refused_by_name(tmp_path):
 
 
 @pytest.mark.parametrize("data", [b"", b"v/1\x01", b"\x89PNG\r\n\x1a\n", b"v/1\x01" + bytes(100)])
-def test_what_is_no_openexr_file_is_refused_by_name(tmp_path, data):
+def test_other_files_are_rejected_as_exr_by_name(tmp_path, data):
     (tmp_path / "x.exr").write_bytes(data)
     with pytest.raises(ValueError, match="x.exr: .*OpenEXR file"):
         exr.read(tmp_path / "x.exr")
 
 
-def test_a_missing_file_is_missing(tmp_path):
+def test_missing_exr_raises_file_not_found_error(tmp_path):
     with pytest.raises(FileNotFoundError):
         exr.read(tmp_path / "x.exr")
 
 
-def test_a_file_that_is_cut_short_is_refused_and_nothing_is_printed(tmp_path, capsys):
+def test_truncated_exr_is_rejected_and_nothing_is_printed(tmp_path, capsys):
     exr.write(tmp_path / "x.exr", RGB)
     data = (tmp_path / "x.exr").read_bytes()
     for length in range(len(data) - 1, 8, -397):
@@ -145,7 +145,7 @@ def test_a_file_that_is_cut_short_is_refused_and_nothing_is_printed(tmp_path, ca
 
 
 @pytest.mark.parametrize("name", [b"dataWindow", b"displayWindow"])
-def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, name):
+def test_header_with_an_absurd_size_allocates_no_memory(tmp_path, name):
     exr.write(tmp_path / "x.exr", RGB)
     data = bytearray((tmp_path / "x.exr").read_bytes())
     at = data.index(name + b"\0box2i\0") + len(name) + 7 + 4
@@ -161,7 +161,7 @@ REAL = ["BrightRings", "Carrots", "Desk", "GammaChart", "SquaresSwirls", "StillL
 
 
 @pytest.mark.parametrize("name", REAL)
-def test_real_files_read_as_the_official_module_reads_them(shared, name):
+def test_real_exr_files_equal_those_of_the_official_module(shared, name):
     path = shared("openexr") / f"{name}.exr"
     with OpenEXR.File(str(path), separate_channels=True) as file:
         theirs = np.stack([file.channels()[c].pixels for c in "RGB"], axis=-1)
@@ -169,7 +169,7 @@ def test_real_files_read_as_the_official_module_reads_them(shared, name):
     assert E.dtype == np.float32 and np.array_equal(E, theirs)
 
 
-def test_a_real_file_with_nan_and_infinity_is_refused_with_counts_unless_it_is_cleaned(shared):
+def test_real_exr_with_nan_and_infinity_is_rejected_unless_cleaned(shared):
     path = shared("openexr") / "BrightRingsNanInf.exr"
     E = exr.read(path)
     nan, inf = np.count_nonzero(np.isnan(E)), np.count_nonzero(np.isinf(E))

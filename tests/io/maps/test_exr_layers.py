@@ -12,7 +12,7 @@ RNG = np.random.default_rng(1)
 RGB, GRAY, RGBA = (RNG.random((5, 7, *rest)).astype(np.float32) for rest in ((3,), (), (4,)))
 
 
-def test_layers_read_back_bit_for_bit_infinity_too(tmp_path):
+def test_layers_survive_a_round_trip_bit_for_bit_with_infinity(tmp_path):
     s = GRAY.copy()
     s[2, 3] = np.inf
     given = {"radiance": RGB, "standard deviation": s, "cover": RGBA}
@@ -24,7 +24,7 @@ def test_layers_read_back_bit_for_bit_infinity_too(tmp_path):
     assert exr.read_header(tmp_path / "a.exr").attributes["comments"] == "one\ntwo"
 
 
-def test_a_program_that_knows_one_picture_reads_the_first(tmp_path):
+def test_programs_without_layers_read_the_first_layer(tmp_path):
     write_layers(tmp_path / "a.exr", {"radiance": RGB, "standard deviation": 0 * RGB})
     assert np.array_equal(radiance.read_radiance(tmp_path / "a.exr"), RGB)
 
@@ -33,7 +33,7 @@ def test_a_program_that_knows_one_picture_reads_the_first(tmp_path):
     "layers",
     [{}, {"a": RGB, "b": GRAY[:3]}, {"a": RGB[0, 0]}, {"a": RGB[..., :2]}, {"a": np.zeros((0, 3))}],
 )
-def test_what_are_no_layers_is_refused_and_what_stood_there_stays(layers, tmp_path):
+def test_write_layers_rejects_bad_layers_and_keeps_the_old_file(layers, tmp_path):
     path = tmp_path / "a.exr"
     write_layers(path, {"radiance": RGB})
     before = path.read_bytes()

@@ -13,7 +13,7 @@ GRAY = RGB[..., 0].copy()
 
 
 @pytest.mark.parametrize("E", [RGB, GRAY])
-def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
+def test_pfm_files_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, E):
     pfm.write(tmp_path / "ours.pfm", E)
     cv2.imwrite(
         str(tmp_path / "theirs.pfm"), np.ascontiguousarray(E[..., ::-1]) if E.ndim == 3 else E
@@ -24,13 +24,13 @@ def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
     assert np.array_equal(pfm.read(tmp_path / "theirs.pfm"), E)
 
 
-def test_rows_run_from_the_bottom_to_the_top_in_little_endian(tmp_path):
+def test_rows_are_written_bottom_up_in_little_endian(tmp_path):
     pfm.write(tmp_path / "x.pfm", [[1.0, 2.0], [3.0, 4.0]])
     expected = b"Pf\n2 2\n-1.0\n" + np.array([3, 4, 1, 2], "<f4").tobytes()
     assert (tmp_path / "x.pfm").read_bytes() == expected
 
 
-def test_flip_takes_and_writes_rows_from_the_top_to_the_bottom(tmp_path):
+def test_flip_false_reads_and_writes_rows_top_down(tmp_path):
     pfm.write(tmp_path / "x.pfm", RGB, flip=False)
     assert np.array_equal(pfm.read(tmp_path / "x.pfm", flip=False), RGB)
     assert np.array_equal(pfm.read(tmp_path / "x.pfm"), RGB[::-1])
@@ -39,9 +39,7 @@ def test_flip_takes_and_writes_rows_from_the_top_to_the_bottom(tmp_path):
 @pytest.mark.parametrize(
     ("scale", "dtype"), [("-1", "<f4"), ("-2.5e0", "<f4"), ("1.0", ">f4"), ("+0.5", ">f4")]
 )
-def test_the_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_left_alone(
-    tmp_path, scale, dtype
-):
+def test_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_ignored(tmp_path, scale, dtype):
     data = np.arange(6, dtype=dtype)
     (tmp_path / "x.pfm").write_bytes(f"PF\n2 1\n{scale}\n".encode() + data.tobytes())
     E = pfm.read(tmp_path / "x.pfm")
@@ -49,13 +47,13 @@ def test_the_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_left_alone
     assert pfm.read_header(tmp_path / "x.pfm").scale == float(scale)
 
 
-def test_a_first_value_that_looks_like_white_space_is_a_value(tmp_path):
+def test_first_value_that_looks_like_white_space_is_read(tmp_path):
     data = np.array([0x20200A0A], "<u4").view("<f4")
     (tmp_path / "x.pfm").write_bytes(b"Pf 1 1 -1\n" + data.tobytes())
     assert np.array_equal(pfm.read(tmp_path / "x.pfm"), data[None])
 
 
-def test_what_is_no_radiance_is_not_written(tmp_path):
+def test_write_rejects_invalid_radiance(tmp_path):
     for value, says in (np.nan, "1 NaN"), (np.inf, "1 infinite"), (-1, "1 negative"):
         with pytest.raises(ValueError, match=says):
             pfm.write(tmp_path / "x.pfm", [[1.0, value]])
@@ -74,20 +72,20 @@ def test_what_is_no_radiance_is_not_written(tmp_path):
         b"PF\n-2 2\n1\n",
     ],
 )
-def test_what_is_no_pfm_file_is_refused_by_name(tmp_path, head):
+def test_other_files_are_rejected_as_pfm_by_name(tmp_path, head):
     (tmp_path / "x.pfm").write_bytes(head + b"x" * 48 * bool(head))
     with pytest.raises(ValueError, match="x.pfm: .*PFM file"):
         pfm.read(tmp_path / "x.pfm")
 
 
 @pytest.mark.parametrize("size", ["2147483648 1", "65536 32768", "0 4", "9999 9999", "3 2"])
-def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, size):
+def test_header_with_an_absurd_size_allocates_no_memory(tmp_path, size):
     (tmp_path / "x.pfm").write_bytes(f"PF\n{size}\n-1.0\n".encode() + bytes(71))
     with pytest.raises(ValueError, match="x.pfm: its header claims"):
         pfm.read(tmp_path / "x.pfm")
 
 
-def test_a_file_that_is_cut_while_it_is_read_is_refused(tmp_path, monkeypatch):
+def test_file_that_is_truncated_while_it_is_read_is_rejected(tmp_path, monkeypatch):
     pfm.write(tmp_path / "x.pfm", RGB)
     header = pfm.read_header(tmp_path / "x.pfm")
     os.truncate(tmp_path / "x.pfm", header.start + RGB.nbytes - 1)
@@ -98,7 +96,7 @@ def test_a_file_that_is_cut_while_it_is_read_is_refused(tmp_path, monkeypatch):
         pfm.read(tmp_path / "x.pfm")
 
 
-def test_a_system_that_moves_one_row_at_a_time_reads_the_same(tmp_path, monkeypatch):
+def test_reading_without_readv_gives_the_same_values(tmp_path, monkeypatch):
     monkeypatch.delattr(os, "readv", raising=False)
     tall = np.random.default_rng(1).random((1100, 2)).astype(np.float32)
     pfm.write(tmp_path / "x.pfm", tall)

@@ -35,19 +35,19 @@ def file(path, pixels, *, header="", resolution=None, first="#?RADIANCE"):
     return path
 
 
-def test_a_mantissa_is_a_256th_of_the_power_of_its_exponent():
+def test_one_mantissa_step_is_a_256th_of_the_power_of_two():
     pixels = np.array([[[128, 64, 1, 129], [255, 0, 0, 128], [1, 2, 3, 0]]], np.uint8)
     expected = [[[1, 0.5, 1 / 128], [255 / 256, 0, 0], [0, 0, 0]]]
     assert np.array_equal(rgbe.to_radiance(pixels), np.array(expected, np.float32))
 
 
-def test_the_triples_of_the_slides_decode_with_one_rule():
+def test_pixels_of_the_slides_decode_to_their_values():
     E = rgbe.to_radiance(np.array([[[145, 215, 87, 149], [145, 215, 87, 103]]], np.uint8))
     assert E[0, 0].tolist() == [1187840, 1761280, 712704]
     assert E[0, 1] == pytest.approx(np.array([145, 215, 87]) / 256 * 2.0**-25, rel=1e-6)
 
 
-def test_the_brightest_mantissa_is_128_or_more_and_loses_less_than_one_part_in_128():
+def test_largest_mantissa_is_at_least_128_and_the_error_below_1_in_128():
     E = scene(20, 30)
     E = np.where(E.max(axis=-1, keepdims=True) < 1e-30, 1, E).astype(np.float32)
     pixels = rgbe.to_pixels(E)
@@ -57,14 +57,14 @@ def test_the_brightest_mantissa_is_128_or_more_and_loses_less_than_one_part_in_1
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_what_is_written_is_what_the_equations_say(tmp_path, size):
+def test_written_pixels_equal_the_equations(tmp_path, size):
     E = scene(*size)
     rgbe.write(tmp_path / "x.hdr", E)
     assert np.array_equal(rgbe.read(tmp_path / "x.hdr"), rgbe.to_radiance(rgbe.to_pixels(E)))
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, size):
+def test_rgbe_files_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, size):
     E = scene(*size)
     rgbe.write(tmp_path / "ours.hdr", E)
     cv2.imwrite(str(tmp_path / "theirs.hdr"), np.ascontiguousarray(E[..., ::-1]))
@@ -75,13 +75,13 @@ def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, size):
     assert np.array_equal(opencv(tmp_path / "theirs.hdr"), ours)
 
 
-def test_imageio_reads_ours_bit_for_bit(tmp_path):
+def test_imageio_reads_written_rgbe_bit_for_bit(tmp_path):
     rgbe.write(tmp_path / "x.hdr", scene(20, 30))
     theirs = iio.imread(tmp_path / "x.hdr", plugin="opencv", flags=cv2.IMREAD_UNCHANGED)
     assert np.array_equal(theirs, rgbe.read(tmp_path / "x.hdr"))
 
 
-def test_a_file_takes_within_a_percent_of_the_bytes_that_opencv_takes(tmp_path):
+def test_file_size_is_within_one_percent_of_opencvs(tmp_path):
     E = np.repeat(scene(64, 128, seed=1), 5, axis=1)
     rgbe.write(tmp_path / "ours.hdr", E)
     cv2.imwrite(str(tmp_path / "theirs.hdr"), np.ascontiguousarray(E[..., ::-1]))
@@ -105,13 +105,13 @@ def test_a_second_round_trip_changes_nothing(tmp_path_factory, height, width, sc
     assert np.array_equal(rgbe.read(path), once)
 
 
-def test_one_channel_is_written_as_three_equal_ones(tmp_path):
+def test_gray_is_written_as_three_equal_channels(tmp_path):
     L = np.exp2(np.arange(-20.0, 20)).reshape(4, 10)
     rgbe.write(tmp_path / "x.hdr", L)
     assert np.array_equal(rgbe.read(tmp_path / "x.hdr"), np.repeat(L[..., None], 3, axis=-1))
 
 
-def test_values_near_both_ends_are_kept_or_become_black(tmp_path):
+def test_values_near_the_ends_of_the_range_are_kept_or_become_black(tmp_path):
     E = np.array([[1.5 * 2.0**126, 1e-31, 1e-33, 1e-45]], np.float32)
     rgbe.write(tmp_path / "x.hdr", E)
     assert rgbe.read(tmp_path / "x.hdr")[0, :, 0] == pytest.approx(
@@ -128,7 +128,7 @@ def test_values_near_both_ends_are_kept_or_become_black(tmp_path):
         (1.8e38, r"below 2\^127 for RGBE"),
     ],
 )
-def test_what_rgbe_cannot_hold_is_refused_and_what_was_there_stays(tmp_path, value, says):
+def test_values_beyond_rgbe_are_rejected_and_the_old_file_is_kept(tmp_path, value, says):
     path = tmp_path / "x.hdr"
     rgbe.write(path, np.ones((3, 3)))
     before = path.read_bytes()
@@ -153,7 +153,7 @@ ORIENTATIONS = {
 
 @pytest.mark.parametrize("resolution", ORIENTATIONS)
 @pytest.mark.parametrize("size", [(5, 7), (20, 30)])
-def test_all_eight_orientations_come_out_upright(tmp_path, resolution, size):
+def test_all_eight_orientations_are_read_upright(tmp_path, resolution, size):
     height, width = size
     upright = rgbe.to_pixels(scene(height, width))
     stored = np.ascontiguousarray(ORIENTATIONS[resolution](upright))
@@ -169,7 +169,7 @@ def test_run_length_scanlines_may_be_columns(tmp_path):
     assert np.array_equal(rgbe.read(tmp_path / "x.hdr"), rgbe.to_radiance(rgbe.to_pixels(E)))
 
 
-def test_the_oldest_run_lengths_repeat_the_pixel_before_them(tmp_path):
+def test_oldest_run_lengths_repeat_the_previous_pixel(tmp_path):
     a, b = [10, 200, 30, 130], [200, 20, 3, 120]
     coded = [a, [1, 1, 1, 3], b, [1, 1, 1, 2], [1, 1, 1, 1], a]  # 1 + 3, 1 + 2 + 256, 1 pixels
     expected = np.array([a] * 4 + [b] * 259 + [a], np.uint8).reshape(2, 132, 4)
@@ -180,13 +180,13 @@ def test_the_oldest_run_lengths_repeat_the_pixel_before_them(tmp_path):
 @pytest.mark.parametrize(
     "coded", [[[1, 1, 1, 5]], [[9, 9, 200, 130], [1, 1, 1, 9]], [[9, 9, 200, 130], [1, 1, 1, 3]]]
 )
-def test_the_oldest_run_lengths_must_fill_the_picture_and_not_more(tmp_path, coded):
+def test_oldest_run_lengths_must_fill_the_image_exactly(tmp_path, coded):
     path = file(tmp_path / "x.hdr", np.array([coded]), resolution="-Y 1 +X 6")
     with pytest.raises(ValueError, match=r"x.hdr: .*1 scanlines of 6 pixels"):
         rgbe.read(path)
 
 
-def test_exposures_of_the_header_multiply_and_are_divided_out(tmp_path):
+def test_header_exposures_are_multiplied_and_divided_out(tmp_path):
     pixels = rgbe.to_pixels(scene(4, 5))
     header = "EXPOSURE=2.0\nSOFTWARE=x\nEXPOSURE= 8\nCOLORCORR= 1 2 4\n"
     E = rgbe.read(file(tmp_path / "x.hdr", pixels, header=header))
@@ -197,7 +197,7 @@ def test_exposures_of_the_header_multiply_and_are_divided_out(tmp_path):
 @pytest.mark.parametrize(
     "line", ["EXPOSURE=0", "EXPOSURE=-1", "EXPOSURE=nan", "EXPOSURE=bright", "COLORCORR=1 2"]
 )
-def test_exposures_that_are_none_are_refused(tmp_path, line):
+def test_invalid_header_exposures_are_rejected(tmp_path, line):
     with pytest.raises(ValueError, match="x.hdr: .* in its header"):
         rgbe.read(file(tmp_path / "x.hdr", rgbe.to_pixels(scene(4, 5)), header=line + "\n"))
 
@@ -205,20 +205,20 @@ def test_exposures_that_are_none_are_refused(tmp_path, line):
 @pytest.mark.parametrize(
     "first", ["#?RGBE", "VIEW= -vtv\n#?RADIANCE", "#?RADIANCE\n# made by hand"]
 )
-def test_the_mark_may_differ_and_need_not_come_first(tmp_path, first):
+def test_magic_line_may_differ_and_need_not_be_first(tmp_path, first):
     pixels = rgbe.to_pixels(scene(4, 5))
     assert np.array_equal(
         rgbe.read(file(tmp_path / "x.hdr", pixels, first=first)), rgbe.to_radiance(pixels)
     )
 
 
-def test_xyze_colours_are_refused_by_name(tmp_path):
+def test_xyze_is_rejected_by_name(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)), header="FORMAT=32-bit_rle_xyze\n")
     with pytest.raises(ValueError, match="x.hdr: .*FORMAT=32-bit_rle_rgbe.*.32-bit_rle_xyze"):
         rgbe.read(path)
 
 
-def test_a_file_that_was_copied_as_text_is_told_so(tmp_path):
+def test_error_for_a_file_copied_as_text_says_so(tmp_path):
     path = file(tmp_path / "x.hdr", np.ones((4, 5, 4)))
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     with pytest.raises(ValueError, match="x.hdr: .*CR LF"):
@@ -229,14 +229,14 @@ def test_a_file_that_was_copied_as_text_is_told_so(tmp_path):
     "data",
     [b"", b"\x89PNG\r\n\x1a\n", b"#?RADIANCE\n", b"#?RADIANCE\n\n-Y 3 +Y 4\n", b"-Y 1 +X 1\n1234"],
 )
-def test_what_is_no_radiance_file_is_refused_by_name(tmp_path, data):
+def test_other_files_are_rejected_as_rgbe_by_name(tmp_path, data):
     (tmp_path / "x.hdr").write_bytes(data)
     with pytest.raises(ValueError, match="x.hdr"):
         rgbe.read(tmp_path / "x.hdr")
 
 
 @pytest.mark.parametrize("coded", [True, False])
-def test_a_file_that_is_cut_short_is_refused(tmp_path, coded):
+def test_truncated_rgbe_is_rejected(tmp_path, coded):
     path = tmp_path / "x.hdr"
     if coded:
         rgbe.write(path, scene(40, 50))
@@ -253,7 +253,7 @@ def test_a_file_that_is_cut_short_is_refused(tmp_path, coded):
     "resolution", ["-Y 65536 +X 32768", "-Y 2147483648 +X 1", "-Y 0 +X 5", "-Y 9999 +X 9999"]
 )
 @pytest.mark.parametrize("begin", [b"\2\2\x80\0", b"\2\2\x27\x0f", b"abcd"])
-def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, resolution, begin):
+def test_header_with_an_absurd_size_allocates_no_memory(tmp_path, resolution, begin):
     (tmp_path / "x.hdr").write_bytes(
         b"#?RADIANCE\n\n" + resolution.encode() + b"\n" + begin + bytes(1000)
     )
@@ -261,7 +261,7 @@ def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, resolution, beg
         rgbe.read(tmp_path / "x.hdr")
 
 
-def test_scanlines_of_another_length_than_the_header_says_are_refused(tmp_path):
+def test_scanlines_of_another_length_than_in_the_header_are_rejected(tmp_path):
     rgbe.write(tmp_path / "x.hdr", scene(4, 20))
     data = (tmp_path / "x.hdr").read_bytes()
     (tmp_path / "x.hdr").write_bytes(data.replace(b"+X 20", b"+X 19"))
@@ -270,13 +270,13 @@ def test_scanlines_of_another_length_than_the_header_says_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["city", "esplanade", "hall", "lobby", "studio", "venice"])
-def test_real_maps_decode_as_in_opencv(shared, name):
+def test_real_maps_decode_as_with_opencv(shared, name):
     path = shared("hdri_cc0") / f"{name}.hdr"
     E = rgbe.read(path)
     assert E.shape == (512, 1024, 3) and np.array_equal(E, opencv(path))
 
 
-def test_the_memorial_map_reads_although_its_mark_comes_second(shared):
+def test_memorial_map_is_read_although_its_magic_line_is_second(shared):
     path = shared("memorial") / "memorial.hdr"
     E = rgbe.read(path)
     low, high = np.percentile(E[..., 1], [0.1, 99.9])

@@ -17,7 +17,7 @@ each = pytest.mark.parametrize("E", [RGB, GRAY], ids=["RGB", "gray"])
 
 
 @each
-def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
+def test_tiff_maps_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, E):
     ours, theirs = tmp_path / "ours.tif", tmp_path / "theirs.tiff"
     write_radiance(ours, E)
     found = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
@@ -36,7 +36,7 @@ def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
 @pytest.mark.parametrize(
     "form", [{}, {"compression": "zlib", "predictor": True}, {"tile": (16, 16)}], ids=str
 )
-def test_halves_doubles_other_byte_orders_tiles_and_compression_are_read(tmp_path, E, dtype, form):
+def test_other_float_sizes_byte_orders_tiles_and_compression_are_read(tmp_path, E, dtype, form):
     E = np.minimum(E, 60_000)
     kind = "rgb" if E.ndim == 3 else "minisblack"
     order = ">" if dtype[0] == ">" else "<"
@@ -47,7 +47,7 @@ def test_halves_doubles_other_byte_orders_tiles_and_compression_are_read(tmp_pat
 
 
 @pytest.mark.parametrize("planar", ["contig", "separate"])
-def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
+def test_alpha_is_dropped_and_separate_planes_are_joined(tmp_path, planar):
     pixels = np.dstack([RGB, np.full(GRAY.shape, 0.5, np.float32)])
     pixels = pixels if planar == "contig" else np.moveaxis(pixels, -1, 0)
     tifffile.imwrite(
@@ -60,7 +60,7 @@ def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
     assert np.array_equal(tiff.read(tmp_path / "a.tif"), RGB)
 
 
-def test_levels_of_a_photograph_are_no_radiance_and_info_knows_both(tmp_path):
+def test_integer_tiff_is_rejected_as_a_map_and_info_describes_both(tmp_path):
     photo, radiance = tmp_path / "photo.tif", tmp_path / "map.tif"
     write_picture(photo, np.zeros((4, 5, 3), np.uint8))
     with pytest.raises(ValueError, match=r"photo.tif: .*floating-point samples.*3 x uint8"):
@@ -75,7 +75,7 @@ def test_levels_of_a_photograph_are_no_radiance_and_info_knows_both(tmp_path):
 
 
 @pytest.mark.parametrize("kept", [0.3, 0.9])
-def test_a_file_that_is_cut_short_is_told(tmp_path, kept):
+def test_truncated_tiff_is_rejected(tmp_path, kept):
     write_radiance(tmp_path / "a.tif", RGB)
     data = (tmp_path / "a.tif").read_bytes()
     (tmp_path / "b.tif").write_bytes(data[: int(kept * len(data))])
@@ -83,7 +83,7 @@ def test_a_file_that_is_cut_short_is_told(tmp_path, kept):
         read_radiance(tmp_path / "b.tif")
 
 
-def test_doubles_too_large_for_32_bits_are_told_as_infinite(tmp_path):
+def test_doubles_beyond_float32_are_rejected_as_infinite(tmp_path):
     tifffile.imwrite(tmp_path / "a.tif", np.array([[1e300, 1.0]]), photometric="minisblack")
     with pytest.raises(ValueError, match=r"a.tif: .*1 infinite"):
         read_radiance(tmp_path / "a.tif")

@@ -64,7 +64,7 @@ def without(data, what):
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("operator", catalogue.names("tonemap"))
-def test_another_decoder_restores_the_radiance_of_any_operators_picture(operator, place, tmp_path):
+def test_libultrahdr_restores_the_radiance_of_any_operators_picture(operator, place, tmp_path):
     """Luminance within 3 % at its 1st, 50th and 99th percentile; 98 of 100 pixels, by our own reader."""
     E, path = scene(place, (256, 384)), tmp_path / "picture.jpg"
     picture = pipeline.develop(E, operator)
@@ -81,7 +81,7 @@ def test_another_decoder_restores_the_radiance_of_any_operators_picture(operator
     assert low > 0.97 and high < 1.03 and middle == pytest.approx(1, abs=0.005)
 
 
-def test_every_other_program_shows_the_operators_picture(lamp, tmp_path):
+def test_programs_without_gain_maps_show_the_operators_picture(lamp, tmp_path):
     path, _, picture = lamp
     write_picture(tmp_path / "plain.jpg", picture)
     with Image.open(path) as image, Image.open(tmp_path / "plain.jpg") as plain:
@@ -90,7 +90,7 @@ def test_every_other_program_shows_the_operators_picture(lamp, tmp_path):
     assert np.array_equal(read_photo(path), read_photo(tmp_path / "plain.jpg"))
 
 
-def test_a_picture_by_a_function_of_ones_own_is_the_half_for_any_screen(tmp_path):
+def test_pictures_of_own_functions_can_be_written(tmp_path):
     E = scene(shape=(48, 72))
     picture = pipeline.develop(E, lambda L: L / (1 + L))
     ultrahdr.write_picture(tmp_path / "own.jpg", picture, E, headroom=4)
@@ -101,7 +101,7 @@ def test_a_picture_by_a_function_of_ones_own_is_the_half_for_any_screen(tmp_path
     assert ultrahdr.read(tmp_path / "own.jpg").max() < 4.2
 
 
-def test_a_gray_map_is_written_as_rgb_which_other_decoders_ask_for(tmp_path):
+def test_gray_map_is_written_as_rgb_for_other_decoders(tmp_path):
     E = colour.luminance(scene(shape=(48, 72)))
     picture = pipeline.develop(E, "reinhard")
     ultrahdr.write_picture(tmp_path / "gray.jpeg", picture, E)
@@ -113,7 +113,7 @@ def test_a_gray_map_is_written_as_rgb_which_other_decoders_ask_for(tmp_path):
     assert np.median(seen_by_libultrahdr(tmp_path / "gray.jpeg")[kept] / hdr[kept]) > 0.98
 
 
-def test_what_libultrahdr_writes_is_read_as_it_reads_it_itself(tmp_path):
+def test_files_of_libultrahdr_are_read_as_it_reads_them(tmp_path):
     """Its gain map is smaller than the picture, and its fractions may have one denominator."""
     E = gainmap.expose(scene(shape=(96, 144)), np.full((96, 144, 3), 0.3, np.float32), 8.0)
     light = np.concatenate([E, np.ones_like(E[..., :1])], axis=-1).astype(np.float16)
@@ -131,7 +131,7 @@ def test_what_libultrahdr_writes_is_read_as_it_reads_it_itself(tmp_path):
 
 
 @pytest.mark.parametrize("what", [ultrahdr.ISO, ultrahdr.ADOBE])
-def test_either_way_of_saying_what_gains_mean_is_enough(what, lamp):
+def test_iso_or_xmp_metadata_alone_is_enough(what, lamp):
     path, *_ = lamp
     whole = ultrahdr.read(path)
     path.write_bytes(without(path.read_bytes(), what))
@@ -140,7 +140,7 @@ def test_either_way_of_saying_what_gains_mean_is_enough(what, lamp):
         assert np.median(seen_by_libultrahdr(path) / whole) == pytest.approx(1, abs=0.02)
 
 
-def test_attributes_of_xmp_are_read_as_well_as_lists(lamp):
+def test_xmp_attributes_are_read_as_well_as_lists(lamp):
     path, *_ = lamp
     data = without(path.read_bytes(), ultrahdr.ISO)
     before = ultrahdr.read(path)
@@ -157,7 +157,7 @@ def test_attributes_of_xmp_are_read_as_well_as_lists(lamp):
     assert E.shape == before.shape and E.max() <= 8 * (1 + 1 / 64) and not np.allclose(E, before)
 
 
-def test_a_picture_that_lies_on_its_side_takes_its_gains_with_it(lamp, tmp_path):
+def test_exif_orientation_applies_to_the_gain_map_too(lamp, tmp_path):
     path, *_ = lamp
     upright = ultrahdr.read(path)
     exif = Image.Exif()
@@ -168,7 +168,7 @@ def test_a_picture_that_lies_on_its_side_takes_its_gains_with_it(lamp, tmp_path)
     assert np.allclose(ultrahdr.read(path), np.rot90(upright, -1), rtol=1e-5, atol=1e-6)
 
 
-def test_the_index_says_where_the_second_jpeg_begins(lamp):
+def test_mpf_index_points_to_the_second_jpeg(lamp):
     path, *_ = lamp
     data = path.read_bytes()
     at = data.index(b"MPF\0") + 4
@@ -180,7 +180,7 @@ def test_the_index_says_where_the_second_jpeg_begins(lamp):
         assert image.getxmp()["xmpmeta"]["RDF"]["Description"]["Version"] == "1.0"
 
 
-def test_a_frame_of_a_bracket_is_its_first_picture_with_a_warning(tmp_path):
+def test_bracket_uses_the_base_picture_with_a_warning(tmp_path):
     E = scene(shape=(48, 72))
     for k, name in enumerate("ab"):
         ultrahdr.write_picture(tmp_path / f"{name}.jpg", pipeline.develop(E * 4**k, "curves"), E)
@@ -189,7 +189,7 @@ def test_a_frame_of_a_bracket_is_its_first_picture_with_a_warning(tmp_path):
     assert np.array_equal(taken.images[0], read_photo(tmp_path / "a.jpg"))
 
 
-def test_the_command_writes_such_a_picture_and_takes_it_as_a_map(tmp_path, capsys):
+def test_tonemap_writes_ultra_hdr_and_reads_it_as_a_map(tmp_path, capsys):
     E, out = scene(shape=(48, 72)), tmp_path / "picture.jpg"
     radiance.write_radiance(tmp_path / "map.exr", E)
 
@@ -220,7 +220,7 @@ def test_the_command_writes_such_a_picture_and_takes_it_as_a_map(tmp_path, capsy
 
 
 @pytest.mark.parametrize("headroom", [1.0, 0.5, np.nan, 1e9])
-def test_a_headroom_that_makes_no_sense_is_refused_and_nothing_is_written(headroom, tmp_path):
+def test_bad_headrooms_are_rejected_and_nothing_is_written(headroom, tmp_path):
     picture = np.zeros((8, 8, 3), np.uint8)
     with pytest.raises(InputError):
         ultrahdr.write_picture(tmp_path / "no.jpg", picture, np.ones((8, 8, 3)), headroom=headroom)
@@ -230,7 +230,7 @@ def test_a_headroom_that_makes_no_sense_is_refused_and_nothing_is_written(headro
 
 
 @pytest.mark.parametrize("E", [np.zeros((9, 9, 3)), np.full((9, 9), 3.0), np.ones((1, 1, 3))])
-def test_black_even_and_tiny_maps_are_written_too(E, tmp_path):
+def test_black_constant_and_tiny_maps_can_be_written(E, tmp_path):
     picture = np.full(E.shape, 120, np.uint8)
     ultrahdr.write_picture(tmp_path / "even.jpg", picture, E)
     assert ultrahdr.read(tmp_path / "even.jpg").shape == (*E.shape[:2], 3)
@@ -250,7 +250,7 @@ def replace_metadata(path, **changed):
 @pytest.mark.parametrize(
     "wrong", [{"n3": 0}, {"n6": -5}, {"n8": 0}, {"n2": 0}, {"n4": 1 << 30}, {"n11": 0}]
 )
-def test_gains_that_mean_nothing_are_refused(wrong, lamp):
+def test_invalid_gains_are_rejected(wrong, lamp):
     path, *_ = lamp
     replace_metadata(path)
     assert ultrahdr.read(path).max() > 1
@@ -259,7 +259,7 @@ def test_gains_that_mean_nothing_are_refused(wrong, lamp):
         ultrahdr.read(path)
 
 
-def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
+def test_error_for_a_very_long_number_is_short(lamp):
     path, *_ = lamp
     data = without(without(path.read_bytes(), ultrahdr.ISO), ultrahdr.ADOBE)
     start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
@@ -271,7 +271,7 @@ def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
 
 
 @pytest.mark.parametrize("odd", [b"MPF\0MM\0*\0\0\0\x08\0\x05", b"Exif\0\0II*\0\x08\0\0\0\xff\0"])
-def test_what_is_odd_in_the_gain_maps_own_header_is_not_told_and_changes_nothing(odd, lamp):
+def test_odd_exif_or_mpf_of_the_gain_map_is_ignored_silently(odd, lamp):
     path, *_ = lamp
     before, data = ultrahdr.read(path), path.read_bytes()
     at = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
@@ -279,7 +279,7 @@ def test_what_is_odd_in_the_gain_maps_own_header_is_not_told_and_changes_nothing
     assert np.array_equal(ultrahdr.read(path), before)  # and no warning, which is an error here
 
 
-def test_a_file_cut_short_anywhere_is_refused_by_name(lamp):
+def test_truncated_ultra_hdr_is_rejected_by_name(lamp):
     path, *_ = lamp
     data = path.read_bytes()
     for end in np.linspace(0, len(data) - 2, 60).astype(int):
@@ -288,7 +288,7 @@ def test_a_file_cut_short_anywhere_is_refused_by_name(lamp):
             ultrahdr.read(path)
 
 
-def test_damaged_files_are_read_or_refused_by_name(lamp):
+def test_damaged_ultra_hdr_is_read_or_rejected_by_name(lamp):
     path, E, _ = lamp
     data, rng = np.frombuffer(path.read_bytes(), np.uint8), np.random.default_rng(0)
     second = ultrahdr.jpeg_end(data.tobytes())
