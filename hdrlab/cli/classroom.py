@@ -213,7 +213,7 @@ def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
         # tested once, before the jobs, and not by each of them
         examination = doctor.examine(conditions.tier)
         if not examination.works:
-            raise common.tier_error(examination.says)
+            raise common.tier_error(examination.details)
         return processes.Processes(grader.grade, options.jobs)
     if options.jobs is not None:
         raise InputError(

@@ -190,7 +190,7 @@ def tier_error(reason: str) -> InputError:
 
     first_line = reason.strip().partition("\n")[0].rstrip(".")
     advice = "run hdrlab doctor for details"
-    remedy = doctor.remedy(reason)
+    remedy = doctor.find_remedy(reason)
     if remedy:
         advice = f"{remedy}; {advice}"
     message = f"{first_line}; {advice}"

@@ -179,6 +179,6 @@ def toy(*, folder: Path) -> None:
     command = toy_class.COMMAND.format(folder=folder)
     strict_tier = doctor.examine("strict")
     if not strict_tier.works:
-        common.echo_notes([common.tier_error(strict_tier.says)])
+        common.echo_notes([common.tier_error(strict_tier.details)])
         command += " --tier practice"
     click.echo(f"to grade it: {command}")

@@ -326,9 +326,9 @@ def doctor() -> None:
     """
     from hdrlab.course.grading import doctor as sandbox_doctor
 
-    for tier, works, credit, says, remedy in sandbox_doctor.report():
-        answer = "yes" if works else "no"
-        worth = "for credit" if credit else "practice"
-        click.echo(f"{tier:<10}{answer:<5}{worth:<12}{says}")
-        if remedy:
-            click.echo(f"{'':<10}{remedy}")
+    for report in sandbox_doctor.examine_tiers():
+        works = "yes" if report.works else "no"
+        worth = "for credit" if report.credit else "practice"
+        click.echo(f"{report.tier:<10}{works:<5}{worth:<12}{report.details}")
+        if report.remedy:
+            click.echo(f"{'':<10}{report.remedy}")

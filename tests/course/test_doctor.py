@@ -58,7 +58,7 @@ def test_a_tier_that_starts_and_holds_works(examine):
 def test_a_tier_that_something_breaks_out_of_does_not_work_and_each_breach_is_named(examine):
     finding = examine("strict", Trial(broken=["read a secret", "wrote a file"]))
     assert not finding.works
-    assert "read a secret" in finding.says and "wrote a file" in finding.says
+    assert "read a secret" in finding.details and "wrote a file" in finding.details
     assert "report this" in finding.remedy
 
 
@@ -66,7 +66,7 @@ def test_the_practice_tier_gives_no_credit_and_says_what_it_does_not_stop(examin
     monkeypatch.setattr(practice, "DOES_NOT_STOP", ["reading files"])
     trial = Trial()
     finding = examine("practice", trial)
-    assert finding.works and not finding.credit and "reading files" in finding.says
+    assert finding.works and not finding.credit and "reading files" in finding.details
     assert not trial.tried_to_break_out
 
 
@@ -75,7 +75,7 @@ def test_the_practice_tier_gives_no_credit_and_says_what_it_does_not_stop(examin
 )
 def test_a_tier_that_never_starts_does_not_work_and_the_reason_is_told(error, examine):
     finding = examine("container", Trial(ends=[error] * 10))
-    assert not finding.works and str(error) in finding.says
+    assert not finding.works and str(error) in finding.details
 
 
 @pytest.mark.parametrize("error", [NoAnswer("ended", "killed"), Unavailable("no memory")])
@@ -87,23 +87,26 @@ def test_a_tier_that_fails_once_is_tried_again(error, examine):
 def test_the_remedy_depends_on_the_reason_and_on_system_settings(monkeypatch, tmp_path):
     words = {"no bwrap": "install it", "libseccomp": "install that"}
     switches = [
-        {"file": "a/b", "keeps": "0", "help": "switch it"},
-        {"file": "a/c", "keeps": "1", "help": "switch that"},
+        {"file": "a/b", "blocking_value": "0", "help": "switch it"},
+        {"file": "a/c", "blocking_value": "1", "help": "switch that"},
     ]
-    monkeypatch.setattr(doctor, "REMEDIES", {"install": words, "switches": switches})
+    monkeypatch.setattr(doctor, "REMEDIES", {"install": words, "kernel_settings": switches})
     monkeypatch.setattr(
         doctor, "Path", lambda *parts: tmp_path.joinpath(*(part.lstrip("/") for part in parts))
     )
-    assert doctor.remedy("there is no bwrap, no libseccomp") == "install it"
-    assert doctor.remedy("container: no\nlibseccomp") == "" and doctor.remedy("strict: no") == ""
+    assert doctor.find_remedy("there is no bwrap, no libseccomp") == "install it"
+    assert (
+        doctor.find_remedy("container: no\nlibseccomp") == ""
+        and doctor.find_remedy("strict: no") == ""
+    )
     (tmp_path / ".dockerenv").touch()
     nested = "namespaces rarely nest in containers: use the container tier, as root"
-    assert doctor.remedy("the strict sandbox did not start: libseccomp") == nested
-    assert doctor.remedy("container did not start: libseccomp") == ""
+    assert doctor.find_remedy("the strict sandbox did not start: libseccomp") == nested
+    assert doctor.find_remedy("container did not start: libseccomp") == ""
     (tmp_path / "proc/sys/a").mkdir(parents=True)
     (tmp_path / "proc/sys/a/b").write_text("1\n")
-    assert doctor.remedy("strict") == nested
+    assert doctor.find_remedy("strict") == nested
     (tmp_path / "proc/sys/a/c").write_text("1\n")
-    assert doctor.remedy("strict") == "switch that"
+    assert doctor.find_remedy("strict") == "switch that"
     (tmp_path / "proc/sys/a/b").write_text("0\n")
-    assert doctor.remedy("strict") == "switch it"
+    assert doctor.find_remedy("strict") == "switch it"

@@ -47,7 +47,7 @@ def grade(tmp_path, monkeypatch):
     """grade(folder) -> the rows of its gradebook, and the bytes of each team's files, in the strict tier."""
     found = doctor.examine("strict")
     if not found.works:
-        pytest.skip(found.says)
+        pytest.skip(found.details)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "plan.toml").write_text(PLAN)
 

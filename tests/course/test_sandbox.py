@@ -552,12 +552,12 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
 
 
 def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):
-    found = {finding.tier: finding for finding in doctor.report()}
+    found = {finding.tier: finding for finding in doctor.examine_tiers()}
     assert list(found) == ["strict", "container", "practice"]
     for tier, finding in found.items():
         assert finding.credit == (tier != "practice")
-        assert finding.says and (finding.works or finding.credit)
-    assert all(sentence in found["practice"].says for sentence in practice.DOES_NOT_STOP)
+        assert finding.details and (finding.works or finding.credit)
+    assert all(sentence in found["practice"].details for sentence in practice.DOES_NOT_STOP)
     strict.bubblewrap.cache_clear()
     without.setattr(shutil, "which", lambda name: None)
     assert (
@@ -567,11 +567,11 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
 
 
 def test_what_is_missing_is_to_be_installed_and_not_what_is_there_and_did_not_start():
-    assert doctor.remedy("the strict tier needs bubblewrap").startswith("install bubblewrap")
-    assert "install" not in doctor.remedy(
+    assert doctor.find_remedy("the strict tier needs bubblewrap").startswith("install bubblewrap")
+    assert "install" not in doctor.find_remedy(
         "the strict sandbox did not start: bwrap: Permission denied"
     )
-    assert doctor.remedy("the practice sandbox gave no answer") == ""
+    assert doctor.find_remedy("the practice sandbox gave no answer") == ""
 
 
 @pytest.mark.parametrize(
@@ -591,10 +591,7 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
     monkeypatch.setitem(tiers.TIERS, "practice", lambda: replace(practice.sandbox(), launch=launch))
     finding = doctor.examine("practice")
     assert finding.works == works and next(starts) == doctor.MAX_ATTEMPTS
-    assert works or finding[3:] == (
-        "the practice sandbox did not start: it was ended by signal 9",
-        "",
-    )
+    assert works or finding.details.endswith("did not start: it was ended by signal 9")
 
 
 def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
@@ -631,7 +628,7 @@ def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_contai
         pytest.skip("there is no setpriv, by which root gives a right up")
     code = (
         "from hdrlab.course.grading import doctor\n"
-        "for finding in doctor.report(): print(finding.tier, finding.works, finding.says)\n"
+        "for finding in doctor.examine_tiers(): print(finding.tier, finding.works, finding.details)\n"
     )
     less = [
         "setpriv",
@@ -653,9 +650,12 @@ def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
     assert (
         not finding.works
         and finding.credit
-        and "a file of the grader could be read" in finding.says
+        and "a file of the grader could be read" in finding.details
     )
-    assert "a process could be started" in finding.says and "a socket could be made" in finding.says
+    assert (
+        "a process could be started" in finding.details
+        and "a socket could be made" in finding.details
+    )
     assert not Path("/tmp/hdrlab-doctor").exists()
 
 

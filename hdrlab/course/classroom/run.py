@@ -110,7 +110,7 @@ def _check_tier_available(tier: str) -> None:
     """Raise Unavailable if this machine cannot run the tier. The check is cached per process."""
     examination = doctor.examine(tier)
     if not examination.works:
-        raise Unavailable(examination.says)
+        raise Unavailable(examination.details)
 
 
 def read_hidden_checks(folder: Path | None) -> list[tuple[str, bytes]]:
