@@ -1,17 +1,19 @@
-"""Assorted pixels: a mosaic of exposures on one sensor (Nayar and Mitsunaga 2000; Narasimhan and Nayar 2005).
+"""Assorted pixels: a mosaic of exposures on one sensor.
+
+Nayar and Mitsunaga, CVPR 2000; Narasimhan and Nayar, PAMI 2005.
 
 E      radiance        (H, W) or (H, W, 3), in the unit that fills a pixel of transparency 1
-e      transparency    (H, W), 0 to 1, of the little filter before each pixel
+e      transparency    (H, W), 0 to 1, of the filter in front of each pixel
 c      channel         (H, W) int, 0 to 2: the colour of each pixel; None on a gray sensor
 X      exposure        (H, W), X = e E_c; a pixel is full at 1
 Z      level           (H, W) uint8 or uint16
 w      weight          (H, W), 1 / variance of Z / e; 0 where a pixel is full
-E^     what comes back: (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that measure it
+E^     reconstruction  (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that measure it
 
-One photograph holds what a bracket would, and pays with sharpness: strong light is measured by the
-dark filters alone, weak light by the clear ones. The range grows by log10(max e / min e) decades at
-the bright end, and loses a quarter of a decade at the dark one, where every fourth pixel has to do
-for all.
+One photograph covers the range of a bracket, at the cost of sharpness: only pixels with dark
+filters measure strong light, and only those with clear filters weak light. The range grows by
+log10(max e / min e) decades at the bright end. It loses a quarter of a decade at the dark end, where
+only every fourth pixel measures.
 """
 
 import numpy as np
@@ -28,9 +30,9 @@ CLIPPING_LEVEL = 0.995
 
 
 def colours_and_exposures(exposures: ArrayLike = FOUR_EXPOSURES[0]) -> tuple[Array, Array]:
-    """Return patterns (4, 4) of channels and transparencies: Bayer cells, clear and dark in turn.
+    """Return patterns (4, 4) of channels and transparencies: Bayer cells, alternately clear and dark.
 
-    Each colour is seen through each filter, at the same number of pixels.
+    Each colour is behind each filter at the same number of pixels.
     """
     clear, dark = np.asarray(exposures, np.float64)
     cells = np.array([[clear, dark], [dark, clear]])
@@ -99,7 +101,10 @@ def shoot(
 
 
 def weight(Z: Array, e: F64, *, full_well: float = np.inf, read_noise: float = 0.0) -> F64:
-    """Return w = 1 / var(Z / e) = e^2 / (X / well + (read / well)^2 + 1 / (12 top^2)); 0 for a full pixel."""
+    """Return w = 1 / var(Z / e); 0 for a full pixel.
+
+    The variance is (X / well + (read / well)^2 + 1 / (12 top^2)) / e^2.
+    """
     top = levels(Z) - 1
     X = Z / top
     noise = X / full_well + (read_noise / full_well) ** 2 + 1 / (12 * top**2)
@@ -134,8 +139,7 @@ def reconstruct(
 
     Returns
     -------
-    E : (H, W) or (H, W, 3) float64; where no pixel in reach is below full, the least that the light
-        can be
+    E : (H, W) or (H, W, 3) float64; a lower bound where all pixels nearby are full
 
     Raises
     ------
@@ -169,7 +173,7 @@ def reconstruct(
 
 
 def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) -> F64:
-    """Return E^ from the pixels in reach, else from farther ones, at last the bound 1 / min e."""
+    """Return E^ from near pixels, or from farther ones, or else the bound 1 / min e."""
     E, total = normalised_convolution(values, w, sigma)
     for wider in (2 * sigma, 4 * sigma):
         unknown = total < 1e-6 * w.max() * (e.min() / e.max()) ** 2
@@ -182,6 +186,7 @@ def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) 
 
 
 def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> F64:
+    """Return transparencies as float64, or raise an InputError."""
     checked = np.asarray(e, np.float64)
     if checked.shape != shape or not np.all((checked > 0) & (checked <= 1)):
         raise InputError(

@@ -1,15 +1,15 @@
-"""Coded exposure: a shutter that flutters keeps a moving thing sharp (Raskar et al., SIGGRAPH 2006).
+"""Coded exposure: a fluttering shutter keeps a moving object sharp (Raskar et al., SIGGRAPH 2006).
 
-x      the thing, at rest       (n[, ...]): light along the way that it moves, any linear unit
-h      shutter                  (m,) of 0 and 1, closed and open; the thing moves a pixel per chop
-y      what the sensor gets     (n + m - 1[, ...]): y = h * x / m, the light of the chops that were open
+x      object at rest           (n[, ...]): light along the direction of motion, any linear unit
+h      shutter                  (m,) of 0 and 1, closed and open; the object moves a pixel per chop
+y      exposure of the sensor   (n + m - 1[, ...]): y = h * x / m, the light of the open chops
 A      the same as a matrix     (n + m - 1, n), each column h / m, a row lower than the one before
-H      its transfer             |H(w)| = |sum of h_k e^(-i w k)| / m: what is left of each spatial frequency
+H      transfer function        |H(w)| = |sum of h_k e^(-i w k)| / m, of each spatial frequency
 sigma  noise of the sensor, in the unit of y
 
-An open shutter is a box, and a box answers some frequencies with 0: these are lost, and no
-computation brings them back. A code of open and shut that looks random has no such zeros. It lets
-half of the light in.
+An open shutter is a box filter, whose transfer function has zeros: these frequencies are lost, and
+no computation restores them. A pseudo-random code of open and shut has no zeros. It lets half of the
+light in.
 """
 
 import numpy as np
@@ -45,9 +45,11 @@ def transfer(h: ArrayLike, count: int = FREQUENCY_COUNT) -> F64:
 
 
 def amplification(h: ArrayLike) -> float:
-    """Return the root mean square of 1 / |H|: how noise grows when the blur is undone; inf for a zero."""
+    """Return the RMS of 1 / |H|, by which deblurring amplifies noise; inf if H has a zero."""
     H = transfer(h)
-    return float(np.sqrt(np.mean(1 / H**2))) if H.min() > 1e-12 else np.inf
+    if H.min() <= 1e-12:
+        return np.inf
+    return float(np.sqrt(np.mean(1 / H**2)))
 
 
 def equivalent_pictures(h: ArrayLike) -> float:
@@ -56,13 +58,13 @@ def equivalent_pictures(h: ArrayLike) -> float:
     The average of n of them has a noise of amplification(one) / sqrt(n), so n is the quotient
     squared.
     """
-    one = np.zeros(len(as_code(h)))
-    one[0] = 1
-    return (amplification(one) / amplification(h)) ** 2
+    single_chop = np.zeros(len(as_code(h)))
+    single_chop[0] = 1
+    return (amplification(single_chop) / amplification(h)) ** 2
 
 
 def smear(x: ArrayLike, h: ArrayLike) -> F64:
-    """Return y = h * x / m along the first axis: each open chop adds the thing where it is by then."""
+    """Return y = h * x / m along the first axis: each open chop adds the object at its position."""
     x = np.asarray(x, np.float64)
     code = as_code(h)
     y = np.zeros((len(x) + len(code) - 1, *x.shape[1:]))
@@ -77,13 +79,12 @@ def matrix(h: ArrayLike, n: int) -> F64:
 
 
 def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
-    """Return the thing at rest, by least squares: A' A x = A' y.
+    """Deblur a photograph of a moving object by least squares: A' A x = A' y.
 
     Parameters
     ----------
-    y : (n + m - 1[, ...]), a photograph in linear light, less what stands beside and behind the
-        thing, which
-        moved down the first axis, m pixels, and hid none of it
+    y : (n + m - 1[, ...]), a photograph in linear light, minus the background, of an object that
+        moved m pixels down the first axis
     h : (m,) the shutter's chops, 0 and 1
 
     Returns
@@ -127,7 +128,7 @@ def expose(
     bits: int = 8,
     rng: int | np.random.Generator = 0,
 ) -> F64:
-    """Return one photograph of the moving thing, 1 = full: smeared, noisy, clipped, rounded to levels."""
+    """Return a photograph of the moving object, 1 = full: smeared, noisy, clipped and quantized."""
     X: F64 = gain * smear(x, h)
     X = X + np.random.default_rng(rng).normal(0, sigma, X.shape)
     top = 2**bits - 1
@@ -135,10 +136,10 @@ def expose(
 
 
 def combine(photographs: ArrayLike, gains: ArrayLike) -> F64:
-    """Return y of several photographs with different gains: each pixel from those in which it is not full.
+    """Merge photographs with different gains: each pixel from those in which it is not full.
 
-    The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the
-    smallest gain's value.
+    The weight is gain^2, for noise of the sensor alone. A pixel that is full in all photographs
+    gets the value of the smallest gain.
     """
     X = np.asarray(photographs, np.float64)
     g = np.asarray(gains, np.float64)

@@ -35,7 +35,8 @@ Fields = tuple[Indices, tuple[Indices, ...]]
 
 # sides of a scale over those of the next coarser one
 SCALE_RATIO = 2**0.5
-# levels, 1 is the top: the weight of the reference rises over the first range, and falls over the second
+# levels, 1 is the top: the weight of the reference rises over the first range, and falls over the
+# second
 TRUSTED_LEVELS: tuple[synthesis.Ramp, synthesis.Ramp] = ((0.05, 0.2), (0.85, 0.95))
 
 

@@ -81,7 +81,7 @@ def measure_level_exposures(
 
 
 def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """Return the rows and columns of an even grid over an image (H, W[, 3]), at most MAX_PIXELS or so."""
+    """Return the rows and columns of an even grid of about MAX_PIXELS over an image (H, W[, 3])."""
     step = max(1, int(np.sqrt(shape[0] * shape[1] / MAX_PIXELS)))
     return np.s_[::step, ::step]
 

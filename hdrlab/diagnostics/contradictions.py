@@ -9,23 +9,24 @@ tints    white balance (P,), stops by which one channel is too bright, and anoth
 cost     in the map    stops, RMS over the image: what the errors change where each photo has its weight
 
 The map follows its photos: a photo at the end of a bracket that is 0.7 stops off pulls the map with
-it, and shows up as 0.1 in the deviations of `consistency`. So this module compares neighbors directly,
-with a response that fits them as well as any response and one factor per photo can. The factors
-contain an unknown straight line in ln t (the unit and the exponent of the response). As most times of
-a bracket are right, it is the line with the least sum of square roots: it passes through most photos,
-and the wrong ones stand out. One large error is more likely than several medium ones.
+it, and shows up as 0.1 in the deviations of `consistency`. So this module compares neighbors
+directly, with a response that fits them as well as any response and one factor per photo can. The
+factors contain an unknown straight line in ln t (the unit and the exponent of the response). As
+most times of a bracket are right, it is the line with the least sum of square roots: it passes
+through most photos, and the wrong ones stand out. One large error is more likely than several
+medium ones.
 
 If factors explain everything, times are wrong. If parts of one image need different factors, the
-times are right: the aperture changed, and with it the vignetting in the corners; or the light, or the
-camera's processing by place. If channels need factors of their own, one up and one down in the same
-photo, the white balance changed. A curve for each channel hides that from the map's spread.
+times are right: the aperture changed, and with it the vignetting in the corners; or the light, or
+the camera's processing by place. If channels need factors of their own, one up and one down in the
+same photo, the white balance changed. A curve for each channel hides that from the map's spread.
 
 An error counts by what it costs. A photo at the end that is nearly black measures little, and the
 camera's own processing bends it: half a stop there does not harm the map.
 
-Lamps that flicker brighten bands of a photo, see `motion`, so they also look like light that changed in
-parts of it, or like a wrong time. Where the two explanations are about equally good, the warning says
-that the pixels do not show which is true.
+Lamps that flicker brighten bands of a photo, see `motion`, so they also look like light that
+changed in parts of it, or like a wrong time. Where the two explanations are about equally good, the
+warning says that the pixels do not show which is true.
 """
 
 from collections.abc import Sequence
@@ -45,7 +46,8 @@ MIN_PATCHES_PER_TILE = 10
 MIN_FLAT_PATCHES = 50
 # pixels of a photo, on an even grid, that are used to measure the cost
 MAX_PIXELS = 30_000
-# stops; prior of a time's error. It is wide, for the question is what is wrong and not what is likely.
+# stops; prior of a time's error. It is wide, for the question is what is wrong and not what is
+# likely.
 PRIOR_STOPS = 4.0
 # stops; true times of real brackets stay within 0.24, and tints of one white balance within 0.16
 MIN_WRONG_STOPS = 0.25
@@ -61,7 +63,8 @@ MIN_SIGNIFICANCE = 4.0
 MIN_STANDARD_ERROR = 0.003
 # fraction of the variance over the image that the distance from the center must explain
 MIN_EXPLAINED_BY_RADIUS = 0.5
-# stops of the map's spread; below, the map explains its photos, and slight differences do not matter
+# stops of the map's spread; below, the map explains its photos, and slight differences do not
+# matter
 MAX_SOUND_SPREAD = 0.1
 # stops of the map's spread; below, no time can be wrong that matters
 MAX_EXACT_SPREAD = 0.015
@@ -202,7 +205,7 @@ def _corrections_in_stops(fit: response_steps.Fit, B: F64) -> F64:
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
-    """Return what errors of the photos, stops (P,), change in the map up to a factor: RMS over pixels."""
+    """Return how errors (P,) of the photos in stops change the map, up to a factor: RMS over pixels."""
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / MAX_PIXELS)))
     Z = to_256(stack[:, ::step, ::step])
     w = response_steps.LEVEL_WEIGHTS[Z.reshape(len(Z), Z.shape[1] * Z.shape[2], -1)].mean(axis=-1)
@@ -225,9 +228,9 @@ def find_longest_run(informative: Mask) -> tuple[int, int]:
 def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: response_steps.Fit) -> F64:
     """Return by how much the places of each pair of photos disagree, (3, P - 1).
 
-    The first two rows say by how much a quarter of the tiles are off or more, in stops and in standard
-    errors; 0 where few patches are flat. The third is the change from the center to the corners in
-    stops; 0 where the distance from the center does not explain most of it.
+    The first two rows say by how much a quarter of the tiles are off or more, in stops and in
+    standard errors; 0 where few patches are flat. The third is the change from the center to the
+    corners in stops; 0 where the distance from the center does not explain most of it.
     """
     height, width = patches.Z.shape[2:]
     y, x = np.indices((height, width)) // TILE
@@ -266,8 +269,8 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
 def _tile_medians(residuals: F64, tile: Indices) -> tuple[F64, F64]:
     """Return the median of each tile with at least MIN_PATCHES_PER_TILE patches, and its standard error.
 
-    For normal errors the standard error of a median is 1.25 sigma / sqrt(n), and sigma is 1.48 times
-    the median deviation.
+    For normal errors the standard error of a median is 1.25 sigma / sqrt(n), and sigma is 1.48
+    times the median deviation.
     """
     _, place, counts = np.unique(tile, return_inverse=True, return_counts=True)
     first = np.cumsum(counts) - counts

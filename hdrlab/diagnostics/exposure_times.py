@@ -5,8 +5,9 @@ x       corrections       (P,), ln(time / stated time): see `response_steps`, fo
 spread  of the photos in the map that times make, in stops: a function of the caller
 
 An estimate fits the pixels that it was made from better than any stated times, and may still be worse:
-motion, flare, and a response that changes from photo to photo look like wrong times. So it is validated
-twice: on held-out tiles of the image, and in the map. If it does not pass, the stated times stay.
+motion, flare, and a response that changes from photo to photo look like wrong times. So it is
+validated twice: on held-out tiles of the image, and in the map. If it does not pass, the stated
+times stay.
 """
 
 from collections.abc import Callable, Sequence
@@ -77,9 +78,9 @@ def estimate_times(
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
         Aligned photos, from short to long.
     times : (P,) float
-        Stated times in seconds. Their geometric mean does not change, and if g is not known, neither
-        does their span: the corrections are orthogonal to 1, and to ln times. But if only one of four
-        or more times is wrong, all others stay.
+        Stated times in seconds. Their geometric mean does not change, and if g is not known,
+        neither does their span: the corrections are orthogonal to 1, and to ln times. But if only
+        one of four or more times is wrong, all others stay.
     spread : function, optional
         times -> stops, how far the photos contradict each other in the map that these times make;
         the estimate must not raise it. It is called only if the held-out pixels agree better.

@@ -1,7 +1,7 @@
 """Flat patches of neighbouring frames: the evidence on exposure times.
 
 images  (P, H, W[, 3]) uint8 or uint16, from short to long
-Z       levels of patches    (P, C, h, w) uint8, 0 ... 255; 0 where a pixel of it is clipped or black
+Z       levels of patches    (P, C, h, w) uint8, 0 ... 255; 0 where a pixel is clipped or black
 flat    of each frame        (P, h, w) bool
 best    of each pair         (P - 1, h, w) bool: flat in a frame and in the next, and static
 H       pair tables          (P - 1, C, 256, 256): patches of level a in frame j, b in frame j + 1

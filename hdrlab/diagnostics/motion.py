@@ -4,17 +4,18 @@ x    ln E           (P, H, W, C), of each photo alone: g(Z) - ln t
 w    weights        (P, H, W, C), of pixel values that are neither clipped nor black
 r    residuals      x - (sum_j w x) / (sum_j w)
 R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so that noise averages out, less
-                    the photo's median: where a photo is off as a whole, its time or the response is wrong
+                    the photo's median: where a photo is off as a whole, its time or the response is
+                    wrong
 d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
 b    of a row       (P, h), sum w r / sum w over a row of blocks, less the photo's best cubic in y
 
-Leaves, water and people make d large where they are. Most pixels of each value agree all the same, so
-a median over pixel values, as in `consistency`, does not notice them. An edge that is off by a pixel
-makes d large along a line; what counts is at least two blocks wide and high.
+Leaves, water and people make d large where they are. Most pixels of each value agree all the same,
+so a median over pixel values, as in `consistency`, does not notice them. An edge that is off by a
+pixel makes d large along a line; what counts is at least two blocks wide and high.
 
-Lamps flicker, and most cameras read out row after row: then b has bands, and the same of columns has
-none. A sky above the ground, where the response is a little wrong, makes no bands, because a cubic
-explains it.
+Lamps flicker, and most cameras read out row after row: then b has bands, and the same of columns
+has none. A sky above the ground, where the response is a little wrong, makes no bands, because a
+cubic explains it.
 """
 
 from typing import NamedTuple
@@ -35,8 +36,9 @@ MIN_BLOCK_WEIGHT = 0.2
 MAX_STILL_DEVIATION = 0.2 * np.log(2)
 # If two photos measure a smaller fraction of the blocks, nothing is known.
 MIN_MEASURED_FRACTION = 0.1
-# Fraction of the measured blocks. In a still scene up to 0.012 deviate; in film that is scanned photo by
-# photo 0.09, because its response changes, and then `radiance.deghosting.ghosts` finds nothing to remove.
+# Fraction of the measured blocks. In a still scene up to 0.012 deviate; in film that is scanned
+# photo by photo 0.09, because its response changes, and then `radiance.deghosting.ghosts` finds
+# nothing to remove.
 MOVED = 0.015
 # stops of b; still scenes under steady light stay below 0.04
 BANDED = 0.055
@@ -77,9 +79,9 @@ def measure_motion(
     Returns
     -------
     fraction, band_stops : float
-        The fraction is one of the blocks that two photos measure; 0 where these are few. Above MOVED,
-        it is motion. The bands are the RMS of b in stops, 0 unless it is MIN_ROWS_OVER_COLUMNS times
-        that of columns. Above BANDED, lamps flicker.
+        The fraction is one of the blocks that two photos measure; 0 where these are few. Above
+        MOVED, it is motion. The bands are the RMS of b in stops, 0 unless it is
+        MIN_ROWS_OVER_COLUMNS times that of columns. Above BANDED, lamps flicker.
 
     Raises
     ------
@@ -118,7 +120,7 @@ def measure_motion(
 def _sum_residuals(
     Z: Array, curves: Array, times: Array, relative_weights: F32, is_seen: Array
 ) -> tuple[F32, F32]:
-    """Return the sums of w r and of w over the pixels and channels of each block, (P, h, w) each."""
+    """Return the sums of w r and of w over the pixels and channels of each block, (P, h, w)."""
     shape = (len(times), *(n // BLOCK for n in Z.shape[2:]))
     R = np.zeros(shape, np.float32)
     W = np.zeros(shape, np.float32)

@@ -201,7 +201,7 @@ def _fit_channel(
 
 
 def _measure_variance(Z: Array, t: F64, X: F64, D: F64, E: F64) -> VarianceSample:
-    """Return the variance of a group's pixels of radiance E (M,), with levels Z (2, M) in two frames.
+    """Return the variance of pixels of radiance E (M,) that have levels Z (2, M) in two frames.
 
     X is the exposure of each level, D the width of a level's interval of exposures.
     """

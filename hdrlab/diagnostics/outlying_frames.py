@@ -2,10 +2,10 @@
 
 B   ln times, as stated   (P,)
 
-The typical patch of two neighbors, flat or not, misses their times by some stops. If all other photos
-agree without one photo, that one is wrong: its time is wrong, or it shows another scene, or another
-light. If the others agree without either of two photos, as three of four often do, nobody can tell
-which one is wrong.
+The typical patch of two neighbors, flat or not, misses their times by some stops. If all other
+photos agree without one photo, that one is wrong: its time is wrong, or it shows another scene, or
+another light. If the others agree without either of two photos, as three of four often do, nobody
+can tell which one is wrong.
 """
 
 import numpy as np
@@ -73,7 +73,7 @@ def find_outlying_frames(
 
 
 def measure_misfit(patches: flat_patches.FlatPatches, B: F64) -> float:
-    """Return the most by which neighbors miss ln times B in a typical patch, flat or not, in stops."""
+    """Return the largest error of ln times B between neighbors in a typical patch, in stops."""
     all_patches = np.ones(patches.Z.shape[2:], bool)
     H = flat_patches.count_pairs(patches.Z, all_patches)
     fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))

@@ -117,7 +117,8 @@ def validate_response(
     True
     >>> validate_response(g, images, [1, 200])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    hdrlab.errors.CalibrationError: the exposure times contradict the images: between 1 s and 200 s ...
+    hdrlab.errors.CalibrationError: the exposure times contradict the images: between 1 s and 200 s
+    ...
     """
     stack = as_stack(images)
     t = as_times(times, len(stack))

@@ -2,17 +2,19 @@
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photo lies on the fixed one
 p        pixels              (n, 2) at which light is compared, on an even grid over an overview of at most
-                             half a megapixel; bitmaps with offset 0 are also compared at full resolution
+                             half a megapixel; bitmaps with offset 0 are also compared at full
+                             resolution
 d        differences         of light (n,), relative to it, NaN where one photo measures none; of bitmaps
-                             (4, 2): in each quarter of the image the bits that differ, and those compared
+                             (4, 2): in each quarter of the image the bits that differ, and those
+                             compared
 e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
 
-84 % of Ward's brackets came out well; in the others the camera was rotated or moved too far, or the scene
-was all fine texture. So the questions are: Is H better than the identity? Is it better than what lies
-around it? Do the four quarters of the image agree? (In a rotation each of them moves in another
-direction.) Does a repeating texture fit elsewhere as well?
+84 % of Ward's brackets came out well; in the others the camera was rotated or moved too far, or the
+scene was all fine texture. So the questions are: Is H better than the identity? Is it better than
+what lies around it? Do the four quarters of the image agree? (In a rotation each of them moves in
+another direction.) Does a repeating texture fit elsewhere as well?
 """
 
 from collections.abc import Callable, Sequence
@@ -33,7 +35,8 @@ MIN_GAIN_SIGMAS = 3
 MIN_RELATIVE_GAIN = 1 / 20
 # pixels of a quarter that must be compared
 MIN_COMPARED_PIXELS = 20
-# confidence below which an alignment is not known; wrong ones stay below 0.1, right ones reach 0.6 and more
+# confidence below which an alignment is not known; wrong ones stay below 0.1, right ones reach 0.6
+# and more
 LOST = 0.3
 # shifts at which a texture resembles itself most
 RIVAL_COUNT = 4
@@ -42,11 +45,12 @@ MAX_RIVAL_LOSS = 0.1
 # pixels; side of the part of a bitmap, or of light, in which rivals are searched
 BITS_TILE = 64
 LIGHT_TILE = 512
-# error of photos that are clearly not aligned, of bits and of light; it is taken at an eighth of the
-# resolution, where there is no noise
+# error of photos that are clearly not aligned, of bits and of light; it is taken at an eighth of
+# the resolution, where there is no noise
 MAX_ALIGNED_BITS_ERROR = 0.1
 MAX_ALIGNED_LIGHT_ERROR = 0.1
-# If that many quarters of an image fit better elsewhere, the camera was rotated; if fewer, something moved.
+# If that many quarters of an image fit better elsewhere, the camera was rotated; if fewer,
+# something moved.
 MIN_ROTATED_QUARTERS = 3
 DIRECTIONS = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
@@ -122,7 +126,8 @@ class Comparison:
     error : function of d
         It returns e, and `light.ERROR_WITHOUT_OVERLAP` if the photos have too little in common.
     lower : function of two d
-        It returns (5,) bool: whether the first is clearly lower in each quarter, and in the whole image.
+        It returns (5,) bool: whether the first is clearly lower in each quarter, and in the whole
+        image.
     middle : (h, w)
         The middle of the fixed photo, NaN where it measures nothing.
     max_aligned_error : float
@@ -188,8 +193,8 @@ def compare_bits(
 ) -> Comparison:
     """Return the Comparison of the bitmaps of two gray photos, whose H shift by whole pixels.
 
-    Y is the pyramid of the fixed photo, t the threshold of the overview; count(offset, level) returns d
-    of a level of the pyramid.
+    Y is the pyramid of the fixed photo, t the threshold of the overview; count(offset, level)
+    returns d of a level of the pyramid.
     """
     tile = _middle(Y[overview], BITS_TILE)
     scale = 2**overview
@@ -369,7 +374,7 @@ def rivals(middle: F32) -> list[Array]:
 
 
 def _subtract_local_mean(image: F32, is_known: Mask) -> F64:
-    """Return an image less the mean around each pixel, as in `light.local_mean`; 0 where unknown."""
+    """Return an image minus the mean around each pixel (`light.local_mean`); 0 where unknown."""
     radius = round(4 * light.LOCAL_MEAN_SIGMA)
     kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / light.LOCAL_MEAN_SIGMA) ** 2)
     kernel /= kernel.sum()

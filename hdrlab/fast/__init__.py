@@ -11,7 +11,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
-    """Return a copy of a lesson's function that calls the fast functions in `parts` instead of its own.
+    """Return a copy of a lesson's function that calls the functions in `parts` instead of its own.
 
     So the signature, the checks and the equations are written only once, in the lesson. The copy
     says that it belongs to the module `home`.

@@ -10,7 +10,10 @@ from hdrlab.core.arrays import F32, ArrayLike, NDArray
 
 
 def tabulate(knots: ArrayLike) -> NDArray[np.complex64]:
-    """Return the knots with the rise to the next one as imaginary part, so that one look-up gets both."""
+    """Return the knots with the rise to the next one as imaginary part.
+
+    So one look-up gets both.
+    """
     knots = np.asarray(knots, np.float64)
     rises = np.append(np.diff(knots), 0)
     return (knots + 1j * rises).astype(np.complex64)

@@ -48,7 +48,7 @@ class Axes:
 
 
 def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
-    """Return the grid that holds v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
+    """Return the grid for v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
     h = max(1, 2 * int((MAX_SPACING * sigma_s + 1) / 2) - 1)
     low = float(v.min())
     extent = float(np.ptp(v))
@@ -71,7 +71,10 @@ def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
 
 
 def _histograms(v: F32, a: Axes) -> Iterator[F32]:
-    """Yield for each row of nodes the histograms (X, bins) of the h x h pixels around them, bins shared."""
+    """Yield the histograms (X, bins) of the h x h pixels around each node, row by row.
+
+    A pixel counts in the two nearest bins, in proportion to its distance.
+    """
     bins = a.Z * BINS_PER_LEVEL
     start = (np.arange(v.shape[1]) + a.h // 2) // a.h * bins
     for j in range(a.Y):
@@ -87,7 +90,7 @@ def _histograms(v: F32, a: Axes) -> Iterator[F32]:
 
 
 def _closeness(a: Axes) -> F32:
-    """Return the matrix (bins, 2 Z) that takes a histogram to (sum of w, sum of w (v_q - z)) for each z."""
+    """Return the matrix (bins, 2 Z) from a histogram to (sum w, sum w (v_q - z)) for each z."""
     v = np.arange(a.Z * BINS_PER_LEVEL) * (a.step / BINS_PER_LEVEL)
     z = np.arange(a.Z) * a.step
     d = v[:, None] - z
@@ -97,7 +100,7 @@ def _closeness(a: Axes) -> F32:
 
 
 class Row(NamedTuple):
-    """A row of nodes: k (X, Z), and mean - z (X, Z) with its rise to the next z as imaginary part."""
+    """A row of nodes: k (X, Z), and mean - z (X, Z); the imaginary part is the rise to the next z."""
 
     k: F32
     away: NDArray[np.complex64]
@@ -113,9 +116,8 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
     r = len(g) // 2
     w = _closeness(a)
     K = blur._band(g, blur.NODES_PER_TILE)
-    recent = np.zeros(
-        (len(g), a.X * 2 * a.Z), np.float32
-    )  # the rows in reach; row j stands at j mod len(g)
+    # a ring buffer of the rows in reach: row j is at j mod len(g)
+    recent = np.zeros((len(g), a.X * 2 * a.Z), np.float32)
     row = np.zeros((a.X + -a.X % blur.NODES_PER_TILE + 2 * r, 2 * a.Z), np.float32)
     counted = _histograms(v, a)
     area = np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
@@ -132,7 +134,7 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
 
 
 def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
-    """Return mean and k of the h rows v between two rows of nodes, each pixel at its place and level.
+    """Return mean and k of the h rows v between two rows of nodes.
 
     The mean is read along lines between the nodes, k at a node nearby: it is right to about a
     tenth.
@@ -163,7 +165,7 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
 
 
 def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
-    """Return the lesson's filter by way of the grid, its mean right to 0.01 sigma_r (root mean square).
+    """Return the bilateral filter of the lesson, with an RMS error of the mean below 0.01 sigma_r.
 
     The wider sigma_s, the fewer nodes and the faster. A signal of over 500 sigma_r is a ValueError.
 

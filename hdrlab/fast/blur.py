@@ -1,9 +1,9 @@
-"""Gaussian blurs as matrix products: exact where they are narrow, on a coarse grid where they are wide.
+"""Gaussian blurs as matrix products: exact if narrow, on a coarse grid if wide.
 
 image  (H, W) float32, continued beyond its edges by reflection
 sigma  standard deviation, pixels
 k      taps (2r + 1,) of the kernel, sum 1; r = 4 sigma, on the coarse grid 5
-K      band matrix (n, (n - 1) step + 2r + 1), K[i, i step + j] = k[j]: row i holds the kernel of output i
+K      band matrix (n, (n - 1) step + 2r + 1), K[i, i step + j] = k[j]: row i has the kernel of output i
 h      spacing of the coarse grid, pixels
 
 A blur of rows is a product with a band matrix, the same at every height. Cut into tiles of a few
@@ -41,7 +41,7 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
 
 
 def _taps(sigma: float, *, reach: float = 4) -> F32:
-    """Return k[j] = exp(-(j - r)^2 / (2 sigma^2)), brought to the sum 1, to `reach` sigma on either side."""
+    """Return k[j] = exp(-(j - r)^2 / (2 sigma^2)), divided by its sum, to `reach` sigma on each side."""
     r = int(reach * sigma + 0.5)
     k = np.exp(-0.5 * (np.arange(-r, r + 1) / sigma) ** 2)
     return (k / k.sum()).astype(np.float32)
@@ -67,20 +67,19 @@ def _spline(h: int, n: int) -> F32:
 
 
 def _product(K: F32, step: int, image: F32) -> F32:
-    """Return K times each window of rows of `image`, a window every `step` rows, one below the other."""
-    windows = sliding_window_view(image, K.shape[1], axis=0)[::step].swapaxes(
-        1, 2
-    )  # (windows, rows, W)
-    return np.matmul(K, windows).reshape(-1, image.shape[1])
+    """Return the products of K with windows of rows of `image`, one every `step` rows, stacked."""
+    windows = sliding_window_view(image, K.shape[1], axis=0)[::step]
+    rows = windows.swapaxes(1, 2)  # (windows, rows, W)
+    return np.matmul(K, rows).reshape(-1, image.shape[1])
 
 
 def _pad(image: F32, margin: int) -> F32:
-    """Return `image` continued by reflection, `margin` all round, and at the far ends up to whole tiles."""
+    """Return `image` padded by reflection: by `margin`, and at the far ends up to whole tiles."""
     return np.pad(image, [(margin, margin + -n % TILE_ROWS) for n in image.shape], mode="symmetric")
 
 
 def _inside(padded: F32, k: F32, margin: int) -> F32:
-    """Return the blur by taps k of what lies `margin` inside `padded`, as far as it fills whole tiles."""
+    """Return the blur by taps k of the part of `padded` inside `margin`, in whole tiles."""
     K = _band(k, TILE_ROWS)
     cut = margin - len(k) // 2
     core = padded[cut : len(padded) - cut, cut : padded.shape[1] - cut]
@@ -97,19 +96,18 @@ def _direct(image: F32, sigma: float) -> F32:
 
 
 def _coarse(image: F32, sigma: float, h: int) -> F32:
-    """Return the blur through a grid of spacing h: blurred at its nodes alone, then B-splines between them.
+    """Return the blur through a grid of spacing h: blurred at its nodes, then cubic B-splines between.
 
-    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add: the nodes take
-    what is left, to five sigma, as beside a lamp a million times as bright the tail is most of the
-    light.
+    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add, so the nodes
+    are blurred by the rest. Their kernel reaches five sigma, because beside a lamp that is a
+    million times as bright most of the light comes from the tail.
     """
     k = _taps((sigma**2 - h**2 / 3) ** 0.5, reach=5)
-    few = _sampled(
-        np.ascontiguousarray(_sampled(image, k, h).T), k, h
-    )  # (nodes across, nodes down)
+    nodes_down = _sampled(image, k, h)
+    nodes = _sampled(np.ascontiguousarray(nodes_down.T), k, h)  # (nodes across, nodes down)
     U = _spline(h, NODES_PER_TILE)
     W = image.shape[1]
-    across = np.ascontiguousarray(_product(U, NODES_PER_TILE, few)[:W].T)  # (nodes down, W)
+    across = np.ascontiguousarray(_product(U, NODES_PER_TILE, nodes)[:W].T)  # (nodes down, W)
     blurred = np.empty_like(image)
     for first in range(0, -(-len(image) // h), NODES_PER_TILE):
         rows = blurred[first * h : (first + NODES_PER_TILE) * h]
@@ -118,23 +116,22 @@ def _coarse(image: F32, sigma: float, h: int) -> F32:
 
 
 def _sampled(image: F32, k: F32, h: int) -> F32:
-    """Return the blur by taps k down the columns, at one node before the first row and at every h-th from it.
+    """Return the blur by taps k down the columns, at a node before the first row and every h rows.
 
-    Reflection folds the ends of the band matrix inward, so the picture is read where it stands.
+    Reflection folds the ends of the band matrix inward, so the image needs no padding.
     """
     K = _band(k, NODES_PER_TILE, h)
     n = len(image)
-    few = np.empty(
-        (NODES_PER_TILE * (-(-n // (NODES_PER_TILE * h)) + 1), image.shape[1]), np.float32
-    )
-    for first in range(0, len(few), NODES_PER_TILE):
-        place = (np.arange(K.shape[1]) + (first - 1) * h - len(k) // 2) % (2 * n)
-        rows = np.minimum(place, 2 * n - 1 - place)
+    tile_count = -(-n // (NODES_PER_TILE * h)) + 1
+    nodes = np.empty((NODES_PER_TILE * tile_count, image.shape[1]), np.float32)
+    for first in range(0, len(nodes), NODES_PER_TILE):
+        position = (np.arange(K.shape[1]) + (first - 1) * h - len(k) // 2) % (2 * n)
+        rows = np.minimum(position, 2 * n - 1 - position)  # reflected
         low = rows.min()
         high = rows.max() + 1
         folded = K
         if not np.array_equal(rows, np.arange(low, high)):
             folded = np.zeros((NODES_PER_TILE, high - low), np.float32)
             np.add.at(folded.T, rows - low, K.T)
-        np.matmul(folded, image[low:high], out=few[first : first + NODES_PER_TILE])
-    return few
+        np.matmul(folded, image[low:high], out=nodes[first : first + NODES_PER_TILE])
+    return nodes

@@ -1,4 +1,4 @@
-"""Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, smoothing passes in bands of rows."""
+"""Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, smoothing in bands of rows."""
 
 from hdrlab.core.arrays import F32
 from hdrlab.fast import _bands, blur, with_parts

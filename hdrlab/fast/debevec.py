@@ -1,4 +1,4 @@
-"""Debevec and Malik's response from n unknowns instead of n + N, and on any input: see `response.debevec`.
+"""Debevec and Malik's response from n unknowns instead of n + N: see `response.debevec`.
 
 For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put
 into the normal equations it leaves a system S g = r in g alone (a Schur complement). A sample has P
@@ -47,7 +47,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
 
 
 def _stiffness(w: F64, smoothness: float) -> F64:
-    """Return D^T D of the rows D of `core.weights.second_differences`, from their three diagonals."""
+    """Return D^T D, where D = `core.weights.second_differences`, from the three diagonals of D."""
     S = np.zeros((len(w), len(w)))
     z = np.arange(1, len(w) - 1)
     for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):

@@ -1,4 +1,4 @@
-"""Fattal's operator with pyramids by matrix products, and equations of neighbours in bands of rows."""
+"""Fattal's operator with fast pyramids, and the equations of neighbours in bands of rows."""
 
 from functools import partial
 from typing import Any

@@ -1,4 +1,4 @@
-"""Local Laplacian filters, fast: coefficients are added to the output while they are in the cache."""
+"""Local Laplacian filters, fast: coefficients are used while they are in the cache."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from hdrlab.tonemap import local_laplacian
 
 
 def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
-    """Return the lesson's r. For alpha = 1 no power is computed: within sigma of g, r is lL itself."""
+    """Return r of the lesson, without computing a power if alpha = 1."""
     if alpha != 1:
         return local_laplacian.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
     r = np.clip(lL, g - sigma, g + sigma)
@@ -19,7 +19,7 @@ def remap(lL: F32, g: float, *, sigma: float, alpha: float, beta: float) -> F32:
 
 
 def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> F32:
-    """Return the lesson's filtered picture, with levels that are added to in place, in bands of rows."""
+    """Return the filtered image of the lesson, summed in place in bands of rows."""
     G = pyramid.gaussian(lL, depth(lL.shape, 2))
     levels = [*(np.zeros_like(level) for level in G[:-1]), G[-1]]
     darkest = float(lL.min())

@@ -2,7 +2,7 @@
 
 Z       pixel levels      (P, rows, W, C), frames from short to long, n = 256 or 65536 of them
 T       table of a frame  (n,) complex64, a + i b: the terms of its radiance at each level
-planes                    (K, C, rows, W) uint16: of each channel, one frame or two of 8 bits together
+planes                    (K, C, rows, W) uint16: one frame, or two of 8 bits, for each channel
 shown                     (P, rows, W) bool, or None where the frames show every pixel
 E       radiance          (rows, W, C) float32
 
@@ -70,7 +70,7 @@ class _Plan:
 
 
 class Expendable(np.ndarray[Any, np.dtype[Any]]):
-    """Photos that are lost when they are merged: their memory goes back to the system, band by band."""
+    """Photos whose memory the merge gives back to the system, band by band; they are lost."""
 
 
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
@@ -116,7 +116,7 @@ def merge_with_quality(
 
 
 def _release(rows: Array) -> None:
-    """Give the memory of contiguous rows back, in whole pages: Linux fills them with 0 when read."""
+    """Give the memory of contiguous rows back in whole pages, which Linux then reads as 0."""
     start = -(-rows.ctypes.data // PAGE_BYTES) * PAGE_BYTES
     stop = (rows.ctypes.data + rows.nbytes) // PAGE_BYTES * PAGE_BYTES
     if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
@@ -162,7 +162,7 @@ def _pair_tables(tables: Array) -> list[Array]:
 
 
 def _planes(frames: list[Array]) -> Array:
-    """Return the frames' rows (rows, W, C) as planes (K, C, rows, W), so that inner loops are of one channel.
+    """Return the frames' rows (rows, W, C) as planes (K, C, rows, W), each of one channel.
 
     Two 8-bit frames make one plane, z1 + 256 z2: it has half as many elements to copy, and is the
     index into the table of the pair.
@@ -180,7 +180,7 @@ def _planes(frames: list[Array]) -> Array:
 
 
 def _drop_clipped(planes: Array, n: int, top: int) -> Array:
-    """Return the planes with level 0, which has no weight, in all channels where a frame clips one."""
+    """Return the planes with level 0, which has no weight, where a frame clips any channel."""
     # each element is a level: (K, C, rows, 2 W) for pairs of frames
     Z = planes.view(np.uint8 if n == 256 else np.uint16)
     is_unclipped = Z.max(axis=1, keepdims=True) < top
@@ -188,7 +188,7 @@ def _drop_clipped(planes: Array, n: int, top: int) -> Array:
 
 
 def _sums(planes: Array, tables: list[Array]) -> Array:
-    """Return sum_j a_j(Z_j) + i sum_j b_j(Z_j) of one channel, (rows, W), from its planes (K, rows, W)."""
+    """Return sum_j a_j(Z_j) + i sum_j b_j(Z_j), (rows, W), of a channel's planes (K, rows, W)."""
     # every level is in range; "clip" only saves the check
     total = tables[0].take(planes[0], mode="clip")
     term = np.empty_like(total)
@@ -201,7 +201,7 @@ def _sums(planes: Array, tables: list[Array]) -> Array:
 def _merge_block(
     frames: list[Array], shown: Mask | None, plan: _Plan, E: Array, quality: Flags
 ) -> None:
-    """Fill a block of rows, E (rows, W, C) and quality (rows, W), from the frames' rows (rows, W, C)."""
+    """Fill a block of rows of E (rows, W, C) and quality (rows, W) from the frames (rows, W, C)."""
     masked = frames
     if shown is not None:
         masked = [frame * mask[..., None] for frame, mask in zip(frames, shown, strict=True)]

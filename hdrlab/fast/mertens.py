@@ -18,7 +18,7 @@ def _split_planes(Z: Array) -> F32:
 
 
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
-    """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
+    """Yield W_j / sum_i W_i of each photograph: they sum to 1 in every pixel [Mertens07]."""
 
     def measure(Z: Array) -> F32:
         return mertens.weight(_split_planes(np.moveaxis(Z, 0, -1)), powers)

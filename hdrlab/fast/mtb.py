@@ -1,9 +1,9 @@
 """Median threshold bitmaps, 64 pixels at a time: XOR, AND and counting of machine words [Ward03].
 
-words   a bitmap, packed     (..., H, ceil(W / 64)) uint64; the first pixel of a row is the highest bit
-                             of its first word, and the bits after its last pixel are 0
-bits    of one photograph    (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
-offset  (dy, dx) pixels      down and right
+words   a packed bitmap    (..., H, ceil(W / 64)) uint64; the first pixel of a row is the highest bit
+                           of its first word, and the bits after its last pixel are 0
+bits    of one photograph  (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap (1 = compared)
+offset  (dy, dx) pixels    down and right
 
 Photos of more than 2^17 pixels count their histogram on evenly spaced rows: their median is that of
 all rows to one pixel value. Levels of more than 2^18 pixels compare bits on such rows.
@@ -35,7 +35,7 @@ BAND_ROWS = 32
 
 
 class Photograph:
-    """The gray levels of a photograph at every size, full resolution first, and their histograms."""
+    """The gray levels of a photograph at every size, full resolution first, with histograms."""
 
     def __init__(self, image: Array, *, bits: int = 6, luma: bool = False) -> None:
         self.Y = [_gray(image, luma)]
@@ -72,7 +72,7 @@ class Photograph:
     def compare(
         self, fixed: Self, offset: Offset, level: int, q: float
     ) -> tuple[Words, Words, int]:
-        """Return where bits differ after an offset, where they are compared, and the rows of the upper half.
+        """Return the differing bits after an offset, the compared bits, and the rows of the upper half.
 
         Bits that come in from the side are 0 in the exclusion bitmap, too, so only the overlap
         counts.

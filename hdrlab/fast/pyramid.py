@@ -1,4 +1,4 @@
-"""Image pyramids by sums of whole rows, a plane and a band at a time: see `core.filters.pyramid`."""
+"""Fast image pyramids: sums of whole rows, band by band; see `core.filters.pyramid`."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -95,7 +95,7 @@ def _expand_bands(
 
 
 def _double_rows(a: F32, neighbour_weight: float, order: Literal["C", "F"] = "C") -> F32:
-    """Return two rows for each inner row of a: the row with its neighbours, and the mean with the next."""
+    """Return two rows for each inner row: the row with its neighbours, and its mean with the next."""
     fine = np.empty((2 * len(a) - 4, a.shape[1]), np.float32, order)
     sums = a[:-1] + a[1:]
     np.multiply(sums[1:], np.float32(0.5), out=fine[1::2])

@@ -30,7 +30,7 @@ RANKED_PIXELS = 2**16
 
 
 class Joint:
-    """The matrix S (n, n), sums of t_j t_k / d_i over Z_ij = m, Z_ik = z, and the pixels of each level.
+    """The matrix S (n, n): sums of t_j t_k / d_i over the samples with Z_ij = m and Z_ik = z.
 
     S is symmetric, so a pair of frames is counted once. Called with f^-1 it returns the means of
     the next.
@@ -68,7 +68,7 @@ recover_steps = with_parts(__name__, robertson.recover_steps, alternate=Joint)
 
 
 class Smooth:
-    """`recover_steps` with a penalty on second differences, which connects levels that equal steps do not.
+    """`recover_steps` with a smoothness penalty, which connects levels that equal steps do not.
 
     After each iteration r = ln f^-1, less that of a linear camera, becomes the s of least sum (s -
     r)^2 + sum (lambda w s'')^2, r at the levels that have a mean. 100 is right for photographs.
@@ -144,7 +144,7 @@ def recover(
     valid: ArrayLike | None = None,
     steps: Callable[..., Iterator[robertson.State]] = recover_steps,
 ) -> F64:
-    """Return the response g of the lesson `response.robertson.recover`, which has the same parameters."""
+    """Return the response g; the parameters are those of `response.robertson.recover`."""
     stack = as_stack(images)
     t = as_times(times, len(stack))
     return robertson.recover(

@@ -1,8 +1,8 @@
 """Align a bracket pair by pair, and validate each result.
 
 "mtb" shifts by whole pixels. So does "auto", and for the pairs that no shift aligns it tries more:
-rotation, then a homography, in an overview of half a megapixel. It accepts the result if the light of
-the two photos then agrees clearly better than after the shift.
+rotation, then a homography, in an overview of half a megapixel. It accepts the result if the light
+of the two photos then agrees clearly better than after the shift.
 """
 
 from collections.abc import Callable, Iterator
@@ -29,7 +29,8 @@ SEARCHES: dict[str, Callable[[list[F32]], Iterator[Any]]] = {
     "cerman": cerman.search,
     "homography": homography.search,
 }
-# Levels of an image pyramid: more than any image has, so the range of the search grows with the image.
+# Levels of an image pyramid: more than any image has, so the range of the search grows with the
+# image.
 PYRAMID_LEVELS = 16
 # percentiles of Ward's threshold that are tried if the search with the median fails
 OTHER_PERCENTILES = (0.83, 0.17)
@@ -38,7 +39,8 @@ MIN_OTHER_CONFIDENCE = 0.9
 
 # A response, or a function that finds it when light is compared.
 Curve = ArrayLike | Callable[[], F64 | None] | None
-# From the indices and the gray images of a darker and a brighter photo to the pyramid of their light.
+# From the indices and the gray images of a darker and a brighter photo to the pyramid of their
+# light.
 MakePyramid = Callable[[int, int, Array, Array], list[F32]]
 
 
@@ -77,8 +79,8 @@ def register(
     times : (P,) float, optional
         Exposure times in seconds. Without them, exposure ratios come from the histograms.
     g : (n,) or (n, 3) float, or function, optional
-        The camera's response, ln exposure of each pixel value, or a function that finds it when light
-        is compared. Without it, the histograms of each pair are matched.
+        The camera's response, ln exposure of each pixel value, or a function that finds it when
+        light is compared. Without it, the histograms of each pair are matched.
 
     Raises
     ------
@@ -214,9 +216,9 @@ def _validate_at_percentile(
 def pyramid_maker(images: Array, times: ArrayLike | None, g: Curve) -> MakePyramid:
     """Return the function that brings the light of two photos to one scale, at every size.
 
-    Without a response, the histogram of the darker photo is matched to that of the brighter one, both
-    are decoded by the curve of sRGB, and each pixel is divided by the mean around it: errors of the
-    curve are the same in both photos, and cancel.
+    Without a response, the histogram of the darker photo is matched to that of the brighter one,
+    both are decoded by the curve of sRGB, and each pixel is divided by the mean around it: errors
+    of the curve are the same in both photos, and cancel.
     """
     n = levels(images)
     seconds = None if times is None else as_times(times, len(images))

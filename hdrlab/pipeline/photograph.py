@@ -7,9 +7,9 @@ Lm      scaled luminance           key 10^(CONTRAST (x - mean of x)), about 1 wh
 Ld      (curve of Lm - black) / (1 - black), with the curve of `tonemap.reinhard` and its `white`
 
 The defaults of Reinhard's paper look flat for a photograph: the black point is not set, and half of
-the display's range is kept for the brightest pixels. A guided filter does not reverse gradients next
-to soft edges, unlike a bilateral filter. Its a and b are computed on a coarse grid (He and Sun, Fast
-guided filter, 2015).
+the display's range is kept for the brightest pixels. A guided filter does not reverse gradients
+next to soft edges, unlike a bilateral filter. Its a and b are computed on a coarse grid (He and
+Sun, Fast guided filter, 2015).
 """
 
 from collections.abc import Callable
@@ -52,7 +52,8 @@ BLACK_FRACTION = 0.002
 MAX_BLACK = 0.012
 # largest scaled luminance, to avoid an overflow
 MAX_SCALED_LUMINANCE = 1e15
-# Settings are chosen from at least this many pixels along the shorter side, where there are so many.
+# Settings are chosen from at least this many pixels along the shorter side, where there are so
+# many.
 MIN_SAMPLED_SIDE = 360
 
 

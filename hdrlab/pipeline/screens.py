@@ -1,9 +1,9 @@
 """Signals for HDR screens, which can be brighter than white, from a radiance map.
 
-The light of the map keeps its ratios. It is scaled to the brightness of a tone-mapped image, so that
-midtones look alike on both screens, and clipped where the brightest screen ends. White is as bright
-as paper under good light, 203 cd/m2 [ITU-R BT.2408]; so PQ, which ends at 10,000 cd/m2, can show
-light that is 49 times brighter.
+The light of the map keeps its ratios. It is scaled to the brightness of a tone-mapped image, so
+that midtones look alike on both screens, and clipped where the brightest screen ends. White is as
+bright as paper under good light, 203 cd/m2 [ITU-R BT.2408]; so PQ, which ends at 10,000 cd/m2, can
+show light that is 49 times brighter.
 """
 
 import numpy as np
