@@ -81,10 +81,10 @@ def _parts(node: ast.AST, bound: frozenset[str]) -> Iterator[tuple[ast.AST, froz
     if isinstance(node, Function):
         for part in head(node):
             yield part, bound
-        inside = bound | _bound_inside(node)
         body = node.body if isinstance(node.body, list) else [node.body]
+        inside = (bound | _bound_inside(node)) - _globals_of(body)
         for part in body:
-            yield part, inside - _globals_of(body)
+            yield part, inside
         return
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
     if isinstance(node, COMPREHENSIONS):
