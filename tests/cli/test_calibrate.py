@@ -35,7 +35,7 @@ def photographs(tmp_path_factory):
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".m"])
-def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path, capsys):
+def test_calibrate_writes_the_curve_in_every_format(suffix, photographs, tmp_path, capsys):
     folder, times, true = photographs
     out = tmp_path / f"g{suffix}"
     code, said, _ = hdrlab("calibrate", folder, "-o", out, "--times", times, capsys=capsys)
@@ -43,9 +43,7 @@ def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path
     assert response_rmse(read_curve(out), true).max() < 1.5
 
 
-def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(
-    photographs, tmp_path, capsys
-):
+def test_summary_lists_doublings_of_exposure_and_residuals(photographs, tmp_path, capsys):
     folder, times, true = photographs
     outs = [tmp_path / "g.csv", tmp_path / "g.m"]
     code, said, _ = hdrlab(
@@ -66,7 +64,7 @@ def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(
 
 @pytest.mark.papers
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
-def test_the_plot_carries_its_alt_text(suffix, photographs, tmp_path):
+def test_plot_contains_its_alt_text(suffix, photographs, tmp_path):
     folder, times, _ = photographs
     plot = tmp_path / f"plot{suffix}"
     assert hdrlab("calibrate", folder, "--times", times, "--plot", plot) == 0
@@ -80,7 +78,7 @@ def test_the_plot_carries_its_alt_text(suffix, photographs, tmp_path):
         assert plot.read_bytes() == first
 
 
-def test_a_bracket_that_a_method_refuses_ends_in_one_line(tmp_path, capsys):
+def test_bracket_that_a_method_rejects_is_a_one_line_error(tmp_path, capsys):
     for j in range(2):
         write_picture(tmp_path / f"dark{j}.png", np.zeros((32, 48, 3), np.uint8))
     (tmp_path / "times.txt").write_text("dark0.png 100\ndark1.png 10\n")
@@ -89,7 +87,7 @@ def test_a_bracket_that_a_method_refuses_ends_in_one_line(tmp_path, capsys):
     assert code == 2 and complaint.count("\n") == 1 and "expected" in complaint
 
 
-def test_a_saved_curve_takes_the_place_of_a_method(photographs, tmp_path):
+def test_saved_curve_can_replace_the_response_method(photographs, tmp_path):
     folder, times, true = photographs
     options = ("assemble", folder, "--times", times, "--align", "none")
     write_curve(tmp_path / "true.m", true)
@@ -114,7 +112,7 @@ def test_a_saved_curve_takes_the_place_of_a_method(photographs, tmp_path):
         (["assemble", "nowhere", "-o", "x.hdr", "--response", "curve.txt"], "curve.txt"),
     ],
 )
-def test_what_cannot_be_done_ends_in_one_line_and_writes_nothing(
+def test_bad_input_is_a_one_line_error_and_writes_nothing(
     arguments, expected, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
@@ -123,14 +121,14 @@ def test_what_cannot_be_done_ends_in_one_line_and_writes_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_levels_of_a_linear_camera_double_with_its_exposure():
+def test_pixel_values_of_a_linear_camera_double_with_exposure():
     levels = calibration.doublings(LINEAR)
     assert [round(levels[k], 2) for k in (-3, -2, -1, 0)] == [16, 32, 64, 128]
     assert max(levels) == 0 and min(levels) == -3
     assert np.isclose(calibration.reach(LINEAR), np.log2(25))
 
 
-def test_a_curve_that_is_level_at_its_end_doubles_no_more():
+def test_flat_end_of_a_curve_has_no_doublings():
     g = np.minimum(LINEAR, LINEAR[200]) + np.log(128 / 80)
     assert (
         np.isclose(calibration.doublings(g - np.log(2))[0], 160)
@@ -139,7 +137,7 @@ def test_a_curve_that_is_level_at_its_end_doubles_no_more():
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
-def test_figures_stand_for_gray_and_colour_and_for_levels_that_nothing_is_known_of(channels):
+def test_calibration_figure_works_for_gray_color_and_unknown_pixel_values(channels):
     g = np.broadcast_to(LINEAR.reshape(256, *[1] * len(channels)), (256, *channels))
     medians = np.full((2, (channels or (1,))[0], 256), np.nan)
     drawn = calibration.calibration(g, medians, [0.1, 1], title="debevec")

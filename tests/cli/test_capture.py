@@ -21,7 +21,7 @@ def run(command, *arguments):
     return result.output
 
 
-def test_plan_says_how_many_photographs_and_which_times():
+def test_plan_states_the_number_of_photos_and_their_times():
     said = run(capture.plan, 0.01, 30000)
     assert "21.5 stops" in said and "5 photos, 4 stops apart, f/8, ISO 100" in said
     assert [line.split()[0] for line in said.splitlines()[2:]] == [
@@ -56,7 +56,7 @@ def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
         (("1", "2", "--camera", "model.toml"), "--camera"),
     ],
 )
-def test_plan_refuses_what_is_no_range_and_options_that_it_would_ignore(arguments, named):
+def test_plan_rejects_bad_ranges_and_unused_options(arguments, named):
     with pytest.raises(InputError, match=named):
         run(capture.plan, *arguments)
 
@@ -64,7 +64,7 @@ def test_plan_refuses_what_is_no_range_and_options_that_it_would_ignore(argument
 @pytest.mark.parametrize(
     ("option", "line"), [("--aperture", "aperture = 4"), ("--iso", "speeds = [100, 800]")]
 )
-def test_plan_refuses_an_option_that_the_camera_file_overrides(option, line, tmp_path):
+def test_plan_rejects_an_option_that_the_camera_file_also_sets(option, line, tmp_path):
     (tmp_path / "model.toml").write_text(line)
     scene = (0.5, 500, "--snr", 8, "--camera", tmp_path / "model.toml")
     run(capture.plan, *scene)
@@ -72,7 +72,7 @@ def test_plan_refuses_an_option_that_the_camera_file_overrides(option, line, tmp
         run(capture.plan, *scene, option, 5.6)
 
 
-def test_plan_by_noise_stands_beside_the_series_by_stops_and_takes_less_time(tmp_path):
+def test_plan_by_noise_is_listed_after_the_plan_by_stops_and_is_faster(tmp_path):
     (tmp_path / "model.toml").write_text("read_noise = 3\nspeeds = [100, 800]\nconverter_noise = 3")
     scene = ("--low", 0.5, "--high", 500, "--snr", 8)
     said = run(capture.plan, *scene, "--camera", tmp_path / "model.toml")
@@ -91,14 +91,14 @@ def test_plan_by_noise_stands_beside_the_series_by_stops_and_takes_less_time(tmp
     "said",
     ["speeds = []", "speeds = 100", "read_noise = 'low'", "noise = 3", "gain = ", "gain = 0"],
 )
-def test_plan_refuses_a_camera_that_it_cannot_read(tmp_path, said):
+def test_plan_rejects_invalid_camera_files(tmp_path, said):
     (tmp_path / "model.toml").write_text(said)
     with pytest.raises(InputError):
         run(capture.plan, 0.5, 500, "--snr", 20, "--camera", tmp_path / "model.toml")
 
 
 @pytest.mark.parametrize("mode", capture.METERING_MODES)
-def test_meter_tells_the_reading_and_the_stops_in_every_mode(tmp_path, mode):
+def test_meter_reports_reading_and_stops_in_every_mode(tmp_path, mode):
     photos.write_picture(tmp_path / "gray.png", to_8bit(np.full((40, 60, 3), 0.09, np.float32)))
     said = run(capture.meter, tmp_path / "gray.png", "--mode", mode)
     assert "reading 0.09" in said and "1.0 stops too dark" in said
@@ -110,7 +110,7 @@ def test_meter_offers_every_mode_of_the_library():
     assert capture.METERING_MODES == metering.MODES
 
 
-def test_meter_reads_the_spot_where_it_is_put(tmp_path):
+def test_meter_reads_the_spot_at_the_given_place(tmp_path):
     E = np.full((40, 60), 0.09, np.float32)
     E[:, 30:] = 0.72
     photos.write_picture(tmp_path / "two.png", to_8bit(E))
@@ -121,23 +121,23 @@ def test_meter_reads_the_spot_where_it_is_put(tmp_path):
     assert "1.0 stops too dark" in left and "2.0 stops too bright" in right
 
 
-def test_meter_says_how_much_of_what_it_hears_is_full(tmp_path):
+def test_meter_states_the_fraction_of_clipped_pixels(tmp_path):
     photos.write_picture(tmp_path / "white.png", np.full((40, 60, 3), 255, np.uint8))
     assert "100% of their weight is on clipped pixels" in run(capture.meter, tmp_path / "white.png")
 
 
 @pytest.mark.papers
-def test_meter_names_the_time_that_would_be_right(shared):
+def test_meter_states_the_right_exposure_time(shared):
     photo = sorted(shared("window").glob("*.jpg"))[5]
     assert "taken with 1/30 s; the right time is 1/40 s" in run(capture.meter, photo)
 
 
-def test_meter_refuses_a_place_that_is_none(tmp_path):
+def test_meter_rejects_invalid_places(tmp_path):
     with pytest.raises(ValueError, match="--at"):
         run(capture.meter, tmp_path / "a.png", "--at", "middle")
 
 
-def test_correct_says_what_it_decided_and_why(tmp_path):
+def test_correct_reports_its_region_and_correction(tmp_path):
     photos.write_picture(tmp_path / "dark.png", data.astronaut() // 3)
     said = run(capture.correct, tmp_path / "dark.png", "-o", tmp_path / "light.png")
     assert "important region: skin" in said and "stops: mean pixel value 12" in said
@@ -147,19 +147,19 @@ def test_correct_says_what_it_decided_and_why(tmp_path):
     )
 
 
-def test_correct_leaves_a_well_exposed_photograph_as_it_is(tmp_path):
+def test_correct_does_not_change_a_well_exposed_photo(tmp_path):
     photos.write_picture(tmp_path / "good.png", data.astronaut())
     assert "unchanged" in run(capture.correct, tmp_path / "good.png", "-o", tmp_path / "same.png")
     assert np.array_equal(photos.read_photo(tmp_path / "same.png"), data.astronaut())
 
 
-def test_correct_takes_sixteen_bits(tmp_path):
+def test_correct_accepts_16_bit_photos(tmp_path):
     tifffile.imwrite(tmp_path / "dark.tif", data.astronaut()[:128, :256].astype(np.uint16) * 64)
     run(capture.correct, tmp_path / "dark.tif", "-o", tmp_path / "light.png", "--by", "blocks")
     assert photos.read_photo(tmp_path / "light.png").dtype == np.uint8
 
 
-def test_correct_refuses_a_gray_picture_when_skin_is_asked_for(tmp_path):
+def test_correct_by_skin_rejects_gray_photos(tmp_path):
     photos.write_picture(tmp_path / "gray.png", data.brick())
     with pytest.raises(ValueError, match="skin"):
         run(capture.correct, tmp_path / "gray.png", "-o", tmp_path / "out.png", "--by", "skin")

@@ -1,5 +1,6 @@
 """What a shell user may expect of the `hdrlab` command."""
 
+import errno
 import os
 import re
 import subprocess
@@ -76,7 +77,7 @@ def test_importing_hdrlab_imports_no_chapter():
 
 
 @pytest.mark.papers
-def test_assembling_loads_nothing_of_scipy_that_it_does_not_use_and_no_plots(photographs, tmp_path):
+def test_assemble_imports_no_plots_and_no_unused_parts_of_scipy(photographs, tmp_path):
     folder, times = photographs
     arguments = ["assemble", str(folder), "--times", str(times), "-o", str(tmp_path / "room.hdr")]
     code = (
@@ -98,12 +99,12 @@ def test_assembling_loads_nothing_of_scipy_that_it_does_not_use_and_no_plots(pho
     assert not unused & {*done.stdout.split()}
 
 
-def test_the_range_of_a_large_map_is_told_by_a_sample_of_its_pixels():
+def test_range_of_a_large_map_is_measured_on_a_sample():
     E = np.exp(np.random.default_rng(0).normal(0, 2, (1300, 1500))).astype(np.float32)
     assert describe_map(E) == f"1500 x 1300, {scenes.decades(E):.1f} decades"
 
 
-def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp_path, capsys):
+def test_assemble_writes_map_picture_and_report_from_a_folder(photographs, tmp_path, capsys):
     folder, times = photographs
     out, picture, report = tmp_path / "room.hdr", tmp_path / "room.png", tmp_path / "report"
     code, said, _ = hdrlab(
@@ -126,7 +127,7 @@ def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp
 
 
 @pytest.mark.parametrize(("error", "code"), [(InputError("no"), 2), (KeyboardInterrupt(), 130)])
-def test_the_map_is_written_whole_where_its_picture_fails_or_is_interrupted(
+def test_map_is_complete_although_its_picture_fails_or_is_interrupted(
     error, code, photographs, tmp_path, monkeypatch
 ):
     def fail(*_):
@@ -140,17 +141,25 @@ def test_the_map_is_written_whole_where_its_picture_fails_or_is_interrupted(
     assert out.read_bytes() == plain.read_bytes() and not picture.exists()
 
 
-def test_a_map_that_cannot_be_written_beside_its_picture_is_an_error(photographs, tmp_path, capsys):
+def test_error_in_writing_the_map_is_reported_although_the_picture_is_written(
+    photographs, tmp_path, capsys, monkeypatch
+):
+    def fail(*_, **__):
+        raise OSError(errno.ENOSPC, "disk full", str(out))
+
     folder, times = photographs
-    out, picture = tmp_path / "gone" / "room.hdr", tmp_path / "room.png"
-    code, _, said = hdrlab(
+    out = tmp_path / "room.hdr"
+    picture = tmp_path / "room.png"
+    monkeypatch.setattr(radiance, "write_radiance", fail)
+    code, _, error = hdrlab(
         "assemble", folder, "-o", out, "--times", times, "--picture", picture, capsys=capsys
     )
-    assert code == 2 and "there is no folder" in said and read_photo(picture).ndim == 3
+    assert code == 2 and "room.hdr" in error and "disk full" in error
+    assert read_photo(picture).ndim == 3 and not out.exists()
 
 
 @pytest.mark.papers
-def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_path):
+def test_photos_may_be_named_one_by_one_in_any_order(photographs, tmp_path):
     folder, times = photographs
     files = sorted(folder.iterdir(), reverse=True)
     assert (
@@ -164,7 +173,7 @@ def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_pat
     assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
 
 
-def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_path, capsys):
+def test_photos_without_times_are_rejected_with_advice(photographs, tmp_path, capsys):
     code, said, complaint = hdrlab(
         "assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys
     )
@@ -177,7 +186,7 @@ def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_
 
 
 @pytest.mark.papers
-def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
+def test_doubtful_map_is_written_with_warnings_and_fails_only_with_strict(
     photographs, tmp_path, capsys
 ):
     folder, times = photographs
@@ -201,7 +210,7 @@ def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(
 
 
 @pytest.mark.papers
-def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(
+def test_uncertainty_writes_the_map_and_its_standard_deviation_as_layers(
     photographs, tmp_path, capsys
 ):
     folder, times = photographs
@@ -226,9 +235,7 @@ def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(
     assert words in (page / "report.html").read_text(encoding="utf8").replace("\u00a0", " ")
 
 
-def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(
-    photographs, tmp_path, capsys
-):
+def test_uncertainty_rejects_other_formats_than_exr_before_the_work(photographs, tmp_path, capsys):
     folder, times = photographs
     code, _, said = hdrlab(
         *(
@@ -248,9 +255,7 @@ def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(
     )
 
 
-def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(
-    photographs, tmp_path, capsys
-):
+def test_map_without_doubts_has_none_in_its_header_and_passes_strict(photographs, tmp_path, capsys):
     folder, times = photographs
     code, _, said = hdrlab(
         "assemble", folder, "-o", tmp_path / "x.hdr", "--times", times, "--strict", capsys=capsys
@@ -260,7 +265,7 @@ def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(
 
 
 @pytest.mark.papers
-def test_times_that_nobody_knows_are_steps_or_the_pixels(photographs, tmp_path, capsys):
+def test_unknown_times_can_be_steps_or_estimated_from_the_pixels(photographs, tmp_path, capsys):
     folder, _ = photographs
     steps, pixels = tmp_path / "steps.pfm", tmp_path / "pixels.pfm"
     code, _, said = hdrlab("assemble", folder, "-o", steps, "--stops", 2, capsys=capsys)
@@ -269,7 +274,7 @@ def test_times_that_nobody_knows_are_steps_or_the_pixels(photographs, tmp_path, 
     assert code == 0 and "relative exposure times" in said and "--stops" in said
 
 
-def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
+def test_list_of_times_in_the_folder_is_used(photographs, tmp_path, capsys):
     folder, times = photographs
     (folder / "readme.txt").write_text("Photographs of a room")
     (folder / "times.txt").write_text(times.read_text())
@@ -291,7 +296,7 @@ def test_folders_named_like_files_beside_the_photos_are_skipped(photographs, tmp
 @pytest.mark.papers
 @pytest.mark.parametrize("form", ["{:g}", "{:g} s"])
 @pytest.mark.parametrize("power", [1, -1])
-def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(
+def test_pixels_decide_whether_numbers_in_a_list_are_seconds_or_1_over_seconds(
     photographs, tmp_path, form, power
 ):
     folder, times = photographs
@@ -310,7 +315,7 @@ def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(
         )
 
 
-def test_times_in_the_wrong_order_are_refused_with_a_way_on_that_works(
+def test_times_in_the_wrong_order_are_rejected_with_advice_that_works(
     photographs, tmp_path, capsys
 ):
     folder, times = photographs
@@ -337,7 +342,7 @@ def test_times_in_the_wrong_order_are_refused_with_a_way_on_that_works(
         (["assemble", "nowhere", "-o", "x.hdr", "--response", "magic"], "magic"),
     ],
 )
-def test_what_cannot_be_done_ends_in_one_line_and_exit_code_2(
+def test_bad_input_is_a_one_line_error_with_exit_code_2(
     arguments, expected, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
@@ -347,7 +352,7 @@ def test_what_cannot_be_done_ends_in_one_line_and_exit_code_2(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_settings_of_an_operator_are_set_by_name(map_file, tmp_path):
+def test_set_changes_an_operators_settings_by_name(map_file, tmp_path):
     dark, bright = tmp_path / "dark.png", tmp_path / "bright.png"
     assert hdrlab("tonemap", map_file, "-o", dark, "--set", "key=0.09") == 0
     assert hdrlab("tonemap", map_file, "-o", bright, "--set", "key=0.72") == 0
@@ -357,9 +362,7 @@ def test_the_settings_of_an_operator_are_set_by_name(map_file, tmp_path):
 @pytest.mark.parametrize(
     ("setting", "expected"), [("kee=1", "key"), ("key", "NAME=VALUE"), ("key=bright", "key")]
 )
-def test_a_setting_that_the_operator_does_not_have_is_refused(
-    setting, expected, map_file, tmp_path, capsys
-):
+def test_set_rejects_unknown_settings(setting, expected, map_file, tmp_path, capsys):
     code, _, complaint = hdrlab(
         "tonemap", map_file, "-o", tmp_path / "x.png", "--set", setting, capsys=capsys
     )
@@ -367,7 +370,7 @@ def test_a_setting_that_the_operator_does_not_have_is_refused(
 
 
 @pytest.mark.parametrize("suffix", [".pfm", ".exr"])
-def test_convert_keeps_every_bit_of_a_float_map(suffix, map_file, tmp_path):
+def test_convert_is_lossless_between_float_formats(suffix, map_file, tmp_path):
     assert hdrlab("convert", map_file, tmp_path / f"b{suffix}") == 0
     assert np.array_equal(
         radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file)
@@ -381,7 +384,7 @@ def write_pfm(file, pixels):
     )
 
 
-def test_values_that_are_no_radiance_are_repaired_with_a_note(tmp_path, capsys):
+def test_invalid_values_of_a_map_are_repaired_with_a_note(tmp_path, capsys):
     file, out = tmp_path / "x.pfm", tmp_path / "x.png"
     pixels = np.ones((4, 5, 3))
     pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
@@ -398,9 +401,7 @@ def test_values_that_are_no_radiance_are_repaired_with_a_note(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
-def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(
-    value, tmp_path, capsys
-):
+def test_mostly_invalid_map_is_rejected_without_clean(value, tmp_path, capsys):
     file, out = tmp_path / "x.pfm", tmp_path / "out.pfm"
     pixels = np.ones((4, 5, 3))
     pixels[:2] = value
@@ -413,7 +414,7 @@ def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(
     assert np.isfinite(radiance.read_radiance(out)).all()
 
 
-def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
+def test_tonemap_offers_both_ways_for_out_of_gamut_colors(tmp_path, capsys):
     E = np.float32([0.1, 0.3, 4.0]) * np.geomspace(0.1, 30, 20 * 30).reshape(20, 30, 1).astype(
         np.float32
     )
@@ -433,7 +434,7 @@ def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
     assert code == 2 and "'hue', 'ratio'" in complaint
 
 
-def test_info_names_format_and_size(map_file, photographs, capsys):
+def test_info_states_format_and_size(map_file, photographs, capsys):
     code, said, _ = hdrlab(
         "info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys
     )
@@ -441,14 +442,14 @@ def test_info_names_format_and_size(map_file, photographs, capsys):
     assert said.split()[said.split().index("width") + 1] == "64"
 
 
-def test_a_failed_run_leaves_the_old_file_as_it_was(photographs, tmp_path):
+def test_failed_run_keeps_the_old_file(photographs, tmp_path):
     out = tmp_path / "room.hdr"
     out.write_bytes(b"precious")
     assert hdrlab("assemble", photographs[0], "-o", out) == 2
     assert out.read_bytes() == b"precious"
 
 
-def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys):
+def test_ctrl_c_is_one_line_with_exit_code_130(monkeypatch, tmp_path, capsys):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
@@ -458,7 +459,7 @@ def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys
     assert list(tmp_path.iterdir()) == []
 
 
-def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path, capsys):
+def test_ctrl_c_while_a_class_is_created_is_one_line(monkeypatch, tmp_path, capsys):
     class Stopped:
         def __set_name__(self, owner, name):
             raise KeyboardInterrupt
@@ -470,7 +471,7 @@ def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
 
-def test_ctrl_c_while_a_module_of_c_is_made_ends_in_one_line_too(monkeypatch, tmp_path, capsys):
+def test_ctrl_c_while_a_c_extension_is_loaded_is_one_line(monkeypatch, tmp_path, capsys):
     def stopped(*_, **__):  # as pybind11 tells it
         raise ImportError("initialization failed") from KeyboardInterrupt()
 
@@ -502,9 +503,7 @@ runpy.run_module("hdrlab", run_name="__main__")
         ("raise ImportError('a mistake of ours')", 1, "ImportError: a mistake of ours"),
     ],
 )
-def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_not(
-    raised, code, complaint
-):
+def test_ctrl_c_during_imports_is_one_line_and_an_import_error_is_not(raised, code, complaint):
     ended = subprocess.run(
         [sys.executable, "-c", WHILE_LOADING.format(raised=raised), "info"],
         capture_output=True,
@@ -516,9 +515,7 @@ def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_no
 
 
 @pytest.mark.parametrize("kind", [ValueError, RuntimeError, ImportError, KeyError])
-def test_a_bug_shows_its_traceback_and_is_not_taken_for_bad_input(
-    kind, monkeypatch, tmp_path, capsys
-):
+def test_bug_shows_its_traceback_and_has_exit_code_1(kind, monkeypatch, tmp_path, capsys):
     def broken(*_, **__):
         raise kind("a mistake of ours")
 
@@ -529,7 +526,7 @@ def test_a_bug_shows_its_traceback_and_is_not_taken_for_bad_input(
     assert closing_line.startswith("hdrlab: ") and "bug in hdrlab" in closing_line
 
 
-def test_too_little_memory_is_one_line_with_advice(monkeypatch, tmp_path, capsys):
+def test_memory_error_is_one_line_with_advice(monkeypatch, tmp_path, capsys):
     def exhausted(*_, **__):
         raise MemoryError("Unable to allocate 9 GiB")
 
@@ -540,14 +537,14 @@ def test_too_little_memory_is_one_line_with_advice(monkeypatch, tmp_path, capsys
 
 
 @pytest.mark.parametrize("words", ["--debug info missing.jpg", "info missing.jpg --debug"])
-def test_debug_shows_the_traceback_of_bad_input_too(words, monkeypatch, tmp_path, capsys):
+def test_debug_shows_the_traceback_of_bad_input(words, monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
     code, _, complaint = hdrlab(*words.split(), capsys=capsys)
     assert code == 2 and "Traceback" in complaint
     assert "missing.jpg" in complaint.splitlines()[-1]
 
 
-def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(tmp_path, capsys):
+def test_lab_copies_notebooks_and_keeps_the_readers_changes(tmp_path, capsys):
     copy = tmp_path / "mine"
     assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
     mine = [copy / "notebooks/04_response_gsolve.ipynb", copy / "assignments/hw2.ipynb"]
@@ -559,7 +556,7 @@ def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(
 
 
 @pytest.mark.papers
-def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
+def test_lab_opens_the_first_notebook(tmp_path, monkeypatch):
     called = []
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", "")  # which the command sets
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", called.append)
@@ -569,7 +566,7 @@ def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
     assert called[0][-2:] == ["--port", "9000"]
 
 
-def test_lab_saves_what_the_widgets_show_and_keeps_news_away(tmp_path, monkeypatch):
+def test_lab_saves_widget_state_and_disables_news(tmp_path, monkeypatch):
     server = pytest.importorskip("jupyterlab_server.config")
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", str(tmp_path / "own"))
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", lambda options: None)
@@ -580,12 +577,12 @@ def test_lab_saves_what_the_widgets_show_and_keeps_news_away(tmp_path, monkeypat
     assert os.environ["JUPYTER_CONFIG_PATH"].endswith(os.pathsep + str(tmp_path / "own"))
 
 
-def test_an_agreement_that_cannot_be_measured_is_no_number_of_stops():
+def test_agreement_that_cannot_be_measured_is_not_stated_in_stops():
     assert "0.012 stops" in describe_agreement(0.0123)
     assert not re.search(r"\d|nan|stops", describe_agreement(float("nan")))
 
 
-def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, capsys):
+def test_calibrate_scales_the_map_by_one_meter_reading(photographs, tmp_path, capsys):
     folder, times = photographs
     arguments = ["assemble", folder, "--times", times, "--align", "none", "-o", tmp_path / "a.exr"]
     code, _, said = hdrlab(*arguments, "--calibrate", "20,30=50", capsys=capsys)
@@ -602,7 +599,9 @@ def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, ca
     ("reading", "expected"),
     [("20;30=50", "expected X,Y=CD"), ("900,3=50", "144 x 96"), ("20,30=0", "got 0 at")],
 )
-def test_a_reading_that_cannot_be_writes_nothing(photographs, tmp_path, capsys, reading, expected):
+def test_invalid_meter_readings_are_rejected_and_nothing_is_written(
+    photographs, tmp_path, capsys, reading, expected
+):
     folder, times = photographs
     arguments = [
         "assemble",

@@ -38,14 +38,14 @@ def test_compare_makes_a_sheet_of_every_operator(map_file, tmp_path, capsys):
     assert all(f"{name}: Q 0." in alt for name in operators)
 
 
-def test_compare_takes_the_operators_asked_for(map_file, tmp_path):
+def test_compare_uses_the_named_operators(map_file, tmp_path):
     sheet = tmp_path / "sheet.png"
     assert hdrlab("compare", map_file, "-o", sheet, "--operators", "reinhard, curves") == 0
     assert "through 2 tone-mapping operators" in alt_of(sheet)
     assert "reinhard: Q" in alt_of(sheet) and "curves: Q" in alt_of(sheet)
 
 
-def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
+def test_compare_reduces_a_large_map_to_the_given_size(map_file, tmp_path):
     sheet = tmp_path / "sheet.png"
     assert hdrlab("compare", map_file, "-o", sheet, "--operators", "reinhard", "--size", 32) == 0
     assert "32 x 24" in alt_of(sheet)
@@ -62,7 +62,7 @@ def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
         (["-o", "missing/sheet.png"], "missing"),
     ],
 )
-def test_what_cannot_be_compared_ends_in_one_line(
+def test_bad_input_of_compare_is_a_one_line_error(
     options, said, map_file, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
@@ -71,7 +71,7 @@ def test_what_cannot_be_compared_ends_in_one_line(
     assert list(tmp_path.iterdir()) == [map_file]
 
 
-def test_compare_repairs_what_is_no_radiance_and_says_so(tmp_path, capsys):
+def test_compare_repairs_invalid_values_with_a_note(tmp_path, capsys):
     broken, sheet = tmp_path / "broken.pfm", tmp_path / "sheet.png"
     pixels = np.array([[1, np.nan, 3], [np.inf, 2, 4]], "<f4")
     broken.write_bytes(b"Pf\n3 2\n-1.0\n" + pixels.tobytes())
@@ -86,7 +86,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_long_work_shows_the_seconds_and_leaves_a_clean_line():
+def test_elapsed_shows_seconds_and_clears_the_line():
     terminal = Terminal()
     with elapsed("tone mapping", stream=terminal, delay=0.01):
         deadline = time.monotonic() + 300
@@ -98,7 +98,7 @@ def test_long_work_shows_the_seconds_and_leaves_a_clean_line():
     assert said.endswith(lines[-1] + "\r" + " " * (len(lines[-1]) - 1) + "\r")
 
 
-def test_short_work_and_a_pipe_are_told_nothing():
+def test_elapsed_prints_nothing_for_short_work_or_into_a_pipe():
     terminal, pipe = Terminal(), io.StringIO()
     with elapsed("tone mapping", stream=terminal):
         pass
@@ -107,7 +107,7 @@ def test_short_work_and_a_pipe_are_told_nothing():
     assert terminal.getvalue() == pipe.getvalue() == ""
 
 
-def test_an_error_passes_through_and_the_line_is_removed():
+def test_elapsed_clears_the_line_after_an_error():
     terminal = Terminal()
     with pytest.raises(ValueError, match="bad"), elapsed("work", stream=terminal, delay=0.001):
         time.sleep(0.05)

@@ -17,16 +17,16 @@ def results(tmp_path_factory):
 
 
 @pytest.mark.papers
-def test_the_demo_announces_as_many_steps_as_it_takes(results):
+def test_demo_yields_as_many_lines_as_announced(results):
     assert len(results[1]) == demo.STEPS
 
 
-def test_the_demo_writes_three_maps_a_picture_and_a_report(results):
+def test_demo_writes_three_maps_a_picture_and_a_report(results):
     names = sorted(file.name for file in results[0].iterdir())
     assert names == ["picture.png", "radiance.exr", "radiance.hdr", "radiance.pfm", "report.html"]
 
 
-def test_the_three_maps_hold_the_same_radiance(results):
+def test_maps_of_the_demo_have_the_same_radiance(results):
     E = {
         suffix: read_radiance(results[0] / f"radiance{suffix}")
         for suffix in (".hdr", ".exr", ".pfm")
@@ -38,25 +38,25 @@ def test_the_three_maps_hold_the_same_radiance(results):
     assert np.all(np.abs(E[".hdr"] - E[".pfm"]) <= brightest / 128)
 
 
-def test_the_picture_uses_the_display_from_dark_to_bright(results):
+def test_picture_of_the_demo_uses_the_range_of_the_display(results):
     picture = cv2.imread(str(results[0] / "picture.png"))
     assert picture.min() < 20 and picture.max() > 235 and 60 < picture.mean() < 200
 
 
-def test_the_report_is_one_file_that_asks_for_nothing_outside_itself(results):
+def test_report_of_the_demo_loads_nothing(results):
     page = (results[0] / "report.html").read_text(encoding="utf8")
     assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
     assert page.count("<img") == page.count("alt=")
 
 
 @pytest.mark.papers
-def test_the_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
+def test_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
     list(demo.demo_steps(tmp_path))
     assert (tmp_path / "radiance.pfm").read_bytes() == (results[0] / "radiance.pfm").read_bytes()
 
 
 @pytest.mark.papers
-def test_the_demo_on_real_photographs_prints_as_many_lines_without_a_truth(tmp_path):
+def test_demo_on_real_photos_has_the_same_steps_and_no_errors_section(tmp_path):
     lines = list(demo.real_steps(tmp_path / "new"))
     assert len(lines) == demo.STEPS and lines[1].split()[:2] == ["bracket", "6"]
     assert "the frames agree to 0.0" in lines[6]
@@ -66,7 +66,7 @@ def test_the_demo_on_real_photographs_prints_as_many_lines_without_a_truth(tmp_p
     assert "median error" not in (tmp_path / "new" / "report.html").read_text("utf8")
 
 
-def test_the_command_takes_the_real_photographs_where_it_is_told_to(tmp_path, monkeypatch):
+def test_demo_real_uses_the_real_photos(tmp_path, monkeypatch):
     monkeypatch.setattr(demo, "real_steps", lambda out: iter([f"real in {out}"]))
     ran = CliRunner().invoke(cli.main, ["demo", "--real", "--out", str(tmp_path)])
     assert ran.exit_code == 0 and ran.output == f"real in {tmp_path}\n"

@@ -51,7 +51,7 @@ def contents(folder):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_no_command_writes_over_what_it_reads(name, here, capsys):
+def test_no_command_overwrites_its_input(name, here, capsys):
     before = contents(here)
     words = name.split()[: 2 if name.startswith("course") else 1]
     with pytest.raises(SystemExit) as stop:
@@ -65,7 +65,7 @@ def test_no_command_writes_over_what_it_reads(name, here, capsys):
     assert contents(here) == before
 
 
-def test_a_command_may_be_run_again_beside_its_photographs(here, capsys):
+def test_command_can_be_repeated_with_its_output_among_the_photos(here, capsys):
     for _ in range(2):
         with pytest.raises(SystemExit) as stop:
             cli.run(
@@ -83,7 +83,7 @@ def test_a_command_may_be_run_again_beside_its_photographs(here, capsys):
         assert not stop.value.code
 
 
-def test_other_capitals_are_the_same_name_where_the_disk_says_so(tmp_path):
+def test_require_other_finds_two_names_of_one_file(tmp_path):
     """As on Windows and macOS: there both names lead to one file, which a link shows here."""
     (tmp_path / "IMG.JPG").write_bytes(b"original")
     os.link(tmp_path / "IMG.JPG", tmp_path / "img.jpg")
@@ -91,7 +91,7 @@ def test_other_capitals_are_the_same_name_where_the_disk_says_so(tmp_path):
         files.require_other([tmp_path / "img.jpg"], [tmp_path / "IMG.JPG"])
 
 
-def test_a_word_that_no_file_could_be_called_is_no_file(tmp_path):
+def test_require_other_ignores_values_that_are_no_file_names(tmp_path):
     files.require_other([tmp_path], ["x" * 5000, "a\0b", ""])
 
 
