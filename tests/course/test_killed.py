@@ -32,7 +32,7 @@ HIDDEN = """
 import pytest
 
 @pytest.mark.points(2)
-def test_the_middle_counts_most(subject):
+def test_the_hat_weights_mid_gray_most(subject):
     assert subject.hat(256).argmax() in (127, 128)
 """
 FLAT = "import numpy as np\n\ndef hat(n=256):\n    return np.ones(n)\n"

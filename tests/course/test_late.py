@@ -36,26 +36,26 @@ def test_a_project_costs_no_more_than_it_is_worth():
     assert (one.penalty, one.score) == (87.5, 0)
 
 
-def test_a_project_at_zero_does_not_eat_into_another():
+def test_a_project_without_points_loses_none_and_takes_none_from_another():
     found = costs([LateRecord("hw1", 500, (ANNA,), 80), LateRecord("hw2", 3, (ANNA,), 90)])
     assert (found[ANNA, "hw1"].score, found[ANNA, "hw2"].score) == (0, 87)
 
 
-def test_in_a_team_each_pays_with_their_own_days():
+def test_each_member_of_a_late_team_pays_with_their_own_free_days():
     found = costs([LateRecord("hw1", 9, (ANNA,), 100), LateRecord("project", 3, (ANNA, BEN), 100)])
     assert (found[ANNA, "project"].penalty, found[BEN, "project"].penalty) == (2, 0)
     assert (found[ANNA, "project"].left, found[BEN, "project"].left) == (0, 7)
 
 
 @given(terms)
-def test_what_a_partner_did_before_changes_nothing_for_the_other(term):
+def test_free_days_that_a_partner_used_elsewhere_do_not_change_a_students_score(term):
     alone = [replace(one, students=(ANNA,)) for one in term if ANNA in one.students]
     together = {key: one for key, one in costs(term).items() if key[0] == ANNA}
     assert together == costs(alone)
 
 
 @given(terms, st.integers(0, 12))
-def test_nobody_spends_more_grace_than_there_is_and_every_late_day_is_accounted_for(term, grace):
+def test_nobody_uses_more_free_days_than_they_have_and_every_late_day_is_charged(term, grace):
     found = costs(term, grace=grace)
     for student in (ANNA, BEN, CY):
         mine = [one for (who, _), one in found.items() if who == student]
@@ -81,7 +81,7 @@ def test_another_day_late_never_raises_a_score(term, late):
         assert all(rows[1][1][student].score <= one.score for student, one in rows[0][1].items())
 
 
-def test_the_what_if_table_holds_what_would_come_of_it():
+def test_the_what_if_table_equals_the_charge_for_each_number_of_late_days():
     term = [LateRecord("hw1", 7, (ANNA,), 100), LateRecord("project", 0, (ANNA, BEN), 90)]
     for late, rows in what_if(term, "project"):
         assert rows == {
@@ -91,7 +91,7 @@ def test_the_what_if_table_holds_what_would_come_of_it():
     assert [rows[ANNA].penalty for _, rows in what_if(term, "project", (3, 4, 99))] == [0, 1, 90]
 
 
-def test_a_day_begun_is_a_day_late_whatever_zone_it_began_in():
+def test_a_started_day_counts_as_a_late_day_in_every_time_zone():
     due = datetime.fromisoformat("2026-03-28T23:59:00+01:00")  # the clocks change in this night
     received = datetime.fromisoformat("2026-03-29T23:59:00+02:00")  # 23 hours later
     assert days_late(due, received) == 1
@@ -112,7 +112,7 @@ def test_times_without_a_zone_are_refused():
         ([LateRecord("hw1", 0, (ANNA,), 9), LateRecord("hw1", 1, (ANNA,), 9)], "twice"),
     ],
 )
-def test_what_makes_no_sense_is_refused(handed, said):
+def test_meaningless_late_records_are_refused(handed, said):
     with pytest.raises(ValueError, match=said):
         list(charge_late_days(handed))
     with pytest.raises(ValueError, match="handed in"):
@@ -120,7 +120,7 @@ def test_what_makes_no_sense_is_refused(handed, said):
 
 
 @pytest.mark.parametrize("terms", [{"grace": -1}, {"per_day": -0.5}])
-def test_days_and_points_below_zero_are_refused_and_none_of_both_is_not(terms):
+def test_negative_days_and_points_are_refused_and_zero_is_accepted(terms):
     handed = [LateRecord("hw1", 2, (ANNA,), 9)]
     with pytest.raises(ValueError, match="at least 0"):
         list(charge_late_days(handed, **terms))

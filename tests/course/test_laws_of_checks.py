@@ -27,7 +27,7 @@ SCENES = {
 }
 
 
-def test_there_is_a_row_here_for_each_scene():
+def test_this_file_has_a_row_for_each_scene_of_the_laws():
     assert SCENES.keys() == laws.RADIANCES.keys()
 
 
@@ -42,7 +42,7 @@ def test_each_scene_of_the_laws_is_the_same_in_every_year(name):
     assert np.isclose(L.sum(dtype=np.float64), whole, rtol=1e-6, atol=0)
 
 
-def test_the_two_halves_and_the_hot_pixels_stand_where_they_did():
+def test_halves_and_hot_pixels_have_fixed_positions():
     assert laws.RADIANCES["1e-12 next to 1e12"][:, 9:11].tolist() == [[1e-12, 1e12]] * 16
     assert np.argwhere(laws.RADIANCES["one lamp in the dark"]).tolist() == [[8, 6]]
     assert np.argwhere(laws.RADIANCES["one hot pixel"] > 1e11).tolist() == [[48, 42]]
@@ -131,7 +131,7 @@ def test_light_that_is_upside_down_shows_the_scene_and_is_not_the_right_way_up()
         laws.keeps_the_light_the_right_way_up(lambda L: shown(L, sign=-1))
 
 
-def test_what_lies_beyond_white_shows_nothing():
+def test_clipped_pixels_show_no_detail():
     with pytest.raises(AssertionError, match="equally bright"):
         laws.shows_the_scene(lambda L: np.where(shown(L, stripes=1) > 1, 4 * shown(L), 0.5))
     laws.shows_the_scene(lambda L: np.where(shown(L, stripes=1) > 1, 3 * (shown(L) - 0.4), 0.5))
@@ -186,7 +186,7 @@ def test_the_same_seed_draws_the_same_response_in_every_year():
     )
 
 
-def test_a_curve_that_says_nothing_errs_by_the_spread_of_the_truth_over_levels_10_to_250():
+def test_a_constant_curve_errs_by_the_spread_of_the_true_curve():
     levels = np.log(np.maximum(np.arange(256.0), 1))
     assert np.isclose(
         laws.curve_error(np.zeros(256), levels), np.sqrt((241**2 - 1) / 12) / 250, rtol=1e-12

@@ -102,7 +102,7 @@ def test_the_job_holds_all_that_the_checks_are_to_know(heard):
 @pytest.mark.parametrize(
     ("student", "secret", "seeded"), [("", "", 0), ("", "s", 0), ("ada", "", 1), ("ada", "s", 2)]
 )
-def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is_a_secret(
+def test_inputs_are_the_public_ones_without_a_student_and_drawn_with_a_secret(
     student, secret, seeded, heard
 ):
     (found,) = heard(conditions=GradingOptions("strict", student, secret))
@@ -111,13 +111,13 @@ def test_inputs_are_public_without_a_student_and_the_seed_is_told_where_there_is
     assert len(found.seed) == (16 if seeded == 2 else 0)
 
 
-def test_more_of_a_job_stands_beside_the_rest(heard, monkeypatch):
+def test_extra_fields_of_a_job_are_added_to_the_others(heard, monkeypatch):
     heard()
     list(grader.iter_events(READ, HOMEWORK, GradingOptions(), by="other", asked=[1]))
     assert heard.jobs[1][4]["by"] == "other" and heard.jobs[1][4]["asked"] == [1]
 
 
-def test_hidden_checks_stand_after_each_tasks_own(heard, tmp_path):
+def test_hidden_checks_come_after_the_checks_of_the_task(heard, tmp_path):
     for name in ("test_hat.py", "test_other.py"):
         (tmp_path / name).write_text("", encoding="utf8")
     heard(conditions=GradingOptions(hidden=tmp_path))
@@ -131,7 +131,7 @@ def test_hidden_checks_stand_after_each_tasks_own(heard, tmp_path):
             heard(conditions=GradingOptions(hidden=missing))
 
 
-def test_the_checks_of_a_variant_are_reworded_and_those_of_ones_own_folder_are_not(heard, tmp_path):
+def test_checks_are_adapted_to_the_variant_except_for_hidden_ones(heard, tmp_path):
     hw1 = plan.read().homeworks["hw1"]
     (task,) = [one for one in hw1.tasks if one.id == "exclusion"]
     homework = hw1._replace(tasks=(task._replace(variant="compared/above/six"), *HOMEWORK.tasks))
@@ -145,12 +145,12 @@ def test_the_checks_of_a_variant_are_reworded_and_those_of_ones_own_folder_are_n
     assert texts[files[1]] == "hidden"
 
 
-def test_a_tier_that_is_not_to_be_had_ends_the_grading(heard):
+def test_an_unavailable_tier_ends_the_grading(heard):
     with pytest.raises(Unavailable, match="no walls"):
         heard(check("hold"), {"unavailable": "no walls"}, ending("hold"))
 
 
-def test_a_result_comes_after_each_check_that_has_ended_and_at_last(heard):
+def test_a_result_is_yielded_after_each_check_and_at_the_end(heard):
     lines = [check("hold"), check("fail"), ending("hold"), ending("fail", "fails")]
     found = heard(*lines, {"recognised": "hat", "sentence": "S", "once": True})
     outcomes = [[one.outcome for one in each.checks] for each in found]
@@ -172,14 +172,14 @@ def test_a_check_says_of_its_ending_what_was_written_down(heard):
     assert one.message == "m" * 2000 and one.said == "s" * 2000
 
 
-def test_a_check_that_was_never_run_was_not_answered(heard):
+def test_a_check_that_never_ran_has_no_answer(heard):
     (found,) = heard(check("hold"))
     (one,) = found.checks
     assert (one.outcome, one.said) == ("no answer", "") and one.message
     assert (one.points, one.kind) == (0, "")
 
 
-def test_a_promise_with_cases_shows_the_first_that_does_not_hold(heard):
+def test_a_check_with_several_cases_shows_the_first_failing_case(heard):
     cases = [check("hold", case=case) for case in ("[a]", "[b]", "[c]")]
     ends = [
         ending("hold", case="[a]", message="note a"),
@@ -192,14 +192,14 @@ def test_a_promise_with_cases_shows_the_first_that_does_not_hold(heard):
     assert [(one.outcome, one.message) for one in found.checks] == [("holds", "note a")]
 
 
-def test_of_two_endings_of_a_check_the_one_that_does_not_hold_counts_in_either_order(heard):
+def test_a_check_that_ended_twice_fails_if_it_failed_once(heard):
     ends = [ending("hold"), ending("hold", "fails", message="at its end")]
     for order in (ends, ends[::-1]):
         *_, found = heard(check("hold"), *order)
         assert [(one.outcome, one.message) for one in found.checks] == [("fails", "at its end")]
 
 
-def test_points_of_each_task_are_shared_out_by_those_of_its_checks(heard):
+def test_the_points_of_a_task_are_split_by_the_weights_of_its_checks(heard):
     gsolve, hat = (next(one for one in HOMEWORK.tasks if one.id == id) for id in ("gsolve", "hat"))
     tasks = (gsolve._replace(points=7.5), hat._replace(points=4.0))
     lines = [
@@ -223,7 +223,7 @@ def test_points_of_each_task_are_shared_out_by_those_of_its_checks(heard):
 @pytest.mark.parametrize(
     ("more", "earned"), [({}, [2, 0, 0]), ({"once": False}, [2, 0, 0]), ({"once": True}, [2, 0, 2])]
 )
-def test_a_named_mistake_is_the_cause_of_what_fails_in_its_task(more, earned, heard):
+def test_a_recognized_mistake_is_named_as_the_cause_of_its_tasks_failures(more, earned, heard):
     lines = [check("hold", points="2"), check("fail", points="3"), check("err", points="3")]
     ends = [ending("hold"), ending("fail", "fails"), ending("err", "fails")]
     homework = HOMEWORK._replace(tasks=tuple(one._replace(points=8.0) for one in HOMEWORK.tasks))
@@ -239,7 +239,7 @@ def test_a_named_mistake_is_the_cause_of_what_fails_in_its_task(more, earned, he
     assert [one.follows for one in found.checks] == ["", "", ""]
 
 
-def test_what_a_promise_needs_is_taken_over(heard):
+def test_a_check_that_needs_another_one_is_passed_on_to_the_scoring(heard):
     lines = [check("fail"), check("hold", needs="fail")]
     *_, found = heard(*lines, ending("fail", "fails"), ending("hold"))
     assert [one.points for one in found.checks] == [0, 0] and "It fails" in found.checks[1].message
@@ -258,9 +258,7 @@ def drawn(kind, shape, wrong):
 @pytest.mark.parametrize(
     ("kind", "shape", "frames"), [("curve", (30,), 1), ("image", (12, 9), 3), ("image", (4,), 0)]
 )
-def test_a_difference_is_drawn_for_the_task_it_is_of_and_none_where_it_cannot_be(
-    kind, shape, frames, heard
-):
+def test_a_difference_is_drawn_at_its_own_check_if_it_can_be_drawn(kind, shape, frames, heard):
     line = ending("fail", "fails", differs=drawn(kind, shape, 3))
     for end in (line, line | {"ended": "/tmp/a/test_hat.py::fail"}):
         begun = check("fail") | {"check": end["ended"]}

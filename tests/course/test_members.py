@@ -75,7 +75,7 @@ def test_a_name_that_no_submission_needs_is_refused_and_quoted(name):
         "a:"[:1] + "b",
     ],
 )
-def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
+def test_a_harmless_name_that_resembles_a_dangerous_one_is_accepted(name):
     assert members.check_names([name]) == [PurePosixPath(name)]
     deep = "/".join("abcdefghijkl")
     assert members.check_names([deep, "./x/./y"])[1] == PurePosixPath("x/y")
@@ -96,7 +96,7 @@ def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
         (["x/a", "X/a/b"], "'X/a/b'"),
     ],
 )
-def test_two_names_that_are_one_file_on_some_system_are_refused_at_the_second(names, twice):
+def test_names_that_are_the_same_file_on_some_system_are_refused(names, twice):
     with pytest.raises(ArchiveRejected, match="twice") as refused:
         members.check_names([*names[:1], "between", *names[1:]])
     assert twice in str(refused.value)
@@ -107,12 +107,12 @@ def test_files_may_share_their_folders():
     assert members.check_names(names) == [PurePosixPath(name) for name in names]
 
 
-def test_of_a_long_name_sixty_letters_are_shown():
+def test_a_long_name_is_shown_with_its_first_sixty_letters():
     assert members.quote_name("n" * 60) == repr("n" * 60)
     assert len(members.quote_name("n" * 200)) == len(members.quote_name("n" * 61)) == 62
 
 
-def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
+def test_too_many_members_are_refused_with_their_number():
     members.check_count(3, ArchiveLimits(max_members=3))
     with pytest.raises(ArchiveRejected, match="4 members.*3"):
         members.check_count(4, ArchiveLimits(max_members=3))
@@ -120,7 +120,7 @@ def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
         members.check_names(["../a", "b"], ArchiveLimits(max_members=1))
 
 
-def test_a_ratio_is_said_in_whole_times_also_of_nothing():
+def test_a_compression_ratio_that_is_too_large_is_refused_with_the_ratio():
     big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
     with pytest.raises(ArchiveRejected, match="262144 times .*200"):
         members.check_sizes(big, 4, LIMITS)
@@ -138,9 +138,7 @@ def test_a_ratio_is_said_in_whole_times_also_of_nothing():
 
 
 @pytest.mark.parametrize("size", [0, 1, 65535, 65536, 65537, 200_000])
-def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less_is_refused(
-    size, tmp_path
-):
+def test_a_member_must_have_exactly_the_size_that_it_claims(size, tmp_path):
     data = bytes(k % 251 for k in range(size))
     members.write_member(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
     assert (tmp_path / "new" / "folder" / "a").read_bytes() == data
@@ -160,14 +158,14 @@ class Endless(io.RawIOBase):
         return bytes(size)
 
 
-def test_of_what_never_ends_no_more_is_read_than_tells_that_it_is_too_large(tmp_path):
+def test_an_endless_member_is_read_only_until_it_exceeds_its_claimed_size(tmp_path):
     source = Endless()
     with pytest.raises(ArchiveRejected, match="larger than the 10 bytes"):
         members.write_member(source, tmp_path / "a", 10)
     assert source.taken == 11
 
 
-def test_a_member_takes_no_files_place_follows_no_link_and_cannot_be_run(tmp_path):
+def test_a_member_overwrites_nothing_follows_no_link_and_is_not_executable(tmp_path):
     (tmp_path / "there").write_bytes(b"old")
     (tmp_path / "link").symlink_to(tmp_path / "planted")
     for name in ("there", "link"):
@@ -178,7 +176,7 @@ def test_a_member_takes_no_files_place_follows_no_link_and_cannot_be_run(tmp_pat
     assert stat.S_IMODE((tmp_path / "a").stat().st_mode) & 0o133 == 0
 
 
-def test_what_is_packed_is_the_same_to_the_byte_in_every_year_and_says_what_can_be_run():
+def test_a_packed_zip_is_reproducible_and_keeps_executable_bits():
     files = {"run": b"#!", "b.PNG": b"0" * 99, "a.txt": b"0" * 99}
     whole = make_zip(files, ["run"])
     assert whole == make_zip(dict(reversed(files.items())), ("run",))

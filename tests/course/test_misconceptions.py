@@ -34,7 +34,7 @@ def roughened(answer):
     return answer
 
 
-def test_there_are_thirty_and_more_and_some_for_every_task():
+def test_every_task_has_named_mistakes_and_there_are_thirty_or_more():
     assert len(KNOWN) >= 30
     tasks = {task.id for homework in PLAN.homeworks.values() for task in homework.tasks}
     assert {one.task for one in KNOWN} == tasks
@@ -57,7 +57,7 @@ def test_a_mistake_has_a_sentence_and_says_what_to_do(one):
 
 
 @pytest.mark.grading
-def test_nine_in_ten_are_recognised_by_name_for_any_student():
+def test_nine_in_ten_mistakes_are_recognized_whatever_inputs_a_student_draws():
     for student in ("ada", "grace"):
         missed = []
         for one in KNOWN:
@@ -71,7 +71,7 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
 
 @pytest.mark.grading
 @pytest.mark.parametrize("task", sorted({one.task for one in KNOWN}))
-def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
+def test_the_library_and_a_blank_stub_are_not_taken_for_a_mistake(task):
     subject = inprocess.library()
     scoring.score(task, subject)
     assert misconceptions.closest(PLAN.task(task), subject.calls) is None
@@ -82,7 +82,7 @@ def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
 
 
 @pytest.mark.grading
-def test_nonsense_is_no_known_mistake():
+def test_a_nonsense_answer_is_not_taken_for_a_known_mistake():
     Z = np.random.default_rng(0).integers(0, 256, (30, 4))
     given = (Z, np.arange(4.0), 10.0, np.ones(256))
     answers = (
@@ -138,7 +138,7 @@ def test_no_two_sentences_are_the_same():
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_how_far_two_answers_are_apart_is_a_share_of_their_size_however_small(scale):
+def test_the_difference_of_two_answers_is_relative_to_their_size(scale):
     assert misconceptions.difference([1.1 * scale, -1.1 * scale], [scale, -scale]) == pytest.approx(
         0.1
     )
@@ -146,9 +146,7 @@ def test_how_far_two_answers_are_apart_is_a_share_of_their_size_however_small(sc
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_named(
-    order, monkeypatch
-):
+def test_the_mistake_nearest_over_all_calls_is_named(order, monkeypatch):
     def answers(share):
         return lambda L: 3 * (1 + share * L.max())
 
@@ -171,9 +169,7 @@ def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_nam
         ("solve", np.eye(3), np.eye(3) - 5),
     ],
 )
-def test_answers_that_differ_in_their_scale_or_gauge_alone_are_compared_as_the_same(
-    task, answer, other
-):
+def test_answers_that_differ_only_in_a_free_scale_or_offset_count_as_equal(task, answer, other):
     in_gauge = misconceptions.in_gauge
     assert misconceptions.difference(in_gauge(task, other), in_gauge(task, answer)) < 1e-12
     assert misconceptions.difference(other, answer) > 0.5

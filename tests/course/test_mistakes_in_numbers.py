@@ -98,7 +98,7 @@ def test_an_answer_is_compared_in_the_gauge_or_scale_that_its_checks_leave_free(
 
 
 @pytest.mark.parametrize("answer", ["no", None, 7, {"a": 1}])
-def test_an_answer_of_another_form_stays_as_it_is(answer):
+def test_an_answer_of_another_shape_is_not_rescaled(answer):
     for task in ("gsolve", "recover_steps"):
         assert in_gauge(task, answer) is answer or in_gauge(task, answer) == answer
     assert in_gauge("merge", answer) is answer
@@ -148,7 +148,7 @@ def test_a_mistake_must_explain_all_but_a_tenth_of_the_difference_to_the_library
     assert named({"two": 2.0}, came) == name
 
 
-def test_at_a_thousandth_to_the_last_bit_an_answer_is_still_the_same(named):
+def test_a_difference_of_exactly_one_thousandth_still_counts_as_equal(named):
     assert named({"near": 1001.0}, 1001.0, right=1000.0) is None
     assert named({"near": 1000.0}, 1001.0, right=998.0) == "near"
 
@@ -160,12 +160,12 @@ def test_of_two_mistakes_that_differ_in_the_last_bit_of_one_value_the_nearer_is_
     assert named({"far": far, "near": near}, near, right=np.ones(4)) == "near"
 
 
-def test_where_the_difference_to_the_library_is_small_a_tenth_of_it_is_asked(named):
+def test_a_mistake_close_to_the_library_must_match_within_a_tenth_of_their_difference(named):
     assert named({"some": 1.1}, 1.11) == "some"  # 0.0091 of 1.1, of 0.11
     assert named({"some": 1.1}, 1.115) is None
 
 
-def test_each_call_must_agree_and_the_nearest_in_all_is_named(named):
+def test_a_mistake_is_named_only_if_it_matches_every_call(named):
     assert named({"a": 2.0, "b": 2.1}, 2.0, 2.0) == "a"
     assert named({"b": 2.1, "a": 2.0}, 2.0, 2.02) == "a"
     assert named({"a": 2.0, "b": 2.1}, 2.1, 2.09) == "b"
@@ -176,7 +176,7 @@ def test_each_call_must_agree_and_the_nearest_in_all_is_named(named):
     assert named({}, 2.0) is None
 
 
-def test_a_wrong_function_may_warn_and_may_fail_and_then_has_no_answer():
+def test_a_mistake_may_warn_and_has_no_answer_if_it_fails():
     def warns(k):
         warnings.warn("of a kind", UserWarning, stacklevel=1)
         return np.log(np.zeros(1)) * 0 + k

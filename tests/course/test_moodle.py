@@ -86,7 +86,9 @@ def importer(name):
     return (int(parts[1]), parts[2] + "_" + parts[3], parts[4]) if len(parts) == 5 else None
 
 
-def test_the_gradebook_s_table_says_who_in_three_ways_and_the_score_after_its_penalty(rows):
+def test_the_moodle_table_identifies_a_student_in_three_ways_and_has_the_score_after_the_penalty(
+    rows,
+):
     header, lines = moodle.gradebook(rows, ROSTER, HOMEWORK)
     read = list(csv.reader(io.StringIO(csv_tables.csv_text(header, lines))))
     assert read[0] == ["ID number", "Username", "Email address", "hw2: The response curve"]
@@ -94,9 +96,7 @@ def test_the_gradebook_s_table_says_who_in_three_ways_and_the_score_after_its_pe
     assert [line[3] for line in read[1:]] == ["88.5", "88.5", "0.0", "0.0"]
 
 
-def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the_scores(
-    write, tmp_path
-):
+def test_a_moodle_worksheet_keeps_its_columns_and_gets_the_scores(write, tmp_path):
     write()
     with open(tmp_path / "moodle_worksheet.csv", encoding="utf-8-sig", newline="") as file:
         lines = list(csv.DictReader(file))
@@ -106,9 +106,7 @@ def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the
     assert grades == {"4711": "88.5", "4712": "88.5", "4713": "12.00", "4714": "", "4715": "55.00"}
 
 
-def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can_read(
-    write, tmp_path
-):
+def test_each_team_member_gets_the_feedback_page_in_moodles_archive(write, tmp_path):
     write()
     with zipfile.ZipFile(tmp_path / "moodle_feedback.zip") as archive:
         found = {importer(name): archive.read(name) for name in archive.namelist()}
@@ -116,14 +114,14 @@ def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can
     assert found == {(4711, kind, "feedback.html"): page, (4712, kind, "feedback.html"): page}
 
 
-def test_whom_the_roster_does_not_know_is_told_of_and_names_in_a_student_s_text_count_for_nothing(
+def test_students_missing_from_the_roster_are_reported_and_names_in_student_text_are_ignored(
     write,
 ):
     (said,) = write()
     assert "sheet.csv" in said and "'Eve'" in said
 
 
-def test_an_assignment_of_other_points_and_a_table_that_is_no_worksheet_are_refused(write):
+def test_a_worksheet_with_other_points_or_other_columns_is_refused(write):
     with pytest.raises(ValueError, match=r"10\.00"):
         write([row(4711, "Ada", "b1", most="10.00")])
     with pytest.raises(ValueError, match="identifier"):

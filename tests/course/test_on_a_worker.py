@@ -21,7 +21,7 @@ def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_pat
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monkeypatch):
+def test_a_worker_grades_a_job_from_its_bytes_and_marks_success_or_failure(fails, monkeypatch):
     seen = []
 
     def run(work, job, *, timeout, is_stopped):
@@ -48,7 +48,7 @@ def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monke
     assert len(seen) == 1
 
 
-def test_a_task_is_no_longer_wanted_when_it_is_forgotten_or_cancelled(monkeypatch):
+def test_a_remote_job_stops_when_it_is_forgotten_or_cancelled(monkeypatch):
     tasks = {
         "mine": SimpleNamespace(state="executing"),
         "other": SimpleNamespace(state="cancelled"),

@@ -35,7 +35,7 @@ def extra(folder):
     return plan.read(folder / "plan.toml").homeworks["extra"]
 
 
-def test_a_task_of_the_plan_may_be_a_function_beside_it(folder):
+def test_a_task_may_be_a_function_in_a_file_beside_the_plan(folder):
     (task,) = extra(folder).tasks
     assert task.own == folder / "flat_field.py" and task.name == "flat_field"
     assert plan.function(task)(4.0, [2.0, 2.0]).tolist() == [4.0, 4.0]
@@ -43,7 +43,7 @@ def test_a_task_of_the_plan_may_be_a_function_beside_it(folder):
 
 
 @pytest.mark.parametrize("function", ["../x.py:x", "ours/x.py:x", "x:x", "x.py:"])
-def test_a_function_elsewhere_is_refused(folder, function):
+def test_a_function_outside_the_plans_folder_is_refused(folder, function):
     text = (folder / "plan.toml").read_text()
     (folder / "plan.toml").write_text(text.replace(FILE, function))
     with pytest.raises(ValueError, match="plan"):
@@ -64,12 +64,12 @@ def test_a_second_task_joins_the_first_and_a_third_begins_another_homework(folde
 
 
 @pytest.mark.parametrize("name", ["flat_field", "extra", "Dark", "dark-frame", "class", "../dark"])
-def test_a_name_that_is_there_or_that_no_function_can_have_is_refused(folder, name):
+def test_a_task_name_that_is_taken_or_not_an_identifier_is_refused(folder, name):
     with pytest.raises(InputError):
         list(own_task.write(folder, name, "extra"))
 
 
-def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
+def test_the_assignment_of_an_own_task_has_its_stub_text_points_and_checks(
     folder, tmp_path, monkeypatch
 ):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
@@ -91,7 +91,7 @@ def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(
 
 
 @pytest.mark.grading
-def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
+def test_an_own_task_is_graded_with_its_mistakes_hidden_checks_and_point_limit(folder, tmp_path):
     (tmp_path / "extra.py").write_text(WRONG)
     conditions = GradingOptions("practice", hidden=folder / "hidden")
     found = grader.grade(tmp_path / "extra.py", extra(folder), conditions)
@@ -115,7 +115,7 @@ def test_a_check_is_worth_what_its_marker_says_and_without_one_a_point(marks, po
 
 
 @pytest.mark.grading
-def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(folder, tmp_path):
+def test_a_task_without_solution_and_mistakes_still_reports_failed_checks(folder, tmp_path):
     (task,) = extra(folder).tasks
     task.own.unlink()
     (tmp_path / "extra.py").write_text(WRONG)
@@ -150,7 +150,7 @@ def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):
 
 
 @pytest.mark.grading
-def test_its_own_tests_hold_as_written(folder):
+def test_the_tests_of_the_task_template_pass(folder):
     ran = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", str(folder)],
         cwd=folder,

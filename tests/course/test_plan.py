@@ -29,7 +29,7 @@ def test_grading_is_strict_and_lateness_costs_nothing_by_default():
     assert Late() == (0, 0.0)
 
 
-def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp_path):
+def test_a_task_is_named_after_its_function_and_an_own_task_has_a_file(tmp_path):
     library, own = (
         Task("a", "response.debevec.gsolve", 1),
         Task("a", f"{tmp_path}/v.1.py:vignette", 1),
@@ -40,12 +40,12 @@ def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp
 
 
 @pytest.mark.parametrize(("at_most", "points"), [(None, 12), (20.0, 12), (12.0, 12), (7.0, 7)])
-def test_a_homework_is_worth_its_tasks_or_what_counts_at_most(at_most, points):
+def test_a_homework_is_worth_the_sum_of_its_tasks_up_to_its_maximum(at_most, points):
     tasks = (Task("a", "b.a", 5.0), Task("c", "b.c", 7.0))
     assert Homework("hw", "", None, tasks, (ManualTask("x", 3.0),), at_most).points == points
 
 
-def test_a_solution_is_the_librarys_a_variants_or_ones_own(tmp_path):
+def test_a_solution_comes_from_the_library_a_variant_or_the_own_task(tmp_path):
     assert plan.function(Task("gsolve", "response.debevec.gsolve", 1)) is gsolve
     (tmp_path / "v.py").write_text("def vignette():\n    return 7\n", encoding="utf8")
     assert plan.function(Task("v", f"{tmp_path}/v.py:vignette", 1))() == 7
@@ -80,7 +80,7 @@ def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
         ("../v.py:vignette", False),
     ],
 )
-def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, read, tmp_path):
+def test_an_own_function_must_be_in_a_file_beside_the_plan(function, taken, read, tmp_path):
     tasks = f'{{ id = "shift", function = "{function}", points = 1 }}'
     if taken:
         assert read(tasks=tasks).homeworks["hw9"].tasks[0].own == tmp_path / "v.py"
@@ -103,7 +103,7 @@ def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, re
         ("1", "inf", "of 0 points or more each"),
     ],
 )
-def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
+def test_points_are_not_negative_and_not_all_zero(points, by_hand, said, read):
     lines = (
         f"by_hand = [{{ title = 'T', points = {by_hand}, rubric = ['a', 1] }}]" if by_hand else ""
     )
@@ -119,9 +119,7 @@ def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
 @pytest.mark.parametrize(
     ("at_most", "taken"), [(7.5, True), (0.1, True), (10.5, True), (10.6, False), (0, False)]
 )
-def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_hand(
-    at_most, taken, read
-):
+def test_the_maximum_of_a_homework_lies_between_zero_and_all_points(at_most, taken, read):
     lines = f"at_most = {at_most}\nby_hand = [{{ title = 'T', points = 3 }}]"
     if taken:
         assert read(lines).homeworks["hw9"].at_most == at_most
@@ -143,7 +141,7 @@ def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_
         ("'a'", 1, False),
     ],
 )
-def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
+def test_late_rules_are_not_negative(free, a_day, taken, read):
     late = f"[late]\nfree_days = {free}\npoints_a_day = {a_day}"
     if taken:
         assert read(before=late).late == (free, a_day)
@@ -161,7 +159,7 @@ def test_a_due_date_has_a_time_and_a_zone(due, read):
         read(due=due)
 
 
-def test_a_task_stands_once_in_all_homeworks_and_is_found_by_its_id(read):
+def test_a_task_occurs_in_one_homework_only_and_is_found_by_its_id(read):
     found = read()
     assert found.task("gsolve").points == 7.5
     with pytest.raises(KeyError, match="task out of gsolve.*'merge'"):
@@ -172,7 +170,7 @@ def test_a_task_stands_once_in_all_homeworks_and_is_found_by_its_id(read):
         read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
 
 
-def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_no_homework(
+def test_an_own_task_needs_a_file_of_checks_beside_it(
     tmp_path,
 ):
     own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))
@@ -182,7 +180,7 @@ def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_n
     assert grader.files_of(own, None) == [tmp_path / "test_vignette.py"]
 
 
-def test_a_secret_is_made_once_for_its_owner_and_read_ever_after(tmp_path):
+def test_a_secret_is_created_once_and_readable_by_its_owner_only(tmp_path):
     file = tmp_path / "secret"
     secret, made = plan.read_secret(file)
     assert made and len(secret) == 43 and file.read_text("utf8") == secret + "\n"
@@ -198,7 +196,7 @@ def test_a_secret_is_made_once_for_its_owner_and_read_ever_after(tmp_path):
         plan.read_secret(tmp_path / "link")
 
 
-def test_a_seed_is_a_digest_of_secret_student_and_task_that_does_not_change_with_the_years():
+def test_the_seed_of_a_student_and_task_never_changes():
     assert f"{plan.seed('salt', 'ada', 'gsolve'):064x}" == (
         "232f8d0106ce80bf45e6f941f8f86093a4e05652921d8288ce0ef3e1260b2131"
     )

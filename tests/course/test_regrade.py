@@ -164,7 +164,7 @@ def guessed(team):
     )
 
 
-def test_who_moves_by_how_much_and_why_is_seen_before_anything_counts(folder, capsys):
+def test_a_regrade_shows_all_score_changes_before_it_is_applied(folder, capsys):
     before, after = moved(1, -1)
     version = Path("checks/test_hat.py").read_text()
     correct(0)
@@ -193,7 +193,7 @@ def test_who_moves_by_how_much_and_why_is_seen_before_anything_counts(folder, ca
     )
 
 
-def test_what_is_applied_is_what_grading_from_scratch_gives_and_the_old_results_stay(folder):
+def test_an_applied_regrade_equals_grading_from_scratch_and_keeps_the_old_results(folder):
     grade()
     old = contents("out", "results")
     correct("other")
@@ -209,7 +209,7 @@ def test_what_is_applied_is_what_grading_from_scratch_gives_and_the_old_results_
     assert contents("out", *parts) == contents("scratch", *parts)
 
 
-def test_under_never_lower_nobody_falls_also_not_by_the_next_run(folder):
+def test_with_the_policy_never_lower_no_score_ever_falls(folder):
     _, after = moved(1, -1)
     version = Path("checks/test_hat.py").read_text()
     correct(0)
@@ -224,7 +224,7 @@ def test_under_never_lower_nobody_falls_also_not_by_the_next_run(folder):
     assert work() == expected
 
 
-def test_only_who_is_listed_or_has_asked_moves(folder):
+def test_with_the_policy_only_listed_only_listed_teams_change(folder):
     grade()
     before = work()
     while True:
@@ -249,7 +249,7 @@ def test_only_who_is_listed_or_has_asked_moves(folder):
     assert "hat: the middle, please" in Path("out/regrade/regrade.html").read_text()
 
 
-def test_who_asked_and_does_not_move_is_answered_too(folder):
+def test_a_regrade_request_without_a_change_is_answered(folder):
     grade()
     Path("asked.csv").write_text("student,task,words\nb4,hat,<script>\n")
     run("regrade", "out", "--requests", "asked.csv")
@@ -258,7 +258,7 @@ def test_who_asked_and_does_not_move_is_answered_too(folder):
     assert "<li><b>b4</b>" in page
 
 
-def test_the_journal_has_a_line_for_each_regrade_and_one_that_was_changed_is_found(folder, capsys):
+def test_the_journal_records_each_regrade_and_an_altered_line_is_found(folder, capsys):
     grade()
     before = work()
     for version in ("a", "b"):
@@ -292,7 +292,7 @@ def test_the_journal_has_a_line_for_each_regrade_and_one_that_was_changed_is_fou
         log.write_text(kept)
 
 
-def test_what_cannot_be_graded_anew_keeps_its_points(folder, monkeypatch, capsys):
+def test_a_submission_that_cannot_be_graded_again_keeps_its_points(folder, monkeypatch, capsys):
     grade()
     before = work()
     correct("1")
@@ -308,7 +308,7 @@ def test_what_cannot_be_graded_anew_keeps_its_points(folder, monkeypatch, capsys
     assert work() == expected | {"b4": before["b4"]}
 
 
-def test_a_secret_that_is_gone_is_told_of_and_not_made_anew(folder, capsys):
+def test_a_missing_secret_is_reported_and_not_replaced(folder, capsys):
     grade()
     Path("secret.txt").unlink()
     capsys.readouterr()
@@ -333,7 +333,7 @@ def test_a_secret_that_is_gone_is_told_of_and_not_made_anew(folder, capsys):
         ),
     ],
 )
-def test_what_cannot_be_regraded_is_told_in_a_line(folder, capsys, prepare, words, said):
+def test_an_impossible_regrade_is_refused_in_one_line(folder, capsys, prepare, words, said):
     Path("out").mkdir()
     prepare()
     capsys.readouterr()
@@ -411,7 +411,7 @@ def lived(rng):
 
 @pytest.mark.grading
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes that it has forked")
-def test_after_any_history_what_is_applied_equals_grading_from_scratch(folder):
+def test_after_any_history_an_applied_regrade_equals_grading_from_scratch(folder):
     rng, kills = random.Random(25), 0
     for number in range(HISTORIES):
         home = folder / f"class{number}"

@@ -53,7 +53,7 @@ def hostile():
     )
 
 
-def test_the_json_is_read_again_as_it_was(hostile):
+def test_a_result_survives_the_round_trip_through_json(hostile):
     data = results.to_json(hostile)
     assert results.from_json(data) == hostile
     read = json.loads(data)
@@ -64,7 +64,7 @@ def test_the_json_is_read_again_as_it_was(hostile):
 
 
 @pytest.mark.parametrize("data", [b"{}", b"[]", b'{"version": 99}', b'{"version": 1}', b"no json"])
-def test_anything_else_is_no_result(data):
+def test_other_data_is_refused_as_a_result(data):
     with pytest.raises((InputError, json.JSONDecodeError)):
         results.from_json(data)
 
@@ -105,7 +105,7 @@ def values(read):
 SECRETS = ("the message", "first hint", "expected 0.25", "what it printed", "test_hidden_name")
 
 
-def test_a_teams_copy_holds_of_a_hidden_check_its_words_and_points_alone(hostile):
+def test_a_teams_copy_shows_only_the_name_and_points_of_a_hidden_check(hostile):
     picture = Drawing(
         (web.encode_webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",)
     )
@@ -130,19 +130,19 @@ def test_a_teams_copy_holds_of_a_hidden_check_its_words_and_points_alone(hostile
     assert shown["checks"][0]["message"] == "yours to read" and shown["score"] == 0
 
 
-def test_what_a_later_version_adds_to_a_result_is_not_in_a_teams_copy(hostile):
+def test_unknown_fields_of_a_result_are_not_in_a_teams_copy(hostile):
     whole = json.loads(results.to_json(hostile))
     whole["answers"] = whole["checks"][0]["answer"] = whole["checks"][2]["answer"] = "expected 0.25"
     assert "expected 0.25" not in results.for_team(json.dumps(whole).encode()).decode()
 
 
-def test_all_that_is_written_is_for_its_owners_eyes(hostile, tmp_path):
+def test_written_results_are_readable_by_their_owner_only(hostile, tmp_path):
     for file in gradebook.write_results(tmp_path / "new" / "out", hostile):
         assert file.stat().st_mode & 0o077 == 0
     assert (tmp_path / "new" / "out").stat().st_mode & 0o077 == 0
 
 
-def test_a_promise_that_holds_and_earns_nothing_says_why(hostile):
+def test_a_passed_check_without_points_says_why(hostile):
     held = CHECK._replace(points=Fraction(), message="It only earns points if this passes, too: B")
     result = hostile._replace(checks=(held,))
     assert "if this passes, too: B" in feedback.text(
@@ -150,7 +150,7 @@ def test_a_promise_that_holds_and_earns_nothing_says_why(hostile):
     ) and "if this passes, too: B" in feedback.page(result)
 
 
-def test_gradescope_gets_what_its_schema_asks(hostile):
+def test_the_gradescope_file_follows_its_schema(hostile):
     """The keys, types and words of its specification of results.json."""
     read = json.loads(gradebook.gradescope(hostile))
     assert {"score", "output", "visibility", "stdout_visibility", "tests"} <= set(read)
@@ -177,14 +177,14 @@ def test_gradescope_shows_which_checks_passed_and_which_failed(hostile):
     assert {"passed", "failed"} == set(shown)
 
 
-def test_junit_is_xml_whatever_was_written(hostile):
+def test_the_junit_file_is_valid_xml_for_hostile_text(hostile):
     root = ElementTree.fromstring(gradebook.junit(hostile))
     assert root.get("tests") == "3" and root.get("failures") == "2"
     failures = [one.text or "" for one in root.iter("failure")]
     assert "<script>" in failures[0] and "\x00" not in failures[0] and failures[1] == ""
 
 
-def test_no_cell_of_the_table_is_a_formula(hostile):
+def test_a_spreadsheet_does_not_take_a_cell_of_the_table_for_a_formula(hostile):
     for student in ('=HYPERLINK("http://x")', "ada"):
         table = gradebook.table(hostile._replace(student=student))
         (row,) = csv.DictReader(io.StringIO(table))
@@ -192,7 +192,7 @@ def test_no_cell_of_the_table_is_a_formula(hostile):
         assert not any(cell.startswith(("=", "+", "@", "\t")) for cell in row.values())
 
 
-def test_a_page_holds_hostile_text_as_text(hostile):
+def test_the_feedback_page_escapes_hostile_text(hostile):
     page = feedback.page(hostile)
     assert "<script" not in page and "<img src=x" not in page and "default-src 'none'" in page
     assert "&lt;script&gt;" in page and "the secret" not in page
@@ -211,13 +211,13 @@ def test_the_hints_are_three_steps_each_within_the_one_before(hostile):
     assert page.count("<details") == page.count("</details>")
 
 
-def test_all_forms_are_written_whole_into_one_folder(hostile, tmp_path):
+def test_all_formats_of_a_result_are_written_to_one_folder(hostile, tmp_path):
     files = gradebook.write_results(tmp_path / "out", hostile)
     assert sorted(one.name for one in (tmp_path / "out").iterdir()) == sorted(gradebook.FILES)
     assert all(one.stat().st_size for one in files)
 
 
-def test_a_terminal_sees_hints_only_when_it_asks(hostile):
+def test_the_terminal_shows_hints_only_on_request(hostile):
     check = hostile.checks[1]._replace(hints=("first", "second", "third"))
     result = hostile._replace(checks=(check,))
     assert "first" not in feedback.text(result)
@@ -251,9 +251,7 @@ def chosen(earned, at_most):
     ("earned", "at_most", "score"),
     [((40, 40, 0), 80, 80), ((40, 40, 40), 80, 80), ((40, 20, 0), 80, 60)],
 )
-def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(
-    earned, at_most, score
-):
+def test_a_score_never_exceeds_the_maximum_of_a_homework_with_chosen_tasks(earned, at_most, score):
     result = chosen(earned, at_most)
     assert (result.score, result.max_score) == (score, 80)
     assert json.loads(gradebook.gradescope(result))["score"] == score
@@ -267,7 +265,7 @@ def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(
     assert results.from_json(results.to_json(result)) == result
 
 
-def test_a_result_that_an_earlier_version_wrote_counts_all_of_its_points():
+def test_a_result_of_an_earlier_version_counts_all_of_its_points():
     whole = json.loads(results.to_json(chosen((40, 40, 40), None)))
     del whole["at_most"]
     assert results.from_json(json.dumps(whole).encode()).score == 120

@@ -52,12 +52,12 @@ TEXT = """{
 """
 
 
-def test_a_result_is_this_text():
+def test_the_json_of_a_result_has_the_documented_form():
     assert results.to_json(RESULT).decode() == TEXT.replace("\\\\", "\\")
     assert results.from_json(TEXT.replace("\\\\", "\\").encode()) == RESULT
 
 
-def test_a_teams_copy_is_the_same_text_without_what_is_hidden():
+def test_a_teams_copy_equals_the_result_without_hidden_parts():
     hidden = RESULT._replace(
         checks=(CHECK, CHECK._replace(hidden=True, message="secret", said="s"))
     )
@@ -84,7 +84,7 @@ def test_another_version_is_refused(version):
     ("at_most", "score", "most"),
     [(None, 3.3333, 6), (3.0, 3, 3), (3.3333, 3.3333, 3.3333), (7.0, 3.3333, 6)],
 )
-def test_a_score_is_what_counts_of_the_points(at_most, score, most):
+def test_a_score_is_the_points_up_to_the_maximum(at_most, score, most):
     checks = (
         CHECK,
         CHECK._replace(task="b", points=Fraction(2)),
@@ -104,13 +104,13 @@ def test_a_score_is_what_counts_of_the_points(at_most, score, most):
         ("strict", "", False),
     ],
 )
-def test_what_counts_ran_behind_walls_on_inputs_that_nobody_knew(tier, seed, credit):
+def test_a_score_for_credit_needs_a_sandbox_and_secret_inputs(tier, seed, credit):
     found = RESULT._replace(tier=tier, seed=seed)
     assert found.for_credit is credit and bool(found.why_practice) is not credit
     assert ("without a sandbox" in found.why_practice) is (tier == "practice")
 
 
-def test_an_early_result_lacks_what_came_later():
+def test_a_result_of_an_earlier_version_has_defaults_for_later_fields():
     read = json.loads(results.to_json(RESULT))
     del read["at_most"], read["checks"][0]["kind"], read["checks"][0]["follows"]
     assert results.from_json(json.dumps(read).encode()) == RESULT
@@ -124,7 +124,7 @@ def test_an_early_result_lacks_what_came_later():
         results.from_json(json.dumps(read).encode())
 
 
-def test_pictures_travel_as_text():
+def test_images_of_a_result_are_stored_as_text():
     drawing = Drawing((b"RIFF", b"2"), ("a", "b"), ("c", "d"))
     told = [
         {"webp": "UklGRg==", "alt": "a", "caption": "c"},
@@ -143,7 +143,7 @@ def test_points_are_shown_in_hundredths_at_most(value, text):
     assert feedback.number(value) == text
 
 
-def test_a_page_shows_what_is_private_and_a_terminal_hints_only_where_it_is_told():
+def test_the_page_shows_private_parts_and_the_terminal_shows_hints_on_request():
     found = RESULT._replace(checks=(CHECK._replace(hints=("first", "second"), message="no"),))
     assert feedback.text(found) == feedback.text(found, hints=0, private=False)
     assert "first" not in feedback.text(found) and "second" not in feedback.text(found, hints=1)
@@ -153,7 +153,7 @@ def test_a_page_shows_what_is_private_and_a_terminal_hints_only_where_it_is_told
         assert "the reason" in shown(secret, private=True) and "the reason" not in shown(secret)
 
 
-def test_all_forms_are_for_their_owner_alone(tmp_path):
+def test_all_formats_are_readable_by_their_owner_only(tmp_path):
     folder = tmp_path / "a" / "b"
     for shown, expected in ((None, results.to_json(RESULT)), (b"shown", b"shown")):
         files = gradebook.write_results(folder, RESULT, shown)

@@ -40,7 +40,7 @@ def test_a_variant_has_a_value_for_each_parameter(known):
         rewording.reword("t", "huge/up", "five")
 
 
-def test_of_a_sheet_all_that_a_value_changes_must_be_there(known):
+def test_an_assignment_must_contain_every_text_that_a_variant_changes(known):
     assert rewording.reword("t", "large/down", "five up", all_of_it=True) == "nine down"
     assert rewording.reword("t", "small/up", "words", all_of_it=True) == "words"
     assert rewording.reword("t", "large/up", "few", all_of_it=True) == "many"
@@ -48,7 +48,7 @@ def test_of_a_sheet_all_that_a_value_changes_must_be_there(known):
         rewording.reword("t", "large/down", "five", all_of_it=True)
 
 
-def test_parameters_are_read_from_their_files_and_every_variant_is_named_that_of_the_library_first():
+def test_every_variant_has_a_name_and_the_librarys_comes_first():
     tasks = {file.stem for file in rewording.FOLDER.glob("*.toml")}
     assert {"shift", "exclusion"} <= tasks and rewording.parameters("gsolve") == {}
     assert rewording.every("gsolve") == ("",)
@@ -59,7 +59,7 @@ def test_parameters_are_read_from_their_files_and_every_variant_is_named_that_of
         assert every[0] == "/".join(next(iter(one)) for one in values)
 
 
-def test_a_function_here_is_asked_as_a_student_s_and_its_calls_are_remembered_as_they_were():
+def test_a_library_function_is_called_like_a_students_and_its_calls_are_recorded():
     def f(x, *, k=1):
         x *= k
         return x, [1]

@@ -17,7 +17,7 @@ def listed(tmp_path):
     return read
 
 
-def test_students_and_teams_are_recognised(listed):
+def test_a_roster_has_students_and_teams(listed):
     found = listed("Student,Name,Team\nb1,Ada,7\nb2,Bo,7\n\nb3,Cy,\n")
     assert {team: [one.id for one in members] for team, members in found.teams().items()} == {
         "7": ["b1", "b2"],
@@ -39,7 +39,7 @@ def test_students_and_teams_are_recognised(listed):
         ("", "empty"),
     ],
 )
-def test_a_roster_that_cannot_be_is_refused_and_the_place_is_named(listed, text, said):
+def test_a_wrong_roster_is_refused_with_its_line(listed, text, said):
     with pytest.raises(ValueError, match=said):
         listed(text)
 
@@ -63,7 +63,7 @@ CONFUSED = {
 
 
 @pytest.mark.parametrize("text", CONFUSED.values(), ids=CONFUSED)
-def test_names_that_a_file_could_confuse_are_refused_with_both_lines(listed, text):
+def test_names_that_share_a_file_name_are_refused_with_both_lines(listed, text):
     with pytest.raises(ValueError, match=r"lines 2 and 3: .*each name once"):
         listed(text)
 
@@ -77,7 +77,7 @@ def test_names_that_a_file_could_confuse_are_refused_with_both_lines(listed, tex
         "student,team\nb01,t1\nb02,t1\nb03,t10\n",
     ],
 )
-def test_names_that_no_file_confuses_are_taken(listed, text):
+def test_names_with_different_file_names_are_accepted(listed, text):
     assert listed(text).students
 
 
@@ -89,7 +89,7 @@ def test_names_that_no_file_confuses_are_taken(listed, text):
         min_size=1,
     )
 )
-def test_of_a_roster_that_is_taken_each_file_has_one_owner(tmp_path_factory, ids):
+def test_every_file_name_belongs_to_one_owner_of_the_roster(tmp_path_factory, ids):
     path = tmp_path_factory.mktemp("class") / "roster.csv"
     path.write_text("\n".join(["student", *ids]))
     try:
@@ -135,13 +135,13 @@ def test_a_name_that_could_mean_two_teams_is_refused():
         "\uff1d1+1",
     ],
 )
-def test_no_cell_is_a_formula(cell):
+def test_a_spreadsheet_does_not_take_a_cell_for_a_formula(cell):
     assert csv_tables.escape_cell(cell).startswith("'")
     assert "\n" not in csv_tables.escape_cell(cell) and "\r" not in csv_tables.escape_cell(cell)
 
 
 @given(st.text(max_size=40))
-def test_whatever_a_name_holds_a_table_has_one_cell_of_it(text):
+def test_a_name_with_any_characters_is_one_cell_of_a_table(text):
     import csv
     import io
 
@@ -156,13 +156,13 @@ def test_a_private_table_is_for_its_owner_alone(tmp_path):
 
 
 @given(st.text(max_size=200), st.integers(2, 40))
-def test_what_is_shown_is_one_line_without_marks_that_turn_text_around(text, most):
+def test_a_shown_name_is_one_line_without_direction_marks(text, most):
     shown = sanitize_line(text, most)
     assert len(shown) <= most and shown == shown.strip()
     assert all(letter.isprintable() for letter in shown)
     assert sanitize_line(shown, most) == shown
 
 
-def test_accents_do_not_pile_up():
+def test_stacked_accents_are_limited():
     assert len(sanitize_line("a" + "\u0301" * 100, 50)) <= 3
     assert sanitize_line("Nguy\u1ec5n \u05d0\u05d1 \u5f35", 40) == "Nguy\u1ec5n \u05d0\u05d1 \u5f35"

@@ -46,7 +46,7 @@ def test_a_named_mistake_costs_half_at_most_and_the_rest_follows_from_the_first(
     assert [one.follows for one in found] == ["", "", "Promise b", "Promise b"]
 
 
-def test_one_that_misses_what_the_task_is_about_costs_all_that_fails():
+def test_a_mistake_that_misses_the_method_costs_all_failed_checks():
     found = attribute_failures(checks("holds", "fails", "fails"), {}, named=True)
     assert earned(found) == [4, 0, 0] and found[2].follows == "Promise b"
 
@@ -58,7 +58,7 @@ def test_half_of_an_odd_number_of_points_is_half_a_point():
     assert sum(earned(found)) == 7.5
 
 
-def test_what_needs_a_failed_promise_follows_from_it_or_holds_without_points():
+def test_a_check_that_needs_a_failed_check_earns_nothing():
     found = attribute_failures(
         checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"}
     )
@@ -66,7 +66,7 @@ def test_what_needs_a_failed_promise_follows_from_it_or_holds_without_points():
     assert earned(found) == [0, 0, 0, 0] and "too: Promise a" in found[2].message
 
 
-def test_calls_that_end_in_the_same_words_are_told_once():
+def test_failures_with_the_same_message_are_reported_once():
     said = [{"kind": "raised", "message": one} for one in ("IndexError", "IndexError", "KeyError")]
     each = [
         one._replace(**words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
@@ -74,7 +74,7 @@ def test_calls_that_end_in_the_same_words_are_told_once():
     assert [one.follows for one in attribute_failures(each, {})] == ["", "Promise a", ""]
 
 
-def test_failures_without_a_common_cause_are_told_each():
+def test_failures_without_a_common_cause_are_reported_separately():
     assert not any(one.follows for one in attribute_failures(checks("fails", "fails"), {}))
 
 
@@ -107,7 +107,7 @@ def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
         (5, (0.5, 2), (1, 4)),
     ],
 )
-def test_the_halves_that_are_left_over_go_to_the_largest_remainders(points, weights, shares):
+def test_left_over_half_points_go_to_the_largest_remainders(points, weights, shares):
     found = split_points(Fraction(points), [Fraction(one) for one in weights])
     assert [float(one) for one in found] == list(shares)
 
@@ -122,7 +122,7 @@ def test_the_halves_that_are_left_over_go_to_the_largest_remainders(points, weig
         ("hhh", {"named": True, "once": True}, (4, 4, 4), ("", "", "")),
     ],
 )
-def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(
+def test_failed_checks_earn_nothing_and_follow_from_a_named_mistake(
     outcomes, knobs, earnings, follows
 ):
     words = {"h": "holds", "f": "fails"}
@@ -131,7 +131,7 @@ def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(
     assert tuple(one.follows.removeprefix("Promise ") for one in found) == follows
 
 
-def test_of_a_hidden_check_nothing_follows_and_it_follows_from_nothing():
+def test_a_hidden_check_is_never_a_cause_or_a_consequence():
     a, b, c = checks("fails", "fails", "holds")
     hidden = [a._replace(hidden=True), b, c]
     found = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
@@ -152,7 +152,7 @@ def test_of_a_hidden_check_nothing_follows_and_it_follows_from_nothing():
         (("late", "x"), ("raised", "x"), False),
     ],
 )
-def test_two_calls_have_one_cause_where_both_were_late_or_ended_in_the_same_words(
+def test_two_failures_share_a_cause_if_both_timed_out_or_have_the_same_message(
     first, second, follows
 ):
     each = [

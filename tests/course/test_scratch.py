@@ -37,7 +37,7 @@ def sleeper(place):
 
 
 @pytest.mark.parametrize("how", ["kill", "terminate"])
-def test_what_a_killed_command_leaves_is_removed_by_the_next(place, how):
+def test_the_next_command_removes_what_a_killed_one_left(place, how):
     (place / "another").mkdir()
     lives, held = sleeper(place)
     dies, left = sleeper(place)

@@ -145,7 +145,7 @@ def test_team_mates_are_not_compared(tmp_path):
     assert not found.pairs and found.counts.sum() == 0
 
 
-def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
+def test_code_of_the_handout_is_not_compared(tmp_path):
     blank = "\n\n".join(student_code.handout_code("hw2"))
     found = likeness(tmp_path, a=blank, b=blank)
     assert found.counts.sum() == 0 and not any(found.own.values())
@@ -162,7 +162,7 @@ def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
     )
 
 
-def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
+def test_a_copy_of_the_library_is_reported_separately_and_not_as_a_pair(tmp_path):
     taken = "\n\n\n".join(library().values())
     page, table = written(tmp_path, {"a": taken, "b": renamed(taken), "c": LOOPS})
     shares = [int(share) for share in re.findall(r"[ab] \((\d+) %\)", page)]
@@ -170,7 +170,7 @@ def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
     assert len(shares) == 8 and set(shares) == {100}  # two works, four tasks that are long enough
 
 
-def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):
+def test_the_similarities_of_all_pairs_equal_those_of_copydetect(tmp_path):
     texts = [LOOPS, GAUGE, FLOAT32, renamed(LOOPS), "def hat(n=256):\n    return 1\n"]
     given = comparison.fingerprint("\n\n".join(student_code.handout_code("hw2"))).hashes
     for task in ("gsolve", "recover", "update"):
@@ -183,7 +183,7 @@ def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):
         assert expected[0][3] > 100 and expected[0][4] == 0
 
 
-def test_a_passage_that_stands_twice_counts_twice():
+def test_a_repeated_passage_counts_twice():
     line = "    total = values[0] * weights[1] + values[2] / weights[3]\n"
     text = "def f(values, weights):\n" + line + "    print(total, sep='', end=9)\n" + line
     once = comparison.without(comparison.fingerprint(text), {1})
@@ -211,7 +211,7 @@ def test_a_passage_that_stands_twice_counts_twice():
         ("gsolve has more than 30,000", "def gsolve():\n    return [" + "1," * 20_000 + "]\n"),
     ],
 )
-def test_a_broken_or_hostile_file_is_told_of_and_the_rest_compared(said, text, tmp_path):
+def test_a_broken_or_hostile_file_is_reported_and_the_others_are_compared(said, text, tmp_path):
     page, table = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS), "x": text})
     assert [(row["one"], row["other"]) for row in table] == [("a", "b")]
     assert re.search(f"<li><b>x</b>: [^\n]*{said}", page)
@@ -222,13 +222,13 @@ def test_what_is_compared_has_no_empty_lines_in_which_copydetect_takes_a_quadrat
     assert student_code.own_code(text, "hw2", set()) == "def hat():\n    return [\n \t1]"
 
 
-def test_the_parsers_warnings_of_what_was_handed_in_are_not_the_instructors():
+def test_warnings_about_submitted_code_are_not_shown_to_the_instructor():
     assert (
         student_code.own_code("def hat(): return 1if 1else 2\n" * 2, "hw2", set()).count("1if") == 2
     )
 
 
-def test_all_tasks_together_are_bounded_too(tmp_path):
+def test_the_code_of_all_tasks_together_is_limited(tmp_path):
     names = ["gsolve", "hat", "irradiance", "update", "recover"]
     body = "\n".join(f"    x{k} = {k}" for k in range(1_500))
     (tmp_path / "hw2.py").write_text("\n".join(f"def {name}():\n{body}\n" for name in names))
@@ -261,7 +261,7 @@ def test_a_file_that_changes_a_thing_twice_as_often_costs_not_much_more_than_twi
     assert (some, more) == (400, 800) and larger < 2.5 * cost
 
 
-def test_statements_are_cut_where_the_parser_sees_them():
+def test_code_is_split_into_statements_as_python_parses_it():
     text = "µ = 'µ'; b = µ\r\nc = '\x0c' + b  # a form feed ends no line\rdef gsolve(): return c\n"
     sources, said = closure.extract_sources([closure.Cell(text)], ["gsolve"])
     assert (
@@ -270,7 +270,7 @@ def test_statements_are_cut_where_the_parser_sees_them():
     )
 
 
-def test_names_and_sources_are_text_on_the_page(tmp_path):
+def test_names_and_sources_are_escaped_on_the_page(tmp_path):
     script = "<script>alert(1)</script>"
     mean = LOOPS.replace("k += 1", f"k += 1  # {script} \u202e\x1b[31m </pre></mark>", 1)
     page, table = written(
@@ -301,7 +301,7 @@ def test_a_pair_can_be_opened_by_the_keyboard_and_shows_both_texts_with_marks(tm
     assert names.count("mark") > 50 and "lower = sum(" in page and "below = sum(" in page
 
 
-def test_the_shown_pieces_make_up_the_text():
+def test_the_shown_pieces_join_to_the_whole_text():
     text = "a = 1\nb = 2  \n\nc = 3\n"
     parts = report.split_passages(text, np.array([[0, 14], [14, 20]]))
     assert "".join(part for part, _ in parts) == text
@@ -336,20 +336,20 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only here has a file an owner's mode")
-def test_page_and_table_are_for_their_owner_s_eyes(tmp_path):
+def test_page_and_table_are_readable_by_their_owner_only(tmp_path):
     written(tmp_path, {"a": LOOPS})
     for name in ("similar.html", "similar.csv"):
         assert stat.S_IMODE((tmp_path / name).stat().st_mode) == 0o600
 
 
-def test_nothing_that_was_handed_in_is_run(tmp_path):
+def test_submitted_code_is_never_run(tmp_path):
     mark = tmp_path / "ran"
     evil = f"open({str(mark)!r}, 'w')\n" + LOOPS + f"\nclass A:\n    open({str(mark)!r}, 'w')\n"
     written(tmp_path, {"a": evil, "b": evil})
     assert not mark.exists()
 
 
-def test_an_empty_class_and_works_with_nothing_in_common_make_a_page(tmp_path):
+def test_an_empty_class_and_unrelated_submissions_make_a_page(tmp_path):
     page, table = written(tmp_path, {})
     assert "<details>" not in page and not table
     assert (
@@ -371,7 +371,7 @@ def test_grading_a_class_compares_it(tmp_path, capsys):
     assert "b</b>: 100 percent" in (tmp_path / "similar.html").read_text()
 
 
-def test_a_class_too_large_to_compare_is_told_so_and_not_compared(tmp_path, monkeypatch, capsys):
+def test_a_class_that_is_too_large_is_reported_and_not_compared(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(report, "MAX_SUBMISSIONS", 1)
     assert "at most 1 " in compared(tmp_path, capsys)
     assert not (tmp_path / "similar.html").exists()

@@ -30,7 +30,7 @@ def test_the_pack_has_a_notebook_and_a_file_for_each_homework_and_a_table_of_the
 
 
 @pytest.mark.parametrize("name", PLAN.homeworks)
-def test_what_stands_in_it_runs_without_the_library_and_is_whole(pack, name):
+def test_the_solutions_run_without_the_library(pack, name):
     text = (pack / f"{name}.py").read_text()
     scope = {"__name__": "pack"}
     exec(compile(text, name, "exec"), scope)
@@ -38,7 +38,7 @@ def test_what_stands_in_it_runs_without_the_library_and_is_whole(pack, name):
 
 
 @pytest.mark.parametrize("task", ["hat", "bound", "compress", "pq"])
-def test_a_function_of_it_keeps_every_promise(pack, task):
+def test_every_solution_passes_every_check(pack, task):
     (name,) = [
         name for name, one in PLAN.homeworks.items() if task in [own.id for own in one.tasks]
     ]

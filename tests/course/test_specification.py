@@ -23,7 +23,7 @@ def unanswered():
 
 @pytest.mark.parametrize("task", IDS)
 @pytest.mark.parametrize("student", ["ada", "grace", "Emmy Noether"])
-def test_the_library_keeps_every_promise_whatever_a_student_draws(task, student):
+def test_the_library_passes_every_check_for_any_student(task, student):
     share, said = scoring.score(
         task, inprocess.library(), plan.seed("the course's secret", student, task)
     )
@@ -32,7 +32,7 @@ def test_the_library_keeps_every_promise_whatever_a_student_draws(task, student)
 
 @pytest.mark.grading
 @pytest.mark.parametrize("task", IDS)
-def test_a_blank_stub_keeps_none(task):
+def test_a_blank_stub_passes_no_check(task):
     for blank in (
         lambda *given, **named: None,
         lambda *given, **named: unanswered(),
@@ -44,7 +44,7 @@ def test_a_blank_stub_keeps_none(task):
 
 
 @pytest.mark.parametrize("task", IDS)
-def test_an_answer_of_nan_gains_nothing(task):
+def test_an_answer_of_nan_earns_no_points(task):
     def spoiled(answer):
         if isinstance(answer, tuple | list):
             return type(answer)(spoiled(one) for one in answer)
@@ -58,7 +58,7 @@ def test_an_answer_of_nan_gains_nothing(task):
 
 
 @pytest.mark.parametrize("task", IDS)
-def test_every_promise_has_points_three_hints_and_a_sentence_for_a_name(task):
+def test_every_check_has_points_three_hints_and_a_sentence(task):
     found = scoring.checks(task)
     assert len(found) >= 2
     for name, check, points, hints, needs in found:
@@ -76,7 +76,7 @@ def test_there_is_a_file_of_checks_for_every_task_and_a_task_for_every_file():
 
 
 @pytest.mark.parametrize("task", TASKS, ids=IDS)
-def test_a_task_is_a_function_of_the_library_that_explains_itself(task):
+def test_every_task_is_a_documented_function_of_the_library(task):
     assert (plan.function(task).__doc__ or "").strip() and task.name == task.id
 
 
@@ -116,7 +116,7 @@ tasks = [{ id = "gsolve", function = "response.debevec.gsolve", points = 7.5 }]
 """
 
 
-def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
+def test_a_plan_of_an_instructor_sets_points_tasks_and_dates(tmp_path):
     found = plan.read(written(tmp_path, SHEET))
     (homework,) = found.homeworks.values()
     assert (homework.title, homework.points, homework.due.day) == ("Curves", 7.5, 1)
@@ -149,17 +149,17 @@ def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
         (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "expected free_days and points_a_day"),
     ],
 )
-def test_what_is_no_plan_is_refused_in_words(tmp_path, change, said):
+def test_an_invalid_plan_is_refused_with_the_reason(tmp_path, change, said):
     with pytest.raises(ValueError, match=said):
         plan.read(written(tmp_path, SHEET.replace(*change)))
 
 
-def test_an_unknown_task_is_refused_with_those_there_are():
+def test_an_unknown_task_is_refused_with_the_known_ones():
     with pytest.raises(KeyError, match=re.escape("got 'gslove'")):
         PLAN.task("gslove")
 
 
-def test_a_seed_hangs_on_the_secret_the_student_and_the_task():
+def test_a_seed_depends_on_the_secret_the_student_and_the_task():
     one = plan.seed("secret", "ada", "gsolve")
     others = [
         plan.seed("Secret", "ada", "gsolve"),
@@ -193,6 +193,6 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
         ),
     ],
 )
-def test_what_is_no_array_of_numbers_is_told_by_what_came_instead(came, said):
+def test_a_non_numeric_answer_is_described_in_the_message(came, said):
     with pytest.raises(compare.AnswerMismatch, match=said):
         compare.numbers(came)

@@ -30,7 +30,7 @@ def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, o
         subject.f()
 
 
-def test_a_call_is_sent_with_its_source_and_remembered_with_its_answer(opened):
+def test_a_call_is_sent_with_its_source_and_recorded_with_its_answer(opened):
     subject, process = opened(right(np.arange(3)), right((1, [2])), (0, ("refused", ("", "a set"))))
     with subject:
         assert subject.f(1, k=2).tolist() == [0, 1, 2]
@@ -49,7 +49,7 @@ def test_a_call_is_sent_with_its_source_and_remembered_with_its_answer(opened):
     assert process.links[1].closed
 
 
-def test_only_the_tasks_that_were_handed_in_are_there(opened):
+def test_a_subject_has_only_the_submitted_tasks(opened):
     subject, _ = opened()
     assert subject.f.__name__ == "f"
     subject._sources["_g"] = ""
@@ -58,7 +58,7 @@ def test_only_the_tasks_that_were_handed_in_are_there(opened):
             getattr(subject, name)
 
 
-def test_answers_are_kept_as_long_as_they_fit_together(opened, monkeypatch):
+def test_recorded_answers_have_a_limited_total_size(opened, monkeypatch):
     monkeypatch.setattr(module, "MAX_KEPT_ANSWER_BYTES", 100)
     sizes = [40, 61, 60, 1, 0]
     subject, _ = opened(
@@ -79,7 +79,7 @@ def test_answers_are_kept_as_long_as_they_fit_together(opened, monkeypatch):
         assert subject.calls[0].answer is not None
 
 
-def test_what_is_printed_is_kept_up_to_its_first_characters(opened, monkeypatch):
+def test_printed_text_is_cut_to_its_first_characters(opened, monkeypatch):
     monkeypatch.setattr(module, "MAX_PRINTED_CHARACTERS", 10)
     subject, _ = opened(right(1, "abcd"), right(1, "efgh\x07"), right(1, "ijkl"), right(1, "mn"))
     with subject:
@@ -117,7 +117,7 @@ def test_what_is_printed_is_kept_up_to_its_first_characters(opened, monkeypatch)
         ),
     ],
 )
-def test_an_answer_of_another_form_is_none(answer, why, opened):
+def test_a_malformed_message_is_not_accepted_as_an_answer(answer, why, opened):
     subject, _ = opened((0, answer))
     with subject:
         kind, said = silence(subject)
@@ -128,7 +128,7 @@ def test_an_answer_of_another_form_is_none(answer, why, opened):
         )
 
 
-def test_what_came_before_it_was_asked_for_is_no_answer(opened):
+def test_an_answer_sent_before_the_call_is_refused(opened):
     for spoken, said in (
         (b"x", "f sent an invalid answer: data came before the call"),
         (b"", None),
@@ -155,13 +155,13 @@ def test_what_came_before_it_was_asked_for_is_no_answer(opened):
         ({"error": "E", "message": "m", "text": "", "line": None}, "E: m"),
     ],
 )
-def test_what_was_raised_is_told_with_its_line(told, said, opened):
+def test_an_exception_is_reported_with_its_line(told, said, opened):
     subject, _ = opened((0, ("raised", ("", told))))
     with subject:
         assert silence(subject) == ("raised", f"f raised {said}")
 
 
-def test_what_does_not_travel_is_told_by_what_it_is(opened):
+def test_an_unsupported_value_is_reported_by_its_type(opened):
     subject, _ = opened((0, ("refused", ("", "a set" + "n" * 400))))
     with subject:
         said = "f returned something that is not an array: it contains a set" + "n" * 295

@@ -17,7 +17,7 @@ def opened(monkeypatch):
     return partial(answering.opened, monkeypatch)
 
 
-def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submissions_seconds(
+def test_the_time_of_a_call_is_limited_by_its_check_and_its_submission(
     opened,
 ):
     subject, process = opened(*[right(1, seconds=9.0)] * 3, right(1, seconds=3.0))
@@ -36,7 +36,7 @@ def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submis
         )
 
 
-def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened):
+def test_a_submission_without_time_left_fails_each_check_with_that_reason(opened):
     subject, process = opened(
         *[right(1, seconds=30.0)] * 6, right(1, seconds=15.0), right(1, seconds=5.0)
     )
@@ -50,7 +50,7 @@ def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened)
 
 
 @pytest.mark.parametrize(("left", "answered"), [(0.001, True), (0.0, False), (-1.0, False)])
-def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened):
+def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered, opened):
     subject, process = opened(right(1), (1, TimeoutError()))
     with subject:
         process.cpu_seconds_left = left
@@ -90,7 +90,7 @@ def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened)
         (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "f sent an invalid answer: half"),
     ],
 )
-def test_who_gave_no_answer_is_told_by_how_the_process_ended(
+def test_a_missing_answer_is_explained_by_how_the_process_ended(
     error, ended, used, forks, kind, said, opened
 ):
     subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
@@ -101,7 +101,7 @@ def test_who_gave_no_answer_is_told_by_how_the_process_ended(
         assert len(process.links) == 2
 
 
-def test_where_the_supervisor_is_gone_too_the_process_was_killed(opened):
+def test_a_lost_supervisor_counts_as_a_killed_process(opened):
     subject, process = opened((0, EOFError()))
 
     def gone(seconds):

@@ -42,7 +42,7 @@ def run(source, name="gsolve"):
     return scope[name]
 
 
-def test_a_function_comes_with_what_it_needs_of_other_cells_and_with_nothing_else(read):
+def test_a_function_is_extracted_with_exactly_the_code_that_it_needs(read):
     found = read(
         notebook(
             "import numpy as np\nfrom hdrlab.capture import scenes\nroom = scenes.room()",
@@ -67,7 +67,7 @@ def test_reordered_cells_are_put_in_the_order_in_which_they_run(read):
     assert run(found.sources["gsolve"])() == 8
 
 
-def test_a_name_that_is_local_to_a_function_brings_nothing_along(read):
+def test_a_local_name_extracts_no_other_code(read):
     found = read(
         notebook(
             "Z = load('photographs')",
@@ -78,7 +78,7 @@ def test_a_name_that_is_local_to_a_function_brings_nothing_along(read):
     assert "load" not in found.sources["gsolve"] and "merge" not in found.sources["gsolve"]
 
 
-def test_a_task_is_found_by_its_cell_and_else_by_its_name(read):
+def test_a_task_is_found_by_its_cell_or_by_its_name(read):
     found = read(
         notebook(
             "def gsolve():\n    return 1",
@@ -94,7 +94,9 @@ def test_a_task_is_found_by_its_cell_and_else_by_its_name(read):
     ("order", "counts", "value"),
     [("own other", "that of its own cell", 1), ("other another", "the last one", 3)],
 )
-def test_of_a_task_that_is_defined_twice_it_is_said_which_one_counts(read, order, counts, value):
+def test_a_task_that_is_defined_twice_is_reported_with_the_one_that_counts(
+    read, order, counts, value
+):
     cells = {
         "own": ("def gsolve():\n    return 1", "gsolve"),
         "other": "def gsolve():\n    return 2",
@@ -105,7 +107,7 @@ def test_of_a_task_that_is_defined_twice_it_is_said_which_one_counts(read, order
     assert run(found.sources["gsolve"])() == value
 
 
-def test_what_the_sheet_gives_is_taken_from_our_copy(read):
+def test_given_code_is_taken_from_the_original_assignment(read):
     given = [Cell("def given():\n    return 'ours'", given=True)]
     found = read(
         notebook(("def given():\n    return 'theirs'", None), "def gsolve():\n    return given()"),
@@ -114,7 +116,7 @@ def test_what_the_sheet_gives_is_taken_from_our_copy(read):
     assert run(found.sources["gsolve"])() == "ours"
 
 
-def test_a_helper_of_the_students_own_may_have_a_given_name(read):
+def test_a_students_helper_may_have_the_name_of_a_given_function(read):
     given = [Cell("def given():\n    return 'ours'", given=True)]
     found = read(
         notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"), given=given
@@ -122,7 +124,7 @@ def test_a_helper_of_the_students_own_may_have_a_given_name(read):
     assert run(found.sources["gsolve"])() == "own"
 
 
-def test_a_broken_cell_costs_what_is_in_it_alone(read):
+def test_a_broken_cell_affects_only_its_own_functions(read):
     found = read(notebook(("def gsolve(:\n    pass", "gsolve"), "def merge():\n    return 1"))
     assert set(found.sources) == {"merge"}
     assert any(
@@ -142,7 +144,7 @@ def test_a_broken_cell_costs_what_is_in_it_alone(read):
         "try:\n    import numpy as np\nexcept ImportError:\n    np = None",
     ],
 )
-def test_what_only_a_notebook_understands_is_no_error(read, cell):
+def test_notebook_magics_are_no_error(read, cell):
     found = read(notebook(cell, "def gsolve():\n    return np.arange(3)"))
     assert (
         run(found.sources["gsolve"])().tolist() == [0, 1, 2]
@@ -169,18 +171,18 @@ def test_what_only_a_notebook_understands_is_no_error(read, cell):
         ),
     ],
 )
-def test_a_file_that_is_no_notebook_is_told_in_words(read, data, said):
+def test_a_file_that_is_no_notebook_is_reported(read, data, said):
     found = read(data)
     assert not found.sources and any(said in problem for problem in found.problems)
 
 
-def test_a_folder_and_a_missing_file_are_told_in_words(tmp_path):
+def test_a_folder_and_a_missing_file_are_reported(tmp_path):
     for path in (tmp_path, tmp_path / "missing.ipynb"):
         found = reader.tasks_of(path, TASKS)
         assert not found.sources and "is not a file" in found.problems[0]
 
 
-def test_deeply_nested_code_costs_its_cell_alone(read):
+def test_deeply_nested_code_affects_only_its_cell(read):
     found = read(
         notebook(
             "x = " + "(" * 5000 + ")" * 5000,
@@ -191,7 +193,7 @@ def test_deeply_nested_code_costs_its_cell_alone(read):
     assert set(found.sources) == {"gsolve"}
 
 
-def test_a_python_file_is_read_as_well_with_cells_and_without(read):
+def test_a_python_file_is_read_with_and_without_cells(read):
     plain = "import math\ndef gsolve():\n    return math.pi\n"
     assert run(read(plain, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
     percent = (
@@ -201,7 +203,7 @@ def test_a_python_file_is_read_as_well_with_cells_and_without(read):
     assert run(read(percent, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
 
 
-def test_what_is_no_python_in_a_python_file_is_told_with_the_line_at_which_its_cell_begins(read):
+def test_a_syntax_error_is_reported_with_the_first_line_of_its_cell(read):
     lines = [
         "# %%",
         "import numpy",
@@ -217,7 +219,7 @@ def test_what_is_no_python_in_a_python_file_is_told_with_the_line_at_which_its_c
     assert problems[1].startswith("line 6 is no Python, line 3")
 
 
-def test_nothing_of_the_file_is_run(read, tmp_path):
+def test_a_submitted_file_is_never_run(read, tmp_path):
     mark = tmp_path / "mark"
     read(
         notebook(f"open({str(mark)!r}, 'w')\nx = open({str(mark)!r}, 'w')\ndef gsolve(): return x")
@@ -258,7 +260,7 @@ def test_the_names_that_a_piece_takes_from_outside_are_found(code, free):
         (["photo.jpg"], None),
     ],
 )
-def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homework(
+def test_the_only_notebook_of_an_archive_or_the_one_named_after_the_homework_is_read(
     names_in_it, found, tmp_path
 ):
     archive = tmp_path / "handed in.ZIP"
@@ -287,7 +289,7 @@ def test_a_file_with_more_code_than_a_homework_is_refused():
     assert "hw2.py has more than 1,000,000 characters" in problem
 
 
-def test_a_function_that_reads_what_is_made_by_calling_it_stands_before_the_call_wherever_its_cell_is():
+def test_an_extracted_function_is_defined_before_it_is_called():
     cells = [
         Cell("x, y = g(), 2"),
         Cell("ready = False\ndef g():\n    return y if ready else 5"),

@@ -116,7 +116,7 @@ def bad(folder):
     return {finding.part: finding.said for finding in findings if not finding.good}
 
 
-def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):
+def test_a_whole_project_can_be_reported_submitted_and_shown_in_the_gallery(home, tmp_path, hdrlab):
     code, said, notes = hdrlab("report", home)
     assert (code, notes) == (0, "") and "artifact, bracket, curves, map" in said
     code, said, notes = hdrlab("submit", home)
@@ -143,7 +143,7 @@ def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):
         )
 
 
-def test_photographs_arrive_with_their_exposures_and_without_their_places(home, tmp_path, hdrlab):
+def test_submitted_photos_keep_their_exposures_and_lose_their_locations(home, tmp_path, hdrlab):
     for flags, there in (((), False), (("--keep-metadata",), True)):
         hdrlab("report", home)
         assert hdrlab("submit", home, "-o", "a.zip", *flags)[0] == 0
@@ -180,7 +180,7 @@ def test_a_photo_that_cannot_be_cleaned_is_refused_by_name(home, hdrlab):
     assert "figures/place.rw2" in errors
 
 
-def test_a_film_is_packed_with_a_warning(home, hdrlab):
+def test_a_video_is_packed_with_a_warning(home, hdrlab):
     (home / "figures" / "film.mp4").write_bytes(b"\0\0\0 ftypmp42")
     hdrlab("report", home)
     code, _, notes = hdrlab("submit", home)
@@ -222,12 +222,12 @@ def spoil(home, how):
         ("artifact.png", "artifact", "artifact.jpg"),
     ],
 )
-def test_what_is_missing_is_said_with_what_to_do(home, gone, part, said):
+def test_a_missing_part_of_a_project_is_reported_with_what_to_do(home, gone, part, said):
     spoil(home, gone)
     assert list(bad(home)) == [part] and said in bad(home)[part]
 
 
-def test_what_is_broken_is_said_too(home):
+def test_a_broken_part_of_a_project_is_reported(home):
     reports.write_report(project.look(home))
     assert bad(home) == {}
     (home / "source" / "hdr.py").write_text("def f(:\n")
@@ -245,15 +245,13 @@ def test_what_is_broken_is_said_too(home):
     assert all(str(home) not in said for said in found.values())
 
 
-def test_photographs_of_one_exposure_make_no_bracket(home):
+def test_photos_of_one_exposure_are_not_a_bracket(home):
     for path in (home / "photographs").iterdir():
         photograph(path, np.zeros((48, 72, 3), np.uint8), 0.01)
     assert "same exposure" in bad(home)["photographs"]
 
 
-def test_nothing_is_written_where_something_is_missing_unless_it_is_asked_for(
-    home, tmp_path, hdrlab
-):
+def test_an_incomplete_project_is_packed_only_on_request(home, tmp_path, hdrlab):
     (home / "map.hdr").unlink()
     code, said, notes = hdrlab("submit", home)
     assert code == 2 and "MISSING" in said and not (tmp_path / "submission.zip").exists()
@@ -266,7 +264,7 @@ def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):
     assert not [one for one in project.look(home).files if one.name == "link.py"]
 
 
-def test_figures_stand_where_they_belong(home):
+def test_figures_are_placed_in_their_sections(home):
     page = Page(reports.write_report(project.look(home)).page.read_text())
     heads = [
         "Description",
@@ -323,7 +321,7 @@ def test_a_picture_out_of_the_project_is_left_out_and_that_is_said(home, tmp_pat
     assert len(pictures) == 7  # six figures, and the window
 
 
-def test_a_notebook_is_as_good_as_markdown(home):
+def test_a_report_may_be_a_notebook_instead_of_markdown(home):
     import base64
 
     data = base64.b64encode((home / "figures" / "window.png").read_bytes()).decode()
@@ -363,7 +361,7 @@ def test_a_notebook_is_as_good_as_markdown(home):
             words.read(home / "report.ipynb")
 
 
-def test_an_example_to_begin_with_has_all_that_is_asked_for(tmp_path, hdrlab):
+def test_the_example_project_is_complete(tmp_path, hdrlab):
     assert hdrlab("report", ".", "--example")[0] == 0
     assert words.read(tmp_path / "report.md").missing() == []
     assert hdrlab("report", ".", "--example")[0] == 2

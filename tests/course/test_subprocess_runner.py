@@ -106,12 +106,14 @@ def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ende
         (-1, b"", b"", ("its process was ended (-1)", True, False)),
     ],
 )
-def test_a_failure_is_told_by_its_last_line_and_whose_doing_it_was(code, answer, said, why, ended):
+def test_a_failure_has_the_last_line_of_its_error_and_says_what_caused_it(
+    code, answer, said, why, ended
+):
     told = ended(code, answer, said)
     assert failed() == why and told.done == ["kill", "left"] and not told.scratch.exists()
 
 
-def test_a_process_is_told_once_and_waited_for_until_its_time_is_over(ended):
+def test_a_process_is_waited_for_until_its_time_limit(ended):
     told = ended(0, b"+x", waits=4)
     assert subprocess_runner.run(len, "piece", timeout=0.81) == b"x"
     assert [given is None for given, _ in told.asked] == [False, True, True, True, True]
@@ -130,7 +132,7 @@ def test_a_process_that_is_stopped_is_ended(ended):
 # In a real process: the work is to evaluate an expression
 
 
-def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
+def test_printed_text_is_not_an_answer_and_limits_apply():
     limited = "[r.getrlimit(n) for r in [__import__('resource')] for n in (r.RLIMIT_CPU, r.RLIMIT_NOFILE)]"
     asked = f"{limited}, __import__('tempfile').gettempdir()"
     piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({asked})).encode()"
@@ -157,7 +159,7 @@ def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
         ),
     ],
 )
-def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
+def test_an_error_is_reported_in_one_line_and_differs_from_a_kill(piece, why):
     with pytest.raises(ProcessFailed) as raised:
         subprocess_runner.run(eval, piece, timeout=60)
     said = str(raised.value)
@@ -168,7 +170,7 @@ def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
     ) == why and "\n" not in said
 
 
-def test_who_was_started_by_one_that_has_died_does_nothing(monkeypatch):
+def test_a_process_whose_parent_has_died_does_nothing(monkeypatch):
     asked = []
     monkeypatch.setattr(
         subprocess_runner.system, "die_with_parent", lambda parent: asked.append(parent)
@@ -211,7 +213,7 @@ def threads(monkeypatch):
 @pytest.mark.parametrize(
     ("max_processes", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)]
 )
-def test_as_many_run_at_a_time_as_are_asked_for_or_have_a_processor(
+def test_the_number_of_parallel_processes_is_as_requested_or_the_number_of_processors(
     max_processes, processors, count, threads, monkeypatch
 ):
     monkeypatch.setattr(os, "cpu_count", lambda: processors)

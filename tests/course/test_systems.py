@@ -17,7 +17,7 @@ pytestmark = [
 each = pytest.mark.parametrize("row", systems.table(), ids=lambda row: row[0])
 
 
-def test_the_page_is_the_one_that_the_table_gives():
+def test_the_page_of_systems_equals_the_one_generated_from_the_table():
     page = systems.PAGE.read_text(encoding="utf8")
     assert page == systems.written(), "run python tests/systems.py"
 
@@ -29,7 +29,7 @@ def test_there_are_forty_four_systems_of_five_documents_and_six_newer_ones_each_
 
 
 @each
-def test_the_library_has_it(row):
+def test_every_system_of_the_table_is_in_the_library(row):
     for place in row[2]:
         module, thing = systems.find(place)
         assert thing is module or callable(thing), place

@@ -37,7 +37,7 @@ END = bytes(1024)
 
 
 @pytest.mark.parametrize("size", [0, 1, 511, 512, 513, 1024])
-def test_a_tar_is_read_from_header_to_header_whatever_the_sizes_are(size, taken):
+def test_a_tar_with_members_of_any_size_is_read(size, taken):
     data = os.urandom(size)
     whole = header("a", size=size) + block(data) + header("f/b", size=1) + block(b"x") + END
     assert taken(whole) == {"a": data, "f/b": b"x"}
@@ -51,7 +51,7 @@ def test_a_tar_is_read_from_header_to_header_whatever_the_sizes_are(size, taken)
     )
 
 
-def test_a_tar_of_nothing_is_none(taken):
+def test_an_empty_tar_is_refused(taken):
     said = "it holds no files, or is no .zip or .tar archive"
     assert [refused(taken, data) for data in (b"", bytes(511), bytes(512), END)] == [said] * 4
 
@@ -61,7 +61,7 @@ def test_a_tar_that_ends_at_its_last_block_is_whole(taken):
     assert taken(header("a", size=3) + block(b"abc")) == {"a": b"abc"}
 
 
-def test_a_header_without_its_mark_is_told(taken):
+def test_a_header_without_its_magic_bytes_is_refused(taken):
     said = f"{TOLD} (a header without its mark)"
     assert refused(taken, b"x" * 512) == said
     assert taken(header("a") + b"x" * 511) == {"a": b""}
@@ -82,12 +82,12 @@ def test_a_header_without_its_mark_is_told(taken):
         (b"6", "'a' is a device or a sparse file, expected plain files"),
     ],
 )
-def test_what_is_no_plain_file_is_told_by_its_kind(kind, said, taken):
+def test_a_member_that_is_not_a_plain_file_is_refused_with_its_kind(kind, said, taken):
     assert refused(taken, header("ok") + header("a", kind) + END) == said
 
 
 @pytest.mark.parametrize("kind", [b"x", b"g", b"X", b"L", b"K"])
-def test_a_header_of_a_header_is_of_65536_bytes_at_most(kind, taken):
+def test_an_extended_header_has_a_limited_size(kind, taken):
     said = "a header of it claims 65537 bytes, expected at most 65536"
     assert refused(taken, header("a", kind, 65537) + bytes(65536 + 512)) == said
     assert "expected at most" not in refused(taken, header("a", kind, 65536) + bytes(65536))
@@ -98,7 +98,7 @@ def test_a_plain_file_may_be_larger_than_a_header(taken):
 
 
 @pytest.mark.parametrize("kind", [b"x", b"g", b"X"])
-def test_a_header_that_changes_a_size_is_refused_wherever_it_says_so(kind, taken):
+def test_an_extended_header_that_changes_a_size_is_refused(kind, taken):
     said = "a header of it changes the size of a member"
     rest = b"11 size=513\n"
     for before in (b"", b"13 path=abcd\n" * 30):
@@ -108,7 +108,7 @@ def test_a_header_that_changes_a_size_is_refused_wherever_it_says_so(kind, taken
     assert taken(header("p", b"0", len(words)) + block(words)) == {"p": words}
 
 
-def test_a_size_may_be_written_in_bytes_as_in_digits(taken):
+def test_a_size_may_be_binary_or_octal(taken):
     written = bytearray(header("a"))
     written[124:136] = b"\x80" + bytes(10) + b"\3"
     written[148:156] = b"%06o\0 " % (sum(written[:148]) + 8 * 32 + sum(written[156:]))
@@ -121,7 +121,7 @@ def test_a_size_below_zero_is_refused(taken):
     assert refused(taken, bytes(damaged) + END) == "a header of it claims a size below zero"
 
 
-def test_headers_that_speak_of_others_are_no_members(taken):
+def test_extended_headers_do_not_count_as_members(taken):
     path = b"13 path=abcd\n"
     assert len(path) == 13
     named = header("p", b"x", 13) + block(path) + header("a", size=1) + block(b"1")
@@ -133,7 +133,7 @@ def test_headers_that_speak_of_others_are_no_members(taken):
     assert refused(taken, header("p", b"x", 13) + block(path)) == alone
 
 
-def test_folders_are_members_too(taken):
+def test_folders_count_as_members(taken):
     folders = b"".join(header(name, b"5") for name in "bcd")
     assert (
         refused(taken, folders + header("a"), max_members=3)
@@ -144,7 +144,7 @@ def test_folders_are_members_too(taken):
 # a tar may unpack to what the limits allow, and of each member a header and the rest of a block,
 # and a record
 @pytest.mark.parametrize("more", [0, 512])
-def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(more, tmp_path):
+def test_an_uncompressed_tar_is_limited_in_size(more, tmp_path):
     limits = ArchiveLimits(max_members=3, max_total_bytes=70_000, max_compression_ratio=1)
     most = 70_000 + 3 * 1024 + 10240
     archive, fresh = tmp_path / "a", tmp_path / "fresh"
@@ -160,9 +160,7 @@ def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(mo
 
 
 @pytest.mark.parametrize("packing", [gzip, bz2, lzma])
-def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_its_ratio(
-    packing, taken
-):
+def test_a_compressed_tar_is_limited_in_its_compression_ratio(packing, taken):
     most, data = 1 << 20, os.urandom(6000)
     whole = header("a", size=6000) + data + bytes(most - 6512)
     assert taken(packing.compress(whole), max_compression_ratio=1) == {"a": data}

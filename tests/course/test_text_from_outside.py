@@ -21,20 +21,20 @@ tasks = [{{ id = "hat", function = "core.weights.hat", points = {points} }}]
 
 
 @pytest.mark.parametrize("points", ["1" * 5000, "1" + "0" * 400, "1e400", "[" * 5000, "nan"])
-def test_a_number_beyond_counting_in_a_plan_names_the_plan(tmp_path, points):
+def test_an_absurd_number_in_a_plan_is_refused_with_the_plans_name(tmp_path, points):
     (tmp_path / "plan.toml").write_text(SHEET.format(points=points))
     with pytest.raises(ValueError, match=r"plan\.toml"):
         plan.read(tmp_path / "plan.toml")
 
 
 @pytest.mark.parametrize("title", ["[" * 5000, "1" * 5000])
-def test_a_title_of_any_depth_names_the_project(tmp_path, title):
+def test_a_heading_of_any_level_is_the_projects_title(tmp_path, title):
     (tmp_path / "project.toml").write_text(f"title = {title}")
     with pytest.raises(ValueError, match=r"project\.toml"):
         project.look(tmp_path)
 
 
-def test_a_result_in_brackets_in_brackets_is_refused():
+def test_a_deeply_nested_result_is_refused():
     with pytest.raises(ValueError, match="result"):
         results.from_json(b"[" * 100_000)
 
@@ -59,14 +59,14 @@ def test_a_member_without_a_name_is_refused(tmp_path):
         unpack.unpack(tmp_path / "a.zip", tmp_path / "files")
 
 
-def test_half_a_character_in_a_notebook_does_not_stop_the_report(tmp_path):
+def test_a_lone_surrogate_in_a_notebook_does_not_stop_the_report(tmp_path):
     cells = [{"cell_type": "markdown", "source": "# Title \ud800 x\n\nWords \udfff."}]
     (tmp_path / "report.ipynb").write_text(json.dumps({"cells": cells}))
     page = report.write_report(project.look(tmp_path)).page
     assert "Title ? x" in page.read_text(encoding="utf8")
 
 
-def test_a_table_of_thousands_of_columns_is_text_and_one_of_ten_a_table(tmp_path):
+def test_a_table_with_thousands_of_columns_is_shown_as_text(tmp_path):
     for columns, is_table in ((2000, False), (10, True)):
         row = "|" + "a|" * columns + "\n"
         (tmp_path / "report.md").write_text("# T\n\n" + row + "|" + "-|" * columns + "\n" + 5 * row)
@@ -74,12 +74,12 @@ def test_a_table_of_thousands_of_columns_is_text_and_one_of_ten_a_table(tmp_path
         assert ("<table>" in section.html) is is_table
 
 
-def test_which_of_forty_photographs_cannot_be_cleaned_is_said():
+def test_a_photo_that_cannot_be_cleaned_is_named_among_forty():
     with pytest.raises(ValueError, match=r"IMG_7\.jpg"):
         metadata.strip_metadata("IMG_7.jpg", b"\xff\xd8\xff\xe0\x00\x04ab\x12")
 
 
-def test_values_of_exif_that_lie_over_each_other_are_read_no_more_than_once(tmp_path):
+def test_overlapping_exif_values_are_read_once(tmp_path):
     count, size = 2000, 500_000
     entries = b"".join(struct.pack("<HHLL", 0x9000 + k, 7, size, 8) for k in range(count))
     block = b"II*\0" + struct.pack("<LH", 8, count) + entries + struct.pack("<L", 0)
@@ -96,7 +96,7 @@ def test_values_of_exif_that_lie_over_each_other_are_read_no_more_than_once(tmp_
         "[x]\ndue = '{long}'\n",
     ],
 )
-def test_what_a_plan_has_in_too_many_letters_is_told_in_few(line, tmp_path):
+def test_a_long_value_in_a_plan_is_shortened_in_the_message(line, tmp_path):
     (tmp_path / "plan.toml").write_text(
         line.format(long="x" * 5000, digits="7" * 4000) + SHEET.format(points=1)
     )
@@ -105,7 +105,7 @@ def test_what_a_plan_has_in_too_many_letters_is_told_in_few(line, tmp_path):
     assert len(str(said.value)) < 1000
 
 
-def test_a_cell_of_many_letters_names_the_table(tmp_path):
+def test_a_cell_that_is_too_long_is_refused_with_the_tables_name(tmp_path):
     (tmp_path / "roster.csv").write_text("student\n" + "x" * 140_000)
     with pytest.raises(ValueError, match=r"roster\.csv: .*table"):
         roster.read(tmp_path / "roster.csv")
@@ -114,7 +114,7 @@ def test_a_cell_of_many_letters_names_the_table(tmp_path):
 @pytest.mark.parametrize(
     "change", [(b'"1/3"', b'"1/0"'), (b'"exact": {', b'"exact": [{'), (b'"b01"', b'"\xa0"')]
 )
-def test_a_result_that_is_damaged_is_said_to_be_no_result(change, tmp_path):
+def test_a_damaged_result_is_refused(change, tmp_path):
     course_seeds = pytest.importorskip("benchmarks.fuzz.course_seeds", reason="it makes the result")
     course_seeds.result(tmp_path)
     data = (tmp_path / "a.json").read_bytes()
@@ -124,7 +124,7 @@ def test_a_result_that_is_damaged_is_said_to_be_no_result(change, tmp_path):
     assert len(str(said.value)) < 1000
 
 
-def test_a_zip_whose_list_begins_before_the_file_is_refused_as_damaged(tmp_path):
+def test_a_zip_with_an_impossible_directory_offset_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         archive.writestr("x", b"y")
     data = (tmp_path / "a.zip").read_bytes()
@@ -136,5 +136,5 @@ def test_a_zip_whose_list_begins_before_the_file_is_refused_as_damaged(tmp_path)
         unpack.unpack(tmp_path / "a.zip", tmp_path / "files")
 
 
-def test_exif_of_five_bytes_is_dropped():
+def test_truncated_exif_is_dropped():
     assert metadata.keep_exposure_tags(b"II*\0\0")[0] == b""

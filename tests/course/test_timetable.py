@@ -37,7 +37,7 @@ def section(page, heading):
     return page.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
 
 
-def test_every_notebook_stands_in_the_table_under_its_title(page):
+def test_the_timetable_lists_every_notebook_by_its_title(page):
     listed = {name: title for title, name, _, _ in rows(timetable.NOTEBOOK, page)}
     assert listed == {name: title for name, (title, _) in timetable.notebooks().items()}
 
@@ -64,7 +64,7 @@ def test_the_first_page_has_every_notebook_in_one_chapter_with_a_picture(page):
     assert sorted(listed) == sorted(card.stem for card in cards.iterdir())
 
 
-def test_every_task_of_the_plan_stands_in_the_table_with_its_points(page):
+def test_the_timetable_lists_every_task_with_its_points(page):
     listed = [
         (sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)
     ]
@@ -81,7 +81,7 @@ def test_the_minutes_are_those_of_the_rule_within_ten(page):
     assert not far, "run python tests/timetable.py"
 
 
-def test_the_copy_at_the_top_says_the_same(page):
+def test_the_copy_of_the_timetable_is_the_same(page):
     assert timetable.COPY.read_text(encoding="utf8") == timetable.copy_of(page), (
         "run python tests/timetable.py"
     )

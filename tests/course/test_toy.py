@@ -75,7 +75,7 @@ def sentence(name):
     return one.sentence
 
 
-def test_who_is_right_gets_all_points_who_is_blank_or_hostile_none_and_the_others_some(rows):
+def test_correct_work_gets_all_points_blank_or_hostile_work_none(rows):
     work = {who: float(row["work"]) for who, row in rows.items()}
     assert len(work) == 14
     assert {who for who, points in work.items() if points == HOMEWORK.points} == WHOLE
@@ -93,7 +93,7 @@ def test_late_days_cost_a_point_only_beyond_those_that_are_free(rows):
     assert float(rows["s05"]["score"]) == 98 and rows["s14"]["note"] == "not handed in"
 
 
-def test_each_mistake_is_named_to_who_made_it_and_counted_for_the_class(graded):
+def test_each_mistake_is_named_to_its_student_and_counted_for_the_class(graded):
     made = {
         "s06": {"gsolve": "gsolve_log2_of_the_times"},
         "s07": {"gsolve": "gsolve_log2_of_the_times", "hat": "hat_zero_in_the_middle"},
@@ -108,14 +108,14 @@ def test_each_mistake_is_named_to_who_made_it_and_counted_for_the_class(graded):
     assert all(sentence(name) in page for mistakes in made.values() for name in mistakes.values())
 
 
-def test_the_hostile_archive_is_refused_in_a_line_and_the_plain_one_unpacked(graded):
+def test_the_hostile_archive_is_refused_and_the_plain_one_is_unpacked(graded):
     (said,) = read(graded, "s12").problems
     assert said == "The archive is refused: '../s01_hw2.ipynb' leads out of the archive's folder."
     assert not read(graded, "s11").problems
     assert not list(graded.rglob(".unpack*"))
 
 
-def test_what_attackers_print_is_text_on_every_page(graded):
+def test_text_printed_by_attackers_is_escaped_on_every_page(graded):
     pages = [*graded.rglob("*.html")]
     assert len(pages) >= 12 + 1
     assert not any("<script>alert" in page.read_text() for page in pages)
@@ -128,7 +128,7 @@ def test_canvas_gets_the_points_after_the_penalty(graded):
     )
 
 
-def test_the_hostile_change_no_other_result_by_a_byte(graded, tmp_path):
+def test_hostile_submissions_change_no_other_result(graded, tmp_path):
     try:
         tiers.choose("strict")
     except tiers.Unavailable as reason:
@@ -181,7 +181,7 @@ def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
 
 
 @pytest.mark.quick
-def test_a_folder_that_holds_something_is_left_alone(tmp_path, capsys):
+def test_a_folder_that_is_not_empty_is_left_alone(tmp_path, capsys):
     (tmp_path / "roster.csv").write_text("student\nreal\n")
     with pytest.raises(SystemExit) as ended:
         cli.run(["course", "toy", str(tmp_path)])

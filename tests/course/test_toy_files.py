@@ -34,7 +34,7 @@ def test_there_are_fourteen_students_two_of_them_a_team():
     assert toy_class.ATTACKS.is_file()
 
 
-def test_each_hands_in_what_the_list_says(short, monkeypatch):
+def test_each_toy_student_submits_the_listed_file(short, monkeypatch):
     tasks = [one.id for one in HOMEWORK.tasks]
     listed = {
         "s01.py": {"hours": 1, "about": "a", "mistakes": ["m"]},
@@ -59,7 +59,7 @@ def test_each_hands_in_what_the_list_says(short, monkeypatch):
 
 
 @pytest.mark.parametrize("made", [True, False])
-def test_a_class_is_written_into_a_new_or_empty_folder_alone(made, short, tmp_path):
+def test_a_toy_class_is_written_only_to_a_new_or_empty_folder(made, short, tmp_path):
     folder = tmp_path / "in" / "class"
     if made:
         folder.mkdir(parents=True)

@@ -38,7 +38,7 @@ def test_each_trap_is_refused_in_one_line_and_leaves_nothing(tmp_path, name):
     assert {file.name for file in tmp_path.rglob("*")} == {"s01.zip", "scratch"}
 
 
-def test_a_class_with_traps_is_graded_and_each_is_told(tmp_path, monkeypatch):
+def test_a_class_with_traps_is_graded_and_each_trap_is_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in").mkdir()
     trapped = {"s01": "a member that climbs out, zip", "s02": "a hard link"}
@@ -64,6 +64,6 @@ def test_a_class_with_traps_is_graded_and_each_is_told(tmp_path, monkeypatch):
     assert {file.name for file in tmp_path.iterdir()} == {"in", "roster.csv", "plan.toml", "out"}
 
 
-def test_every_kind_of_the_list_is_there():
+def test_the_class_contains_every_kind_of_trap():
     assert len(NAMES) >= 20
     assert all(any(word in name for name in NAMES) for word in LISTED)

@@ -135,7 +135,7 @@ def filled(homework, path):
 
 @pytest.mark.quick
 @pytest.mark.parametrize("task", TASKS)
-def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(task):
+def test_each_variant_has_its_own_checks_and_its_result_names_the_variant(task):
     digests = set()
     for variant in rewording.every(task):
         homework = homework_of(task, variant)
@@ -156,7 +156,7 @@ def test_three_tasks_have_three_parameters_each_and_the_librarys_own_values_come
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
+def test_every_text_replacement_of_a_variant_is_used(task):
     used = set()
     texts = [*about(task, "").values()]
     texts += [
@@ -182,7 +182,7 @@ def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
 
 
 @pytest.mark.parametrize(("task", "variant"), EVERY)
-def test_what_a_variant_rewords_stands_nowhere_any_more(task, variant):
+def test_a_replaced_text_no_longer_occurs_in_a_variant(task, variant):
     for kind, text in about(task, variant).items():
         for values, value in zip(
             rewording.parameters(task).values(), variant.split("/"), strict=True
@@ -233,7 +233,7 @@ SAID = {
 
 
 @pytest.mark.parametrize(("task", "variant"), EVERY)
-def test_sheet_and_hints_of_a_variant_say_its_own_values_and_no_others(task, variant):
+def test_assignment_and_hints_of_a_variant_name_only_its_own_values(task, variant):
     said = about(task, variant)
     own = dict(zip(rewording.parameters(task), variant.split("/"), strict=True))
     for parameter, values in SAID[task].items():
@@ -263,7 +263,7 @@ def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
 
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("student", ["ada", "Emmy Noether"])
-def test_the_solution_of_every_variant_keeps_every_promise(task, student):
+def test_the_solution_of_every_variant_passes_every_check(task, student):
     for variant in rewording.every(task):
         share, said = scoring.score(
             task, subject(task, variant), plan.seed("x", student, task), variant
@@ -300,7 +300,7 @@ def test_mistakes_of_variants_can_be_imitated_for_a_class(task):
             assert solutions.texts(homework_of(task, variant), [one.name])[task] != right[task]
 
 
-def test_alignment_takes_whatever_exclusion_bitmap_its_student_was_asked():
+def test_alignment_works_with_the_exclusion_bitmap_of_any_variant():
     for variant in rewording.every("exclusion")[:: len(rewording.every("exclusion")) - 1]:
         scope = {}
         exec(
@@ -318,7 +318,7 @@ def test_a_plan_without_parameters_asks_everybody_the_same():
         assert plan.draw_variants(homework, "b1", SECRET) == homework
 
 
-def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_says_nothing_stay(
+def test_variant_values_are_drawn_evenly_and_unlisted_parameters_stay(
     course,
 ):
     some = course.homeworks["hw1"].tasks[0]._replace(parameters=("margin", "tie"))
@@ -401,7 +401,7 @@ def test_parameters_that_a_task_does_not_have_are_refused_in_words(was, now, sai
 # How it is graded
 
 
-def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, monkeypatch):
+def test_a_student_can_check_their_assignment_without_the_secret(course, tmp_path, monkeypatch):
     own = plan.draw_variants(course.homeworks["hw1"], "b7", SECRET)
     assert all(task.variant not in ("", rewording.every(task.id)[0]) for task in own.tasks)
     path = filled(own, tmp_path / "hw1.ipynb")
@@ -437,9 +437,7 @@ def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(cours
 
 
 @pytest.mark.parametrize("named", ["", "a/b/c", "excluded/from/six/and", "../../x/y/z", "<b>/x/y"])
-def test_a_sheet_that_names_no_variant_that_there_is_is_checked_as_the_library_is(
-    named, course, tmp_path
-):
+def test_an_assignment_with_an_unknown_variant_is_checked_like_the_library(named, course, tmp_path):
     path = tmp_path / "hw1.py"
     path.write_text(
         f'use_plan("hw1", variants={{"exclusion": "{named}"}})\n\n# %%\nimport numpy as np\n\n\n'
@@ -513,9 +511,7 @@ def written(folder, texts, course):
     return (folder / "similar.html").read_text(), csv_tables.read_csv(folder / "similar.csv")
 
 
-def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sheet_it_is(
-    course, tmp_path
-):
+def test_a_copy_with_changed_parameters_is_found_and_its_assignment_is_named(course, tmp_path):
     apart = materials.folder("tests") / "equivalent"
     text, other = ((apart / f"hw1_{name}.py").read_text() for name in ("loops", "float32"))
     copied = text.replace("> 4\n", ">= 6\n").replace("(dy, dx) in", "(dx, dy) in")

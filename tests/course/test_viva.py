@@ -132,7 +132,7 @@ def test_a_version_is_python_that_differs_in_one_token(task):
         compile(one.source, task, "exec")
 
 
-def test_words_comments_and_names_of_ones_own_stay():
+def test_strings_comments_and_own_names_are_not_changed():
     found = changed.versions(
         'def f(x):\n    """Take 2 of 3."""\n    y = "1 + 1"  # not 4\n    return y * (x + 5)\n'
     )
@@ -196,7 +196,7 @@ def test_an_answer_without_a_form_that_can_be_drawn_is_not_drawn():
 
 
 @pytest.mark.parametrize("name", ["viva.html", "quiz.html", "oral.html", "examiner.html"])
-def test_a_page_runs_nothing_fetches_nothing_and_says_what_it_cannot_show(name):
+def test_a_page_runs_no_script_loads_nothing_and_reports_what_it_cannot_show(name):
     text = written(EVERY)[name]
     page = Tags(text)
     assert not page.tags & {"script", "iframe", "object", "form", "base"}
@@ -207,7 +207,7 @@ def test_a_page_runs_nothing_fetches_nothing_and_says_what_it_cannot_show(name):
     assert not re.search("[\x00-\x08\x0b-\x1f\u202e]", text)
 
 
-def test_the_examiner_alone_is_told_which_is_right():
+def test_only_the_examiners_page_names_the_right_option():
     files = written(EVERY)
     assert "<b>B</b> is right" in files["examiner.html"]
     for name in ("viva.html", "quiz.html", "oral.html", "viva.ipynb"):
@@ -248,7 +248,7 @@ def test_the_notebook_checks_itself_and_then_says_what_each_option_comes_from(ca
             assert Tags(base64.b64decode(one["image/svg+xml"]).decode()).alts
 
 
-def test_fewer_than_five_are_said_in_words():
+def test_fewer_than_five_questions_are_announced():
     for name, text in written(EVERY[:2]).items():
         shown = nbformat.reads(text, 4).cells[0].source if "ipynb" in name else text
         assert "2 of five questions." in shown
@@ -281,7 +281,7 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
 
 
 @pytest.mark.parametrize(("memory", "right"), [("zeros", True), ("empty", False)])
-def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
+def test_uninitialized_memory_is_not_an_answer(memory, right, monkeypatch):
     monkeypatch.setattr(
         np, "empty", np.empty
     )  # which the run of a version changes, in a process of its own
@@ -305,7 +305,7 @@ def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
     assert asked.is_reproducible(draft) == right
 
 
-def test_a_call_is_told_by_its_parameters_and_of_large_arrays_the_size_and_range():
+def test_a_call_is_shown_with_its_parameters_and_large_arrays_by_size_and_range():
     source = "def scale(x, by=2, *, offset=0):\n    return by * x + offset\n"
     run = SimpleNamespace(job={"sources": {"scale": source}}, calls={"scale": []})
     asked = examining.QuestionGenerator(run, "scale", [], np.random.default_rng(3))

@@ -30,7 +30,7 @@ INSIDE = SandboxMounts(
 )
 
 
-def test_bubblewrap_is_told_walls_environment_places_and_what_is_hidden_in_this_order(monkeypatch):
+def test_bubblewrap_gets_its_arguments_in_the_required_order(monkeypatch):
     monkeypatch.setattr(strict, "BUBBLEWRAP_OPTIONS", ["--walls"])
     monkeypatch.setattr(strict, "ENVIRONMENT", {"A": "1"})
     assert strict.bubblewrap_options(INSIDE, INSIDE.places, 7) == [
@@ -167,9 +167,7 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
 
 
 @pytest.mark.parametrize("variables", [{"SYSTEMROOT": "C:"}, {}])
-def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
-    variables, launched, monkeypatch
-):
+def test_the_practice_tier_runs_in_a_temporary_folder(variables, launched, monkeypatch):
     began = []
     monkeypatch.setattr(
         session, "start_process", lambda *words, **knobs: began.append((words, knobs)) or "process"
@@ -195,7 +193,7 @@ def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(
     made.clean_up()
 
 
-def test_the_practice_tier_counts_no_processes_and_no_credit():
+def test_the_practice_tier_limits_no_processes_and_gives_no_credit():
     assert practice.sandbox().credit is False
     assert set(practice.sandbox().limits) == {"CPU", "AS", "FSIZE", "NOFILE", "CORE"}
     assert practice.sandbox().limits.items() <= session.LIMITS.items()
@@ -205,7 +203,7 @@ def mounts(places, *hidden):
     return SandboxMounts(prefix="", python="", places=places, hidden=hidden, packages={})
 
 
-def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_path):
+def test_everything_mounted_is_readable_except_what_is_hidden(tmp_path):
     for folder in ("lib/a", "lib/packages/x", "lib/b/packages", "other"):
         (tmp_path / folder).mkdir(parents=True)
     places = {"/in": f"{tmp_path}/lib", "/o": f"{tmp_path}/other", "/none": f"{tmp_path}/none"}
@@ -219,7 +217,7 @@ def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_pat
     )
 
 
-def test_folders_of_packages_are_found_in_what_is_placed(tmp_path):
+def test_package_folders_are_found_in_the_mounted_paths(tmp_path):
     for folder in (
         "a/site-packages",
         "a/python3.11/dist-packages",

@@ -52,7 +52,7 @@ def on_windows(tmp_path):
 
 
 @lacking
-def test_what_is_hidden_is_gone_and_a_launcher_stands_between(on_windows):
+def test_posix_modules_are_hidden_in_these_tests(on_windows):
     code = """if 1:
         import importlib.util, os, signal, subprocess, sys
         from hdrlab.course.sandbox.inside import system
@@ -89,7 +89,7 @@ def test_a_student_checks_a_file_at_the_terminal(on_windows):
 
 
 @lacking
-def test_a_pipe_that_lacks_a_sign_gets_another_in_its_place(on_windows, tmp_path):
+def test_an_unencodable_character_is_replaced_in_a_pipe(on_windows, tmp_path):
     wrong = GOOD.replace("n - 1 -", "n -")
     (tmp_path / "hw2.py").write_text(wrong, encoding="utf8")
     words = ("-X", "utf8=0", "-m", "hdrlab", "check", "hw2.py", "--plan", "plan.toml")
@@ -138,7 +138,7 @@ def imported(path):
             yield from (one.value for one in node.args if isinstance(one, ast.Constant))
 
 
-def test_one_module_imports_what_posix_alone_has():
+def test_only_one_module_imports_posix_modules():
     files = [
         path
         for path in HOME.rglob("*.py")

@@ -31,7 +31,7 @@ def job(tmp_path):
 # Who gets which
 
 
-def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered, job):
+def test_a_job_goes_to_the_worker_with_the_most_free_slots(clustered, job):
     made, client = clustered(a=1, b=3)
     begun = [made.start(job(f"p{k}")) for k in range(5)]
     assert begun == [True] * 4 + [False]
@@ -40,9 +40,7 @@ def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered
     assert task == cluster.RemoteJob(len, bool, job("p0"), b"p0", 7.0, cluster.version())
 
 
-def test_a_piece_that_is_to_be_alone_waits_for_a_worker_without_any_and_has_it_to_itself(
-    clustered, job
-):
+def test_a_job_that_must_run_alone_waits_for_an_idle_worker(clustered, job):
     made, client = clustered(a=2)
     assert made.start(job("first")) and not made.start(job("doubted"), alone=True)
     (future,) = made._running
@@ -72,7 +70,7 @@ def test_without_workers_for_two_minutes_the_run_ends(clustered, job):
         made.start(job())
 
 
-def test_a_cluster_that_is_lost_is_told_in_words(clustered, job):
+def test_a_lost_cluster_is_reported(clustered, job):
     made, client = clustered(a=1)
     client.threads = OSError("the  line\nis cut")
     with pytest.raises(ValueError, match="is lost; finished results are kept: .*line is cut$"):
@@ -99,9 +97,7 @@ def ended(made, status, answer=None, which=0):
         ("error", KilledWorker("task", None, 3), (None, "its worker a was lost", True)),
     ],
 )
-def test_a_piece_ends_with_its_result_or_with_why_there_is_none(
-    status, answer, ending, clustered, job
-):
+def test_a_job_ends_with_its_result_or_the_reason_for_none(status, answer, ending, clustered, job):
     made, client = clustered(a=2)
     made.start(job(), alone=True)
     assert made.wait_for_attempts() == [] and set(made.clock.slept) == {0.05}
@@ -112,7 +108,7 @@ def test_a_piece_ends_with_its_result_or_with_why_there_is_none(
     assert client.cancelled[-1] == []
 
 
-def test_while_a_result_is_on_its_way_the_piece_runs(clustered, job):
+def test_a_job_runs_until_its_result_has_arrived(clustered, job):
     made, _ = clustered(a=1)
     made.start(job())
     assert ended(made, "finished", TimeoutError()) == [] and len(made._running) == 1
@@ -120,14 +116,14 @@ def test_while_a_result_is_on_its_way_the_piece_runs(clustered, job):
     assert ended(made, "finished", b"+1") == [JobAttempt(job(), b"1")]
 
 
-def test_an_error_over_there_that_is_no_loss_ends_the_run(clustered, job):
+def test_an_error_on_a_worker_ends_the_run(clustered, job):
     made, _ = clustered(a=1)
     made.start(job())
     with pytest.raises(ValueError, match="cluster cannot .*work: no walls"):
         ended(made, "error", RuntimeError("no walls"))
 
 
-def test_a_worker_that_is_gone_is_blamed_on_a_piece_that_was_alone_there(clustered, job):
+def test_a_lost_worker_is_blamed_on_a_job_that_ran_alone(clustered, job):
     made, client = clustered(a=2, b=1, c=1)
     for owner in ("p", "q", "r", "s"):
         made.start(job(owner))
@@ -146,7 +142,7 @@ def test_a_worker_that_is_gone_is_blamed_on_a_piece_that_was_alone_there(cluster
     ] == ["c"]
 
 
-def test_of_a_worker_killed_again_and_again_one_piece_is_lost_and_the_others_run(clustered, job):
+def test_a_job_that_kills_workers_is_given_up_and_the_others_run(clustered, job):
     made, client = clustered(a=2)
     made.start(job("p"))
     made.start(job("q"))
@@ -181,7 +177,7 @@ def entered(clustered, monkeypatch):
     return entered
 
 
-def test_a_run_that_ends_takes_back_what_runs(entered, job):
+def test_a_run_that_ends_cancels_its_running_jobs(entered, job):
     made, client = entered()
     with made:
         made.start(job())
@@ -212,7 +208,7 @@ def test_a_cluster_of_another_hdrlab_or_without_the_tier_is_refused(knobs, said,
             pass
 
 
-def test_where_there_is_no_cluster_it_is_said_with_the_address(entered):
+def test_a_missing_cluster_is_reported_with_its_address(entered):
     for error, why in (
         (OSError("x"), "there is none$"),
         (ValueError("odd"), "there is none: odd$"),

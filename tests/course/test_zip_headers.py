@@ -28,7 +28,7 @@ def archive(*files, **knobs):
     return made.getvalue()
 
 
-def test_an_archive_of_as_many_bytes_as_are_allowed_is_opened(taken):
+def test_an_archive_of_the_largest_allowed_size_is_opened(taken):
     whole = archive(("a", b"x"))
     assert taken(whole, max_total_bytes=len(whole)) == {"a": b"x"}
     said = f"it has {len(whole)} bytes, expected at most {len(whole) - 1}"
@@ -46,7 +46,7 @@ def test_an_archive_of_as_many_bytes_as_are_allowed_is_opened(taken):
         (0o140666, "'a' is a device, expected plain files"),
     ],
 )
-def test_an_entry_is_told_by_its_kind_of_file(mode, said, taken):
+def test_an_entry_that_is_not_a_plain_file_is_refused_with_its_kind(mode, said, taken):
     whole = archive((entry("a", mode), b"x"), ("b", b"y"))
     if said:
         assert refused(taken, whole) == said
@@ -54,7 +54,7 @@ def test_an_entry_is_told_by_its_kind_of_file(mode, said, taken):
         assert taken(whole) == {"a": b"x", "b": b"y"}
 
 
-def test_other_flags_than_that_of_encryption_are_none(taken):
+def test_flags_other_than_encryption_are_ignored(taken):
     whole = bytearray(archive(("a", b"x")))
     at = whole.rfind(b"PK\1\2") + 8
     whole[6] |= 2
@@ -64,12 +64,12 @@ def test_other_flags_than_that_of_encryption_are_none(taken):
     assert refused(taken, bytes(whole)) == "'a' is encrypted"
 
 
-def test_a_name_with_a_zero_in_it_is_refused_though_the_reader_would_cut_it(taken):
+def test_a_name_with_a_null_character_is_refused(taken):
     whole = archive(("abc", b"x")).replace(b"abc", b"a\0c")
     assert refused(taken, whole) == "'ac' has a control character in its name"
 
 
-def test_members_beside_each_other_share_nothing_and_one_byte_nearer_they_do(taken):
+def test_overlapping_members_are_refused(taken):
     whole = bytearray(archive(("a", b"xy"), ("b", b"z"), ("f/", b"")))
     assert taken(bytes(whole)) == {"a": b"xy", "b": b"z"}
     at = whole.find(b"PK\1\2") + 20
@@ -84,7 +84,7 @@ def test_members_beside_each_other_share_nothing_and_one_byte_nearer_they_do(tak
         assert (said == "'a' shares its bytes with another member") is shares
 
 
-def test_a_list_that_is_cut_short_is_told_at_each_byte(taken):
+def test_a_central_directory_cut_at_any_byte_is_refused(taken):
     whole = archive(("a", b"x"))
     said = "it is cut short: its list of members is missing"
     for cut in (1, 21, 22, 23):
@@ -92,12 +92,12 @@ def test_a_list_that_is_cut_short_is_told_at_each_byte(taken):
     assert refused(taken, b"PK\5\6") == said
 
 
-def test_a_zip_of_nothing_or_of_folders_alone_holds_no_files(taken):
+def test_a_zip_without_files_is_refused(taken):
     assert refused(taken, b"PK\5\6" + bytes(18)) == "it holds no files"
     assert refused(taken, archive(("a/", b""))) == "it holds no files"
 
 
-def test_the_list_is_found_before_a_comment_of_any_length(taken):
+def test_the_central_directory_is_found_before_a_comment_of_any_length(taken):
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as opened:
         opened.writestr("a", b"x")
@@ -105,7 +105,7 @@ def test_the_list_is_found_before_a_comment_of_any_length(taken):
     assert taken(made.getvalue()) == {"a": b"x"}
 
 
-def test_a_zip_of_the_large_form_is_refused_by_the_mark_before_its_list(taken):
+def test_a_zip64_archive_is_refused(taken):
     whole = archive(("a", b"x"))
     at = whole.rfind(b"PK\5\6")
     said = "it is a zip for more than 4 GB or 65535 members"
@@ -113,7 +113,7 @@ def test_a_zip_of_the_large_form_is_refused_by_the_mark_before_its_list(taken):
     assert said not in refused(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
 
 
-def test_a_list_may_claim_as_many_members_and_bytes_as_are_allowed(taken):
+def test_a_central_directory_may_claim_the_largest_allowed_numbers(taken):
     whole = bytearray(archive(("a", b"x")))
     at = whole.rfind(b"PK\5\6")
     for count, size, said in (
@@ -125,7 +125,7 @@ def test_a_list_may_claim_as_many_members_and_bytes_as_are_allowed(taken):
         assert refused(taken, bytes(whole), max_members=3).startswith(said)
 
 
-def test_what_else_a_reader_cannot_do_with_it_is_told_in_eighty_characters(taken, monkeypatch):
+def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
     for error, why in ((ValueError("n" * 200), "n" * 79 + "\u2026"), (EOFError(), "EOFError")):
         monkeypatch.setattr(
             tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error)
@@ -140,5 +140,5 @@ def test_what_else_a_reader_cannot_do_with_it_is_told_in_eighty_characters(taken
         taken(b"x")
 
 
-def test_paths_are_those_of_the_archive(taken):
+def test_unpacked_paths_equal_those_of_the_archive(taken):
     assert set(taken(archive(("f/g/a", b"x")))) == {str(PurePosixPath("f", "g", "a"))}
