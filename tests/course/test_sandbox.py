@@ -120,7 +120,7 @@ def alone(source, tier, **others):
         return subject.f()
 
 
-def test_answers_come_as_plain_arrays(subject):
+def test_answers_from_the_sandbox_are_plain_arrays(subject):
     x = np.arange(6.0).reshape(2, 3)
     np.testing.assert_array_equal(subject.scaled(x, k=3), 3 * x)
     states = subject.steps(x)
@@ -155,9 +155,7 @@ def test_answers_come_as_plain_arrays(subject):
         ("forks", "raised", "PermissionError: a function that is checked cannot start a process"),
     ],
 )
-def test_what_goes_wrong_is_said_in_plain_words_and_the_next_call_is_answered(
-    subject, task, kind, says
-):
+def test_a_failed_call_has_a_plain_message_and_the_next_call_works(subject, task, kind, says):
     with pytest.raises(NoAnswer, match=says) as told:
         getattr(subject, task)(1.0)
     assert told.value.kind == kind
@@ -175,13 +173,13 @@ def test_a_call_that_takes_too_long_is_ended(running_subject):
     assert running_subject.scaled(1.0) == 2.0
 
 
-def test_nothing_is_kept_from_one_check_to_the_next(subject):
+def test_no_state_survives_from_one_check_to_the_next(subject):
     assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
     subject.fresh()
     assert subject.counted(1.0) == 1 and len(subject.calls) == 1
 
 
-def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject):
+def test_printed_text_and_warnings_are_recorded_without_control_codes(subject):
     subject.loud(1.0)
     assert (
         "said\n" in subject.printed
@@ -193,14 +191,14 @@ def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject)
     assert subject.printed == ""
 
 
-def test_what_a_function_printed_is_kept_if_its_answer_is_refused(subject):
+def test_printed_text_is_kept_if_the_answer_is_refused(subject):
     with pytest.raises(NoAnswer) as raised:
         subject.loud_set(1.0)
     assert raised.value.kind == "refused"
     assert "printed first" in subject.printed
 
 
-def test_an_input_that_is_changed_there_is_not_changed_here(subject):
+def test_a_submission_cannot_change_the_graders_inputs(subject):
     x = np.ones(3)
     assert subject.spoiled(x).tolist() == [-1, -1, -1]
     assert x.tolist() == [1, 1, 1]
@@ -217,7 +215,7 @@ def test_grading_twice_gives_the_same(subject):
     assert first == (subject.drawn(0).tolist(), int(subject.hashed(0)))
 
 
-def test_a_sandbox_that_is_ended_from_outside_is_started_anew(subject):
+def test_a_sandbox_that_was_killed_is_started_again(subject):
     subject.scaled(1.0)
     subject._session._launched.process.kill()
     subject._session._launched.process.wait()
@@ -226,7 +224,7 @@ def test_a_sandbox_that_is_ended_from_outside_is_started_anew(subject):
 
 
 @pytest.mark.parametrize("tier", ["strict", "container"])
-def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
+def test_the_sandbox_shows_only_the_files_that_computing_needs(tier):
     source = IMPOLITE + textwrap.dedent(
         """
         import ctypes, os, resource
@@ -271,7 +269,7 @@ def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
 
 @pytest.mark.grading
 @pytest.mark.parametrize("tier", ["strict", "container"])
-def test_no_package_but_numpy_and_scipy_is_there(tier):
+def test_the_sandbox_has_no_packages_except_numpy_and_scipy(tier):
     source = textwrap.dedent(
         """
         import os, sys
@@ -293,7 +291,7 @@ def test_no_package_but_numpy_and_scipy_is_there(tier):
     assert alone(source, tier) == ([], ["numpy", "scipy.optimize"])
 
 
-def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path):
+def test_other_files_beside_the_interpreters_modules_are_hidden(tmp_path):
     places = {"/python/lib": str(tmp_path), "/packages/numpy": str(tmp_path)}
     for name in ("python3.11/site-packages/cv2", "python3/dist-packages", "python3.11/json"):
         (tmp_path / name).mkdir(parents=True)
@@ -313,9 +311,7 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
 
 
 @pytest.mark.parametrize("apart", [True, False])
-def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_are_there(
-    apart, monkeypatch
-):
+def test_only_the_library_folders_of_this_processor_are_visible(apart, monkeypatch):
     whole = {"/lib", "/usr/lib"}
     own = {f"{folder}/riscv64-linux-gnu" for folder in whole}
     there = whole | own if apart else whole
@@ -325,7 +321,7 @@ def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_ar
     assert set(contents._system_libraries()) == (own if apart else whole)
 
 
-def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
+def test_without_fork_each_check_has_its_own_process():
     """As on Windows, but for the way in which the process is handed its socket."""
     tier = replace(practice.sandbox(), can_fork=False)
     with Subject(dict.fromkeys(NAMES, FUNCTIONS), tier, 30) as subject:
@@ -342,7 +338,7 @@ def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
         assert subject.scaled(1.0) == 2.0
 
 
-def test_large_answers_are_not_remembered_without_end():
+def test_remembered_answers_have_a_limited_size():
     source = "import numpy as np\ndef f(n): return np.zeros(n)"
     with opened("practice", {"f": source}) as subject:
         for n in (1 << 19, 1 << 18, 1 << 19, 1):
@@ -435,7 +431,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
 
 
 @pytest.mark.grading
-def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_path):
+def test_a_killed_grader_leaves_no_process_and_no_folder(adopted, tmp_path):
     """Whatever tier: with the parent gone, the process of the check and its supervisor are gone soon."""
     for tier in ("strict", "practice"):
         opened(tier)
@@ -511,7 +507,7 @@ def as_user(user, code):
     return told.stdout or told.stderr
 
 
-def test_the_practice_tier_says_what_it_does_not_stop_and_that_is_true(tmp_path):
+def test_the_practice_tier_lists_what_it_does_not_stop(tmp_path):
     """Each sentence has a function here that does what it says; none reaches beyond its own folder."""
     (tmp_path / "solution.py").write_text("ANSWER = 42\n")
     (tmp_path / "yours.txt").write_text("yours")
@@ -551,7 +547,7 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
         assert system.list_children() == before
 
 
-def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):
+def test_the_doctor_reports_whether_each_tier_works_and_how_to_fix_it(without):
     found = {finding.tier: finding for finding in doctor.examine_tiers()}
     assert list(found) == ["strict", "container", "practice"]
     for tier, finding in found.items():
@@ -566,7 +562,7 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     )
 
 
-def test_what_is_missing_is_to_be_installed_and_not_what_is_there_and_did_not_start():
+def test_the_doctor_advises_to_install_only_what_is_missing():
     assert doctor.find_remedy("the strict tier needs bubblewrap").startswith("install bubblewrap")
     assert "install" not in doctor.find_remedy(
         "the strict sandbox did not start: bwrap: Permission denied"
@@ -594,7 +590,7 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
     assert works or finding.details.endswith("did not start: it was ended by signal 9")
 
 
-def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
+def test_a_sandbox_that_does_not_start_leaves_nothing_behind():
     cleared = []
 
     def launch(control):
@@ -621,7 +617,7 @@ def test_a_check_is_cleared_away_once(monkeypatch):
             assert inside.clear_check() == (0, 0.0) and inside.cpu_seconds_left == left
 
 
-def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():
+def test_the_container_tier_works_where_mounting_is_forbidden():
     """As in most containers: root, without the right to have namespaces."""
     opened("container")
     if shutil.which("setpriv") is None:
@@ -643,7 +639,7 @@ def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_contai
     assert "container True started in" in told[1] and told[2].startswith("practice True")
 
 
-def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
+def test_the_doctor_finds_a_leaking_sandbox(monkeypatch):
     weak = replace(practice.sandbox(), tier="strict", credit=True)
     monkeypatch.setitem(tiers.TIERS, "strict", lambda: weak)
     finding = doctor.examine("strict")
@@ -659,7 +655,7 @@ def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
     assert not Path("/tmp/hdrlab-doctor").exists()
 
 
-def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subject):
+def test_a_subject_has_the_submitted_tasks_and_must_be_open(subject):
     with pytest.raises(AttributeError, match="has no task other"):
         subject.other(1)
     with pytest.raises(channel.UnsupportedValue, match="class function"):
@@ -670,7 +666,7 @@ def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subj
         closed.f()
 
 
-def test_a_source_that_is_no_python_or_lacks_its_function_is_told():
+def test_invalid_source_or_a_missing_function_is_reported():
     with opened("practice", {"a": "def a(:", "b": "x = 1", "c": "b = 3"}) as subject:
         with pytest.raises(NoAnswer, match=r"SyntaxError.*line 1: def a\(:"):
             subject.a()
@@ -691,7 +687,7 @@ def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks()
         assert not subject.f()
 
 
-def test_a_submission_that_has_used_up_its_processor_is_told_so():
+def test_a_submission_without_processor_time_left_is_reported():
     with opened("practice") as subject:
         assert subject.scaled(1.0) is not None
         subject._session.cpu_seconds_left = 0.0
@@ -712,7 +708,7 @@ def test_a_submission_that_has_used_up_its_processor_is_told_so():
         (b"nonsense", 0, 0.1, True, "damaged"),
     ],
 )
-def test_without_an_answer_it_is_told_who_ended_the_process(sent, ended, used, forks, kind):
+def test_a_missing_answer_says_what_ended_the_process(sent, ended, used, forks, kind):
     ours, theirs = socket.socketpair()
     theirs.sendall(sent)
     theirs.close()
@@ -722,7 +718,7 @@ def test_without_an_answer_it_is_told_who_ended_the_process(sent, ended, used, f
     assert told.value.kind == kind
 
 
-def test_a_check_has_the_time_of_three_calls_and_a_submission_of_twenty():
+def test_the_time_of_a_check_and_of_a_submission_is_limited():
     theirs = []
 
     def check():  # nobody answers
