@@ -240,7 +240,7 @@ def test_your_own_align_function_may_return_homographies(turned):
     )
 
 
-def test_masks_follow_the_warp(turned):
+def test_masks_are_warped_with_their_photos(turned):
     taken, _ = turned
     valid = np.ones(taken.images.shape[:3], bool)
     valid[0, :, :40] = False

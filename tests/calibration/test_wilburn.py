@@ -316,7 +316,7 @@ def test_invalid_blends_raise_an_error(tmp_path):
             call()
 
 
-def test_the_whole_range_may_be_bright_and_one_side_alone_is_refused():
+def test_the_whole_range_may_be_bright_and_one_side_alone_raises_an_error():
     row = np.r_[np.zeros(20), np.arange(3, 255, 6), np.full(20, 255)].astype(np.uint8)
     found = motion_blur.find_ramps(np.stack([row] * 4), low=0.0, high=1.0)
     assert len(found) == 4 and all(one.rises for one in found)

@@ -131,7 +131,7 @@ def test_of_shifted_pictures_the_rectangle_is_the_crop(offsets):
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=25)
-def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
+def test_the_common_rectangle_lies_in_every_image_and_touches_their_sides(seed):
     moves = hand_motion.shake(3, SHAPE, radius=9, degrees=5, zoom=0.05, tilt=0.03, rng=seed)
     rows, columns = warp.common_rectangle(moves, SHAPE)
 

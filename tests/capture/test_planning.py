@@ -63,7 +63,7 @@ def test_invalid_luminances_raise_an_error(low, high):
         planning.plan(low, high)
 
 
-def test_an_overlap_that_leaves_no_step_is_refused():
+def test_an_overlap_that_leaves_no_step_raises_an_error():
     with pytest.raises(ValueError, match="overlap"):
         planning.plan(1, 10, usable=4, overlap=4)
     with pytest.raises(ValueError, match="step"):

@@ -251,13 +251,13 @@ def test_photon_transfer_raises_an_error_for_unusable_photos(Z):
         (dict(sensor=Sensor(), E=np.ones((4, 4)), bayer=True), "radiance"),
     ],
 )
-def test_a_sensor_that_means_nothing_is_refused_with_what_came(knobs, said):
+def test_an_invalid_sensor_raises_an_error_that_names_the_value(knobs, said):
     E = knobs.pop("E", np.ones((4, 4, 3)))
     with pytest.raises(ValueError, match=said):
         camera.shoot(E, [1.0], camera.Camera(**knobs))
 
 
-def test_figures_that_mean_nothing_are_refused():
+def test_invalid_numbers_raise_an_error():
     for call in (
         lambda: ranges.dynamic_range(0.1, 1),
         lambda: ranges.dynamic_range(1, 0),

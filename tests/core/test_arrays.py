@@ -104,13 +104,13 @@ def test_a_float64_beyond_float32_counts_as_infinite():
 
 
 @pytest.mark.parametrize("shape", [(), (5,), (4, 5, 4), (2, 4, 5, 3), (0, 5), (4, 0, 3)])
-def test_radiance_of_another_shape_is_refused(shape):
+def test_radiance_of_another_shape_raises_an_error(shape):
     with pytest.raises(ValueError, match="radiance"):
         arrays.as_radiance(np.ones(shape))
 
 
 @pytest.mark.parametrize("shape", [(), (5,), (4, 5, 3), (0, 5)])
-def test_luminance_of_another_shape_is_refused(shape):
+def test_luminance_of_another_shape_raises_an_error(shape):
     with pytest.raises(ValueError, match=r"luminance \(H, W\)"):
         arrays.as_luminance(np.ones(shape))
 

@@ -45,7 +45,7 @@ def test_a_response_of_65536_levels_compares_with_one_of_256():
     assert metrics.response_rmse(fine, LINEAR).max() < 0.01
 
 
-def test_responses_whose_channels_do_not_fit_are_refused():
+def test_responses_whose_channels_do_not_fit_raise_an_error():
     with pytest.raises(ValueError, match=r"response \(n,\) or \(n, 3\).*shape"):
         metrics.response_rmse(np.stack([LINEAR] * 3, axis=-1), np.stack([LINEAR] * 2, axis=-1))
 
@@ -91,7 +91,7 @@ def test_where_the_truth_is_without_light_there_is_no_relative_error():
     assert np.argwhere(np.isnan(metrics.radiance_errors(E, dark, E > 0))).tolist() == [[0, 0]]
 
 
-def test_maps_that_cannot_be_compared_are_refused():
+def test_maps_that_cannot_be_compared_raise_an_error():
     E = truth((4, 5))
     with pytest.raises(ValueError, match="one shape"):
         metrics.radiance_errors(E, E[1:], E > 0)
@@ -106,6 +106,6 @@ def test_offsets_are_compared_up_to_the_shift_that_most_frames_share():
     assert metrics.offset_errors(found, true).tolist() == [[0, 0], [0, 0], [0, 0], [0, 1]]
 
 
-def test_offsets_that_do_not_pair_are_refused():
+def test_offsets_that_do_not_pair_raise_an_error():
     with pytest.raises(ValueError, match="offsets"):
         metrics.offset_errors([[0, 0]], [[0, 0], [1, 1]])

@@ -31,7 +31,7 @@ def test_samples_are_levels_of_256_per_sample_frame_and_channel(way, dtype, chan
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_16_bits_are_sampled_like_the_8_they_hold(way):
+def test_16_bit_photos_are_sampled_like_8_bit_ones(way):
     images = frames()
     assert np.array_equal(way(images, 50), way(images.astype(np.uint16) * 257, 50))
 
@@ -62,7 +62,7 @@ def test_samples_by_rank_do_not_depend_on_pixel_positions():
 
 @given(st.integers(1, 3000), st.integers(1, 40), st.integers(1, 40))
 @example(1, 4, 1)
-def test_a_grid_holds_pixels_of_the_photographs_and_no_more_than_asked_for(count, height, width):
+def test_a_grid_sample_has_at_most_the_requested_number_of_pixels(count, height, width):
     images = np.arange(height * width, dtype=np.uint16).reshape(1, height, width) % 256
     images = np.concatenate([images, images // 2]).astype(np.uint8)
     Z = by_grid(images, count)
@@ -75,7 +75,7 @@ def test_a_grid_as_large_as_the_picture_is_the_picture():
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_pixels_that_one_frame_does_not_show_enter_no_sample(way):
+def test_masked_pixels_are_not_sampled(way):
     images = np.clip(frames(), 0, 200)
     valid = np.ones(images.shape, bool)
     images[1, 5:20], valid[1, 5:20] = 255, False
@@ -83,7 +83,7 @@ def test_pixels_that_one_frame_does_not_show_enter_no_sample(way):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_mask_that_leaves_nothing_is_refused(way):
+def test_a_mask_that_leaves_nothing_raises_an_error(way):
     valid = np.ones((3, 30, 40), bool)
     valid[0, :15], valid[2, 15:] = False, False
     with pytest.raises(ValueError, match="masks leave none"):
@@ -91,6 +91,6 @@ def test_a_mask_that_leaves_nothing_is_refused(way):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_mask_of_another_shape_is_refused(way):
+def test_a_mask_of_another_shape_raises_an_error(way):
     with pytest.raises(ValueError, match=r"mask of shape \(3, 30, 40\)"):
         way(frames(), 10, valid=np.ones((30, 40), bool))

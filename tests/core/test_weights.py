@@ -55,7 +55,7 @@ def test_cut_does_not_change_its_argument():
 @pytest.mark.parametrize(
     ("above", "below"), [(0.2, 0.5), (1.1, 0), (0.9, -0.1), (0.5, 0.5), (np.nan, 0)]
 )
-def test_a_cut_that_leaves_nothing_is_refused(above, below):
+def test_a_cut_that_leaves_nothing_raises_an_error(above, below):
     with pytest.raises(ValueError, match="0 <= below < above <= 1"):
         weights.cut(weights.hat(), above=above, below=below)
 

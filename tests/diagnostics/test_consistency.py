@@ -150,7 +150,7 @@ def test_the_true_response_and_times_leave_no_residual(bracket):
     assert r.shape == (5, 1, 256) and np.nanmax(np.abs(r[..., 20:230])) < 0.02
 
 
-def test_a_wrong_response_bends_the_residuals_of_all_frames_alike(bracket):
+def test_a_wrong_response_bends_the_residuals_of_all_frames_equally(bracket):
     _, taken = bracket
     E = merge(taken.images, taken.times, G, gaussian(65536))
     found = consistency.measure_level_exposures(taken.images, taken.times, E)

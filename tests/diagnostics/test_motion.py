@@ -72,14 +72,14 @@ def test_times_that_do_not_fit_the_photographs_are_an_error():
 
 
 @pytest.mark.parametrize("ill", ["wind", "water"])
-def test_leaves_and_water_are_noticed_where_the_spread_is_small(ill, tmp_path):
+def test_moving_leaves_and_water_are_found_although_the_spread_is_small(ill, tmp_path):
     taken = brackets.shoot(brackets.plan(tmp_path, 3), ills.ILLS[ill])
     found = pipeline.assemble(taken, align="none")
     assert found.spread < 0.1
     assert found.moving is not None or any("--ghosts regions" in doubt for doubt in found.doubts)
 
 
-def test_a_still_scene_through_sharpening_and_jpeg_is_not(tmp_path):
+def test_a_still_scene_after_sharpening_and_jpeg_is_not_motion(tmp_path):
     found = pipeline.assemble(brackets.shoot(brackets.plan(tmp_path, 3)), align="none")
     assert found.moving is None and found.doubts == ()
 

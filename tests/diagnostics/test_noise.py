@@ -132,7 +132,7 @@ def test_slope_ignores_the_pixel_itself():
     assert slope(E)[2, 2] == 0 and slope(E)[2, 0] == slope(E)[0, 2] == 2
 
 
-def test_the_flattest_of_each_light_are_chosen():
+def test_the_flattest_pixels_of_each_radiance_are_chosen():
     rng = np.random.default_rng(1)
     E, rough = rng.uniform(1, 100, 8_000), rng.uniform(0, 1, 8_000)
     groups = group_flat(E, rough)

@@ -268,7 +268,7 @@ def test_the_density_is_the_gaussian_of_the_distance_and_integrates_to_one():
     assert 0.9 < inside.mean() < 0.99
 
 
-def test_training_sets_without_a_covariance_are_refused():
+def test_training_sets_without_a_covariance_raise_an_error():
     for bad in (np.full((10, 3), 7.0), np.zeros((2, 3)), np.zeros((5, 2))):
         with pytest.raises(ValueError, match="training pixels"):
             skin.fit(bad)

@@ -62,7 +62,7 @@ def test_the_tail_of_a_wide_blur_is_right_within_15_percent_six_decades_below_a_
 
 
 @pytest.mark.parametrize("sigma", [0, -1, np.inf, np.nan])
-def test_a_sigma_that_is_not_positive_and_finite_is_refused(sigma):
+def test_a_sigma_that_is_not_positive_and_finite_raises_an_error(sigma):
     with pytest.raises(InputError, match="sigma"):
         blur.gaussian(np.ones((4, 4)), sigma)
 

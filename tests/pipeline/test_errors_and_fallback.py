@@ -186,5 +186,5 @@ def test_values_of_a_light_meter_scale_the_map_and_its_deviation(taken):
 
 
 @pytest.mark.parametrize("names", [["first"], ["first", "second"], ["a", "b", "c", "d", "e"]])
-def test_progress_keeps_every_item_however_many_names_there_are(names):
+def test_progress_yields_every_item_for_any_number_of_names(names):
     assert list(common.one_by_one(iter([1, None, 3]), names)) == [1, None, 3]

@@ -115,7 +115,7 @@ def test_the_unit_of_light_does_not_matter(room):
     assert one.spread.power == other.spread.power and np.allclose(other.E, 1024 * one.E, rtol=1e-3)
 
 
-def test_gray_maps_and_maps_without_light_are_maps(room):
+def test_gray_and_black_maps_are_accepted(room):
     gray = flare.remove_glare(lens.add_glare(room[..., 1], GlareSpread(0.1, 2.5)))
     assert gray.E.shape == room.shape[:2] and gray.spread.power == 2.5
     dark = flare.remove_glare(np.zeros((12, 14)))

@@ -122,7 +122,7 @@ def test_16_bit_photos_give_the_same_map_as_8_bit_ones(method):
     assert np.allclose(sixteen.E, eight.E, rtol=0.02)  # a clipped level begins half a level earlier
 
 
-def test_a_gray_stack_gives_the_channel_of_three_equal_ones():
+def test_a_gray_stack_gives_the_same_as_three_equal_channels():
     images = np.random.default_rng(5).integers(0, 256, (3, 20, 30), np.uint8)
     gray = merge_with_quality(images, [1, 2, 8], FILM)
     rgb = merge_with_quality(
@@ -345,7 +345,7 @@ def test_a_measured_highlight_of_one_pixel_is_kept():
     assert not found.quality.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 40, rtol=0.03)
 
 
-def test_around_a_true_highlight_that_no_frame_measures_nothing_changes():
+def test_the_neighbors_of_a_clipped_highlight_are_not_changed():
     E = np.full((9, 9), 0.3, np.float32)
     dark = merge(camera.shoot(E, [1 / 16, 1 / 4, 1]).images, [1 / 16, 1 / 4, 1], FILM)
     E[3:5, 4:6] = 1000

@@ -132,14 +132,14 @@ def test_masked_pixels_do_not_change_the_ratio():
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("truth", [200, 5000])
-def test_frames_that_do_not_overlap_in_brightness_are_refused(scheme, truth):
+def test_frames_that_do_not_overlap_in_brightness_raise_an_error(scheme, truth):
     with pytest.raises(ValueError, match="frames that overlap in brightness"):
         ratios.estimate_ratio(*pair(log_normal(), truth, gray_noise=0.0), scheme=scheme)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("level", [0, 100, 255])
-def test_constant_frames_are_refused(scheme, level):
+def test_constant_frames_raise_an_error(scheme, level):
     with pytest.raises(InputError):
         ratios.estimate_ratios(np.full((2, 8, 8), level, np.uint8), scheme=scheme)
 

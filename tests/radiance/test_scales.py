@@ -90,7 +90,7 @@ def test_the_snr_weight_is_finite_and_positive_where_the_response_is_flat():
     assert np.all(np.isfinite(w)) and np.all(w[1:-1] > 0)
 
 
-def test_colours_share_one_weight_and_the_unit_of_exposure_is_no_matter():
+def test_all_channels_share_one_snr_weight_independent_of_the_unit():
     g = responses.true_g("film")
     assert np.allclose(weights.snr(np.stack([g] * 3, axis=-1)), weights.snr(g))
     assert np.allclose(weights.snr(g + 5), weights.snr(g))

@@ -104,7 +104,7 @@ def test_black_is_a_quarter_of_a_level_and_no_light_at_all_is_none():
 
 
 @pytest.mark.parametrize(("name", "value"), [("alpha", -1), ("alpha", 65), ("start", 0)])
-def test_an_alpha_or_a_number_of_starts_out_of_range_is_refused_by_name(name, value):
+def test_an_alpha_or_a_number_of_starts_out_of_range_raises_an_error(name, value):
     options = {"starts": value} if name == "start" else {name: value}
     with pytest.raises(ValueError, match=f"{name}.* got {value}"):
         mann.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], **options)

@@ -49,7 +49,7 @@ def test_predictions_are_the_brightness_of_the_other_frames():
     assert np.allclose(m[at.at, np.arange(len(at.x))], at.x, atol=1e-6)
 
 
-def test_nodes_cover_what_the_longest_frame_clips():
+def test_nodes_extend_beyond_the_clipping_point_of_the_longest_frame():
     c, tau, at = model()
     exposures = np.sort(mitsunaga.value(at.x, c) * np.exp(-tau[at.at]))
     assert exposures[0] < 0.05 and exposures[-1] > 0.9 * np.exp(2.1)

@@ -270,7 +270,7 @@ def test_figure_4_noise_moves_the_minimum(papers):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_the_ratios_of_the_canon_camera_come_out_up_to_one_exponent(seed):
+def test_the_ratios_of_the_canon_camera_are_recovered_up_to_one_exponent(seed):
     """A few turns mend what the stated ones contradict; what is left is u, which `marginal` finds, too."""
     one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
     states = list(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))

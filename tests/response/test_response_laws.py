@@ -29,5 +29,5 @@ def test_every_recovery(name, response, law):
 @pytest.mark.parametrize(
     ("name", "response"), [case for case in CASES if case.values[0] != "linear"]
 )
-def test_every_recovery_that_asks_the_photographs(name, response, law):
+def test_every_recovery_that_uses_the_photos(name, response, law):
     law(recovery.find_method(name), response)

@@ -87,12 +87,12 @@ def test_a_place_at_any_shape_keeps_its_pixels_square(shape):
 
 
 @pytest.mark.parametrize("shape", [(0, 5), (513, 768), (5,), (512, 769)])
-def test_a_shape_that_a_place_does_not_have_is_refused(shape):
+def test_a_shape_that_a_place_does_not_have_raises_an_error(shape):
     with pytest.raises(ValueError, match="shape"):
         scenes.chapel(shape)
 
 
-def test_a_place_that_does_not_exist_is_refused():
+def test_a_place_that_does_not_exist_raises_an_error():
     with pytest.raises(ValueError, match="chapel, workshop, street.*'beach'"):
         scenes.layers("beach")
 
@@ -108,7 +108,7 @@ def test_a_visitor_outside_the_frame_does_not_change_the_scene(name):
 
 
 @each
-def test_a_visitor_is_seen_where_he_stands_and_nowhere_else(name):
+def test_a_visitor_only_changes_the_pixels_that_it_covers(name):
     place = scenes.layers(name, (256, 384))
     changed = ~np.isclose(scenes.compose(place, (3, -20)), place.radiance, rtol=1e-3).all(axis=2)
     assert 0.002 < changed.mean() < 0.2
@@ -184,7 +184,7 @@ def test_layers_that_a_file_cannot_hold_raise_an_error(tmp_path, layers, said):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_file_of_layers_that_is_cut_short_is_refused(tmp_path):
+def test_a_file_of_layers_that_is_cut_short_raises_an_error(tmp_path):
     whole = FILES["street"].read_bytes()
     for size in (0, 10, 700, len(whole) // 2):
         (tmp_path / "cut.exr").write_bytes(whole[:size])
@@ -366,7 +366,7 @@ def test_the_layer_of_the_visitor_recomposes_the_scene_with_the_visitor():
 
 
 @pytest.mark.parametrize("height", [50, 16, 0])
-def test_a_height_that_cannot_be_halved_twice_is_refused(height):
+def test_a_height_that_cannot_be_halved_twice_raises_an_error(height):
     with pytest.raises(ValueError, match="height"):
         render.rendered("chapel", height=height)
 

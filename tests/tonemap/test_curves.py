@@ -23,7 +23,7 @@ def test_every_curve_obeys_the_laws(name, law):
 
 @pytest.mark.parametrize("claim", curves.LAWS)
 @pytest.mark.parametrize("name", CURVES)
-def test_every_curve_keeps_what_the_module_claims(name, claim):
+def test_every_curve_obeys_the_laws_that_the_module_claims(name, claim):
     laws.CLAIMED[claim](CURVES[name])
 
 

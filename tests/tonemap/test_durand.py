@@ -33,7 +33,7 @@ def test_base_and_detail_add_up_to_the_logarithm():
 
 
 @pytest.mark.parametrize("contrast", [10, 50, 200])
-def test_the_base_has_the_contrast_asked_for_between_its_percentiles(contrast):
+def test_the_base_has_the_requested_contrast_between_its_percentiles(contrast):
     base = durand.layers(durand.logarithm(laws.scene()), sigma_s=5).base
     low, high = durand.base_range(base, cut=0.01)
     after = durand.compress(base, low, high, contrast=contrast)

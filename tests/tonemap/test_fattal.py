@@ -243,6 +243,6 @@ def test_a_real_map_is_displayed_well_exposed(shared):
 @pytest.mark.parametrize(
     "knobs", [{"noise": np.inf}, {"noise": 0}, {"alpha": np.inf}, {"beta": 1.1}, {"white": 0.5}]
 )
-def test_a_knob_beyond_its_range_is_refused(knobs):
+def test_a_knob_beyond_its_range_raises_an_error(knobs):
     with pytest.raises(InputError):
         fattal.tonemap(np.ones((16, 16)), **knobs)

@@ -93,7 +93,7 @@ def test_every_lesson_that_has_a_fast_operator(name, law):
 
 @pytest.mark.parametrize("law", FOR_ANY_KNOBS, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "i"), VARIATIONS)
-def test_every_operator_with_other_knobs(name, i, law):
+def test_every_operator_with_other_parameters(name, i, law):
     law(partial(OPERATORS[name], **VARIED[name][i]))
 
 
@@ -106,12 +106,12 @@ def test_every_operator_with_other_knobs(name, i, law):
         if not (law == "monotone" and knobs.get("local"))  # dodge and burn is no curve
     ],
 )
-def test_an_operator_keeps_what_it_claims_with_other_knobs(name, law, i):
+def test_an_operator_obeys_the_laws_that_it_claims_with_other_parameters(name, law, i):
     laws.CLAIMED[law](partial(OPERATORS[name], **VARIED[name][i]))
 
 
 @pytest.mark.parametrize(("name", "law"), CLAIMS)
-def test_an_operator_keeps_what_it_claims(name, law):
+def test_an_operator_obeys_the_laws_that_it_claims(name, law):
     laws.CLAIMED[law](OPERATORS[name])
 
 

@@ -40,13 +40,13 @@ def test_a_level_added_to_the_signal_is_added_to_its_mean():
 
 @pytest.mark.parametrize("sigma", [0, -1, np.inf, np.nan])
 @pytest.mark.parametrize("name", ["sigma_s", "sigma_r"])
-def test_a_sigma_that_is_not_positive_and_finite_is_refused_by_name(name, sigma):
+def test_a_sigma_that_is_not_positive_and_finite_raises_an_error(name, sigma):
     sigmas = {"sigma_s": 1.0, "sigma_r": 1.0, name: sigma}
     with pytest.raises(ValueError, match=name):
         bilateral(np.zeros((4, 4)), **sigmas)
 
 
 @pytest.mark.parametrize("v", [np.zeros(4), np.zeros((0, 4)), np.full((3, 3), np.nan)])
-def test_a_signal_that_is_not_a_finite_plane_is_refused(v):
+def test_a_signal_that_is_not_a_finite_plane_raises_an_error(v):
     with pytest.raises(InputError):
         bilateral(v, sigma_s=1, sigma_r=1)

@@ -32,14 +32,14 @@ def test_a_blur_commutes_with_transposing_and_flipping(gaussian, sigma):
 @pytest.mark.parametrize(
     ("image", "sigma"), [(np.ones(5), 1), (np.ones((2, 2, 3)), 1), (np.ones((0, 4)), 1)]
 )
-def test_an_image_of_another_shape_is_refused(gaussian, image, sigma):
+def test_an_image_of_another_shape_raises_an_error(gaussian, image, sigma):
     with pytest.raises(ValueError, match="image"):
         gaussian(image, sigma)
 
 
 @BOTH
 @pytest.mark.parametrize("sigma", [0, -1, np.nan, np.inf])
-def test_a_sigma_that_is_not_positive_is_refused(gaussian, sigma):
+def test_a_sigma_that_is_not_positive_raises_an_error(gaussian, sigma):
     with pytest.raises(ValueError, match="positive sigma"):
         gaussian(np.ones((4, 4)), sigma)
 

@@ -30,12 +30,12 @@ def test_each_pixel_sees_the_channel_of_its_filter():
 
 
 @pytest.mark.parametrize("shape", [(8, 8), (7, 5), (2, 2)])
-def test_an_even_surface_of_any_colour_comes_back_up_to_the_edge(shape):
+def test_a_uniform_color_is_reconstructed_up_to_the_edge(shape):
     E = np.ones((*shape, 3)) * [0.2, 0.5, 0.9]
     assert np.allclose(mosaic.demosaic(mosaic.sample(E, filters(shape)), filters(shape)), E)
 
 
-def test_a_gradient_comes_back_inside():
+def test_a_gradient_is_reconstructed_inside():
     y, x = np.mgrid[:12, :14] / 20
     E = np.stack([x, y, x + y], axis=-1)
     back = mosaic.demosaic(mosaic.sample(E, filters((12, 14))), filters((12, 14)))

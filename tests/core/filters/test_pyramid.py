@@ -35,7 +35,7 @@ def test_a_point_is_expanded_to_the_kernel():
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_both_operators_are_opencvs(shape):
+def test_reduce_and_expand_equal_those_of_opencv(shape):
     image = noise(shape)
     coarse = pyramid.reduce(image)
     assert np.allclose(coarse, cv2.pyrDown(image), atol=1e-6)
@@ -95,7 +95,7 @@ def test_the_depth_is_the_last_level_that_is_large_enough(shape, smallest, level
     assert levels == 1 or sides[-1] >= smallest
 
 
-def test_what_does_not_fit_is_refused():
+def test_shapes_that_do_not_fit_raise_an_error():
     with pytest.raises(ValueError, match="image"):
         pyramid.reduce(np.ones(5))
     with pytest.raises(ValueError, match=r"sides \(5, 6\)"):
@@ -104,6 +104,6 @@ def test_what_does_not_fit_is_refused():
 
 @pytest.mark.parametrize("build", [pyramid.laplacian, fast.laplacian])
 @pytest.mark.parametrize("levels", [np.inf, 10**9])
-def test_a_pyramid_ends_at_one_pixel_however_many_levels_are_asked_for(build, levels):
+def test_a_pyramid_ends_at_one_pixel_at_the_latest(build, levels):
     found = build(np.ones((3, 5), np.float32), levels)
     assert [level.shape for level in found] == [(3, 5), (2, 3), (1, 2), (1, 1)]

@@ -66,7 +66,7 @@ def test_samples_beyond_the_border_repeat_the_edge_pixels():
     assert np.allclose(moved, PICTURE[:, -1:], atol=1e-6)
 
 
-def test_the_common_rectangle_of_shifted_pictures_is_what_all_of_them_cover():
+def test_the_common_rectangle_of_shifted_images_is_their_overlap():
     rows, columns = warp.common_rectangle([[0, 0], [2, -3]], (9, 12))
     assert (rows, columns) == (slice(2, 9), slice(0, 9))
 
