@@ -34,7 +34,7 @@ ENDS = {  # what is said of the first check
     "a09_exit": "ended its process, and gave no answer",
     "a09_sys_exit": "raised SystemExit",
     "a09_kill_parent": r"no signal was sent: \[-1, -1, -1, -1, -1, -1, -1\]",
-    "a10_forged_lines": "nothing came",
+    "a10_forged_lines": "got None",
     "a11_planted_modules": "PermissionError: nothing could be planted",
     "a12_endless_call": "took longer than",
     "a12_endless_import": "took longer than",
