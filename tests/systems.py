@@ -27,10 +27,9 @@ PAPERS = {
 }
 HEAD = """# Methods and where to find them
 
-The course is based on five documents: the lecture slides and four papers. The table lists each of
-their methods, and five newer ones: the functions of the library, the notebook sections that step
-through the method, and the tasks that check a student's own function, if there are any. The letters
-name the source: """
+The course is based on the lecture's slides and four papers. The table lists all of their methods and
+five newer ones. For each method, it links the functions of the library, the notebook sections that
+step through the method, and the tasks in which students implement it. The letters name the source: """
 
 
 def table():

@@ -29,7 +29,7 @@ def as_code(h: ArrayLike) -> F64:
     """Return a shutter's chops (m,) as 0.0 and 1.0, at least one of them open."""
     code = np.asarray(h, np.float64)
     if code.ndim != 1 or not np.all((code == 0) | (code == 1)) or not code.any():
-        raise InputError(f"expected a code of 0 and 1, one of them open, got {describe(code)}")
+        raise InputError(f"expected a code of 0 and 1 with at least one 1, got {describe(code)}")
     return code
 
 

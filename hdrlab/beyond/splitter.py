@@ -153,7 +153,8 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> 
     stack = np.asarray(Z)
     if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(e):
         raise InputError(
-            f"expected levels ({len(e)}, H, W), a picture per share, got {describe(stack)}"
+            f"expected pixel values ({len(e)}, H, W), an image for each fraction, "
+            f"got {describe(stack)}"
         )
     if not 0 < full <= 1:
         raise InputError(f"expected a clipping level above 0 and at most 1, got {full}")
@@ -213,6 +214,6 @@ def as_shares(e: ArrayLike) -> F64:
     is_falling = e.ndim == 1 and len(e) and np.all(e > 0) and np.all(np.diff(e) < 0)
     if not (is_falling and e.sum() < 1.001):
         raise InputError(
-            f"expected positive, falling shares of the light, at most 1 in all, got {e}"
+            f"expected positive, falling fractions of the light, with a sum of at most 1, got {e}"
         )
     return e

@@ -190,7 +190,7 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     """
     if not black < joined.X[0]:
         raise InputError(
-            f"expected a black below {joined.X[0]}, the darkest X measured, got {black}"
+            f"expected a black level below {joined.X[0]}, the smallest measured X, got {black}"
         )
     M = joined.M
     X = joined.X - black

@@ -135,7 +135,7 @@ def read_patches(
         pixels = stack[0][skimage_draw.polygon(y / w, x / w, shape)]
         if len(pixels) == 0:
             raise InputError(
-                "expected patches of a few pixels at least, one holds none: check the corners"
+                "expected patches of several pixels, but one contains none; check the corners"
             )
         M[row, column] = pixels.mean(axis=0) / (levels(stack) - 1)
     return M
@@ -212,7 +212,7 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse
         )
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
         raise InputError(
-            f"expected patches brighter the more they reflect, got {m.round(4).tolist()}"
+            f"expected brighter patches for higher reflectance, got {m.round(4).tolist()}"
         )
     brightness = np.linspace(m[0], m[-1], blends.TABLE_SIZE)
     exposure = PchipInterpolator(m, x)(brightness)

@@ -136,9 +136,7 @@ def update(
     c, cost = solve_increments(systems, np.sqrt(smoothness) * slope_curvature(v, count), offset)
     g = i_splines(GRID, count) @ c
     if not g[-1] > g[0]:
-        raise InputError(
-            "expected brightness that rises with irradiance, the blends fit a flat curve best"
-        )
+        raise InputError("the brightness does not rise with the irradiance; check the blends")
     s = np.ones(len(systems))
     r = np.zeros(len(systems))
     for j, (A, F, b) in enumerate(systems):

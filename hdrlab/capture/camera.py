@@ -76,7 +76,7 @@ def times_around(
         )
     L = luminance(E).astype(np.float64)
     if not L.any():
-        raise InputError("expected radiance with a positive pixel, got zeros")
+        raise InputError("expected radiance with positive pixels, got only zeros")
     suitable = middle / (sensitivity * np.exp(np.log(L[L > 0]).mean()))
     return suitable * 2.0 ** (stops * (np.arange(count) - (count - 1) / 2))
 

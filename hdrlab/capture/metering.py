@@ -37,7 +37,7 @@ def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
         raise InputError(f"expected the shape (H, W) of a picture, got {shape}")
     if not all(0 <= part <= 1 for part in at):
         raise InputError(
-            f"expected a place (down, right) as parts of the picture, 0 to 1, got {at}"
+            f"expected a position (down, right) as fractions of the image, 0 to 1, got {at}"
         )
     H, W = shape
     down = (np.arange(H) + 0.5) / H - at[0]
@@ -61,7 +61,7 @@ def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) ->
     A spot meter's disc is 1 to 5 % of the picture.
     """
     if not 0 < share <= 1:
-        raise InputError(f"expected a share of the picture from 0 to 1, got {share}")
+        raise InputError(f"expected a fraction of the image from 0 to 1, got {share}")
     down, right = _places(shape, at)
     distance = np.hypot(down * shape[0], right * shape[1])
     count = max(round(share * distance.size), 1)
@@ -151,7 +151,7 @@ def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> F64:
     """Return the weights (H, W) of a mode, of MODES, for a picture of brightness B."""
     B = as_luminance(B)
     if mode not in MODES:
-        raise InputError(f"expected a mode among {', '.join(MODES)}, got {mode!r}")
+        raise InputError(f"expected one of the modes {', '.join(MODES)}, got {mode!r}")
     if mode == "matrix":
         return matrix(B, at=at)
     return _fixed_weights(mode, B.shape, tuple(at)).copy()

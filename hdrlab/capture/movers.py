@@ -190,9 +190,9 @@ def shoot(
     _require_whole_pixels("places", places, len(seconds))
     _require_whole_pixels("offsets", moves, len(seconds))
     if not np.any(np.all(moves == 0, axis=1)):
-        raise InputError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
+        raise InputError(f"expected offsets relative to a photo at (0, 0), got {moves.tolist()}")
     if model.hot:
-        raise InputError("expected no hot pixels: here each photograph would have others")
+        raise InputError("expected no hot pixels, because they would differ in each photo")
     rng = np.random.default_rng(rng)
     still = views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
     moments = []

@@ -122,7 +122,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
     slope = line(S[used], V[used])
     if not slope > 0:
         raise InputError(
-            "expected noise that grows with the light, as of RAW levels; got one that does not"
+            "expected noise that grows with the light, as in RAW photos; use RAW pixel values"
         )
     R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope
     return Transfer(

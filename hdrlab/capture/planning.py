@@ -177,7 +177,7 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     if len(set(chosen)) < frames:
         has = f"{len(times)} over {np.ptp(known):.1f} stops"
         raise InputError(
-            f"expected {frames} times {stops:g} stops apart, the camera has {has}; take fewer"
+            f"expected {frames} times {stops:g} stops apart, but the camera has only {has}"
         )
     return chosen
 
@@ -270,7 +270,7 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     if result.x is None:
         most = MAX_PHOTOGRAPHS_PER_SETTING
         raise InputError(
-            f"expected a ratio that {most} photographs of each setting reach, got {snr:g}"
+            f"expected a signal-to-noise ratio that {most} photos of each setting reach, got {snr:g}"
         )
     counts = np.rint(result.x).astype(int)
     times = t.repeat(counts)

@@ -71,14 +71,14 @@ def as_response(response: str | Curve | Response | None) -> Response:
     """Return the Response of that name (None: "linear"), or of a rising function from [0, 1] into [0, 1]."""
     if response is None or isinstance(response, str):
         if (response or "linear") not in RESPONSES:
-            raise InputError(f"expected a response among {', '.join(RESPONSES)}, got {response!r}")
+            raise InputError(
+                f"expected one of the responses {', '.join(RESPONSES)}, got {response!r}"
+            )
         return RESPONSES[response or "linear"]
     made = response if isinstance(response, Response) else Response(response, bisect(response))
     M = np.asarray(made.f(np.linspace(0, 1, 1025)))
     if M.shape != (1025,) or not (np.all(np.diff(M) >= 0) and 0 <= M[0] < M[-1] <= 1):
-        raise InputError(
-            "expected a response that rises from [0, 1] into [0, 1], got one that does not"
-        )
+        raise InputError("expected a rising response from [0, 1] to [0, 1]")
     return made
 
 

@@ -128,7 +128,7 @@ def render(
     [[[188, 188, 188]]]
     """
     if way not in WAYS:
-        raise InputError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
+        raise InputError(f"expected one of {', '.join(WAYS)}, got {way!r}")
     E, L, Ld = _as_fitting(E, L, Ld, saturation)
     picture = np.empty(E.shape, np.uint8)
 

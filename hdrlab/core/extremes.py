@@ -84,6 +84,6 @@ def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
         raise InputError(f"expected a tail in [0, 0.5), got {tail}")
     L = luminance(E)
     if not L.any():
-        raise InputError("expected radiance with a positive pixel, got zeros")
+        raise InputError("expected radiance with positive pixels, got only zeros")
     low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
     return float(np.log10(high / low))

@@ -111,7 +111,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     compared = compared[np.isfinite(compared)]
     median = np.median(compared) if compared.size else 0.0
     if not median > 0:
-        raise InputError("expected a well exposed pixel with light, got none")
+        raise InputError("expected a well-exposed pixel with light, got none")
     return ratio / median - 1
 
 

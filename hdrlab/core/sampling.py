@@ -88,9 +88,7 @@ def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
         weighted = has_weight[samples]
         if np.any(_differ(times, weighted) & _differ(samples, weighted)):
             return
-    raise InputError(
-        "expected samples seen well in two exposures, which connect the levels; got none"
-    )
+    raise InputError("expected samples that are well exposed in two photos, got none")
 
 
 def _differ(values: Array, weighted: Mask) -> Mask:
@@ -106,5 +104,5 @@ def _shown_in_all(valid: ArrayLike, images: Array) -> Mask:
         raise InputError(f"expected a mask of shape {images.shape[:3]}, got {valid.shape}")
     shown = np.asarray(valid.all(axis=0))
     if not shown.any():
-        raise InputError("expected pixels that every frame shows; the masks leave none")
+        raise InputError("expected pixels that are valid in every photo, but the masks leave none")
     return shown

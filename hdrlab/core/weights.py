@@ -66,9 +66,7 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
         raise InputError(f"expected a finite response (n,) or (n, 3), got shape {g.shape}")
     f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
     if not f[-1] > f[0]:
-        raise InputError(
-            "expected a response that rises, got one that ends where it began, or below"
-        )
+        raise InputError("expected a rising response, but it ends where it begins or below")
     z = np.arange(len(g))
     low = np.maximum(z - span, 0)
     high = np.minimum(z + span, len(g) - 1)

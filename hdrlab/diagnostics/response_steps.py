@@ -89,7 +89,9 @@ def as_ascending_times(times: ArrayLike, count: int) -> F64:
     """Return `times` as float64 (count,), from short to long, or raise a ValueError."""
     checked = as_times(times, count)
     if np.any(np.diff(checked) < 0):
-        raise InputError(f"expected photographs from short to long, got times {checked.tolist()}")
+        raise InputError(
+            f"expected photos from the shortest to the longest time, got {checked.tolist()}"
+        )
     return checked
 
 

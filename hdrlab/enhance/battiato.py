@@ -157,7 +157,7 @@ def correct(
     """
     if not (1 <= target <= 254 and by in ("auto", "skin", "blocks")):
         raise InputError(
-            f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}"
+            f"expected a target from 1 to 254, and by = auto, skin or blocks, got {target}, {by!r}"
         )
     Z = as_picture(picture)
     a, c = shape
@@ -165,7 +165,7 @@ def correct(
     visible = brighten(Z, a=a, c=c)
     faces = find_skin(visible) if Z.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
     if by == "skin" and not faces.any():
-        raise InputError("expected a colour picture with skin in it, found none")
+        raise InputError("no skin found in the photo; use --by blocks (by='blocks' in Python)")
     if by == "skin" or faces.mean() >= MIN_FACE_FRACTION:
         by = "skin"
         relevant = faces

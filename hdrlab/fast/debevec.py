@@ -76,7 +76,7 @@ def _solve_with_gauge(S: F64, r: F64) -> F64:
         g = np.linalg.solve(S, r)
     except np.linalg.LinAlgError as error:
         raise InputError(
-            "expected more levels, frames or smoothness: the samples leave g open"
+            "the samples do not determine g; use more pixels, photos or smoothness"
         ) from error
     return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
 

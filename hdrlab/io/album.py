@@ -87,7 +87,7 @@ def photographs(paths: Paths) -> list[Path]:
     for path in listed:
         if path.is_dir():
             raise InputError(
-                f"{path}: this is a folder among other paths; give photos, or one folder"
+                f"{path}: a folder among other paths; pass either photos or one folder"
             )
     _require_two(listed)
     return listed

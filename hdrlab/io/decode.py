@@ -286,7 +286,7 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
                 info = dict(image.info)
         depth = info.get("bit_depth", _read_bit_depth(kind, head))
     except Image.DecompressionBombError as error:
-        raise FileFormatError(f"{path}: its header claims an absurd size ({error})") from None
+        raise FileFormatError(f"{path}: its header claims too large a size ({error})") from None
     except Exception as error:  # on damaged files Pillow raises exceptions of any type
         raise FileFormatError(
             f"{path}: expected a photograph, its header is damaged ({error})"
@@ -376,7 +376,7 @@ def _read_tiff_header(path: Path) -> PhotoHeader:
             f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {photometric}"
         )
     if slices != 1:
-        raise OtherPixels(f"{path}: expected one picture, got a stack of {slices}")
+        raise OtherPixels(f"{path}: expected one image, got a stack of {slices}")
     with open(path, "rb") as stream:
         facts = _read_exif(lambda exif: exif.load_from_fp(stream))
     return PhotoHeader(

@@ -97,7 +97,7 @@ def _all_or_none(names: Sequence[str], values: Sequence[float | None], what: str
         return [1.0] * len(values)
     if len(known) < len(values):
         name = names[values.index(None)]
-        raise InputError(f"{name[:200]}: no {what}, which other photos state; {HINT}")
+        raise InputError(f"{name[:200]}: no {what} in EXIF, unlike the other photos; {HINT}")
     return known
 
 

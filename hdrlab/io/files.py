@@ -125,7 +125,7 @@ def require_no_folder(path: str | Path, what: str) -> None:
     A path that does not exist passes: opening it raises FileNotFoundError.
     """
     if Path(path).is_dir():
-        raise FileFormatError(f"{path}: this is a folder, not {what}; give the name of a file")
+        raise FileFormatError(f"{path}: this is a folder, not {what}; pass the name of a file")
 
 
 def require_folder_name(path: str | Path) -> None:
@@ -144,7 +144,7 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
     for path, source in product(filter(os.path.exists, written), inputs):
         if os.path.samefile(path, source):
             raise InputError(
-                f"{path}: expected another name to write to, {source} is read and would be lost"
+                f"{path}: writing would overwrite the input {source}; pass another name"
             )
 
 
@@ -177,5 +177,5 @@ def check_size(
     size = Path(path).stat().st_size if available is None else available
     if size < least:
         raise FileFormatError(
-            f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged"
+            f"{claim}, which need {least} bytes or more, but has {size}: it is cut short or damaged"
         )

@@ -185,7 +185,7 @@ def read_header(path: str | Path, head: bytes) -> JxlHeader:
     has_usual_transforms = bits.read_bool()
     if metadata.has_extensions or not has_usual_transforms or not _is_only_frame(bits, metadata):
         raise OtherPixels(
-            f"{path}: expected one frame of the picture's size, got several or another"
+            f"{path}: expected one frame of the image's size; save the image without layers or animation"
         )
     bytes_per_sample = (metadata.bits_per_sample + 7) // 8
     kind = "f" if metadata.is_float else "u"
@@ -202,7 +202,7 @@ def read_header(path: str | Path, head: bytes) -> JxlHeader:
 def _require_readable(path: str | Path, metadata: ImageMetadata) -> None:
     """Raise OtherPixels for an image that hdrlab does not read."""
     if metadata.is_animation_or_preview:
-        raise OtherPixels(f"{path}: expected one picture, got an animation or a preview as well")
+        raise OtherPixels(f"{path}: expected one image, got an animation or a preview as well")
     depths = FLOAT_DEPTHS if metadata.is_float else INTEGER_DEPTHS
     if metadata.extra_channels or metadata.bits_per_sample not in depths:
         samples = f"{metadata.bits_per_sample} bits and {metadata.extra_channels} more channels"
@@ -212,7 +212,7 @@ def _require_readable(path: str | Path, metadata: ImageMetadata) -> None:
     is_display_p3 = color.primaries == P3_PRIMARIES and color.transfer == SRGB_TRANSFER
     if not is_srgb and not (is_display_p3 and not metadata.is_float):
         raise OtherPixels(
-            f"{path}: expected the primaries of sRGB or Display P3, got others or a profile"
+            f"{path}: expected sRGB or Display P3, got another color space; convert the file"
         )
     if metadata.is_float and color.transfer != LINEAR_TRANSFER:
         raise OtherPixels(

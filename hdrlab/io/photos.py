@@ -122,7 +122,9 @@ def read_bracket(
     balance = raw.balance(headers[0].path) if is_raw else None
     images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
     if mask is not None and images.ndim != 4:
-        raise InputError(f"the mask color {mask} needs RGB photos, these are gray")
+        raise InputError(
+            f"the mask color {mask} needs RGB photos, but these are gray; leave out the mask"
+        )
     valid = None if mask is None else np.empty(images.shape[:3], bool)
 
     def decode_frame(j: int) -> None:

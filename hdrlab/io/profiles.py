@@ -48,9 +48,7 @@ def to_srgb(path: str | Path, pixels: arrays.Array, icc: bytes) -> arrays.Array:
     except ModuleNotFoundError:
         raise
     except Exception as error:  # on damaged profiles LittleCMS raises exceptions of any type
-        raise InputError(
-            f"{path}: expected a color profile of RGB, this one is damaged ({error})"
-        ) from None
+        raise InputError(f"{path}: its color profile is damaged or not for RGB ({error})") from None
 
 
 def _is_srgb(icc: bytes) -> bool:

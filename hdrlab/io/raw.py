@@ -113,4 +113,4 @@ def _open(path: str | Path) -> Iterator[Any]:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
         if is_jpeg_xl:
             reason = "it does not read JPEG XL, set the camera to lossless JPEG"
-        raise FileFormatError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
+        raise FileFormatError(f"{path}: LibRaw cannot read this RAW photo: {reason}") from None

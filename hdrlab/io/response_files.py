@@ -119,7 +119,7 @@ def as_curve(g: ArrayLike) -> F64:
     if not is_number or not is_table:
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
-        raise InputError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
+        raise InputError(f"expected 256 or 65536 levels, got {len(curve)}; it may be cut short")
     is_within_limits = np.abs(curve) <= MAX_LN_EXPOSURE  # False for NaN
     if not np.all(is_within_limits):
         limits = f"-{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}"
@@ -149,7 +149,7 @@ def _read_csv(path: Path) -> F64:
     table = parse_table(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
         raise InputError(
-            f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ..."
+            f"expected one level per line, starting with 0, got {table[:4, 0].tolist()} ..."
         )
     return squeeze_gray(table[:, 1:])
 
@@ -199,7 +199,7 @@ def _read_matrix(text: str, rows: int) -> F64:
     table = parse_table("\n".join([*lines, ""]), 3)
     if not np.array_equal(table[:, 1], np.arange(rows)):
         raise InputError(
-            f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?"
+            f"expected the levels 0 to {rows - 1}, got {len(table)} lines; it may be cut short"
         )
     return table[:, 2]
 
@@ -219,7 +219,7 @@ def ln_exposure(f: F64) -> F64:
     """
     if np.any(f < 0) or not np.all(np.any(f > 0, axis=0)):
         raise InputError(
-            f"expected exposures that are not negative, and not all zero, got {describe(f)}"
+            f"expected exposures that are not negative and not all zero, got {describe(f)}"
         )
     z = np.arange(len(f))
     filled = []
@@ -235,7 +235,7 @@ def parse_table(text: str, columns: int, separator: str | None = None) -> F64:
     The last line must have an end: without one, its last number may have been cut short.
     """
     if not text.endswith("\n"):
-        raise InputError("expected a table whose last line ends: is it cut short?")
+        raise InputError("its last line is incomplete; it may be cut short")
     rows = [line.split(separator) for line in text.splitlines()]
     for count, row in enumerate(rows, 1):
         if len(row) != columns or not all(map(DECIMAL_NUMBER.fullmatch, row)):

@@ -62,10 +62,10 @@ def read(path: str | Path) -> Iterator[Array]:
         return require_alike((photos.read_photo(file) for file in files), path)
     if path.suffix.lower() not in FILM_SUFFIXES:
         raise InputError(
-            f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILM_SUFFIXES))})"
+            f"{path}: expected a folder of frames, or a video ({', '.join(sorted(FILM_SUFFIXES))})"
         )
     if not path.is_file():
-        raise FileNotFoundError(f"{path}: there is no such file")
+        raise FileNotFoundError(f"{path}: no such file")
     frames = require_alike(decode_frames(path), path)
     # Decoding the first frame now finds an unreadable file before the caller does any work.
     first = next(frames)
@@ -85,8 +85,8 @@ def require_pyav(path: Path) -> None:
 
     if importlib.util.find_spec("av") is None:
         raise InputError(
-            f"{path}: films need the extra `video`; install it (pip install hdrlab[video]), or use "
-            "a folder of frames or a .gif"
+            f"{path}: reading a video needs the extra `video` (pip install hdrlab[video]); "
+            "install it, or use a folder of frames or a .gif"
         )
 
 
@@ -220,11 +220,11 @@ def require_new(folder: Path) -> None:
     if not folder.parent.is_dir():
         raise FileNotFoundError(f"cannot write {folder.name}: there is no folder {folder.parent}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError(f"{folder}: expected a folder that is new or empty, it is not empty")
+        raise InputError(f"{folder}: this folder is not empty; pass a new or empty one")
 
 
 def require_writable(path: Path) -> None:
     """Raise an error for another suffix, for films without PyAV, and if the folder is missing."""
-    if require_suffix(path, WRITABLE_SUFFIXES, "a film") in FILM_SUFFIXES:
+    if require_suffix(path, WRITABLE_SUFFIXES, "a video") in FILM_SUFFIXES:
         require_pyav(path)
     require_replaceable(path)

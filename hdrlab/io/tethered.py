@@ -136,7 +136,7 @@ class Camera:
         """
         if self._set_value(self._shutter_setting().get_name(), time) != time:
             raise InputError(
-                f"the camera does not accept the shutter time {time}: turn its dial to M"
+                f"the camera does not accept the shutter time {time}; set it to mode M"
             )
         with _explain_errors():
             camera_paths = [self._device.capture(gphoto2.GP_CAPTURE_IMAGE)]
@@ -168,7 +168,7 @@ class Camera:
             setting = self._find_setting(name)
             if setting is not None:
                 return setting
-        raise InputError("the camera does not report its shutter times: set it to M or A (Av)")
+        raise InputError("the camera does not report its shutter times; set it to mode M or A (Av)")
 
     def _find_setting(self, name: str) -> Any:
         """Return a setting, or None if the camera does not have it."""
@@ -205,4 +205,4 @@ def _explain_errors() -> Iterator[None]:
         yield
     except gphoto2.GPhoto2Error as error:
         advice = ERROR_ADVICE.get(error.code, OTHER_ERROR_ADVICE)
-        raise InputError(f"no camera answers: {advice} ({error})") from None
+        raise InputError(f"no camera found; {advice} ({error})") from None

@@ -130,8 +130,8 @@ def are_inverse(
     correlation = float(np.corrcoef(_ranks(seconds), _ranks(brightness))[0, 1])
     if abs(correlation) < MIN_CORRELATION:
         raise InputError(
-            f"{where}: the numbers neither rise nor fall with the photos' brightness, so that they "
-            "may be seconds or 1/seconds; write them as 1/60 or as 0.5 s"
+            f"{where}: the numbers neither rise nor fall with the photos' brightness, so they may be "
+            "seconds or 1/seconds; write them as 1/60 or as 0.5 s"
         )
     return correlation < 0
 
@@ -182,7 +182,7 @@ def read_times(path: str | Path) -> TimeList:
         columns = _name_cells(where, heading, cells)
         name = columns["file"]
         if name in exposures:
-            raise FileFormatError(f"{where}: expected each file once, got {name:.80} again")
+            raise FileFormatError(f"{where}: {name:.80} is listed twice")
         numbers = {}
         for column in NUMBER_COLUMNS:
             if columns.get(column):
@@ -194,7 +194,7 @@ def read_times(path: str | Path) -> TimeList:
         if "rate" not in numbers or _is_fraction_or_has_unit(columns["rate"]):
             has_explicit_unit = True
     if not exposures:
-        raise FileFormatError(f"{path}: expected a list of exposure times, it is empty")
+        raise FileFormatError(f"{path}: the list of exposure times is empty")
     listed = _equivalent_by_name(path, exposures)
     if has_explicit_unit:
         return TimeList(listed)
@@ -222,9 +222,7 @@ def _read_rows(path: str | Path) -> list[tuple[str, list[str]]]:
     try:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise FileFormatError(
-            f"{path}: expected a list of exposure times, this is not a text file"
-        ) from None
+        raise FileFormatError(f"{path}: a list of exposure times must be a text file") from None
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         if len(line) > MAX_LINE_LENGTH:
@@ -323,7 +321,5 @@ def _look_up_times(times: Mapping[str, float], names: Sequence[str], source: str
         else:
             seconds.append(value)
     if missing:
-        raise InputError(
-            f"{source}: expected a time for each photograph, none for {', '.join(missing)}"
-        )
+        raise InputError(f"{source}: no exposure time for {', '.join(missing)}")
     return seconds

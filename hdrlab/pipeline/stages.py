@@ -269,7 +269,7 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     See `radiance.scales.fit_unit`.
     """
     if state.quality[y : y + 1, x : x + 1].any():
-        raise InputError(f"no photo measured the light at {x},{y}; choose another pixel")
+        raise InputError(f"no photo is well exposed at {x},{y}; choose another pixel")
     factor = np.float32(scales.fit_unit(state.E, x, y, reading))
     calibrated = replace(state, E=state.E * factor, s=None if state.s is None else state.s * factor)
     return calibrated.with_note(

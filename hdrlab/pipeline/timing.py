@@ -109,7 +109,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
         stated = ", ".join(
             f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True)
         )
-        raise InputError(f"expected photographs of at least two different exposures, got {stated}")
+        raise InputError(f"expected photos with at least two different exposures, got {stated}")
     note = describe_relative_times(relative.times)
     if all_equal and times == "correct":
         note = f"all stated times are the same, so: {note}"

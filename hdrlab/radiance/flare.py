@@ -227,7 +227,7 @@ def remove_glare(
     """
     F = as_radiance(F)
     if not 0 < part < 1:
-        raise InputError(f"expected a part between 0 and 1, got {part}")
+        raise InputError(f"expected a fraction between 0 and 1, got {part}")
     if spread is None:
         spread, agreement = estimate_spread(F)
         given_share = None

@@ -242,7 +242,7 @@ def as_tables(
     if w.ndim != 1 or not np.all(w >= 0) or not w.any():
         raise InputError(f"expected weights (n,), not negative and not all 0, got shape {w.shape}")
     if method not in METHODS:
-        raise InputError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
+        raise InputError(f"expected one of the methods {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:
         raise InputError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
     first = min(int(top * (n - 1)) + 1, n - 1)

@@ -80,7 +80,7 @@ def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") 
     Levels are scaled to 0 ... 255 for every bit depth.
     """
     if scheme not in SCHEMES:
-        raise InputError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
+        raise InputError(f"expected one of the schemes {', '.join(SCHEMES)}, got {scheme!r}")
     settings = SCHEMES[scheme]
     h_A = np.asarray(h_A, np.float64)
     h_B = np.asarray(h_B, np.float64)

@@ -84,6 +84,6 @@ def remove_reflection(F: ArrayLike, r: float | None = None) -> F32:
     F = as_radiance(F)
     r = fit_reflection(F) if r is None else r
     if not 0 <= r < 1:
-        raise InputError(f"expected a share of 0 to 1, got {r}")
+        raise InputError(f"expected a fraction from 0 to 1, got {r}")
     difference = F - np.float32(r) * F[::-1, ::-1]
     return np.maximum(difference, np.float32(1e-3) * F) / np.float32(1 - r**2)

@@ -104,7 +104,7 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     columns = slice(max(x - radius, 0), x + radius + 1)
     if not (is_inside and L[rows, columns].any() and 0 < reading < np.inf):
         raise InputError(
-            f"expected cd/m^2 of a lit place in {width} x {height} pixels, "
+            f"expected a reading above 0 cd/m^2 at a pixel with light within {width} x {height}, "
             f"got {reading:g} at {x},{y}"
         )
     return float(reading / L[rows, columns].mean())

@@ -122,9 +122,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     A, b = system(Z, B, smoothness, w)
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
     if rank < np.count_nonzero(A.any(axis=0)):
-        raise InputError(
-            "expected samples seen well in two exposures, which connect the levels; got none"
-        )
+        raise InputError("expected samples that are well exposed in two photos, got none")
     reached = np.flatnonzero(A[:, :n].any(axis=0))
     g = np.interp(np.arange(n), reached, x[reached])
     return Solution(g, np.asarray(x[n:]))

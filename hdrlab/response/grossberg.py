@@ -109,7 +109,7 @@ def solve_table(equations: Equations, w: F64, *, smoothness: float = 2.0) -> F64
     """
     if not np.any(equations.weight > 0) or not 0 < smoothness < np.inf:
         raise InputError(
-            f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}"
+            f"expected pixels that are well exposed in two photos, and smoothness > 0, got {smoothness}"
         )
     n = len(w)
     z = np.arange(n)
@@ -135,7 +135,7 @@ def solve_polynomial(equations: Equations, *, order: int = 10, n: int = 256) -> 
     """
     if not np.any(equations.weight > 0) or not 1 <= order <= 20:
         raise InputError(
-            f"expected an order to 20 and levels measured well in two exposures, got {order}"
+            f"expected an order up to 20, and pixels that are well exposed in two photos, got {order}"
         )
     phi_m = terms(equations.m / (n - 1), order)
     phi_T = terms(equations.T / (n - 1), order)

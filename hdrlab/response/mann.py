@@ -76,9 +76,7 @@ def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> flo
         xy += float((x - x.mean()) @ y)
         xx += float((x - x.mean()) @ x)
     if xx == 0:
-        raise InputError(
-            "expected levels measured well in two exposures; no series has a second member"
-        )
+        raise InputError("expected pixel values that are well exposed in two photos, got none")
     return xy / xx
 
 

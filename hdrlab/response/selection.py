@@ -131,7 +131,7 @@ def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 4
     count = np.bincount(a[heart].astype(int), minlength=256)
     known = np.flatnonzero(count)
     if len(known) < 2:
-        raise InputError("expected a middle with levels that neither frame clips, got none")
+        raise InputError("expected pixel values in the middle that neither frame clips, got none")
     T = np.bincount(a[heart].astype(int), b[heart], 256)[known] / count[known]
     usable &= (a >= known[0]) & (a <= known[-1])
     miss = b - np.interp(a, known, T)

@@ -185,7 +185,7 @@ def calibrate(
     M = np.concatenate(parts, axis=1)
     if not np.all(in_range(M).any(axis=(1, 2))):
         raise InputError(
-            "expected pixels from 0.05 to 0.98 of the top level in two neighbours; got none"
+            "expected pixels from 0.05 to 0.98 of the largest value in two neighboring photos"
         )
     if order is None:
         order = choose_order(parts, R)

@@ -151,9 +151,7 @@ def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]
 
     B_differences = without_mean(B + 0 * Z)
     if not np.any(W * B_differences**2 > 1e-12):
-        raise InputError(
-            "expected samples seen well in two exposures, which connect the levels; got none"
-        )
+        raise InputError("expected samples that are well exposed in two photos, got none")
     H = [w[Z] * without_mean(row[Z]) for row in space.H]
     A = np.stack(H, axis=-1).reshape(-1, len(H))
     b = w[Z] * B_differences - w[Z] * without_mean(space.mean[Z])

@@ -123,7 +123,7 @@ def tonemap(
     """
     L = as_luminance(L)
     if curve not in CURVES:
-        raise InputError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
+        raise InputError(f"expected one of the curves {', '.join(CURVES)}, got {curve!r}")
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
         raise InputError(
             f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}"

@@ -173,7 +173,7 @@ def test_corner_distance_is_that_of_the_worst_corner():
         (np.zeros((2, 3, 3)), "without an inverse"),
         (np.ones((1, 3, 4)), "expected finite homographies"),
         ([[[1, 0, 0], [0, 1, 0], [-0.02, 0, 1]]], "in front of the camera"),
-        ([[0, 0], [0, 500]], "expected images that overlap"),
+        ([[0, 0], [0, 500]], "with which the images overlap"),
     ],
 )
 def test_invalid_homographies_raise_an_error(moves, said):

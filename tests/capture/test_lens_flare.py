@@ -31,5 +31,5 @@ def test_glare_is_proportional_to_light_and_the_same_for_each_channel():
 
 
 def test_a_glare_fraction_of_1_raises_an_error():
-    with pytest.raises(ValueError, match="share"):
+    with pytest.raises(ValueError, match="fraction"):
         add_glare(np.ones((3, 3)), GlareSpread(1))

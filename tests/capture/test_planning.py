@@ -157,6 +157,6 @@ def test_a_bracket_is_shifted_to_stay_within_the_cameras_times():
 @pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
 def test_a_bracket_with_two_equal_times_raises_an_error(frames, stops):
     with pytest.raises(
-        ValueError, match=f"{frames} times {stops:g} stops apart, .*camera has 11 over"
+        ValueError, match=f"{frames} times {stops:g} stops apart, .*camera has only 11 over"
     ):
         planning.around(0.1, 2.0 ** np.arange(-10, 1), frames, stops)

@@ -95,7 +95,7 @@ def test_maps_that_cannot_be_compared_raise_an_error():
     E = truth((4, 5))
     with pytest.raises(ValueError, match="one shape"):
         metrics.radiance_errors(E, E[1:], E > 0)
-    with pytest.raises(ValueError, match="well exposed pixel with light.*none"):
+    with pytest.raises(ValueError, match="well-exposed pixel with light.*none"):
         metrics.radiance_errors(E, E, E < 0)
 
 

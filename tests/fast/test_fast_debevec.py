@@ -94,8 +94,8 @@ def test_samples_seen_in_one_frame_do_not_change_the_curve():
         ({"w": weights.hat() * np.nan}, "finite"),
         ({"smoothness": -1}, "smoothness that is finite and not negative, got -1"),
         ({"smoothness": np.nan}, "smoothness that is finite"),
-        ({"Z": [[0, 255]]}, "seen well in two exposures"),
-        ({"B": [0, 0]}, "seen well in two exposures"),
+        ({"Z": [[0, 255]]}, "well exposed in two photos"),
+        ({"B": [0, 0]}, "well exposed in two photos"),
     ],
 )
 def test_invalid_arguments_of_gsolve_raise_an_error(given, said):
@@ -114,8 +114,8 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         (STACK, [1, 1], r"at least 2 different exposure times, got \[1.0, 1.0\] s"),
         (STACK, [1, 0], "positive exposure times"),
         (STACK, [1], "expected 2 exposure times"),
-        (STACK * 0, [1, 2], "expected samples seen well in two exposures"),
-        (STACK * 0 + 255, [1, 2], "expected samples seen well in two exposures"),
+        (STACK * 0, [1, 2], "samples that are well exposed in two photos"),
+        (STACK * 0 + 255, [1, 2], "samples that are well exposed in two photos"),
         (STACK.astype(float), [1, 2], "uint8 or uint16"),
     ],
     ids=[
@@ -220,5 +220,5 @@ def test_a_curve_has_256_levels_at_any_depth(dtype):
 
 def test_an_underdetermined_system_raises_an_error():
     """Two samples connect no levels with each other, and without smoothness nothing else does."""
-    with pytest.raises(InputError, match="levels, frames or smoothness"):
+    with pytest.raises(InputError, match="more pixels, photos or smoothness"):
         debevec.gsolve([[100, 200], [10, 20]], [0.0, 1.0], 0, weights.hat())

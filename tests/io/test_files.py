@@ -72,7 +72,7 @@ def test_check_size_rejects_sizes_beyond_the_limit_or_the_file(tmp_path):
         files.check_size(path, 0, 10)
     with pytest.raises(ValueError, match=r"claims 65536 x 32768 pixels, .*at most"):
         files.check_size(path, 32768, 65536)
-    with pytest.raises(ValueError, match="take 101 bytes or more.*100"):
+    with pytest.raises(ValueError, match="need 101 bytes or more.*100"):
         files.check_size(path, 10, 10, 101)
 
 

@@ -395,7 +395,7 @@ def test_map_written_by_cjxl_is_read_unless_nonlinear_or_animated(distance, tmp_
     with pytest.raises(ValueError, match=r"curved\.jxl: .*linear floats"):
         radiance.read_radiance(tmp_path / "curved.jxl")
     program(tmp_path, "cjxl", "a.pfm", "dc.jxl", "-d", "1", *where[1].split(), where[2])
-    with pytest.raises(ValueError, match=r"dc\.jxl: .*one frame .*picture's size"):
+    with pytest.raises(ValueError, match=r"dc\.jxl: .*one frame .*image's size"):
         radiance.read_radiance(tmp_path / "dc.jxl")
 
 

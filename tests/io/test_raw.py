@@ -154,7 +154,7 @@ def test_bracket_of_raw_and_other_photos_is_rejected(tmp_path):
 @pytest.mark.parametrize("data", [b"", b"not a photograph", b"II*\0" + bytes(100)])
 def test_other_files_are_rejected_as_raw_by_name(tmp_path, data):
     (tmp_path / "x.nef").write_bytes(data)
-    with pytest.raises(ValueError, match="x.nef: .*RAW photograph"):
+    with pytest.raises(ValueError, match="x.nef: .*RAW photo"):
         read_photo(tmp_path / "x.nef")
 
 

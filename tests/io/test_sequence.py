@@ -129,7 +129,7 @@ def test_bad_arguments_are_rejected_and_nothing_is_written(call, folder):
 
 
 def test_missing_film_raises_file_not_found_error(tmp_path):
-    with pytest.raises(FileNotFoundError, match="there is no such file"):
+    with pytest.raises(FileNotFoundError, match="no such file"):
         sequence.read(tmp_path / "film.mp4")
 
 
@@ -190,8 +190,8 @@ def test_video_makes_a_folder_of_radiance_maps(folder, tmp_path, capsys):
         (["-o", "out.gif", "--times", "1"], "at least two different times"),
         (["-o", "out.gif", "--times", "1,x"], "expected seconds"),
         (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
-        (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
-        (["-o", "frames", "--times", "1,4"], "frames is read and would be lost"),
+        (["-o", "out.txt", "--times", "1,4"], "expected a video (.gif, .mp4)"),
+        (["-o", "frames", "--times", "1,4"], "overwrite the input frames"),
         (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "each of the 7 times"),
         (
             ["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"],

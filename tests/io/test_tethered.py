@@ -238,7 +238,7 @@ def test_disconnected_cable_keeps_the_photos_taken_so_far(folder, tmp_path):
     assert (tmp_path / "room/exposures.csv").read_text().count("\n") == 3
     assert not (tmp_path / "room.hdr").exists()
     (last,) = [line for line in run.stderr.splitlines() if line.startswith("hdrlab: ")]
-    assert "no camera answers: it may be asleep, its card full, or the cable out" in last
+    assert "no camera found; it may be asleep, its card full, or the cable out" in last
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_camera_errors_say_what_to_check(folder, tmp_path, code, meaning):
         broken = mock.Mock(wraps=camera._device)
         broken.capture.side_effect = gphoto2.GPhoto2Error(code)
         camera._device = broken
-        with pytest.raises(ValueError, match=f"no camera answers: .*{meaning}"):
+        with pytest.raises(ValueError, match=f"no camera found; .*{meaning}"):
             camera.photograph("0.1000s", tmp_path / "a")
     assert names(tmp_path) == ["camera"]
 

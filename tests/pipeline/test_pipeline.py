@@ -273,8 +273,8 @@ STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
     [
         (STACK[:1], [1], {}, "at least two different exposures, got frame 1 1 s"),
         (STACK, [2, 2], {}, "at least two different exposures, got frame . 2 s, frame . 2 s"),
-        (STACK * 0, [1, 2], {}, "seen well in two exposures"),
-        (STACK * 0 + 255, [1, 2], {}, "seen well in two exposures"),
+        (STACK * 0, [1, 2], {}, "well exposed in two photos"),
+        (STACK * 0 + 255, [1, 2], {}, "well exposed in two photos"),
         (STACK, [1, 2], {"weight": "heavy"}, "weight .*hat, gaussian, flat, snr.*'heavy'"),
         (STACK, [1, 2], {"merge": "guess"}, "merge .*log, likelihood, mean, shot"),
         (STACK, [1, 2], {"align": "luck"}, "align .*mtb.*luck"),

@@ -58,9 +58,9 @@ def test_a_clear_lens_does_not_change_the_image(room):
     ],
 )
 def test_an_invalid_glare_spread_raises_an_error(spread):
-    with pytest.raises(ValueError, match="share"):
+    with pytest.raises(ValueError, match="fraction"):
         lens.add_glare(np.ones((4, 4)), spread)
-    with pytest.raises(ValueError, match="share"):
+    with pytest.raises(ValueError, match="fraction"):
         flare.remove_glare(np.ones((4, 4)), spread=spread)
 
 
@@ -127,7 +127,7 @@ def test_gray_and_black_maps_are_accepted(room):
     [
         ({"F": np.full((4, 4), np.nan)}, "NaN"),
         ({"F": -np.ones((4, 4))}, "negative"),
-        ({"part": 0}, "part"),
+        ({"part": 0}, "fraction"),
     ],
 )
 def test_invalid_maps_and_parameters_raise_an_error(wrong, said):

@@ -440,7 +440,7 @@ def test_the_response_decides_each_channel():
         ({"w": -np.ones(256)}, "not negative"),
         ({"w": np.zeros(256)}, "not all 0"),
         ({"w": np.ones((256, 3))}, r"weights \(n,\)"),
-        ({"method": "guess"}, "method out of log, likelihood, mean, shot, got 'guess'"),
+        ({"method": "guess"}, "one of the methods log, likelihood, mean, shot, got 'guess'"),
         ({"valid": np.ones((4, 5))}, r"mask of shape \(2, 4, 5\), got"),
         ({"top": 0}, "top as a fraction"),
         ({"top": 1.5}, "top as a fraction"),

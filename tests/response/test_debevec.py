@@ -93,8 +93,8 @@ def test_levels_beyond_the_cut_repeat_the_last_constrained_value():
         ({"Z": [1, 2]}, r"expected levels Z \(N, P\) below 256"),
         ({"Z": [[0, 256]]}, "values 0 to 256"),
         ({"B": [0, 1, 2]}, r"got shape \(1, 2\).* and shape \(3,\)"),
-        ({"Z": [[0, 255]]}, "seen well in two exposures"),
-        ({"Z": [[100, 100]]}, "seen well in two exposures"),
+        ({"Z": [[0, 255]]}, "well exposed in two photos"),
+        ({"Z": [[100, 100]]}, "well exposed in two photos"),
     ],
 )
 def test_an_underdetermined_system_raises_an_error(given, said):

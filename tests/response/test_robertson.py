@@ -64,7 +64,7 @@ def test_level_0_and_levels_without_a_mean_or_beyond_the_cut_are_filled():
 
 def test_samples_in_one_exposure_raise_an_error():
     for Z, times in (([[0, 100]], [1, 2]), ([[100, 200]], [1, 1]), ([[100, 100]], [1, 2])):
-        with pytest.raises(ValueError, match="seen well in two exposures"):
+        with pytest.raises(ValueError, match="well exposed in two photos"):
             next(robertson.recover_steps(np.array(Z), times, weights.hat()))
 
 

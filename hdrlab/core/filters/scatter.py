@@ -32,7 +32,7 @@ def validate_spread(spread: GlareSpread) -> GlareSpread:
     share, power, core = spread
     if not (0 <= share < 1 and 0 < power < np.inf and 0 < core < np.inf):
         raise InputError(
-            f"expected a share from 0 to below 1, a power and core above 0, got {tuple(spread)}"
+            f"expected a fraction from 0 to below 1, a power and a core above 0, got {tuple(spread)}"
         )
     return spread
 

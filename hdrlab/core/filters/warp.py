@@ -134,9 +134,7 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     H = as_homographies(homographies)
     wide = corners(shape) + _BORDER_PIXELS * np.sign(corners((3, 3)) - 1)
     if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
-        raise InputError(
-            "expected homographies that keep a picture in front of the camera, got another"
-        )
+        raise InputError("expected homographies that keep the image in front of the camera")
     quads = apply(H, wide)
     edges = np.roll(quads, -1, axis=1) - quads
     a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
@@ -146,9 +144,7 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     b = np.einsum("pij,pij->pi", a, quads)
     left, top, right, bottom = _largest_rectangle(a.reshape(-1, 2), b.ravel(), shape)
     if left > right or top > bottom:
-        raise InputError(
-            "expected images that overlap, got homographies that leave them no pixel in common"
-        )
+        raise InputError("expected homographies with which the images overlap")
     return slice(top, bottom + 1), slice(left, right + 1)
 
 

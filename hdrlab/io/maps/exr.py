@@ -96,7 +96,7 @@ def _make_header(path: str | Path, attributes: dict[str, Any]) -> Header:
     frame_limit = MAX_FRAME_TO_DATA_RATIO * data.height * data.width
     if display.height * display.width > max(MAX_LARGE_FRAME_PIXELS, frame_limit):
         raise FileFormatError(
-            f"{path}: expected a display window not far beyond {data}, got {display}"
+            f"{path}: its display window {display} is much larger than its data {data}"
         )
     return Header(channels, data, display, attributes)
 
@@ -209,7 +209,7 @@ def save_parts(path: str | Path, *content: Any) -> None:
         try:
             file.write(str(name))
         except RuntimeError as error:
-            raise OSError(errno.EIO, f"{error}: is the disk full?", str(path)) from None
+            raise OSError(errno.EIO, f"{error} (the disk may be full)", str(path)) from None
 
 
 def read_parts(
@@ -258,7 +258,7 @@ def read_parts(
     except Exception as error:  # on damaged files OpenEXR raises exceptions of any type
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
         raise FileFormatError(
-            f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})"
+            f"{path}: the OpenEXR file is cut short or damaged ({reason})"
         ) from None
 
 
@@ -297,7 +297,7 @@ def _place_on_display(path: str | Path, E: F32, header: Header) -> F32:
     columns = slice(max(left, 0), min(left + data.width, display.width))
     if rows.start >= rows.stop or columns.start >= columns.stop:
         raise FileFormatError(
-            f"{path}: expected pixels in its display window {display}, they are all in {data}"
+            f"{path}: no pixels in its display window {display}, all are in {data}"
         )
     placed = np.zeros((display.height, display.width, *E.shape[2:]), np.float32)
     placed[rows, columns] = E[

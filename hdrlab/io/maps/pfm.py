@@ -124,7 +124,7 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
             bytes_read += _read_rows(file, rows[y : y + MAX_ROWS_PER_READ])
     if bytes_read < E.nbytes:
         raise FileFormatError(
-            f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile"
+            f"{path}: expected {E.nbytes} bytes of values, but the file became shorter while it was read"
         )
     is_little_endian = header.scale < 0
     if is_little_endian != (sys.byteorder == "little"):

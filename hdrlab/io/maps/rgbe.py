@@ -206,7 +206,7 @@ def _decode_run_lengths(path: str | Path, data: bytes, scanlines: int, length: i
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
     except (imagecodecs.RgbeError, ValueError):
         raise FileFormatError(
-            f"{path}: expected {scanlines} scanlines, they are damaged or cut short"
+            f"{path}: the {scanlines} scanlines are damaged or cut short"
         ) from None
 
 
@@ -230,7 +230,7 @@ def _decode_flat_pixels(
     last = int(np.searchsorted(totals, count))
     if last == len(totals) or totals[last] != count or is_mark[0]:
         size = f"{scanlines} scanlines of {length} pixels"
-        raise FileFormatError(f"{path}: expected {size}, they are damaged or cut short")
+        raise FileFormatError(f"{path}: the {size} are damaged or cut short")
     repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
 
@@ -258,7 +258,8 @@ def parse_header(path: str | Path, head: bytes) -> Header:
         )
     if resolution.endswith("\r"):
         raise FileFormatError(
-            f"{path}: its line ends are CR LF, so it was copied as text; copy it as a binary file"
+            f"{path}: its line ends are CR LF, so a program copied it as text; "
+            "copy the original again, as a binary file"
         )
     values = dict(line.split("=", 1) for line in lines if "=" in line)
     pixel_format = values.get("FORMAT", FORMAT).strip()

@@ -243,7 +243,7 @@ def _find_gain_map_jpeg(data: bytes) -> bytes:
         start = data.find(b"\xff\xd8\xff", end)
         if start < 0:
             raise FileFormatError(
-                "no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW"
+                "it has no description of its gain map, as in Apple's files; take a bracket, or RAW"
             )
         end = jpeg_end(data, start)
         jpeg = data[start:end]

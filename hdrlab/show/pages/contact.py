@@ -84,6 +84,6 @@ def _find_operators(
     methods = operators if isinstance(operators, Mapping) else {name: name for name in operators}
     if not methods:
         raise InputError(
-            f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none"
+            f"expected at least one of the operators {', '.join(catalogue.names('tonemap'))}, got none"
         )
     return {label: pipeline.find_operator(method) for label, method in methods.items()}

@@ -69,9 +69,7 @@ def write_report(
     picture = np.asarray(picture)
     quality = assembly.quality
     if quality is None or assembly.medians is None:
-        raise InputError(
-            f"expected a finished assembly, got one after the stage {assembly.stage!r}"
-        )
+        raise InputError(f"expected a finished assembly, got one after stage {assembly.stage!r}")
     fits = picture.shape[:2] == quality.shape and picture.shape[2:] in ((), (3,))
     if picture.dtype != np.uint8 or not fits:
         raise InputError(

@@ -136,7 +136,7 @@ def blink(
     """
     if not MIN_PERIOD_SECONDS <= period < np.inf:
         raise InputError(
-            f"expected a period of {MIN_PERIOD_SECONDS} s or more, because faster flashes can harm, "
+            f"expected a period of {MIN_PERIOD_SECONDS} s or more, because faster flashes can cause seizures, "
             f"got {period}"
         )
     pictures = [a, b, *more]

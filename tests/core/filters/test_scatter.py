@@ -26,5 +26,5 @@ def test_glare_equals_the_double_sum_and_conserves_light_inside_the_frame():
     "spread", [(-0.1,), (1,), (np.nan,), (0.1, 0), (0.1, np.inf), (0.1, 2, 0), (0.1, 2, np.inf)]
 )
 def test_an_invalid_glare_spread_raises_an_error(spread):
-    with pytest.raises(ValueError, match="share"):
+    with pytest.raises(ValueError, match="fraction"):
         validate_spread(GlareSpread(*spread))

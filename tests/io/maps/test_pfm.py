@@ -91,7 +91,7 @@ def test_file_that_is_truncated_while_it_is_read_is_rejected(tmp_path, monkeypat
     os.truncate(tmp_path / "x.pfm", header.start + RGB.nbytes - 1)
     monkeypatch.setattr(pfm, "read_header", lambda path: header)
     with pytest.raises(
-        ValueError, match=r"x\.pfm: .*9324 bytes of values, it was cut short meanwhile"
+        ValueError, match=r"x\.pfm: .*9324 bytes of values, but the file became shorter"
     ):
         pfm.read(tmp_path / "x.pfm")
 
