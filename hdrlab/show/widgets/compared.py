@@ -136,8 +136,8 @@ def blink(
     """
     if not MIN_PERIOD_SECONDS <= period < np.inf:
         raise InputError(
-            f"expected a period of {MIN_PERIOD_SECONDS} s or more, because faster flashes can cause seizures, "
-            f"got {period}"
+            f"expected a period of {MIN_PERIOD_SECONDS} s or more, got {period}: "
+            "faster flashes can cause seizures"
         )
     pictures = [a, b, *more]
     if labels is None:
