@@ -1,4 +1,4 @@
-"""Arrays as the chapters expect them: their types, once for the whole library, and checked once, at the verb.
+"""Array types and input checks of the whole library; each public function checks its input once.
 
 images  (P, H, W) gray or (P, H, W, 3) RGB, uint8 or uint16: a stack of photographs
 times   (P,) seconds of equivalent exposure, positive
@@ -39,7 +39,7 @@ def hidden(array: object) -> str:
 
 
 def describe(array: ArrayLike) -> str:
-    """Describe an array for an error message: shape, dtype and range, or that some of it is masked."""
+    """Describe an array for an error message: shape, dtype, and range or that it is masked."""
     is_masked = np.ma.is_masked(array)
     array = np.asarray(array)
     text = f"shape {array.shape}, dtype {array.dtype}"
@@ -142,7 +142,7 @@ def as_picture(picture: ArrayLike) -> Array:
 
 
 def _finite(array: Array, what: str) -> NDArray[np.float32]:
-    """Return `array` as float32, or raise a ValueError that counts what is not finite or negative."""
+    """Return `array` as float32, or raise an InputError that counts invalid values."""
     if array.dtype.kind not in "iuf" or np.ma.is_masked(array):
         raise InputError(f"expected {what} as numbers, got {describe(array)}")
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such

@@ -1,4 +1,4 @@
-"""Robust extremes of a picture: a hot pixel must not set a scale, and neither must black.
+"""Robust extremes of an image, on which hot and black pixels have no influence.
 
 L    luminance            (H, W) float32, >= 0
 cut  fraction left out    of the positive pixels, and at least one pixel

@@ -1,18 +1,19 @@
-"""Gain maps: one picture for every screen, and what a brighter screen makes of it (ISO 21496-1, 2025).
+"""Gain maps: an SDR image that brighter screens can show in HDR (ISO 21496-1, 2025).
 
-sdr        the picture for any screen         (H, W) or (H, W, 3), linear, 1 = white
-hdr        the scene for a bright screen      same shape and unit, from 0 to its headroom
-headroom   the brightest light over white     of hdr, or of a screen; 1 = no brighter than white
+sdr        the image for any screen           (H, W) or (H, W, 3), linear, 1 = white
+hdr        the image for a bright screen      same shape and unit, from 0 to its headroom
+headroom   peak luminance over white          of hdr, or of a screen; 1 = no brighter than white
 G          gain                               same shape, stops
-low, high  the least and the largest gain     stops, a number or one for each channel
+low, high  the smallest and the largest gain  stops, a number or one for each channel
 g          the gain map, as it is stored      same shape, 0 to 1
 gamma      of g: above 1 it gives codes to    1 = to all gains alike
            large gains, below 1 to small ones
-k          offsets of sdr and of hdr          unit of sdr; black then has a gain that is finite
-W          share of the gain                  0 = none, the screen shows sdr; 1 = all, it shows hdr
+k          offsets of sdr and of hdr          unit of sdr; they make the gain of black finite
+W          fraction of the gain               0 = none, the screen shows sdr; 1 = all, it shows hdr
 
-A photograph so holds two: whoever knows nothing of gains sees sdr. Both offsets are alike, or black
-would be gray where W is between 0 and 1, and small, or hdr would lose dark places beside them.
+Such a file holds two images: a program without support for gain maps shows sdr. Both offsets are
+equal, or black would become gray where W is between 0 and 1. They are small, or hdr would lose its
+shadows.
 """
 
 import numpy as np

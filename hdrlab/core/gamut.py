@@ -6,14 +6,15 @@ t          how much of its colour a pixel keeps     1 all, 0 none: (1 - t) L + t
 n          how far its least channel is below 0     >= 0, unit of E
 primaries  x and y of red, green, blue and white    8 numbers, CIE 1931
 
-A channel below 0 is a colour more saturated than the primaries can mix, or noise around black. To
-cut it off would raise the luminance and leave the pixel as saturated as can be: dark places would
-teem with magenta and green. So such a pixel moves toward the gray of its own luminance. With t = L
-/ (L + n) it stops where no channel is below 0: right for a colour that other primaries did mix
-(`desaturate`). For noise that is not enough, for the channel that becomes 0 was a random one; t is
-squared (`sanitize`), and the deeper n is under a small L, the less remains of a colour that nobody
-knows. Luminance stays, but where channels below 0 take more than half of the light that the others
-show: there the half stands, and shadows keep their detail.
+A channel below 0 is a color more saturated than the primaries can mix, or noise around black.
+Clipping it would raise the luminance and leave the pixel fully saturated, so that shadows would be
+full of magenta and green pixels. Instead, such a pixel moves toward the gray of its own luminance.
+
+With t = L / (L + n) it moves until no channel is below 0, which is right for colors of other
+primaries (`desaturate`). For noise that is not enough, because the channel that becomes 0 is a
+random one. There t is squared (`sanitize`), so that little color remains where n is large and L is
+small. The luminance does not change, unless the negative channels cancel more than half of the light
+of the others. Then half of that light is kept, so that shadows keep their detail.
 """
 
 from collections.abc import Sequence
@@ -58,7 +59,7 @@ class Sanitized:
 
 
 def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
-    """Return radiance out of any floats: what is unknown filled, what is out of gamut moved toward gray.
+    """Return valid radiance for any floats: unknown pixels filled, out-of-gamut colors moved to gray.
 
     Parameters
     ----------

@@ -1,12 +1,12 @@
-"""Metrics: how far a result lies from a known truth, that of a simulated camera.
+"""Metrics: the error of a result, compared with the truth of a simulated camera.
 
 g        response    (n,) or (n, 3), ln f^-1, ln exposure of each level
 E        radiance    (H, W[, 3]), any linear unit
 offsets  (P, 2) int, (dy, dx) pixels
 well     (H, W) bool, pixels that at least one frame exposed well
 
-Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or
-one common shift, is taken off before anything is compared; each function documents which.
+Photographs determine neither the unit of exposure nor the initial position of the camera. So one
+factor, or one common shift, is removed before the comparison; each function documents which.
 """
 
 from typing import NamedTuple

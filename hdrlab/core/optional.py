@@ -1,4 +1,4 @@
-"""Packages that a part of hdrlab needs and the rest does without: imported when something of them is used.
+"""Optional packages, imported when they are first used.
 
 `from hdrlab.core.optional import skimage_transform` stands for the module skimage.transform.
 
@@ -16,7 +16,7 @@ from typing import Any
 
 from hdrlab.errors import InputError
 
-# where pip knows a module under another name, or as an extra
+# modules whose package has another name, or is an extra of hdrlab
 PACKAGES = {"skimage": "scikit-image", "rawpy": '"hdrlab[raw]"', "pillow_heif": '"hdrlab[heic]"'}
 
 
@@ -25,7 +25,7 @@ class MissingPackageError(ModuleNotFoundError, InputError):
 
 
 class OptionalModule:
-    """A module that is there, or says what to install when something of it is used."""
+    """A module that is imported at its first use, or else raises a MissingPackageError."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -37,8 +37,8 @@ class OptionalModule:
     def __getattr__(self, attribute: str) -> Any:
         if not self:
             package = PACKAGES.get(self._root, self._root)
-            why = f"this part of hdrlab needs {self._root}: pip install {package}"
-            raise MissingPackageError(why, name=self._root)
+            message = f"this part of hdrlab needs {self._root}: pip install {package}"
+            raise MissingPackageError(message, name=self._root)
         return getattr(import_module(self._name), attribute)
 
 

@@ -1,8 +1,8 @@
-"""A finished picture in plain figures: what was clipped, how bright it is, how much it varies.
+"""Statistics of a finished image: clipped pixels, brightness, contrast and entropy.
 
 picture  (H, W) gray or (H, W, 3) RGB, uint8, as it is sent to the display
 y        gray level, 0 to 255     (H, W) float64
-p        share of the pixels at each level
+p        fraction of the pixels at each level
 """
 
 from typing import NamedTuple
@@ -14,12 +14,12 @@ from hdrlab.core.colour import LUMINANCE
 
 
 class Statistics(NamedTuple):
-    """Plain figures of a picture (H, W[, 3]) uint8.
+    """Statistics of an image (H, W[, 3]) uint8.
 
     Attributes
     ----------
-    black : fraction of pixels at 0 in every channel: all is lost there
-    white : fraction of pixels at 255 in a channel or more: what lay above is lost
+    black : fraction of pixels that are 0 in every channel
+    white : fraction of pixels that are 255 in at least one channel
     mean : gray level, 0 to 255
     contrast : standard deviation of the gray level
     entropy : of the 256 gray levels, 0 to 8 bits per pixel
@@ -33,7 +33,7 @@ class Statistics(NamedTuple):
 
 
 def gray(picture: ArrayLike) -> F64:
-    """Return y = 0.2126 R + 0.7152 G + 0.0722 B of the levels as they are shown; a gray picture as it is."""
+    """Return y = 0.2126 R + 0.7152 G + 0.0722 B of the encoded levels; a gray image is unchanged."""
     levels: F64 = as_picture(picture).astype(np.float64)
     return levels @ LUMINANCE if levels.ndim == 3 else levels
 

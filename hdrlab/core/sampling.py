@@ -1,12 +1,12 @@
-"""Which pixels enter a calibration: a stack of photographs -> Z.
+"""Choose the pixels for a calibration: samples Z of a stack of photographs.
 
 images  (P, H, W[, 3]) uint8 or uint16
 valid   (P, H, W) bool, False where a photograph holds no picture; None: all is picture
 N       number of samples
-Z       (N, P[, 3]) intp, 0 ... 255: sample i as frame j shows it; 16 bits are rounded to these 256 levels
+Z       (N, P[, 3]) intp, 0 ... 255: sample i in frame j; 16 bits are rounded to 256 levels
 
-Debevec and Malik picked pixels by hand: well distributed in level, from even regions. Both ways
-here do it without hands. `by_grid` follows single pixels through the frames, so the frames must be
+Debevec and Malik picked pixels by hand: well distributed in level, from uniform regions. Both
+functions here do it automatically. `by_grid` follows single pixels through the frames, so the frames must be
 aligned. `by_rank` matches equal ranks of the frames' histograms [Grossberg03]: brightness is
 monotone in exposure, so the k-th darkest pixel of one frame is the k-th darkest of every other. It
 needs no alignment, averages noise away, and spends its samples where the pictures have pixels.

@@ -1,4 +1,4 @@
-"""What compiled libraries print past Python, sent nowhere."""
+"""Suppress output that compiled libraries write past Python's sys.stdout and sys.stderr."""
 
 import contextlib
 import os
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def silence(descriptor: int) -> Iterator[None]:
-    """Send nowhere what is printed to 1, the output, or 2, the errors, past Python.
+    """Discard everything that is written to file descriptor 1 (output) or 2 (errors).
 
     Examples
     --------

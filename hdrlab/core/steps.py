@@ -1,4 +1,4 @@
-"""Steps: an algorithm that iterates yields its states; whoever holds them decides what to do."""
+"""Iterative algorithms yield their states; the caller decides what to do with them."""
 
 from collections import deque
 from collections.abc import Iterable

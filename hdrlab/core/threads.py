@@ -22,7 +22,7 @@ THREADS = min(PROCESSORS, 4)
 
 
 class DeferredTask(Generic[Answer]):
-    """A call that is made only when its result is asked for, in the calling thread."""
+    """A call that result() makes, in the calling thread."""
 
     def __init__(self, work: Callable[[], Answer]) -> None:
         self._work = work

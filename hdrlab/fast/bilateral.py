@@ -110,7 +110,7 @@ def _nodes(v: F32, a: Axes) -> Iterator[Row]:
     """Yield the rows of nodes, from top to bottom: the histograms' sums, blurred along the picture.
 
     Cells of h pixels, and lines between nodes, are blurs themselves, of variance (h^2 - 1) / 12 and
-    (h^2 - 1) / 6. Variances add: the Gaussian along the nodes takes what is left.
+    (h^2 - 1) / 6. Variances add, so the Gaussian along the nodes has the rest.
     """
     g = blur._taps((a.sigma_s**2 - (a.h**2 - 1) / 4) ** 0.5 / a.h)
     r = len(g) // 2

@@ -1,4 +1,4 @@
-"""Assembly: what is known of a bracket after each stage of the pipeline."""
+"""Assembly: the state of a bracket after each stage of the pipeline."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
