@@ -222,7 +222,7 @@ def test_explicit_times_take_precedence_over_exif(tmp_path):
 
 
 def test_error_names_a_photo_that_is_missing_in_the_list(tmp_path):
-    with pytest.raises(ValueError, match="times.txt: .*time for each photograph.*none for b.jpg"):
+    with pytest.raises(ValueError, match="times.txt: .*no exposure time for b.jpg"):
         bracket_times(NAMES, [], wrote(tmp_path, "a.jpg 2\n"))
 
 
