@@ -5,7 +5,7 @@ import pytest
 from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRejected
 from hdrlab.course.submissions.archives.unpack import unpack
 
-TOLD = "it is damaged, or not a .zip or .tar archive"
+TOLD = "it is damaged"
 
 
 def taken(folder, data, **limits):

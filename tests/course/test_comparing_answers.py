@@ -66,13 +66,15 @@ def test_real_numbers_of_any_type_are_accepted(came, notes):
 @pytest.mark.parametrize(
     ("came", "said"),
     [
-        ([1, 2.5], "w: list of 2 was taken for an array of shape (2,)"),
-        (((1, 2), (3, 4), (5, 6)), "w: tuple of 3 was taken for an array of shape (3, 2)"),
-        ([[True]], "w: list of 1 was taken for an array of shape (1, 1)"),
+        ([1, 2.5], ("list of 2", "(2,)")),
+        (((1, 2), (3, 4), (5, 6)), ("tuple of 3", "(3, 2)")),
+        ([[True]], ("list of 1", "(1, 1)")),
     ],
 )
 def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, said, notes):
-    assert np.array_equal(numbers(came, what="w"), np.array(came)) and notes == [said]
+    assert np.array_equal(numbers(came, what="w"), np.array(came))
+    (note,) = notes
+    assert note.startswith("w: ") and all(part in note for part in said)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +92,8 @@ def test_axes_of_length_one_are_added_or_removed_with_a_note(shape, expected, no
     values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
     found = compare.as_shape(values, expected)
     assert found.shape == expected and found.ravel().tolist() == values.ravel().tolist()
-    assert notes == [f"the answer: shape {shape} was taken for {expected}"]
+    (note,) = notes
+    assert str(shape) in note and str(expected) in note
 
 
 @pytest.mark.parametrize(
@@ -107,7 +110,7 @@ def test_axes_of_length_one_are_added_or_removed_with_a_note(shape, expected, no
 )
 def test_a_wrong_shape_is_refused_with_both_shapes(shape, expected, notes):
     said = refused(compare.as_shape, np.zeros(shape), expected)
-    assert said == f"the answer: expected shape {expected}, got shape {shape}" and not notes
+    assert str(expected) in said and str(shape) in said and not notes
 
 
 def test_an_array_of_the_right_shape_is_returned_without_a_note(notes):
@@ -117,10 +120,11 @@ def test_an_array_of_the_right_shape_is_returned_without_a_note(notes):
 
 def test_the_expected_number_of_parts_is_required():
     assert parts((1, 2, 3), 2) == (1, 2) and parts([1, 2], 2) == (1, 2)
-    assert refused(parts, (1,), 2) == "the answer: expected 2 parts, got tuple of 1"
-    assert refused(parts, "abc", 2) == "the answer: expected 2 parts, got str of 3"
-    assert refused(parts, None, 1) == "the answer: expected 1 parts, got nothing (None)"
-    assert refused(parts, np.ones(3), 2, what="w") == "w: expected 2 parts, got one array"
+    for came, named in (((1,), "tuple of 1"), ("abc", "str of 3"), (None, "None")):
+        message = refused(parts, came, 2)
+        assert "2 parts" in message and named in message
+    message = refused(parts, np.ones(3), 2, what="w")
+    assert message.startswith("w: ") and "2 parts" in message and "array" in message
 
 
 def test_at_least_one_state_is_required():
@@ -131,10 +135,8 @@ def test_at_least_one_state_is_required():
         (np.ones(3), "one array"),
         (7, "one array"),
     ):
-        assert (
-            refused(states, came)
-            == f"the steps: expected a generator that yields states, got {named}"
-        )
+        message = refused(states, came)
+        assert "states" in message and named in message
 
 
 @pytest.mark.parametrize(
@@ -241,9 +243,10 @@ def test_a_mismatch_keeps_both_arrays_and_how_to_draw_them(shape, named, kind):
 
 def test_finite_requires_the_shape_and_finite_numbers():
     assert finite([[1, 2]], (2,)).tolist() == [1, 2]
-    assert refused(finite, np.ones(3), (2,)) == "the answer: expected shape (2,), got shape (3,)"
+    message = refused(finite, np.ones(3), (2,))
+    assert "(2,)" in message and "(3,)" in message
     said = refused(finite, np.array([1, np.nan, np.inf]), (3,), what="w")
-    assert said == "w: expected finite numbers, got 2 NaN or infinite ones"
+    assert said.startswith("w: ") and "2 NaN" in said
 
 
 def test_answers_of_trusted_code_have_the_types_that_the_channel_gives():

@@ -2,6 +2,7 @@
 
 import errno
 import io
+import re
 import struct
 import zipfile
 from functools import partial
@@ -31,25 +32,26 @@ def archive(*files, **knobs):
 def test_an_archive_of_the_largest_allowed_size_is_opened(taken):
     whole = archive(("a", b"x"))
     assert taken(whole, max_total_bytes=len(whole)) == {"a": b"x"}
-    said = f"it has {len(whole)} bytes, expected at most {len(whole) - 1}"
-    assert refused(taken, whole, max_total_bytes=len(whole) - 1) == said
+    message = refused(taken, whole, max_total_bytes=len(whole) - 1)
+    assert str(len(whole)) in message and str(len(whole) - 1) in message
 
 
 @pytest.mark.parametrize(
-    ("mode", "said"),
+    ("mode", "kind"),
     [
         (0o100644, ""),
         (0, ""),
-        (0o120777, "'a' is a link, expected plain files"),
-        (0o020666, "'a' is a device, expected plain files"),
-        (0o010666, "'a' is a device, expected plain files"),
-        (0o140666, "'a' is a device, expected plain files"),
+        (0o120777, "link"),
+        (0o020666, "device"),
+        (0o010666, "device"),
+        (0o140666, "device"),
     ],
 )
-def test_an_entry_that_is_not_a_plain_file_is_refused_with_its_kind(mode, said, taken):
+def test_an_entry_that_is_not_a_plain_file_is_refused_with_its_kind(mode, kind, taken):
     whole = archive((entry("a", mode), b"x"), ("b", b"y"))
-    if said:
-        assert refused(taken, whole) == said
+    if kind:
+        message = refused(taken, whole)
+        assert "'a'" in message and kind in message
     else:
         assert taken(whole) == {"a": b"x", "b": b"y"}
 
@@ -61,12 +63,13 @@ def test_flags_other_than_encryption_are_ignored(taken):
     whole[at] |= 2
     assert taken(bytes(whole)) == {"a": b"x"}
     whole[at] |= 1
-    assert refused(taken, bytes(whole)) == "'a' is encrypted"
+    message = refused(taken, bytes(whole))
+    assert "'a'" in message and "encrypted" in message
 
 
 def test_a_name_with_a_null_character_is_refused(taken):
     whole = archive(("abc", b"x")).replace(b"abc", b"a\0c")
-    assert refused(taken, whole) == "'ac' has a control character in its name"
+    assert "'ac'" in refused(taken, whole)
 
 
 def test_overlapping_members_are_refused(taken):
@@ -81,20 +84,19 @@ def test_overlapping_members_are_refused(taken):
             taken(bytes(packed))
         except ArchiveRejected as error:  # a newer reader may have another reason
             said = str(error)
-        assert (said == "'a' shares its bytes with another member") is shares
+        assert ("'a'" in said and "shares" in said) is shares
 
 
 def test_a_central_directory_cut_at_any_byte_is_refused(taken):
     whole = archive(("a", b"x"))
-    said = "it is cut short: its list of members is missing"
     for cut in (1, 21, 22, 23):
-        assert refused(taken, whole[:-cut]) == said
-    assert refused(taken, b"PK\5\6") == said
+        assert "cut short" in refused(taken, whole[:-cut])
+    assert "cut short" in refused(taken, b"PK\5\6")
 
 
 def test_a_zip_without_files_is_refused(taken):
-    assert refused(taken, b"PK\5\6" + bytes(18)) == "it holds no files"
-    assert refused(taken, archive(("a/", b""))) == "it holds no files"
+    assert "no files" in refused(taken, b"PK\5\6" + bytes(18))
+    assert "no files" in refused(taken, archive(("a/", b"")))
 
 
 def test_the_central_directory_is_found_before_a_comment_of_any_length(taken):
@@ -108,21 +110,20 @@ def test_the_central_directory_is_found_before_a_comment_of_any_length(taken):
 def test_a_zip64_archive_is_refused(taken):
     whole = archive(("a", b"x"))
     at = whole.rfind(b"PK\5\6")
-    said = "it is a zip for more than 4 GB or 65535 members"
-    assert refused(taken, whole[:at] + b"PK\6\7" + bytes(16) + whole[at:]) == said
-    assert said not in refused(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
+    assert "4 GB" in refused(taken, whole[:at] + b"PK\6\7" + bytes(16) + whole[at:])
+    assert "4 GB" not in refused(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
 
 
 def test_a_central_directory_may_claim_the_largest_allowed_numbers(taken):
     whole = bytearray(archive(("a", b"x")))
     at = whole.rfind(b"PK\5\6")
-    for count, size, said in (
-        (4, 5, "it has 4 members, expected at most 3"),
-        (1, 3073, "its list of members takes 3073 bytes, expected at most 3072"),
-        (3, 3072, TOLD),
-    ):
+    for count, size, limits in ((4, 5, ("4", "3")), (1, 3073, ("3073", "3072")), (3, 3072, ())):
         struct.pack_into("<HL", whole, at + 10, count, size)
-        assert refused(taken, bytes(whole), max_members=3).startswith(said)
+        message = refused(taken, bytes(whole), max_members=3)
+        if limits:
+            assert all(re.search(rf"\b{number}\b", message) for number in limits)
+        else:  # it is within the limits, and damaged
+            assert message.startswith(TOLD)
 
 
 def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
@@ -130,7 +131,8 @@ def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
         monkeypatch.setattr(
             tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error)
         )
-        assert refused(taken, b"x") == f"{TOLD} ({why})"
+        message = refused(taken, b"x")
+        assert message.startswith(TOLD) and message.endswith(f"({why})")
     place = OSError(errno.EINVAL, "a place before the beginning")
     monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(place))
     assert refused(taken, b"x").startswith(TOLD)
