@@ -85,7 +85,7 @@ def link(place, modules):
 
 def written():
     """Return the page."""
-    tasks, modules = timetable.tasks(), reference.modules()
+    tasks, modules = timetable.tasks(), reference.list_modules()
     lines = [HEAD + "; ".join(f"{letter}, {name}" for letter, name in PAPERS.items()) + ".", ""]
     lines += ["| method | library | notebook sections | tasks |", "|---|---|---|---|"]
     for n, (name, papers, places, sections, graded) in enumerate(table(), 1):

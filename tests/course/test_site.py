@@ -464,7 +464,7 @@ def test_the_words_of_a_docstring_stay_as_they_are():
         ">>> 2 * 3",
         "6",
     ]
-    text = "\n".join(reference.laid_out(lines, module=True))
+    text = "\n".join(reference.format_docstring(lines, module=True))
     assert "``L``\n   luminance · (H, W)\n   any unit" in text
     assert "Then \\|x\\| \\* 2." in text
     assert ">>> 2 * 3\n6" in text
@@ -474,8 +474,8 @@ def test_every_row_of_the_lecture_names_what_there_is():
     """The map's names are modules of the library, or stand in one."""
     import importlib
 
-    for lecture, where in reference.rows():
-        for name in reference.NAME.findall(where):
+    for lecture, where in reference.read_lecture_map():
+        for name in reference.DOTTED_NAME.findall(where):
             parts = f"hdrlab.{name}".split(".")
             try:
                 importlib.import_module(".".join(parts))

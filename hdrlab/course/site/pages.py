@@ -119,10 +119,11 @@ def _build(
         if notebook.source != FRONT
     }
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
-    modules = reference.modules()
+    modules = reference.list_modules()
     known = {*notebooks, *sheets}
     uses = {
-        name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()
+        name: reference.find_imports(_code(notebook), modules)
+        for name, notebook in notebooks.items()
     }
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}

@@ -59,7 +59,7 @@ def _draw(writer: Any, node: Any, *, tag: str) -> None:
 
 
 def _docstring(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    lines[:] = reference.laid_out(lines, module=what == "module")
+    lines[:] = reference.format_docstring(lines, module=what == "module")
 
 
 def _skip(app: Any, what: str, name: str, obj: Any, skip: bool, options: Any) -> bool | None:
