@@ -1,5 +1,6 @@
 """A class of three students in two teams, its homework of one task, and results of it."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from fractions import Fraction
 
@@ -31,4 +32,4 @@ def result(student="t", *kinds, problems=(), **more):
     made = Result(
         student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {}
     )
-    return made._replace(**more)
+    return replace(made, **more)

@@ -17,6 +17,7 @@ not what they gain. The figures are those of `hdrlab grade` in the strict tier; 
 
 import os
 from collections import Counter
+from dataclasses import replace
 from functools import partial
 from math import log
 from operator import attrgetter
@@ -191,7 +192,7 @@ def _told(folder: Path, one: handed.Handed, result: results.Result, count: int) 
     found = class_folder.find(place / "submissions", lists.read(place / "roster.csv"))
     (folder / "out" / "results").mkdir(parents=True)
     for piece in classroom.make_jobs(found.submissions, homework, conditions):
-        data = results.to_json(result._replace(student=piece.owner))
+        data = results.to_json(replace(result, student=piece.owner))
         jobs.result_path(folder / "out" / "results", piece).write_bytes(data)
     return grade(place, folder / "out")
 

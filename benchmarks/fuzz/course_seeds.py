@@ -6,6 +6,7 @@ import tarfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -83,7 +84,7 @@ def result(folder: Path) -> None:
     one = results.Check(
         "hat", "test_hat", "It peaks.", Fraction(1, 3), Fraction(2, 3), "fails", "no", ("a", "b")
     )
-    checks = (one, one._replace(drawing=drawing, kind="raised"))
+    checks = (one, replace(one, drawing=drawing, kind="raised"))
     names = ("b01", "hw2", "The curve", "strict")
     whole = results.Result(
         *names, checks, {"hat": "tent"}, ("none",), "ab", "cd", "ef", {"numpy": "2"}

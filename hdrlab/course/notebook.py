@@ -6,6 +6,7 @@ tier: it contains mistakes, not attacks, and its points are no grade yet.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from hdrlab.course import plan as plans
@@ -84,7 +85,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
         progress.update(HTML(feedback.bar(done, total, f"{name}, checking", "checks")))
     progress.update(HTML(""))
     for task_id in task_ids:
-        _latest[task_id] = result._replace(checks=result.of(task_id), problems=())
+        _latest[task_id] = replace(result, checks=result.of(task_id), problems=())
     return Feedback(result, homework)
 
 

@@ -166,10 +166,10 @@ def test_an_archive_is_opened_or_refused_with_a_one_line_reason(members, said, t
 
 def test_a_submission_killed_twice_at_the_same_check_is_graded_a_third_time(monkeypatch):
     killed, died = (
-        result("b1", ())._replace(checks=(Check("hat", "a", "A", 0, 1, "no answer", kind=kind),))
+        replace(result("b1", ()), checks=(Check("hat", "a", "A", 0, 1, "no answer", kind=kind),))
         for kind in ("killed", "died")
     )
-    elsewhere = killed._replace(checks=(*killed.checks, *died.checks))
+    elsewhere = replace(killed, checks=(*killed.checks, *died.checks))
     class_grader = classroom.Grader(HOMEWORK, GradingOptions(tier="practice"))
     job = GradingJob("b1", Path("b1.py"), "key")
     for last in (died, killed):

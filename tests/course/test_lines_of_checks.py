@@ -69,7 +69,8 @@ def heard(monkeypatch):
 def test_a_result_says_what_was_checked_of_whom_and_how(heard):
     conditions = GradingOptions("container", "ada", "secret")
     (found,) = heard(check("hold"), conditions=conditions, homework=HOMEWORK._replace(at_most=7.0))
-    assert found[:4] == ("ada", "hw2", HOMEWORK.title, "container")
+    assert (found.student, found.homework) == ("ada", "hw2")
+    assert (found.title, found.tier) == (HOMEWORK.title, "container")
     assert (found.problems, found.submission, found.at_most) == (("a problem",), "digest", 7.0)
     files = [SPECIFICATION / f"test_{one.id}.py" for one in HOMEWORK.tasks]
     whole = b"".join(file.name.encode() + b"\0" + file.read_bytes() for file in files)

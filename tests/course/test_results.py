@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from fractions import Fraction
 from xml.etree import ElementTree
 
@@ -35,15 +36,15 @@ def hostile():
         picture,
         HOSTILE,
     )
-    hidden = bad._replace(
-        name="test_c", promise="The hidden one", hidden=True, message="the secret", said=""
+    hidden = replace(
+        bad, name="test_c", promise="The hidden one", hidden=True, message="the secret", said=""
     )
     return Result(
         student=HOSTILE,
         homework="hw2",
         title="The response curve",
         tier="strict",
-        checks=(CHECK, bad, hidden._replace(drawing=Drawing(), hints=())),
+        checks=(CHECK, bad, replace(hidden, drawing=Drawing(), hints=())),
         misconceptions={"gsolve": HOSTILE},
         problems=(HOSTILE,),
         submission="0" * 64,
@@ -70,21 +71,21 @@ def test_other_data_is_refused_as_a_result(data):
 
 
 def test_thirds_of_a_point_sum_to_a_point():
-    three = tuple(CHECK._replace(name=str(k)) for k in range(3))
+    three = tuple(replace(CHECK, name=str(k)) for k in range(3))
     assert results.points(three) == (1.0, 1.0)
 
 
 def test_a_practice_score_is_never_for_credit(hostile):
-    assert hostile.for_credit and not hostile._replace(tier="practice").for_credit
-    assert hostile._replace(tier="container").for_credit
-    practice = hostile._replace(tier="practice")
+    assert hostile.for_credit and not replace(hostile, tier="practice").for_credit
+    assert replace(hostile, tier="container").for_credit
+    practice = replace(hostile, tier="practice")
     assert "not for credit" in feedback.page(practice)
     assert "not for credit" in gradebook.gradescope(practice).decode()
     assert json.loads(results.to_json(practice))["for_credit"] is False
 
 
 def test_without_a_secret_a_score_is_for_practice_whatever_the_tier(hostile):
-    public = hostile._replace(seed="")
+    public = replace(hostile, seed="")
     assert not public.for_credit and "without a secret" in public.why_practice
     assert "without a secret" in feedback.page(public) and "For practice" in feedback.page(public)
     assert "without a secret" in gradebook.gradescope(public).decode()
@@ -112,11 +113,11 @@ def test_a_teams_copy_shows_only_the_name_and_points_of_a_hidden_check(hostile):
     hidden = Check(
         "gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1]
     )
-    hidden = hidden._replace(
-        hints=("first hint",), drawing=picture, said="what it printed", hidden=True
+    hidden = replace(
+        hidden, hints=("first hint",), drawing=picture, said="what it printed", hidden=True
     )
-    own = hostile.checks[1]._replace(message="yours to read")
-    whole = results.to_json(hostile._replace(checks=(own, hidden)))
+    own = replace(hostile.checks[1], message="yours to read")
+    whole = results.to_json(replace(hostile, checks=(own, hidden)))
     shown = json.loads(results.for_team(whole))
     assert not [text for text in values(shown) if any(secret in text for secret in SECRETS)]
     assert set(shown["checks"][1]) == {
@@ -143,8 +144,8 @@ def test_written_results_are_readable_by_their_owner_only(hostile, tmp_path):
 
 
 def test_a_passed_check_without_points_says_why(hostile):
-    held = CHECK._replace(points=Fraction(), message="It only earns points if this passes, too: B")
-    result = hostile._replace(checks=(held,))
+    held = replace(CHECK, points=Fraction(), message="It only earns points if this passes, too: B")
+    result = replace(hostile, checks=(held,))
     assert "if this passes, too: B" in feedback.text(
         result
     ) and "if this passes, too: B" in feedback.page(result)
@@ -186,7 +187,7 @@ def test_the_junit_file_is_valid_xml_for_hostile_text(hostile):
 
 def test_a_spreadsheet_does_not_take_a_cell_of_the_table_for_a_formula(hostile):
     for student in ('=HYPERLINK("http://x")', "ada"):
-        table = gradebook.table(hostile._replace(student=student))
+        table = gradebook.table(replace(hostile, student=student))
         (row,) = csv.DictReader(io.StringIO(table))
         assert row["score"] == "0.3333" and "gsolve" in row
         assert not any(cell.startswith(("=", "+", "@", "\t")) for cell in row.values())
@@ -200,8 +201,8 @@ def test_the_feedback_page_escapes_hostile_text(hostile):
 
 
 def test_the_hints_are_three_steps_each_within_the_one_before(hostile):
-    check = hostile.checks[1]._replace(hints=("first", "second", "third"))
-    page = feedback.fragment(hostile._replace(checks=(check,)))
+    check = replace(hostile.checks[1], hints=("first", "second", "third"))
+    page = feedback.fragment(replace(hostile, checks=(check,)))
     assert (
         page.index("first")
         < page.index("Another hint")
@@ -218,8 +219,8 @@ def test_all_formats_of_a_result_are_written_to_one_folder(hostile, tmp_path):
 
 
 def test_the_terminal_shows_hints_only_on_request(hostile):
-    check = hostile.checks[1]._replace(hints=("first", "second", "third"))
-    result = hostile._replace(checks=(check,))
+    check = replace(hostile.checks[1], hints=("first", "second", "third"))
+    result = replace(hostile, checks=(check,))
     assert "first" not in feedback.text(result)
     assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(
         result, hints=1

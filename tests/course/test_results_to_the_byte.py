@@ -1,6 +1,7 @@
 """A Result's JSON and its page's numbers, to the byte: the same result is the same file in every year."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -58,15 +59,15 @@ def test_the_json_of_a_result_has_the_documented_form():
 
 
 def test_a_teams_copy_equals_the_result_without_hidden_parts():
-    hidden = RESULT._replace(
-        checks=(CHECK, CHECK._replace(hidden=True, message="secret", said="s"))
+    hidden = replace(
+        RESULT, checks=(CHECK, replace(CHECK, hidden=True, message="secret", said="s"))
     )
     shown = results.for_team(results.to_json(hidden))
     assert shown.startswith(b'{\n "version": 1,\n "student": "ada",') and shown.endswith(b"}\n")
     read = json.loads(shown)
-    assert set(read["checks"][0]) == set(results.OF_OWN) and set(read["checks"][1]) == set(
-        results.OF_HIDDEN
-    )
+    assert set(read["checks"][0]) == set(results.PUBLIC_CHECK_FIELDS) and set(
+        read["checks"][1]
+    ) == set(results.HIDDEN_CHECK_FIELDS)
     assert b"\\u00e9" in shown and b"secret" not in shown and "at_most" not in read
 
 
@@ -87,10 +88,10 @@ def test_another_version_is_refused(version):
 def test_a_score_is_the_points_up_to_the_maximum(at_most, score, most):
     checks = (
         CHECK,
-        CHECK._replace(task="b", points=Fraction(2)),
-        CHECK._replace(points=Fraction(1)),
+        replace(CHECK, task="b", points=Fraction(2)),
+        replace(CHECK, points=Fraction(1)),
     )
-    found = RESULT._replace(checks=checks, at_most=at_most)
+    found = replace(RESULT, checks=checks, at_most=at_most)
     assert (found.score, found.max_score, found.tasks) == (score, most, ("a", "b"))
     assert found.of("a") == (checks[0], checks[2]) and results.points(found.of("b")) == (2, 2)
 
@@ -105,7 +106,7 @@ def test_a_score_is_the_points_up_to_the_maximum(at_most, score, most):
     ],
 )
 def test_a_score_for_credit_needs_a_sandbox_and_secret_inputs(tier, seed, credit):
-    found = RESULT._replace(tier=tier, seed=seed)
+    found = replace(RESULT, tier=tier, seed=seed)
     assert found.for_credit is credit and bool(found.why_practice) is not credit
     assert ("without a sandbox" in found.why_practice) is (tier == "practice")
 
@@ -144,11 +145,11 @@ def test_points_are_shown_in_hundredths_at_most(value, text):
 
 
 def test_the_page_shows_private_parts_and_the_terminal_shows_hints_on_request():
-    found = RESULT._replace(checks=(CHECK._replace(hints=("first", "second"), message="no"),))
+    found = replace(RESULT, checks=(replace(CHECK, hints=("first", "second"), message="no"),))
     assert feedback.text(found) == feedback.text(found, hints=0, private=False)
     assert "first" not in feedback.text(found) and "second" not in feedback.text(found, hints=1)
     assert "first" in feedback.text(found, hints=1) and "second" in feedback.text(found, hints=2)
-    secret = found._replace(checks=(CHECK._replace(hidden=True, message="the reason"),))
+    secret = replace(found, checks=(replace(CHECK, hidden=True, message="the reason"),))
     for shown in (feedback.page, feedback.fragment, feedback.text):
         assert "the reason" in shown(secret, private=True) and "the reason" not in shown(secret)
 

@@ -1,5 +1,6 @@
 """One mistake costs once, in whole and half points."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -69,7 +70,7 @@ def test_a_check_that_needs_a_failed_check_earns_nothing():
 def test_failures_with_the_same_message_are_reported_once():
     said = [{"kind": "raised", "message": one} for one in ("IndexError", "IndexError", "KeyError")]
     each = [
-        one._replace(**words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
+        replace(one, **words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
     ]
     assert [one.follows for one in attribute_failures(each, {})] == ["", "Promise a", ""]
 
@@ -137,7 +138,7 @@ def test_a_hidden_check_is_never_a_cause_or_a_consequence():
     found = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
     assert [one.follows for one in found] == ["", "", ""] and earned(found) == [0, 0, 4]
     assert found[2].message == ""
-    same = [one._replace(kind="late") for one in (a._replace(hidden=True), b)]
+    same = [replace(check, kind="late") for check in (replace(a, hidden=True), b)]
     assert [one.follows for one in attribute_failures(same, {})] == ["", ""]
 
 
@@ -156,7 +157,7 @@ def test_two_failures_share_a_cause_if_both_timed_out_or_have_the_same_message(
     first, second, follows
 ):
     each = [
-        one._replace(kind=kind, message=said)
+        replace(one, kind=kind, message=said)
         for one, (kind, said) in zip(checks("fails", "fails"), (first, second), strict=True)
     ]
     assert [one.follows for one in attribute_failures(each, {})] == [

@@ -102,7 +102,7 @@ class Grader:
                 write_files(hidden_folder, self.hidden)
             conditions = replace(self.conditions, student=student, hidden=hidden_folder)
             result = grader.grade(job.path, self.homework, conditions)
-        return result._replace(student=job.owner)
+        return replace(result, student=job.owner)
 
 
 @cache

@@ -1,66 +1,83 @@
-"""What checking a submission comes to: promise by promise, and as JSON, which is the source of all reports.
+"""The result of grading one submission: its checks with their points, and JSON, the source of all reports.
 
-The JSON of one submission under the same checks is the same to the byte: no times of day, no
-durations.
+The JSON of one submission with the same checks is always the same, byte for byte: it has no times.
 """
 
 import base64
 import json
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
 from hdrlab.errors import InputError
 
 VERSION = 1
-CREDIT = ("strict", "container")  # tiers that count
-DERIVED = ("for_credit", "score", "max_score")  # what the JSON says beside a Result's fields
-# what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
-TEAM_SEES = (
-    *(
-        "version",
-        "student",
-        "homework",
-        "title",
-        "tier",
-        "for_credit",
-        "score",
-        "max_score",
-        "problems",
-    ),
-    *("misconceptions", "checks", "submission", "specification", "seed", "versions"),
+TIERS_FOR_CREDIT = ("strict", "container")
+# computed properties of a Result that its JSON has in addition to its fields
+COMPUTED_FIELDS = ("for_credit", "score", "max_score")
+# the fields that a team's copy of its result has: of the result, of a hidden check, of a public one
+TEAM_FIELDS = (
+    "version",
+    "student",
+    "homework",
+    "title",
+    "tier",
+    "for_credit",
+    "score",
+    "max_score",
+    "problems",
+    "misconceptions",
+    "checks",
+    "submission",
+    "specification",
+    "seed",
+    "versions",
 )
-OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
-OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said", "follows")
+HIDDEN_CHECK_FIELDS = ("task", "promise", "points", "max_points", "outcome", "hidden")
+PUBLIC_CHECK_FIELDS = (
+    *HIDDEN_CHECK_FIELDS,
+    "name",
+    "message",
+    "hints",
+    "drawing",
+    "said",
+    "follows",
+)
+# fields that results of early versions of hdrlab do not have
+EARLY_RESULT = {"at_most": None}
+EARLY_CHECK = {"kind": "", "follows": ""}
 Outcome = Literal["holds", "fails", "no answer"]
 
 
 class Drawing(NamedTuple):
-    """Pictures of a difference: bytes of WebP, what they show in words, and what stands below them."""
+    """Images of a difference as WebP, with their alternative texts and their captions."""
 
     frames: tuple[bytes, ...] = ()
     alts: tuple[str, ...] = ()
     captions: tuple[str, ...] = ()
 
 
-class Check(NamedTuple):
-    """One promise of a task, and whether it holds.
+@dataclass(frozen=True)
+class Check:
+    """One check of a task, and whether it holds.
 
     Attributes
     ----------
     task : id of the task
     name : of the test function
-    promise : the same in words
-    points, max_points : earned, and to be earned
-    outcome : "holds", "fails", or "no answer" where the function raised, took too long or is
+    promise : what the check tests, in words
+    points, max_points : earned, and possible
+    outcome : "holds", "fails", or "no answer" if the function raised an error, took too long or is
         missing
-    message : why not, in words
-    hints : from vague to plain
-    drawing : expected, came, difference
-    said : what the function printed meanwhile
-    hidden : whether it is one of the instructor's own, of which a student sees the outcome alone
-    kind : of no answer: "missing", "raised", "late", "died", "refused", "damaged", or "killed" from
-        outside
-    follows : of a failure that follows from another one of its task: the promise that failed there
+    message : why it does not hold, in words
+    hints : from vague to clear
+    drawing : images of the expected array, the returned array and their difference
+    said : what the function printed
+    hidden : whether it is one of the instructor's hidden checks, of which students see only the
+        outcome
+    kind : why there is no answer: "missing", "raised", "late", "died", "refused", "damaged", or
+        "killed" if something outside ended the sandbox
+    follows : the promise of the check of the same task whose failure explains this one
     """
 
     task: str
@@ -78,8 +95,22 @@ class Check(NamedTuple):
     follows: str = ""
 
 
-class Result(NamedTuple):
-    """A submission's checks, in the order of the homework, and what one must know to run them again."""
+@dataclass(frozen=True)
+class Result:
+    """The result of grading one submission.
+
+    Attributes
+    ----------
+    student : id, "" if unknown
+    homework, title : its name and its title
+    tier : of the sandbox
+    checks : in the order of the homework
+    misconceptions : by task, the sentence about the known mistake that explains its failures
+    problems : what was wrong with the submission itself, as sentences
+    submission, specification, seed : digests of the file, of the checks and of the inputs
+    versions : of hdrlab, NumPy, SciPy and Python
+    at_most : points that count at most, None if all count
+    """
 
     student: str
     homework: str
@@ -96,21 +127,21 @@ class Result(NamedTuple):
 
     @property
     def score(self) -> float:
-        """Points earned, of which no more count than the sheet is worth."""
-        return self._counted(points(self.checks)[0])
+        """Points earned, at most as many as count."""
+        return self._limit(points(self.checks)[0])
 
     @property
     def max_score(self) -> float:
-        """Points to be earned."""
-        return self._counted(points(self.checks)[1])
+        """Points that can be earned."""
+        return self._limit(points(self.checks)[1])
 
-    def _counted(self, earned: float) -> float:
-        return earned if self.at_most is None else min(earned, self.at_most)
+    def _limit(self, value: float) -> float:
+        return value if self.at_most is None else min(value, self.at_most)
 
     @property
     def why_practice(self) -> str:
         """Why the score is not for credit, in a sentence, or ""."""
-        if self.tier not in CREDIT:
+        if self.tier not in TIERS_FOR_CREDIT:
             return "Your submission ran without a sandbox, so this score is not for credit."
         if not self.seed:
             return "The inputs were drawn without a secret, so this score is not for credit."
@@ -118,23 +149,24 @@ class Result(NamedTuple):
 
     @property
     def for_credit(self) -> bool:
-        """Whether the tier keeps a hostile submission from its own score, and the inputs were not public."""
+        """Whether the tier protects the score from the submission, and the inputs were not public."""
         return not self.why_practice
 
     def of(self, task: str) -> tuple[Check, ...]:
         """Return the checks of one task."""
-        return tuple(one for one in self.checks if one.task == task)
+        return tuple(check for check in self.checks if check.task == task)
 
     @property
     def tasks(self) -> tuple[str, ...]:
         """The ids of the tasks, in order."""
-        return tuple(dict.fromkeys(one.task for one in self.checks))
+        return tuple(dict.fromkeys(check.task for check in self.checks))
 
 
 def points(checks: tuple[Check, ...]) -> tuple[float, float]:
-    """Return what some checks earned, and what they could."""
-    earned = sum((one.points for one in checks), Fraction())
-    return _number(earned), _number(sum((one.max_points for one in checks), Fraction()))
+    """Return the points that some checks earned, and those that they could earn."""
+    earned = sum((check.points for check in checks), Fraction())
+    possible = sum((check.max_points for check in checks), Fraction())
+    return _number(earned), _number(possible)
 
 
 def _number(value: Fraction) -> float:
@@ -142,7 +174,7 @@ def _number(value: Fraction) -> float:
 
 
 def to_json(result: Result) -> bytes:
-    """Return a Result as JSON: the score, the tier and every check; pictures as base64.
+    """Return a Result as JSON, with images in base64.
 
     Examples
     --------
@@ -150,29 +182,39 @@ def to_json(result: Result) -> bytes:
     >>> from_json(to_json(result)) == result
     True
     """
-    whole = {
-        "version": VERSION,
-        **result._asdict(),
-        **{name: getattr(result, name) for name in DERIVED},
-    }
-    whole["checks"] = [_check_to_json(one) for one in result.checks]
-    return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
+    written: dict[str, Any] = {"version": VERSION}
+    written |= _as_dict(result)
+    written |= {name: getattr(result, name) for name in COMPUTED_FIELDS}
+    written["checks"] = [_check_to_json(check) for check in result.checks]
+    return _dump(written)
 
 
 def for_team(data: bytes) -> bytes:
-    """Return what a team may see of a Result's JSON: of hidden checks the promise and the points alone."""
-    whole = json.loads(data)
-    shown = {name: whole[name] for name in TEAM_SEES}
-    shown["checks"] = [
-        {name: one[name] for name in (OF_HIDDEN if one["hidden"] else OF_OWN)}
-        for one in whole["checks"]
-    ]
-    return (json.dumps(shown, indent=1, ensure_ascii=True) + "\n").encode()
+    """Return the part of a Result's JSON that a team may see: of hidden checks only a summary."""
+    result = json.loads(data)
+    shown = {name: result[name] for name in TEAM_FIELDS}
+    shown["checks"] = [_shown_fields(check) for check in result["checks"]]
+    return _dump(shown)
+
+
+def _shown_fields(check: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a check's JSON that its team may see."""
+    names = HIDDEN_CHECK_FIELDS if check["hidden"] else PUBLIC_CHECK_FIELDS
+    return {name: check[name] for name in names}
+
+
+def _dump(written: dict[str, Any]) -> bytes:
+    return (json.dumps(written, indent=1, ensure_ascii=True) + "\n").encode()
+
+
+def _as_dict(record: Result | Check) -> dict[str, Any]:
+    """Return the fields of a Result or a Check, as they are."""
+    return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
 def _check_to_json(check: Check) -> dict[str, Any]:
     return {
-        **check._asdict(),
+        **_as_dict(check),
         "points": _number(check.points),
         "max_points": _number(check.max_points),
         "exact": {"points": str(check.points), "max_points": str(check.max_points)},
@@ -181,48 +223,60 @@ def _check_to_json(check: Check) -> dict[str, Any]:
 
 
 def drawing_to_json(drawing: Drawing) -> list[dict[str, str]]:
-    """Return pictures as JSON holds them."""
-    texts = [base64.b64encode(frame).decode() for frame in drawing.frames]
-    each = zip(texts, drawing.alts, drawing.captions, strict=True)
-    return [{"webp": text, "alt": alt, "caption": caption} for text, alt, caption in each]
+    """Return the images of a difference as JSON holds them."""
+    written = []
+    for frame, alt, caption in zip(drawing.frames, drawing.alts, drawing.captions, strict=True):
+        text = base64.b64encode(frame).decode()
+        written.append({"webp": text, "alt": alt, "caption": caption})
+    return written
 
 
-def drawing_from_json(read: list[dict[str, str]]) -> Drawing:
-    """Return the pictures that `drawing_to_json` wrote."""
-    frames = tuple(base64.b64decode(one["webp"]) for one in read)
-    return Drawing(frames, tuple(one["alt"] for one in read), tuple(one["caption"] for one in read))
+def drawing_from_json(images: list[dict[str, str]]) -> Drawing:
+    """Return the images that `drawing_to_json` wrote."""
+    return Drawing(
+        frames=tuple(base64.b64decode(image["webp"]) for image in images),
+        alts=tuple(image["alt"] for image in images),
+        captions=tuple(image["caption"] for image in images),
+    )
 
 
 def from_json(data: bytes) -> Result:
-    """Return the Result that `to_json` wrote.
+    """Return the Result that `to_json` wrote, of this or an early version.
 
     Raises
     ------
-    ValueError
-        For anything else, and for a version of another hdrlab.
+    InputError
+        For anything else, and for a result of a later version.
     """
     try:
-        read = json.loads(data)
+        written = json.loads(data)
     except (RecursionError, ValueError):
-        read = None
-    if not isinstance(read, dict) or read.get("version") != VERSION:
+        written = None
+    if not isinstance(written, dict) or written.get("version") != VERSION:
         raise InputError(f"expected a result of version {VERSION}, written by hdrlab grade")
     try:
-        checks = tuple(_check_from_json(one) for one in read["checks"])
-        early = {"at_most": None}  # which a result of an early version lacks
-        rest = early | {name: read[name] for name in Result._fields if name in read}
-        rest |= {"checks": checks, "problems": tuple(read["problems"])}
-        return Result(**rest)
+        return _result_from_json(written)
     except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
         raise InputError(
             f"expected a result written by hdrlab grade, {error!r:.200} is wrong"
         ) from None
 
 
-def _check_from_json(read: dict[str, Any]) -> Check:
-    early = {"kind": "", "follows": ""}  # which a result of an early version lacks
-    own = early | {name: read[name] for name in Check._fields if name not in early or name in read}
-    own |= {name: Fraction(read["exact"][name]) for name in ("points", "max_points")}
-    return Check(
-        **{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])}
-    )
+def _result_from_json(written: dict[str, Any]) -> Result:
+    values: dict[str, Any] = dict(EARLY_RESULT)
+    values |= {field.name: written[field.name] for field in fields(Result) if field.name in written}
+    values["checks"] = tuple(_check_from_json(check) for check in written["checks"])
+    values["problems"] = tuple(written["problems"])
+    return Result(**values)
+
+
+def _check_from_json(written: dict[str, Any]) -> Check:
+    values: dict[str, Any] = dict(EARLY_CHECK)
+    for field in fields(Check):
+        if field.name in written or field.name not in EARLY_CHECK:
+            values[field.name] = written[field.name]
+    values["points"] = Fraction(written["exact"]["points"])
+    values["max_points"] = Fraction(written["exact"]["max_points"])
+    values["hints"] = tuple(written["hints"])
+    values["drawing"] = drawing_from_json(written["drawing"])
+    return Check(**values)

@@ -11,6 +11,7 @@ costs.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import floor
 
@@ -65,11 +66,11 @@ def attribute_failures(
             left -= lost
         if check.name in broken and not check.hidden:
             root = next(iter(broken.values())) if named else _root(check, broken, needs)
-            check = check._replace(follows="" if root.name == check.name else root.promise)
+            check = replace(check, follows="" if root.name == check.name else root.promise)
         elif check.outcome == "holds" and missing:
             says = f"This check passes, but it only earns points if this one passes, too: {missing.promise}"
-            check = check._replace(message=says)
-        found.append(check._replace(points=check.max_points - lost))
+            check = replace(check, message=says)
+        found.append(replace(check, points=check.max_points - lost))
     return found
 
 
