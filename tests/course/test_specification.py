@@ -1,7 +1,6 @@
 """The specification itself: the library keeps it, whatever is drawn; a stub and a vacuous answer do not."""
 
 import inspect
-import re
 
 import numpy as np
 import pytest
@@ -127,26 +126,23 @@ def test_a_plan_of_an_instructor_sets_points_tasks_and_dates(tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (
-            ('title = "Curves"', ""),
-            r"expected title, due and tasks in \[hw9\], KeyError\('title'\)",
-        ),
-        (("2026-10-01T12:00:00Z", '"soon"'), "as a date with time and zone, got soon"),
-        (("T12:00:00Z", ""), "as a date with time and zone"),
-        (("tasks = [{", "at_most = 8\ntasks = [{"), "above 0 and at most 7.5, got 8"),
-        (("tasks = [{", "at_most = 0\ntasks = [{"), "above 0 and at most 7.5, got 0"),
-        (("tasks = [{", "at_most = nan\ntasks = [{"), "above 0 and at most 7.5, got nan"),
-        (("tasks = [{", "at_most = []\ntasks = [{"), "expected title, due and tasks"),
-        (("7.5", "-1"), "of 0 points or more each"),
-        (("7.5", '"many"'), "expected title, due and tasks"),
-        (("[hw9]", "[hw9"), "expected a plan in TOML"),
+        (('title = "Curves"', ""), r"title.*\[hw9\]"),
+        (("2026-10-01T12:00:00Z", '"soon"'), "due.*soon"),
+        (("T12:00:00Z", ""), "due"),
+        (("tasks = [{", "at_most = 8\ntasks = [{"), "7.5.* 8"),
+        (("tasks = [{", "at_most = 0\ntasks = [{"), "7.5.* 0"),
+        (("tasks = [{", "at_most = nan\ntasks = [{"), "7.5.* nan"),
+        (("tasks = [{", "at_most = []\ntasks = [{"), "hw9"),
+        (("7.5", "-1"), "points"),
+        (("7.5", '"many"'), "hw9"),
+        (("[hw9]", "[hw9"), "TOML"),
         (
             ("points = 7.5 }", "points = 7.5 }, { id = 'gsolve', function = 'a.b', points = 1 }"),
-            "each once",
+            "once",
         ),
-        ((SHEET, ""), "expected tasks"),
-        (("[hw9]", "[late]\nfree_days = -1\n[hw9]"), "at least 0"),
-        (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "expected free_days and points_a_day"),
+        ((SHEET, ""), "tasks"),
+        (("[hw9]", "[late]\nfree_days = -1\n[hw9]"), r"free_days.*\[late\]"),
+        (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "free_days and points_a_day"),
     ],
 )
 def test_an_invalid_plan_is_refused_with_the_reason(tmp_path, change, said):
@@ -155,7 +151,7 @@ def test_an_invalid_plan_is_refused_with_the_reason(tmp_path, change, said):
 
 
 def test_an_unknown_task_is_refused_with_the_known_ones():
-    with pytest.raises(KeyError, match=re.escape("got 'gslove'")):
+    with pytest.raises(KeyError, match="'gslove'"):
         PLAN.task("gslove")
 
 

