@@ -72,7 +72,7 @@ SENTENCES = {
         "With up to 6 pixels of shake, alignment fixes all of it": lambda n: (
             worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
         ),
-        "From the dark side, two shots are enough": lambda n: (
+        "most modes need two shots": lambda n: (
             {len(n.steps(18, mode)) for mode in n.metering.MODES} == {2, 3}
         ),
     },
@@ -143,11 +143,11 @@ SENTENCES = {
         "order 10 is then off by two in a thousand": lambda n: (
             round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
         ),
-        "the cut alone does not save it": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
+        "the cut alone does not prevent that": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
         "The true order fits with and without noise": lambda n: (
             max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1
         ),
-        "is biased low: for a ratio of 4 by two in a hundred, at noise of four levels": lambda n: (
+        "a ratio of 4 comes out 2 % too small": lambda n: (
             round(100 * (1 - n.estimate(4.0, 4.0)[0].k / 4)) == 2
         ),
         "the table and the polynomial are within a few hundredths of a stop": lambda n: (
@@ -161,7 +161,7 @@ SENTENCES = {
             worst(n.three["power law"], n.responses.true_g("film"), level, level) > 1
             for level in (10, 250)
         ),
-        "$k$ is 4 to a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
+        "$k$ is 4 to within a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
         "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
@@ -231,8 +231,8 @@ SENTENCES = {
         "and six stops below the windows": lambda n: (
             round(n.scenes.decades(n.real.E) / np.log10(2)) == 6
         ),
-        "film reaches level 128 with a seventh of the light that fills it": lambda n: (
-            round(float(np.exp(n.true_g[250]))) == 7
+        "a pixel reaches level 128 at an eighth of the light that fills its well": lambda n: (
+            round(float(np.exp(n.true_g[255]))) == 8
         ),
     },
     "11": {
@@ -312,7 +312,7 @@ SENTENCES = {
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
-        "a climb of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
+        "a ramp of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
     },
     "18": {
         "but reduces $Q$ by only three hundredths": lambda n: (
@@ -364,7 +364,7 @@ SENTENCES = {
         "three stops up": lambda n: round(n.corrected().delta) == 3,
     },
     "20": {
-        "About a third, most by little": lambda n: (
+        "About a third, most of them by only a little": lambda n: (
             round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
         ),
         "few pairs of pixels that are two stops apart are in the wrong order": lambda n: (
