@@ -143,7 +143,9 @@ SENTENCES = {
         "order 10 is then off by two in a thousand": lambda n: (
             round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
         ),
-        "the cut alone does not prevent that": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
+        "the cut alone does not prevent that": lambda n: (
+            off(n.polynomials(10, 0.98)[0], n.cubic) > 5
+        ),
         "The true order fits with and without noise": lambda n: (
             max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1
         ),
@@ -161,7 +163,9 @@ SENTENCES = {
             worst(n.three["power law"], n.responses.true_g("film"), level, level) > 1
             for level in (10, 250)
         ),
-        "$k$ is 4 to within a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
+        "$k$ is 4 to within a few thousandths": lambda n: (
+            abs(n.last_round("mid-step")[0].k - 4) < 0.005
+        ),
         "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
