@@ -1,1 +1,1 @@
-"""The specification: a file for each task of the course, each test a promise that a student keeps too."""
+"""The checks of the course: one file per task, and one test function per check."""

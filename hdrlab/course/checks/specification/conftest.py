@@ -1,8 +1,8 @@
-"""What the checks ask for: here `subject` is the library itself, and `rng` draws from the seed 0.
+"""Fixtures of the checks in hdrlab's own tests: `subject` is the library, and `rng` has the seed 0.
 
-The grader runs the same files with --noconftest and its own plugin, which brings the same two
-fixtures: there `subject` speaks to a student's code in another process, and `rng` draws what is
-that student's own.
+The grader runs the same files with --noconftest and its own plugin, which provides the same two
+fixtures. There, `subject` calls the student's code in another process, and `rng` has a seed of the
+student's own.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from hdrlab.course.checks import inprocess
 
 @pytest.fixture
 def subject():
-    """subject.gsolve(...) -> what the task's function answers, as plain arrays."""
+    """Return the library as a subject: subject.gsolve(...) returns plain arrays."""
     return inprocess.library()
 
 
 @pytest.fixture
 def rng(request):
-    """A random generator, afresh for every check."""
+    """Return a new random generator for every check."""
     return np.random.default_rng(0)
