@@ -220,7 +220,7 @@ def test_only_the_examiners_page_names_the_right_option():
 def test_code_in_the_notebook_has_its_lines_where_no_style_is():
     notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
     cell = next(
-        one["source"] for one in notebook["cells"] if "promises from the top" in one["source"]
+        one["source"] for one in notebook["cells"] if "checks from the top" in one["source"]
     )
     code = re.sub("<[^>]+>", "", re.search(r"<pre>(.*?)</pre>", cell, re.DOTALL)[1]).split("\n")
     assert code[0] == "  1  def twice(x):"
