@@ -84,8 +84,8 @@ def test_time_limits_of_a_check_and_of_a_submission_are_reported(strict):
                     subject.hat(8)
                 except NoAnswer as error:
                     said.append(str(error))
-    assert "hat: the 0.3 s for one check are used up" in said
-    assert said[-1] == "hat: the 2 s for a whole submission are used up"
+    assert any("0.3 s" in message and "check" in message for message in said)
+    assert "hat" in said[-1] and "2 s" in said[-1]
 
 
 def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
@@ -102,8 +102,8 @@ def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
             subject._session.cpu_seconds_left = min(
                 subject._session.cpu_seconds_left, 0.0
             )  # a busy machine may not have used it
-    assert said[0] == "hat took longer than 0.3 s"
-    assert said[1] == "hat: the 1.2 s of processor time for a whole submission are used up"
+    assert "hat" in said[0] and "0.3 s" in said[0]
+    assert "1.2 s" in said[1] and "processor time" in said[1]
 
 
 def test_a_process_at_its_processor_limit_counts_as_late(strict):

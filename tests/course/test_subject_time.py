@@ -68,18 +68,18 @@ def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered
 @pytest.mark.parametrize(
     ("error", "ended", "used", "forks", "kind", "said"),
     [
-        (EOFError(), KILL, 1.5, True, "late", "f took longer than 2 s of processor time"),
-        (EOFError(), KILL, 1.499, True, "killed", "f ended its process, and gave no answer"),
-        (EOFError(), KILL, 9.0, False, "killed", "f ended its process, and gave no answer"),
-        (OSError(), 11, 9.0, True, "died", "f ended its process, and gave no answer"),
-        (OSError(), 0, 0.0, True, "died", "f ended its process, and gave no answer"),
+        (EOFError(), KILL, 1.5, True, "late", "2 s of processor time"),
+        (EOFError(), KILL, 1.499, True, "killed", "ended"),
+        (EOFError(), KILL, 9.0, False, "killed", "ended"),
+        (OSError(), 11, 9.0, True, "died", "ended"),
+        (OSError(), 0, 0.0, True, "died", "ended"),
         (
             channel.ProtocolError("half"),
             KILL,
             2.0,
             True,
             "late",
-            "f took longer than 2 s of processor time",
+            "2 s of processor time",
         ),
         (
             channel.ProtocolError("half"),
@@ -87,9 +87,9 @@ def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered
             1.0,
             True,
             "killed",
-            "f sent an invalid answer: half",
+            "half",
         ),
-        (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "f sent an invalid answer: half"),
+        (channel.ProtocolError("half"), 0, 9.0, True, "damaged", "half"),
     ],
 )
 def test_a_missing_answer_is_explained_by_how_the_process_ended(
@@ -97,7 +97,8 @@ def test_a_missing_answer_is_explained_by_how_the_process_ended(
 ):
     subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
     with subject:
-        assert silence(subject) == (kind, said)
+        found, message = silence(subject)
+        assert found == kind and message.startswith("f ") and said in message
         assert process.links[0].closed and process.cleared == [1.0] and subject.seconds_left == 196
         subject.f()
         assert len(process.links) == 2
