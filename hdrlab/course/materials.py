@@ -21,9 +21,7 @@ def folder(name: str) -> Path:
     for path in (inside, beside):
         if path.is_dir():
             return path
-    raise FileNotFoundError(
-        f"expected the folder {name!r} in {inside} or {beside}; install hdrlab again"
-    )
+    raise FileNotFoundError(f"no folder {name!r} in {inside} or {beside}; install hdrlab again")
 
 
 def copy_course(target: Path) -> list[Path]:

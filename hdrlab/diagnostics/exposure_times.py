@@ -125,7 +125,7 @@ def estimate_times(
     patches = flat_patches.find_flat_patches(stack, valid=valid)
     H = flat_patches.count_pairs(patches.Z, patches.best)
     if not response_steps.find_informative(H).any():
-        return replace(stated, reason="too few patches are flat in two neighboring photos")
+        return replace(stated, reason="too few patches are uniform in two neighboring photos")
     no_directions = np.zeros((len(times), 0))
     bias_before = cross_validate(patches, B, no_directions, g=g, sd=sd)
     stated = replace(stated, bias_before=bias_before)

@@ -152,7 +152,7 @@ def _skip_other_formats(paths: list[Path]) -> Selection:
     if not chosen:
         return kept, []
     suffixes = ", ".join(sorted({path.suffix.lower() for path in chosen}))
-    return kept, [f"{len(chosen)} photos exist in several formats, hdrlab uses {suffixes}"]
+    return kept, [f"{len(chosen)} photos exist in several formats; hdrlab uses {suffixes}"]
 
 
 def _skip_other_sizes(paths: list[Path]) -> Selection:
@@ -177,7 +177,9 @@ def _skip_other_sizes(paths: list[Path]) -> Selection:
         if kind == most_frequent:
             kept.append(path)
         else:
-            notes.append(f"{path.name}: skipped, its size or kind differs from the other photos")
+            notes.append(
+                f"{path.name}: skipped, because its size or type differs from the other photos"
+            )
     return kept, notes
 
 

@@ -41,7 +41,7 @@ ERROR_ADVICE = {
     -105: "connect one by USB, and switch it on",
     -115: "its card is full",
     -110: "it is busy; wait until its lamp is off",
-    -53: "another program holds it; close that, or eject the camera in the file manager",
+    -53: "another program uses it; close that program, or eject the camera in the file manager",
     -52: "see whether the cable is in, and the camera on",
 }
 OTHER_ERROR_ADVICE = "it may be asleep, its card full, or the cable out"

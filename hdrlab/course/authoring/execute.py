@@ -109,7 +109,7 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     try:
         notebook = nbformat.read(source, as_version=4)
     except (ValueError, nbformat.ValidationError) as error:
-        raise FileFormatError(f"{source}: expected a Jupyter notebook, {error!s:.200}") from None
+        raise FileFormatError(f"{source}: not a valid Jupyter notebook: {error!s:.200}") from None
     where = "its kernel"
     # where a notebook may leave something
     folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"

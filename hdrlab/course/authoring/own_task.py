@@ -33,7 +33,7 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
     """
     for name in (task, homework):
         if not (name.isidentifier() and name.islower()) or keyword.iskeyword(name):
-            raise InputError(f"expected a name of small letters, digits and _, got {name!r}")
+            raise InputError(f"expected a name of lower-case letters, digits and _, got {name!r}")
     if (folder / f"{task}.py").exists() or task == homework:
         raise InputError(
             f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"

@@ -124,7 +124,7 @@ def _about(path: Path) -> About:
     if isinstance(students, str):
         students = (students,)
     if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
-        raise InputError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
+        raise InputError(f"{path}: expected students as a list of strings, such as\n{EXAMPLE}")
     title, caption = (
         sanitize_line(str(said.get(key, "")), most)
         for key, most in (("title", 60), ("caption", 280))

@@ -55,9 +55,7 @@ def write_report(project: Project) -> Written:
         Where there are no words to make a page of.
     """
     if project.words is None:
-        raise InputError(
-            f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}"
-        )
+        raise InputError(f"{project.folder}: no text for the report; write {' or '.join(WORDS)}")
     said = words.read(project.words)
     notes = list(said.notes)
     found = dict(_figures(project, notes))
@@ -89,7 +87,7 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
         try:
             yield name, make(source)
         except (ValueError, OSError) as error:
-            notes.append(f"the {name} cannot be shown: {error}")
+            notes.append(f"cannot show the {name}: {error}")
 
 
 def _artifact(path: Path) -> figures.Illustration:

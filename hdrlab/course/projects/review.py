@@ -85,7 +85,7 @@ def check_students(project: Project) -> PartReview:
     """Check who hands the project in."""
     students = project.about.students
     if not students:
-        return PartReview(problems=(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}",))
+        return PartReview(problems=(f"Write a file {ABOUT} with your names:\n{EXAMPLE}",))
     if len(students) > MAX_TEAM_SIZE:
         problem = f"A team has at most {MAX_TEAM_SIZE} students, {ABOUT} names {len(students)}."
         return PartReview(problems=(problem,))
@@ -102,7 +102,7 @@ def check_title(project: Project) -> PartReview:
 def check_source(project: Project) -> PartReview:
     """Check that programs and notebooks are there, can be read, and import what exists."""
     if not project.sources:
-        problem = "There is no source: put your programs and notebooks into the folder."
+        problem = "There is no source code: put your programs and notebooks into the folder."
         return PartReview(problems=(problem,))
     problems = []
     for path in project.sources:
@@ -191,7 +191,7 @@ def check_photographs(project: Project) -> PartReview:
             problems.append(f"{name} has no exposure time in EXIF. Use the camera's own file.")
         exposures.add(header.exposure)
     if not problems and len(exposures) == 1:
-        problems.append("All photos have the same exposure, so they form no bracket.")
+        problems.append("All photos have the same exposure, so they are not a bracket.")
     return PartReview(f"{count}, {len(exposures)} exposures", tuple(problems))
 
 
@@ -203,7 +203,7 @@ def check_map(project: Project) -> PartReview:
     E = radiance.read_radiance(project.map, clean=True)
     name = project.name(project.map)
     if not np.any(E > 0) or E.max() == E.min():
-        return PartReview(problems=(f"{name} holds the same value everywhere.",))
+        return PartReview(problems=(f"{name} has the same value everywhere.",))
     return PartReview(f"{name}, {E.shape[1]} x {E.shape[0]}")
 
 
@@ -225,7 +225,7 @@ def check_archive(project: Project, limits: ArchiveLimits = LIMITS) -> PartRevie
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.max_total_bytes, limits)
     except ArchiveRejected as reason:
-        return PartReview(problems=(f"The course would refuse the archive: {reason}.",))
+        return PartReview(problems=(f"The gallery would reject the archive: {reason}.",))
     return PartReview()
 
 

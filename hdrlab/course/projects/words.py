@@ -66,12 +66,12 @@ def read(path: Path) -> Words:
         if path.suffix == ".ipynb":
             text, pictures = notebook(text)
     except UnicodeDecodeError:
-        raise InputError(f"{path}: expected words in UTF-8") from None
+        raise InputError(f"{path}: expected text in UTF-8") from None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError(f"{path}: expected a notebook ({error})") from None
     text = text.encode("utf8", "replace").decode("utf8")  # JSON may hold half a character
     if len(text) > MOST:
-        raise InputError(f"{path}: expected at most {MOST} letters, got {len(text)}")
+        raise InputError(f"{path}: expected at most {MOST} characters, got {len(text)}")
     return sections(text, path.parent, pictures)
 
 

@@ -109,7 +109,7 @@ class Roster(NamedTuple):
             if wanted in (fold(student.id), fold(student.team))
         }
         if not teams:
-            raise InputError(f"no student or team of the roster is called {shown_name!r}")
+            raise InputError(f"the roster has no student or team {shown_name!r}")
         if len(teams) > 1:
             choices = ", ".join(sorted(teams))
             raise InputError(f"{shown_name!r} could mean any of {choices}; use the student's id")
@@ -128,7 +128,9 @@ def read(path: str | Path) -> Roster:
     """
     rows = csv_tables.read_csv(path)
     if not rows or "student" not in rows[0]:
-        raise InputError(f"{path}: expected the column student, and name, email, team where wanted")
+        raise InputError(
+            f"{path}: expected the column student, and optionally name, email and team"
+        )
     students = []
     names: list[Name] = []
     for line, row in enumerate(rows, 2):
@@ -145,7 +147,7 @@ def read(path: str | Path) -> Roster:
     large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
     if large:
         raise InputError(
-            f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}"
+            f"{path}: expected teams of at most {TEAM} students, got more in {', '.join(large)}"
         )
     return Roster(tuple(students))
 
@@ -158,7 +160,7 @@ def _check_names(path: str | Path, names: list[Name]) -> None:
     for text, kind, line, _ in names:
         if not text or text[0] in ".-" or FORBIDDEN & set(text):
             raise InputError(
-                f"{path}, line {line}: expected a {kind} that can name a file, got {text!r}"
+                f"{path}, line {line}: expected a {kind} that can be a file name, got {text!r}"
             )
     known: dict[str, Name] = {}
     for one in sorted(names, key=lambda one: len(fold(one.text))):

@@ -25,7 +25,7 @@ SUFFIXES = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
 MAX_FILE_MEGABYTES = 256  # as much as an archive may unpack to
 MAX_FILES_PER_FOLDER = 1000
 MAX_NAME_LENGTH = 80
-NOT_IN_TABLE = "not in the table of received times, so the file's own time counts"
+NOT_IN_TABLE = "not in the table of times, so its modification time counts"
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class _Scanner:
     def finish(self) -> SubmissionScan:
         """Return what was found."""
         for name in self._unused_times:
-            self._note(name, "the table of received times lists it, but there is no such file")
+            self._note(name, "listed in the table of times, but there is no such file")
         submissions = {
             team: replace(submission, digest=_digest(submission.path))
             for team, submission in self._submissions.items()
@@ -189,7 +189,7 @@ def find_problem(path: Path) -> str:
     if stat.S_ISDIR(status.st_mode):
         return "a folder in a folder, which is not opened"
     if not stat.S_ISREG(status.st_mode):
-        return "expected a plain file, got a link, a pipe or a device"
+        return "expected an ordinary file, got a link, a pipe or a device"
     if not os.access(path, os.R_OK):
         return "a file that cannot be read"
     if not path.name.lower().endswith(SUFFIXES):

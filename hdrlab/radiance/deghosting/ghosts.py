@@ -248,7 +248,9 @@ def note(result: Ghosts, names: Sequence[str]) -> str:
     count = len(result.references)
     percent = 100 * np.mean(result.labels > 0)
     number = "one region" if count == 1 else f"{count} regions"
-    text = f"something moved in {number}, {percent:.1f} % of the pixels; reference photographs: {per_frame}"
+    text = (
+        f"something moved in {number}, {percent:.1f} % of the pixels; reference photos: {per_frame}"
+    )
     if percent < WIDESPREAD:
         return text
     return f"{text}; with so many pixels, wrong times or a wrong alignment are more likely"

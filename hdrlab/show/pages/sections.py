@@ -125,7 +125,7 @@ def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
         return None
     count = int(labels.max())
     regions = "one region" if count == 1 else f"{count} regions"
-    alt = f"The picture in pale gray; motion in {regions}, in orange with dark outlines"
+    alt = f"The image in pale gray; motion in {regions}, in orange with dark outlines"
     image = figures.regions(picture, labels)
     return {
         "regions": regions,

@@ -38,7 +38,7 @@ def export(plan: Plan, folder: Path) -> Iterator[Path]:
     for name, homework in plan.homeworks.items():
         handout = materials.folder("assignments") / f"{name}.ipynb"
         if not handout.is_file():
-            raise InputError(f"expected the handout {handout}; make it by: hdrlab course build")
+            raise InputError(f"no assignment {handout}; run hdrlab course build first")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
         yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
     yield handouts.write_text(folder / "nbgrader_config.py", CONFIG.read_text(encoding="utf8"))
@@ -53,7 +53,8 @@ def source(handout: dict[str, Any], homework: Homework) -> str:
     }
     if missing:
         raise InputError(
-            f"the handout of {homework.name} has no {', '.join(sorted(missing))}: build it anew"
+            f"the assignment {homework.name} has no {', '.join(sorted(missing))}; "
+            "run hdrlab course build again"
         )
     return handouts.to_text({**handout, "cells": [cell for cell in cells if cell is not None]})
 
