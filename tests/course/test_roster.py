@@ -31,7 +31,7 @@ def test_a_roster_has_students_and_teams(listed):
     [
         ("name\nAda\n", "column student"),
         ("student\nb1\nB1\n", "lines 2 and 3: expected each name once"),
-        ("student,team\nb1,7\nb2,7\nb3,7\n", "teams of 2"),
+        ("student,team\nb1,7\nb2,7\nb3,7\n", "teams of at most 2"),
         ("student\n../b1\n", "line 2"),
         ("student,team\nb1,7\nb2,../7\n", "line 3: expected a team's name"),
         ("student,name\nb1,Ada\n,Bo\n", "line 3"),

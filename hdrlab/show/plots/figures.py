@@ -64,7 +64,7 @@ def stops(E: ArrayLike) -> Array:
     L = luminance(E)
     has_light = L > 0
     if not np.any(has_light):
-        raise InputError("expected radiance with positive pixels, got only zeros")
+        raise InputError("expected radiance with some light in it, got only zeros")
     return np.log2(np.where(has_light, L, np.nan) / np.median(L[has_light]))
 
 
