@@ -39,7 +39,7 @@ from hdrlab.diagnostics import flat_patches, motion, response_steps
 from hdrlab.diagnostics.doubts import warning_text
 
 # side of a part of the image, in patches
-TILE = 12
+PATCHES_PER_TILE_SIDE = 12
 # patches in a part, without which it has no median
 MIN_PATCHES_PER_TILE = 10
 # Where a pair has fewer flat patches, all patches are used, and only large differences count.
@@ -233,8 +233,8 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
     corners in stops; 0 where the distance from the center does not explain most of it.
     """
     height, width = patches.Z.shape[2:]
-    y, x = np.indices((height, width)) // TILE
-    tile = y * (width // TILE + 1) + x
+    y, x = np.indices((height, width)) // PATCHES_PER_TILE_SIDE
+    tile = y * (width // PATCHES_PER_TILE_SIDE + 1) + x
     y_relative = 2 * np.arange(height) / height - 1
     x_relative = 2 * np.arange(width) / width - 1
     squared_radius = y_relative[:, None] ** 2 + x_relative**2
@@ -313,7 +313,7 @@ def warn_of_contradictions(
     corners = found.corners[np.isfinite(found.corners)]
     if len(corners) and np.median(corners) > MIN_SLIGHT_STOPS:
         return warning_text("corners", stops=np.median(corners))
-    has_bands = band_stops > motion.BANDED
+    has_bands = band_stops > motion.MIN_BAND_STOPS
     if found.local:
         text = _warn_of_local_changes(found, names, spread, band_stops if has_bands else 0.0)
         if text:

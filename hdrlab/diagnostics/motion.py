@@ -29,7 +29,7 @@ from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 # pixels of a photo, on an even grid, that are compared
 MAX_PIXELS = 180_000
 # side of a block, in pixels of that grid
-BLOCK = 4
+BLOCK_SIDE = 4
 # mean weight, relative to the highest, with which a photo measures a block
 MIN_BLOCK_WEIGHT = 0.2
 # ln E by which the photos of a still scene may differ in a block: 0.2 stops
@@ -39,9 +39,9 @@ MIN_MEASURED_FRACTION = 0.1
 # Fraction of the measured blocks. In a still scene up to 0.012 deviate; in film that is scanned
 # photo by photo 0.09, because its response changes, and then `radiance.deghosting.ghosts` finds
 # nothing to remove.
-MOVED = 0.015
+MIN_MOVING_FRACTION = 0.015
 # stops of b; still scenes under steady light stay below 0.04
-BANDED = 0.055
+MIN_BAND_STOPS = 0.055
 # Bands count if b is that many times what columns show; still scenes stay below 1.8.
 MIN_ROWS_OVER_COLUMNS = 2.5
 
@@ -61,7 +61,7 @@ def measure_motion(
     *,
     valid: ArrayLike | None = None,
 ) -> Motion:
-    """Measure in what fraction of the image the photos contradict each other, and by bands of light.
+    """Measure the fraction of the image that moved, and bands of flickering light.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def measure_motion(
     Returns
     -------
     fraction, band_stops : float
-        The fraction is one of the blocks that two photos measure; 0 where these are few. Above
-        MOVED, it is motion. The bands are the RMS of b in stops, 0 unless it is
-        MIN_ROWS_OVER_COLUMNS times that of columns. Above BANDED, lamps flicker.
+        The fraction is that of the blocks that two photos measure; 0 where these are few. Above
+        MIN_MOVING_FRACTION, something moved. The bands are the RMS of b in stops, 0 unless it is
+        MIN_ROWS_OVER_COLUMNS times that of columns. Above MIN_BAND_STOPS, lamps flicker.
 
     Raises
     ------
@@ -91,10 +91,13 @@ def measure_motion(
     Examples
     --------
     >>> from hdrlab.capture import movers, responses
-    >>> wall, ball = np.full((60, 90), 0.5, np.float32), movers.ball((60, 90), (30, 45), 12, 2.0)
+    >>> wall = np.full((60, 90), 0.5, np.float32)
+    >>> ball = movers.ball((60, 90), (30, 45), 12, 2.0)
+    >>> g = responses.true_g("film")
     >>> for step in (0, 30):
     ...     taken = movers.shoot(wall, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
-    ...     measure_motion(taken.images, taken.times, responses.true_g("film"), np.ones(256))[0] > MOVED
+    ...     motion = measure_motion(taken.images, taken.times, g, np.ones(256))
+    ...     motion.fraction > MIN_MOVING_FRACTION
     False
     True
     """
@@ -112,7 +115,7 @@ def measure_motion(
     R, W = _sum_residuals(Z, curves, times_s, relative_weights, np.asarray(is_seen))
     rows = measure_bands(R.sum(axis=2), W.sum(axis=2), channel_count * R.shape[2])
     columns = measure_bands(R.sum(axis=1), W.sum(axis=1), channel_count * R.shape[1])
-    fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK**2 * channel_count)
+    fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK_SIDE**2 * channel_count)
     band_stops = rows if rows > MIN_ROWS_OVER_COLUMNS * columns else 0.0
     return Motion(fraction, band_stops)
 
@@ -121,7 +124,7 @@ def _sum_residuals(
     Z: Array, curves: Array, times: Array, relative_weights: F32, is_seen: Array
 ) -> tuple[F32, F32]:
     """Return the sums of w r and of w over the pixels and channels of each block, (P, h, w)."""
-    shape = (len(times), *(n // BLOCK for n in Z.shape[2:]))
+    shape = (len(times), *(n // BLOCK_SIDE for n in Z.shape[2:]))
     R = np.zeros(shape, np.float32)
     W = np.zeros(shape, np.float32)
     log_times = np.log(times).astype(np.float32)[:, None, None]
@@ -157,7 +160,7 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
 
     R and W are the sums of w r and of w (P, n), each over `count` blocks and channels.
     """
-    W = np.where(W > MIN_BLOCK_WEIGHT / 2 * BLOCK**2 * count, W, 0)
+    W = np.where(W > MIN_BLOCK_WEIGHT / 2 * BLOCK_SIDE**2 * count, W, 0)
     b = R / np.maximum(W, 1e-9)
     powers = np.vander(np.linspace(-1, 1, R.shape[1]), 4)
     for row_means, root_weights in zip(b, np.sqrt(W), strict=True):
@@ -169,8 +172,14 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
 
 
 def sum_blocks(values: Array) -> F32:
-    """Return the sums over blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
-    h = values.shape[1] // BLOCK
-    w = values.shape[2] // BLOCK
-    rows = values[:, : h * BLOCK].reshape(len(values), h, BLOCK, -1).sum(axis=2, dtype=np.float32)
-    return np.asarray(sum(rows[..., k : w * BLOCK : BLOCK] for k in range(BLOCK)), np.float32)
+    """Return the sums over square blocks of side BLOCK_SIDE, (P, h, w)."""
+    h = values.shape[1] // BLOCK_SIDE
+    w = values.shape[2] // BLOCK_SIDE
+    rows = (
+        values[:, : h * BLOCK_SIDE]
+        .reshape(len(values), h, BLOCK_SIDE, -1)
+        .sum(axis=2, dtype=np.float32)
+    )
+    return np.asarray(
+        sum(rows[..., k : w * BLOCK_SIDE : BLOCK_SIDE] for k in range(BLOCK_SIDE)), np.float32
+    )

@@ -16,6 +16,7 @@ something moved there. The mean of y measures errors of the response and the tim
 that processes each photo differently: its square, in the median group, adds to rho^2.
 """
 
+from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -66,7 +67,8 @@ class Noise(NamedTuple):
     rho: F64
 
 
-class VarianceSample(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class VarianceSample:
     """The variance S of a group in two frames, its parts, and the number of its pixels."""
 
     S: float
@@ -75,7 +77,7 @@ class VarianceSample(NamedTuple):
     a1: float
     a2: float
     a3: float
-    count: int
+    pixel_count: int
 
 
 def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLike) -> Noise:
@@ -193,7 +195,13 @@ def _fit_channel(
                 samples.append(sample)
     if len(samples) < MIN_GROUPS:
         raise CalibrationError(warning_text("few", count=len(samples)))
-    S, squared_mean, a0, a1, a2, a3, count = np.array(samples).T
+    S = np.array([sample.S for sample in samples])
+    squared_mean = np.array([sample.squared_mean for sample in samples])
+    a0 = np.array([sample.a0 for sample in samples])
+    a1 = np.array([sample.a1 for sample in samples])
+    a2 = np.array([sample.a2 for sample in samples])
+    a3 = np.array([sample.a3 for sample in samples])
+    count = np.array([sample.pixel_count for sample in samples], np.float64)
     N, R, rho = _solve(S, a0, np.stack([a1, a2, a3]), count)
     # the mean of `count` differences is off by chance, too
     systematic = max(float(np.median(squared_mean - S / count)), 0.0)
@@ -216,7 +224,7 @@ def _measure_variance(Z: Array, t: F64, X: F64, D: F64, E: F64) -> VarianceSampl
         a1=(exposure**-1).mean(axis=1).sum(),
         a2=(exposure**-2).mean(axis=1).sum(),
         a3=2.0,
-        count=Z.shape[1],
+        pixel_count=Z.shape[1],
     )
 
 

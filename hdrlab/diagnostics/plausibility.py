@@ -47,7 +47,7 @@ WIDEST_CAMERA = 10.2
 # stops there; stated times that were off by a stop or two made a bracket's curve span 12.3
 SPAN_LIMIT = 13.0
 # number of ranks
-RANKS = 1000
+RANK_COUNT = 1000
 # ranks that two frames must both measure to be compared
 MIN_COMMON_RANKS = 30
 # about this number of pixels of a frame is used, on an even grid
@@ -61,7 +61,7 @@ def ranks(stack: Array, valid: Mask | None) -> Indices:
     mask = None if valid is None else valid[:, ::step, ::step]
     if mask is not None and not mask.all(axis=0).any():
         mask = None
-    Z = sampling.by_rank(sample, RANKS, valid=mask)
+    Z = sampling.by_rank(sample, RANK_COUNT, valid=mask)
     return Z.reshape(*Z.shape[:2], -1)
 
 
@@ -117,8 +117,7 @@ def validate_response(
     True
     >>> validate_response(g, images, [1, 200])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    hdrlab.errors.CalibrationError: the exposure times contradict the images: between 1 s and 200 s
-    ...
+    hdrlab.errors.CalibrationError: the exposure times contradict the images: ...
     """
     stack = as_stack(images)
     t = as_times(times, len(stack))

@@ -27,8 +27,8 @@ from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import blur, warp
 
 # pixels of the overview; distances at which other offsets are compared
-NEAR = 2
-FAR = 8
+NEAR_PIXELS = 2
+FAR_PIXELS = 8
 # standard errors by which an error is clearly lower
 MIN_GAIN_SIGMAS = 3
 # relative gain by which an error is clearly lower
@@ -37,7 +37,7 @@ MIN_RELATIVE_GAIN = 1 / 20
 MIN_COMPARED_PIXELS = 20
 # confidence below which an alignment is not known; wrong ones stay below 0.1, right ones reach 0.6
 # and more
-LOST = 0.3
+MIN_CONFIDENCE = 0.3
 # shifts at which a texture resembles itself most
 RIVAL_COUNT = 4
 # A rival fits as well if its error is that close to the best one, relative to the error elsewhere.
@@ -101,7 +101,7 @@ class Validation:
     @property
     def known(self) -> bool:
         """Whether H is clearly better than what lies around it."""
-        return self.confidence >= LOST
+        return self.confidence >= MIN_CONFIDENCE
 
     @property
     def step(self) -> F64:
@@ -245,9 +245,12 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
         H = identity
         after = before
     d = pair.differences(H, fine)
-    near = [pair.differences(shift(H, NEAR * fine * direction), fine) for direction in DIRECTIONS]
+    near = [
+        pair.differences(shift(H, NEAR_PIXELS * fine * direction), fine) for direction in DIRECTIONS
+    ]
     elsewhere = [
-        pair.error(pair.differences(shift(H, FAR * coarse * direction))) for direction in DIRECTIONS
+        pair.error(pair.differences(shift(H, FAR_PIXELS * coarse * direction)))
+        for direction in DIRECTIONS
     ]
     error = pair.error(after)
     all_fit = not any(elsewhere + [pair.error(other) for other in near])
@@ -262,7 +265,7 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     reason = failure_reason(pair, H, elsewhere, is_best_nearby, better_count)
     if max(abs(dx), abs(dy)) >= limit:
         reason = f"the offset is at the end of the search range, {limit} pixels"
-    if sure >= LOST:
+    if sure >= MIN_CONFIDENCE:
         apart = better_count >= MIN_ROTATED_QUARTERS
     else:
         error_in_place = pair.error(pair.differences(identity, 8 * coarse))
@@ -309,18 +312,18 @@ def failure_reason(
     pair : Comparison
     H : (3, 3)
     elsewhere : list of float
-        Errors at FAR pixels of the overview from H.
+        Errors at FAR_PIXELS pixels of the overview from H.
     is_best_nearby : bool
-        Whether H is clearly better than all offsets NEAR it.
+        Whether H is clearly better than all offsets NEAR_PIXELS it.
     better_count : int
         How many quarters of the image are clearly better elsewhere.
     """
     error = pair.error(pair.differences(H))
-    far = FAR * pair.scale
+    far = FAR_PIXELS * pair.scale
     if not any(elsewhere):
         return f"the image repeats itself: {far} pixels away the photos fit as well"
     sure = confidence(error, elsewhere)
-    if sure < LOST:
+    if sure < MIN_CONFIDENCE:
         return f"{far} pixels away the photos fit nearly as well (confidence {sure:.2f})"
     if better_count:
         return (
@@ -328,14 +331,14 @@ def failure_reason(
             "motion)"
         )
     if not is_best_nearby:
-        near = NEAR * max(pair.scale // 2, 1)
+        near = NEAR_PIXELS * max(pair.scale // 2, 1)
         return f"{near} pixels away the photos fit as well"
     mean_elsewhere = np.mean(elsewhere)
     for rival in rivals(pair.middle):
         offset = rival * pair.scale
         rival_error = pair.error(pair.differences(shift(H, offset)))
         is_alike = rival_error - error < MAX_RIVAL_LOSS * (mean_elsewhere - error)
-        if confidence(error, [rival_error]) < LOST or is_alike:
+        if confidence(error, [rival_error]) < MIN_CONFIDENCE or is_alike:
             shifted = tuple(offset.tolist())
             return f"the image repeats itself: shifted by {shifted} it fits nearly as well"
     return ""
@@ -370,7 +373,7 @@ def rivals(middle: F32) -> list[Array]:
     y, x = np.nonzero((correlation == maximum) & (correlation > 0))
     strongest = np.argsort(-correlation[y, x], kind="stable")[: RIVAL_COUNT + 1]
     shifts = np.stack([y - height, x], axis=-1)[strongest]
-    return [shift for shift in shifts if np.abs(shift).max() > NEAR]
+    return [shift for shift in shifts if np.abs(shift).max() > NEAR_PIXELS]
 
 
 def _subtract_local_mean(image: F32, is_known: Mask) -> F64:

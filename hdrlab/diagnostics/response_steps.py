@@ -180,7 +180,8 @@ def solve_steps(
 def _solve_corrections(A: F64, target: F64, F: F64, sd: float) -> F64:
     """Return y (K,) of the normal equations (F^T A F + 1 / sd^2) y = -F^T target."""
     prior = np.eye(F.shape[1]) / sd**2
-    return -np.linalg.solve(F.T @ A @ F + prior, F.T @ target)
+    y = -np.linalg.solve(F.T @ A @ F + prior, F.T @ target)
+    return np.asarray(y, np.float64)
 
 
 def _penalty(V: Pairs, c: int, smoothness: float) -> F64:

@@ -191,7 +191,7 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Va
         other = _validate_at_percentile(moving, B, fixed, A, percentile)
         distance = np.max(np.abs(np.subtract(other.offset, first.offset)))
         is_certain = other.reliable and other.confidence > MIN_OTHER_CONFIDENCE
-        if is_certain and distance > validation.NEAR:
+        if is_certain and distance > validation.NEAR_PIXELS:
             return other
     return first
 

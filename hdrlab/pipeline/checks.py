@@ -86,9 +86,9 @@ def _describe_problem(
     text = contradictions.warn_of_contradictions(found, names, spread, band_stops=band_stops)
     if text:
         return text
-    if moving_fraction > motion.MOVED:
+    if moving_fraction > motion.MIN_MOVING_FRACTION:
         return warning_text("moved", percent=100 * moving_fraction)
-    if band_stops > motion.BANDED:
+    if band_stops > motion.MIN_BAND_STOPS:
         return warning_text("flicker", stops=band_stops)
     if spread > MAX_EXPLAINED_SPREAD:
         deviations = consistency.measure_deviations(state.medians)

@@ -234,7 +234,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     medians = medians_task.result()
     contradictions = contradictions_task.result()
 
-    has_motion = measured_motion.fraction > motion.MOVED
+    has_motion = measured_motion.fraction > motion.MIN_MOVING_FRACTION
     removes_ghosts = options.ghosts in ("regions", "reference") or (
         options.ghosts == "auto" and has_motion
     )

@@ -14,7 +14,7 @@ from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
 from hdrlab.core.bracket import bracket
 from hdrlab.core.filters import warp
-from hdrlab.diagnostics.registration import LOST
+from hdrlab.diagnostics.registration import MIN_CONFIDENCE
 from hdrlab.pipeline import alignment, registration
 from hdrlab.radiance.merge import Quality
 from scenes.computed import view
@@ -266,7 +266,7 @@ def test_photos_of_two_scenes_give_a_warning(room):
         )
     )
     assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in found.doubts)
-    assert found.homographies.shape == (2, 3, 3) and LOST == 0.3
+    assert found.homographies.shape == (2, 3, 3) and MIN_CONFIDENCE == 0.3
 
 
 # real photographs

@@ -42,7 +42,7 @@ def bands(axis, cycles=3, size=0.2):
 
 def test_a_larger_motion_has_a_larger_moving_fraction():
     assert share(0) == 0
-    assert motion.MOVED < share(15) < share(30) < 0.5
+    assert motion.MIN_MOVING_FRACTION < share(15) < share(30) < 0.5
 
 
 @pytest.mark.quick
@@ -91,7 +91,7 @@ def test_lamps_that_flicker_make_bands_across_the_rows_and_not_along_them():
 
 
 def test_light_that_differs_from_the_top_to_the_bottom_makes_no_bands():
-    assert bands(0, cycles=0.5) < motion.BANDED < bands(0, size=0.1)
+    assert bands(0, cycles=0.5) < motion.MIN_BAND_STOPS < bands(0, size=0.1)
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +171,7 @@ def test_between_flicker_and_light_that_changed_in_parts_there_is_a_band_without
     regions, says_flicker, says_parts
 ):
     text = warn_of_contradictions(
-        contradictions_of(regions=regions), "abcd", 0.2, band_stops=motion.BANDED + 0.01
+        contradictions_of(regions=regions), "abcd", 0.2, band_stops=motion.MIN_BAND_STOPS + 0.01
     )
     assert ("lamps flicker" in text) == says_flicker
     assert ("parts of the image" in text) == says_parts
@@ -180,7 +180,7 @@ def test_between_flicker_and_light_that_changed_in_parts_there_is_a_band_without
 @pytest.mark.parametrize(("stops", "says_flicker"), [(0.3, True), (0.9, False)])
 def test_between_flicker_and_wrong_times_there_is_a_band_without_a_decision(stops, says_flicker):
     text = warn_of_contradictions(
-        contradictions_of(stops=stops), "abcd", 0.2, band_stops=motion.BANDED + 0.01
+        contradictions_of(stops=stops), "abcd", 0.2, band_stops=motion.MIN_BAND_STOPS + 0.01
     )
     assert "b by +" in text
     assert ("lamps flicker" in text) == says_flicker

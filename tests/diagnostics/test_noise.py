@@ -106,7 +106,7 @@ def test_the_order_of_the_frames_changes_nothing(room):
 
 def test_a_bracket_without_enough_flat_pixels_raises_an_error():
     images, times, g, _ = shot(np.full((12, 12), 0.1, np.float32))
-    with pytest.raises(ValueError, match="noise: 0 groups"):
+    with pytest.raises(ValueError, match="0 groups"):
         estimate_noise(images, times, g, np.full((12, 12), 0.1))
     with pytest.raises(ValueError, match=r"map of shape \(12, 12\)"):
         estimate_noise(images, times, g, np.ones((12, 13)))

@@ -125,7 +125,7 @@ def test_levels_of_equal_rank_can_replace_patches():
     levels = np.random.default_rng(0).integers(20, 100, (40, 60))
     images = np.stack([levels, 2 * levels]).astype(np.uint8)
     Z = flat_patches.rank_levels(images)
-    assert Z.shape == (2, 1, plausibility.RANKS, 1) and np.array_equal(Z[1], 2 * Z[0])
+    assert Z.shape == (2, 1, plausibility.RANK_COUNT, 1) and np.array_equal(Z[1], 2 * Z[0])
     assert flat_patches.rank_levels(np.stack([images[0], images[0] // 50])).all(
         axis=(1, 2, 3)
     ).tolist() == [

@@ -12,7 +12,7 @@ from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
 from hdrlab.core.filters import warp
 from hdrlab.diagnostics import registration
-from hdrlab.diagnostics.registration import LOST
+from hdrlab.diagnostics.registration import MIN_CONFIDENCE
 from hdrlab.pipeline.alignment import register
 
 pytestmark = pytest.mark.papers
@@ -66,7 +66,7 @@ def test_a_black_or_white_frame_is_reported_and_stays(room, level):
 def test_unrelated_photos_are_reported_and_not_moved(room):
     other = np.random.default_rng(0).integers(20, 230, (2, *SHAPE), np.uint8)
     one = validation(other, times=[1, 1], g=true_g())
-    assert one.confidence < LOST and "fit nearly as well" in one.failure
+    assert one.confidence < MIN_CONFIDENCE and "fit nearly as well" in one.failure
 
 
 @pytest.mark.parametrize("period", [7, 12])
@@ -141,5 +141,5 @@ def test_a_rival_is_a_peak_of_the_autocorrelation_of_light_less_its_local_mean(s
         scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (128, 160))) ** 2, (128, 160))
     )
     found = cerman.peaks(c[:, 80:], registration.RIVAL_COUNT + 1) + [0, 40]  # c is symmetric
-    expected = [one for one in found.tolist() if max(np.abs(one)) > registration.NEAR]
+    expected = [one for one in found.tolist() if max(np.abs(one)) > registration.NEAR_PIXELS]
     assert np.array_equal(registration.rivals(texture), expected)

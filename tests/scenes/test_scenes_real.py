@@ -40,10 +40,8 @@ def test_the_package_contains_six_photos_of_three_megapixels_and_their_licence()
     assert sum(file.stat().st_size for file in FOLDER.iterdir()) < 3e6
     assert "MIT License" in (FOLDER / "LICENSE").read_text()
     notice = (FOLDER / "README.md").read_text()
-    assert (
-        "Fran Murcia" in notice
-        and "times that were published with the photographs are wrong" in notice
-    )
+    assert "Fran Murcia" in notice
+    assert "times" in notice and "wrong" in notice
 
 
 def test_the_photos_are_those_that_were_published(shared):
