@@ -183,7 +183,9 @@ SENTENCES = {
             left > 0 > right and abs(left + right) < 0.1 * left
             for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
         ),
-        "Motion is far off": lambda n: radiance_off(n, "motion") > 0.1,
+        "The radiance from the curve of the motion blur is far off": lambda n: (
+            radiance_off(n, "motion") > 0.1
+        ),
         "Decoding the photo as sRGB is even worse": lambda n: (
             radiance_off(n, "sRGB") > radiance_off(n, "motion")
         ),
@@ -396,7 +398,7 @@ SENTENCES = {
         "have lost all sixteen digits, and the SVD still has about nine": lambda n: (
             n.errors[0][-1] > -1 and round(-n.errors[1][-1]) in (9, 10)
         ),
-        "In between is the smallest condition number": lambda n: (
+        "A medium smoothness gives the smallest condition number": lambda n: (
             min(condition(n, 0.1), condition(n, 1000)) > 2 * condition(n, 1)
         ),
         "the number of zeros is the number of groups minus one": lambda n: (
