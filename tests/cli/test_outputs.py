@@ -87,7 +87,7 @@ def test_require_other_finds_two_names_of_one_file(tmp_path):
     """As on Windows and macOS: there both names lead to one file, which a link shows here."""
     (tmp_path / "IMG.JPG").write_bytes(b"original")
     os.link(tmp_path / "IMG.JPG", tmp_path / "img.jpg")
-    with pytest.raises(ValueError, match="img.jpg: .*another name to write to"):
+    with pytest.raises(ValueError, match="img.jpg.*IMG.JPG"):
         files.require_other([tmp_path / "img.jpg"], [tmp_path / "IMG.JPG"])
 
 
