@@ -334,7 +334,7 @@ SENTENCES = {
             and n.three["S"][0] > 2 * n.three["S"][-1]
         ),
         "and $S = 0$": lambda n: round(quality(n, "negative").S, 2) == 0,
-        "All three are near 0.9 at the finest scale": lambda n: all(
+        "All three fidelities are near 0.9 at the finest scale": lambda n: all(
             round(each[0][1].mean(), 1) == 0.9 > each[-1][1].mean() for each in n.found.values()
         ),
     },
@@ -444,7 +444,7 @@ SENTENCES = {
         "Seven pixels in a hundred are beyond white": lambda n: (
             round(100 * np.mean(n.light > 1)) == 7
         ),
-        "beyond three stops, eight times white, less than one is left": lambda n: (
+        "beyond three stops, eight times white, less than one in a hundred is left": lambda n: (
             np.mean(n.light > 8) < 0.01
         ),
         "with 10 bits they are 0.6 % at 1000 cd/m²": lambda n: (
