@@ -116,7 +116,7 @@ def _check_headers(file: IO[bytes], limits: ArchiveLimits) -> None:
                 f"a header of it claims {size} bytes, expected at most {MAX_EXTENDED_HEADER_BYTES}"
             )
     if member_count == 0:
-        raise ArchiveRejected("it holds no files, or is no .zip or .tar archive")
+        raise ArchiveRejected("it holds no files, or is not a .zip or .tar archive")
     members.check_count(member_count, limits)
 
 
@@ -133,7 +133,7 @@ def _iter_headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:
             return
         if block[MAGIC_FIELD] != MAGIC:
             raise ArchiveRejected(
-                "it is damaged, or no .zip or .tar archive (a header without its mark)"
+                "it is damaged, or not a .zip or .tar archive (a header without its mark)"
             )
         size = tarfile.nti(block[SIZE_FIELD])  # type: ignore[attr-defined]
         if size < 0:

@@ -114,7 +114,9 @@ def unpack(archive: str | Path, target: str | Path, limits: ArchiveLimits = LIMI
             if _is_fault_of_system(error):
                 raise
             reason = sanitize_line(str(error) or type(error).__name__, MAX_REASON_CHARACTERS)
-            raise ArchiveRejected(f"it is damaged, or no .zip or .tar archive ({reason})") from None
+            raise ArchiveRejected(
+                f"it is damaged, or not a .zip or .tar archive ({reason})"
+            ) from None
         os.rename(folder, target)
     return files
 
