@@ -134,7 +134,7 @@ def test_failed_checks_earn_nothing_and_follow_from_a_named_mistake(
 
 def test_a_hidden_check_is_never_a_cause_or_a_consequence():
     a, b, c = checks("fails", "fails", "holds")
-    hidden = [a._replace(hidden=True), b, c]
+    hidden = [replace(a, hidden=True), b, c]
     found = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
     assert [one.follows for one in found] == ["", "", ""] and earned(found) == [0, 0, 4]
     assert found[2].message == ""
