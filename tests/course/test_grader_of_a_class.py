@@ -79,7 +79,9 @@ def test_the_tier_of_a_machine_is_checked_once(monkeypatch):
     monkeypatch.setattr(
         run.doctor,
         "examine",
-        lambda tier: asked.append(tier) or SimpleNamespace(works=tier != "none", details="no walls"),
+        lambda tier: (
+            asked.append(tier) or SimpleNamespace(works=tier != "none", details="no walls")
+        ),
     )
     run._check_tier_available.cache_clear()
     for tier in ("some", "some", "none"):
