@@ -42,7 +42,7 @@ def test_each_toy_student_submits_the_listed_file(short, monkeypatch):
         "s03.py": {"hours": 0, "about": "c", "attacks": True},
         "s04.zip": {"hours": 0, "about": "d", "beside": {"other.txt": "x"}},
     }
-    monkeypatch.setattr(toy_class, "HANDED", listed)
+    monkeypatch.setattr(toy_class, "FILES", listed)
     each = {one.name: one for one in toy_class.hand_ins(HOMEWORK)}
     assert list(each) == list(listed)
     assert each["s01.py"] == ("s01.py", f"script {{'tasks': {tasks}, 'm': ['m']}}".encode(), 1, "a")
@@ -64,7 +64,7 @@ def test_a_toy_class_is_written_only_to_a_new_or_empty_folder(made, short, tmp_p
     if made:
         folder.mkdir(parents=True)
     files = toy_class.write(folder)
-    assert files == [folder / "submissions" / name for name in toy_class.HANDED]
+    assert files == [folder / "submissions" / name for name in toy_class.FILES]
     assert all(file.is_file() and file.stat().st_size for file in files)
     rows = [*csv.DictReader((folder / "roster.csv").read_text("utf-8-sig").splitlines())]
     assert [row["student"] for row in rows] == list(toy_class.STUDENTS) and rows[4][
@@ -73,13 +73,13 @@ def test_a_toy_class_is_written_only_to_a_new_or_empty_folder(made, short, tmp_p
     assert [row["student"] for row in rows if row["team"] == "t1"] == ["s03", "s04"]
     assert {row["team"] for row in rows} == {"t1", ""}
     came = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
-    assert [row["file"] for row in came] == list(toy_class.HANDED)
+    assert [row["file"] for row in came] == list(toy_class.FILES)
     assert all(datetime.fromisoformat(row["received"]).tzinfo for row in came)
     text = (folder / "README.md").read_text("utf8")
     assert (
         text.endswith("\n")
         and str(folder) in text
-        and all(name in text for name in toy_class.HANDED)
+        and all(name in text for name in toy_class.FILES)
     )
     for taken in (folder, folder / "README.md"):
         with pytest.raises(ValueError, match="new folder .*toy class, something is there"):

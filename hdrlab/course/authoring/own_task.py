@@ -1,7 +1,7 @@
-"""A task of an instructor's own: a folder beside the package, with an example in it that works.
+"""Write the files of an instructor's own task: a complete example that works, to be changed file by file.
 
-The function need not be the library's. The example is complete, and is changed file by file: the
-function, its sheet, its checks with hints, two mistakes, hidden checks, and tests of all of these.
+The function need not be in the library. The example has the function, its assignment, its checks
+with hints, two known mistakes, hidden checks, and tests of all of these.
 """
 
 import keyword
@@ -13,23 +13,23 @@ from hdrlab.errors import InputError
 
 # a text for each file; TASK and HOMEWORK in names and texts are replaced
 TEMPLATES = Path(__file__).parent / "new_task"
-# begins what a sheet says of one task
-SHEET = "# %% [markdown] about="
+# the start of the part of an assignment that is about one task
+TASK_PART = "# %% [markdown] about="
 
 
 def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
-    """Write the example into a folder, as one more task where there are some, and yield each new file.
+    """Write the example into a folder, beside other tasks if there are any, and yield each new file.
 
     Parameters
     ----------
-    folder : made where it is missing
+    folder : created if it does not exist
     task : the task's id, which is the name of its function
     homework : the homework that the task belongs to, new or not
 
     Raises
     ------
-    ValueError
-        For a name that no function can have, or a task that is there.
+    InputError
+        For a name that no function can have, or a task that exists already.
     """
     for name in (task, homework):
         if not (name.isidentifier() and name.islower()) or keyword.iskeyword(name):
@@ -39,24 +39,27 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
             f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"
         )
     for template in sorted(TEMPLATES.rglob("*.txt")):
-        name, text = template.relative_to(TEMPLATES).as_posix(), template.read_text(encoding="utf8")
-        name, text = (
-            one.replace("TASK", task).replace("HOMEWORK", homework) for one in (name, text)
-        )
-        file = folder / name.removesuffix(".txt")
-        there = file.read_text(encoding="utf8") if file.exists() else ""
-        if not there or file.name == "plan.toml" or file.parent.name == "sheets":
-            yield write_text(file, joined(there, text, homework))
+        name = template.relative_to(TEMPLATES).as_posix().removesuffix(".txt")
+        path = folder / _fill_in(name, task, homework)
+        text = _fill_in(template.read_text(encoding="utf8"), task, homework)
+        present = path.read_text(encoding="utf8") if path.exists() else ""
+        if not present:
+            yield write_text(path, text)
+        elif path.name == "plan.toml" or path.parent.name == "sheets":
+            yield write_text(path, append_task(present, text, homework))
 
 
-def joined(there: str, text: str, homework: str) -> str:
-    """Return a plan or a sheet with one more task."""
-    if not there:
-        return text
-    if SHEET in text:
-        return f"{there}\n{text[text.index(SHEET) :]}"
-    before, section, rest = there.partition(f"[{homework}]\n")
+def _fill_in(text: str, task: str, homework: str) -> str:
+    """Return a template with the names of the task and of its homework."""
+    return text.replace("TASK", task).replace("HOMEWORK", homework)
+
+
+def append_task(present: str, text: str, homework: str) -> str:
+    """Return a plan or an assignment with one more task."""
+    if TASK_PART in text:
+        return f"{present}\n{text[text.index(TASK_PART) :]}"
+    before, section, rest = present.partition(f"[{homework}]\n")
     if not section:
-        return f"{there}\n{text[text.index(f'[{homework}]') :]}"
+        return f"{present}\n{text[text.index(f'[{homework}]') :]}"
     line = text.partition("tasks = [")[2].splitlines()[1]
     return before + section + rest.replace("\n]\n", f"\n{line}\n]\n", 1)

@@ -1,4 +1,4 @@
-"""What a student gets of a function of the library: its signature, its docstring, its answers' classes."""
+"""Make stubs of library functions: signature and docstring, and the classes that they return."""
 
 import ast
 import re
@@ -8,7 +8,7 @@ from hdrlab.course.plan import Task
 from hdrlab.course.source_code import library_source
 from hdrlab.errors import InputError
 
-SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,}\n)")  # of a docstring
+SECTION_HEADING = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,}\n)")  # of a docstring
 
 
 @cache
@@ -23,12 +23,15 @@ def classes(function: str) -> tuple[str, ...]:
     key = library_source.parse_reference(function)
     returns = library_source.module(key.module).returns.get(key.name)
     keys = library_source.definitions_in(key.module, returns) if returns is not None else []
-    found = [one for one in keys if isinstance(library_source.statements(one)[-1], ast.ClassDef)]
-    return tuple(map(library_source.format_reference, found))
+    return tuple(
+        library_source.format_reference(returned)
+        for returned in keys
+        if isinstance(library_source.statements(returned)[-1], ast.ClassDef)
+    )
 
 
 def definition(function: str) -> ast.FunctionDef:
-    """Return the library's definition of a function, or raise a ValueError."""
+    """Return the library's definition of a function; raise an InputError if it has none."""
     node = library_source.statements(library_source.parse_reference(function))[-1]
     if not isinstance(node, ast.FunctionDef):
         raise InputError(f"expected a function of the library, got {function}")
@@ -36,7 +39,7 @@ def definition(function: str) -> ast.FunctionDef:
 
 
 def stub(task: Task, opening: str = "") -> str:
-    """Return a function's signature and docstring, and a body that says that it is not written yet.
+    """Return a function's signature and docstring, with a body that raises NotImplementedError.
 
     Examples
     --------
@@ -48,14 +51,15 @@ def stub(task: Task, opening: str = "") -> str:
     node = definition(task.function)
     arguments = ast.unparse(node.args)
     home = library_source.module(library_source.parse_reference(task.function).module).definitions
-    for one in (*node.args.defaults, *node.args.kw_defaults):
-        if not isinstance(one, ast.Name):
+    for default in (*node.args.defaults, *node.args.kw_defaults):
+        if not isinstance(default, ast.Name):
             continue
-        given = home[one.id][-1]
-        if isinstance(given, ast.Assign):  # a constant, which a student has not: its value
-            arguments = arguments.replace(f"={one.id}", f"={ast.unparse(given.value)}")
-    beginning, *sections = SECTION.split(ast.get_docstring(node) or "")
-    kept = [one for one in sections if not one.startswith("Examples")]
+        definition_of_default = home[default.id][-1]
+        if isinstance(definition_of_default, ast.Assign):  # students do not have this constant
+            value = ast.unparse(definition_of_default.value)
+            arguments = arguments.replace(f"={default.id}", f"={value}")
+    beginning, *sections = SECTION_HEADING.split(ast.get_docstring(node) or "")
+    kept = [section for section in sections if not section.startswith("Examples")]
     text = "\n\n".join([opening or beginning, *kept]).rstrip()
     lines = text.splitlines()
     body = "\n".join(f"    {line}".rstrip() for line in lines[1:])
@@ -64,7 +68,7 @@ def stub(task: Task, opening: str = "") -> str:
 
 
 def bare_class(dotted: str) -> str:
-    """Return a class of states as a student meets it: its fields are arrays, or plain numbers.
+    """Return a class of the library as a student gets it, with its fields but without methods.
 
     Examples
     --------
@@ -80,9 +84,9 @@ def bare_class(dotted: str) -> str:
     """
     node = library_source.statements(library_source.parse_reference(dotted))[-1]
     assert isinstance(node, ast.ClassDef)
-    fields = [one for one in node.body if isinstance(one, ast.AnnAssign)]
+    fields = [part for part in node.body if isinstance(part, ast.AnnAssign)]
     lines = (ast.get_docstring(node) or "").splitlines()
     body = [f'"""{lines[0]}"""'] if len(lines) == 1 else [f'"""{lines[0]}', *lines[1:], '"""']
-    typed = [ast.unparse(one) for one in fields]
+    typed = [ast.unparse(field) for field in fields]
     inside = "\n".join(f"    {line}".rstrip() for line in [*body, "", *typed])
     return f"from typing import NamedTuple\n\n\nclass {node.name}(NamedTuple):\n{inside}"

@@ -1,12 +1,12 @@
-"""A toy class: a dozen hand-ins of the second homework, good, late, wrong and hostile, to try grading on.
+"""Write a toy class to try grading on: a dozen submissions of the second homework, good, late and hostile.
 
 FOLDER/
-  submissions/    what was handed in
-  roster.csv      fourteen students, two of them a team, one of whom nothing came
-  received.csv    when each file came
-  README.md       what each file is, and what is to be expected of it
+  submissions/    the submissions
+  roster.csv      fourteen students, two of them a team; one has handed in nothing
+  received.csv    when each file was received
+  README.md       what each file is, and what result to expect
 
-Nobody in it is a person: the students are called by their numbers.
+The students are no real people; they are called by numbers.
 """
 
 import tomllib
@@ -23,15 +23,17 @@ from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
 HOMEWORK = "hw2"
-TEAM, MEMBERS = "t1", ("s03", "s04")
+TEAM = "t1"
+TEAM_MEMBERS = ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
 ATTACKS = Path(__file__).parent / "toy_attacks.py"
 TOY: dict[str, Any] = tomllib.loads(Path(__file__).with_name("toy_class.toml").read_text("utf8"))
-COMMAND, HANDED = TOY["command"], TOY["handed"]
+COMMAND = TOY["command"]
+FILES = TOY["handed"]
 
 
-class Handed(NamedTuple):
-    """A file that was handed in: its name, its bytes, how many hours after the end, and what it is."""
+class ToyFile(NamedTuple):
+    """A file of the toy class: its name, its bytes, hours after the deadline, and a description."""
 
     name: str
     data: bytes
@@ -39,47 +41,56 @@ class Handed(NamedTuple):
     about: str
 
 
-def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
-    """Yield what the toy class has handed in: what toy_class.toml says of each file."""
-    for name, one in HANDED.items():
-        done = [task for task in homework.tasks if "done" not in one or task.id in one["done"]]
-        cells = solutions.texts(homework._replace(tasks=tuple(done)), one.get("mistakes", ()))
-        text = (
-            solutions.script(cells) if name.endswith(".py") else solutions.notebook(homework, cells)
-        )
-        data = ATTACKS.read_bytes() if one.get("attacks") else text.encode()
-        if beside := one.get("beside"):
-            data = make_zip(
-                {"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}}
-            )
-        yield Handed(name, data, one["hours"], one["about"])
+def hand_ins(homework: plan.Homework) -> Iterator[ToyFile]:
+    """Yield the files that the toy class hands in, as toy_class.toml describes them."""
+    for name, description in FILES.items():
+        data = _code_bytes(name, description, homework)
+        if "beside" in description:
+            others = {other: text.encode() for other, text in description["beside"].items()}
+            data = make_zip({"hw2.ipynb": data, **others})
+        yield ToyFile(name, data, description["hours"], description["about"])
+
+
+def _code_bytes(name: str, description: dict[str, Any], homework: plan.Homework) -> bytes:
+    """Return the notebook or Python file of a submission, right, with mistakes, or an attack."""
+    if description.get("attacks"):
+        return ATTACKS.read_bytes()
+    done = description.get("done", [task.id for task in homework.tasks])
+    tasks = tuple(task for task in homework.tasks if task.id in done)
+    cells = solutions.texts(homework._replace(tasks=tasks), description.get("mistakes", ()))
+    if name.endswith(".py"):
+        return solutions.script(cells).encode()
+    return solutions.notebook(homework, cells).encode()
 
 
 def write(folder: Path) -> list[Path]:
-    """Write the toy class into a folder, and return the files that were handed in.
+    """Write the toy class into a folder, and return the submissions.
 
     Raises
     ------
-    ValueError
-        Where something is in the folder: it might be a real class.
+    InputError
+        If the folder is not empty: it might be a real class.
     """
     if folder.is_dir() and any(folder.iterdir()) or folder.is_file():
         raise InputError(f"{folder}: expected a new folder for the toy class, something is there")
     homework = plan.read().homeworks[HOMEWORK]
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
-    each = list(hand_ins(homework))
-    for one in each:
-        (folder / "submissions" / one.name).write_bytes(one.data)
-    roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]
+    files = list(hand_ins(homework))
+    for file in files:
+        (folder / "submissions" / file.name).write_bytes(file.data)
+    roster = [
+        (student, f"Student {student[1:]}", TEAM if student in TEAM_MEMBERS else "")
+        for student in STUDENTS
+    ]
     csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
-    csv_tables.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
+    csv_tables.write_csv(folder / "received.csv", ("file", "received"), received(files, homework))
     text = render_page(
-        Path(__file__).parent, "toy_class.plain", command=COMMAND.format(folder=folder), each=each
+        Path(__file__).parent, "toy_class.plain", command=COMMAND.format(folder=folder), each=files
     )
     (folder / "README.md").write_text(text + "\n", encoding="utf8")
-    return [folder / "submissions" / one.name for one in each]
+    return [folder / "submissions" / file.name for file in files]
 
 
-def received(each: Sequence[Handed], homework: plan.Homework) -> list[tuple[str, str]]:
-    """Return when each file came, as the rows of a table."""
-    return [(one.name, (homework.due + timedelta(hours=one.hours)).isoformat()) for one in each]
+def received(files: Sequence[ToyFile], homework: plan.Homework) -> list[tuple[str, str]]:
+    """Return the table of the files and the times when they were received."""
+    return [(file.name, (homework.due + timedelta(hours=file.hours)).isoformat()) for file in files]

@@ -1,7 +1,7 @@
-"""The class: who is in it, and who works with whom. Students work alone or in teams of two.
+"""Read the roster: the students of a class and their teams. Students work alone or in teams of two.
 
-The roster is a CSV file with the columns `student` (the number or name at the university) and,
-where wanted, `name`, `email` and `team`. Who has no team works alone.
+The roster is a CSV file with the column `student` (the number or name at the university) and
+optionally `name`, `email` and `team`. A student without a team works alone.
 """
 
 import unicodedata
@@ -14,13 +14,15 @@ from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students import csv_tables
 from hdrlab.errors import InputError
 
-TEAM = 2  # students at most
-NAME = 80  # characters
-FORBIDDEN = set('/\\:*?"<>|') | {chr(code) for code in range(32)}  # an id or a team names files
+MAX_TEAM_SIZE = 2
+MAX_NAME_LENGTH = 80
+MAX_EMAIL_LENGTH = 200
+# an id or a team names files, so these must not occur in it
+FORBIDDEN_CHARACTERS = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
 
 
 def fold(name: str) -> str:
-    """Return a name as names are compared: case and Unicode's other ways of writing a letter do not count.
+    """Return a name for comparison: without case, and with one way of writing each letter.
 
     Examples
     --------
@@ -30,15 +32,15 @@ def fold(name: str) -> str:
     return unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
 
 
-def _beginnings(key: str) -> Iterator[str]:
-    """Yield a folded name, and what stands in it before a sign, from the longest on."""
+def _prefixes(key: str) -> Iterator[str]:
+    """Yield a folded name, and its parts before a character that is no letter or digit, longest first."""
     for end in range(len(key), 0, -1):
         if end == len(key) or not (key[end].isalnum() or unicodedata.combining(key[end])):
             yield key[:end]
 
 
 class Student(NamedTuple):
-    """One of the class; `team` is the student's own id where there is no partner."""
+    """A student of the class; without a partner, `team` is the student's own id."""
 
     id: str
     name: str
@@ -47,7 +49,7 @@ class Student(NamedTuple):
 
 
 class Name(NamedTuple):
-    """An id or a team as a line of the roster has it, and whose files begin with it."""
+    """An id or a team in a line of the roster, and the owner of the files that begin with it."""
 
     text: str
     kind: str
@@ -61,22 +63,22 @@ class Roster(NamedTuple):
     students: tuple[Student, ...]
 
     def find(self, id: str) -> Student:
-        """Return a student by id, whatever its case, or raise a ValueError."""
-        wanted = fold(sanitize_line(id, NAME))
-        for one in self.students:
-            if fold(one.id) == wanted:
-                return one
-        raise InputError(f"expected a student of the roster, got {sanitize_line(id, NAME)!r}")
+        """Return the student with an id, in upper or lower case; raise an InputError if there is none."""
+        shown_id = sanitize_line(id, MAX_NAME_LENGTH)
+        for student in self.students:
+            if fold(student.id) == fold(shown_id):
+                return student
+        raise InputError(f"expected a student of the roster, got {shown_id!r}")
 
     def teams(self) -> dict[str, tuple[Student, ...]]:
-        """Return who is in each team, in the order of the roster."""
-        found: dict[str, list[Student]] = {}
-        for one in self.students:
-            found.setdefault(one.team, []).append(one)
-        return {team: tuple(members) for team, members in found.items()}
+        """Return the members of each team, in the order of the roster."""
+        teams: dict[str, list[Student]] = {}
+        for student in self.students:
+            teams.setdefault(student.team, []).append(student)
+        return {team: tuple(members) for team, members in teams.items()}
 
     def owner(self, file: str) -> str | None:
-        """Return the team whose file it is: its name begins with the team's or a student's.
+        """Return the team that a file belongs to: its name begins with the team's name or a student's id.
 
         Examples
         --------
@@ -84,8 +86,14 @@ class Roster(NamedTuple):
         >>> [roster.owner(name) for name in ("B1_hw2.ipynb", "b12.py", "t-hw2.zip", "b123.py", "xb1.py")]
         ['t', 'b12', 't', None, None]
         """
-        teams = {fold(name): one.team for one in self.students for name in (one.team, one.id)}
-        return next((teams[one] for one in _beginnings(fold(file)) if one in teams), None)
+        teams: dict[str, str] = {}
+        for student in self.students:
+            teams[fold(student.team)] = student.team
+            teams[fold(student.id)] = student.team
+        for prefix in _prefixes(fold(file)):
+            if prefix in teams:
+                return teams[prefix]
+        return None
 
     def find_team(self, name: str) -> str:
         """Return the team with this name, or of the student with this id, in upper or lower case.
@@ -101,7 +109,7 @@ class Roster(NamedTuple):
         InputError
             For a name that the roster does not have, and for one that could mean two teams.
         """
-        shown_name = sanitize_line(name, NAME)
+        shown_name = sanitize_line(name, MAX_NAME_LENGTH)
         wanted = fold(shown_name)
         teams = {
             student.team
@@ -122,9 +130,9 @@ def read(path: str | Path) -> Roster:
 
     Raises
     ------
-    ValueError
-        Where an id or a team cannot name a file, a team is of three, or a name could be taken for another's:
-        both lines are named.
+    InputError
+        If an id or a team cannot name a file, a team has more than two members, or two names could
+        be confused; the message has both lines.
     """
     rows = csv_tables.read_csv(path)
     if not rows or "student" not in rows[0]:
@@ -134,44 +142,49 @@ def read(path: str | Path) -> Roster:
     students = []
     names: list[Name] = []
     for line, row in enumerate(rows, 2):
-        id, team, name = (
-            sanitize_line(row.get(column, ""), NAME) for column in ("student", "team", "name")
-        )
+        id = sanitize_line(row.get("student", ""), MAX_NAME_LENGTH)
+        team = sanitize_line(row.get("team", ""), MAX_NAME_LENGTH)
+        name = sanitize_line(row.get("name", ""), MAX_NAME_LENGTH)
+        email = sanitize_line(row.get("email", ""), MAX_EMAIL_LENGTH)
         owner = f"team {team}" if team else f"line {line}"
         names.append(Name(id, "student's id", line, owner))
-        names += [Name(team, "team's name", line, owner)] if team else []
-        students.append(
-            Student(id, name or id, team or id, sanitize_line(row.get("email", ""), 200))
-        )
+        if team:
+            names.append(Name(team, "team's name", line, owner))
+        students.append(Student(id=id, name=name or id, team=team or id, email=email))
     _check_names(path, names)
-    large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
+    sizes = Counter(student.team for student in students)
+    large = [team for team, size in sizes.items() if size > MAX_TEAM_SIZE]
     if large:
         raise InputError(
-            f"{path}: expected teams of at most {TEAM} students, got more in {', '.join(large)}"
+            f"{path}: expected teams of at most {MAX_TEAM_SIZE} students, got more in {', '.join(large)}"
         )
     return Roster(tuple(students))
 
 
 def _check_names(path: str | Path, names: list[Name]) -> None:
-    """Raise a ValueError for a name that no file can have, and for two of which one could begin the other's.
+    """Raise an InputError for a name that cannot name a file, and for two names that could be confused.
 
-    That is so where one is the other, or begins with it and goes on by a sign.
+    Two names can be confused if they are equal, or if one begins with the other and continues with
+    a character that is no letter or digit: the files of one could be taken for those of the other.
     """
     for text, kind, line, _ in names:
-        if not text or text[0] in ".-" or FORBIDDEN & set(text):
+        if not text or text[0] in ".-" or FORBIDDEN_CHARACTERS & set(text):
             raise InputError(
                 f"{path}, line {line}: expected a {kind} that can be a file name, got {text!r}"
             )
     known: dict[str, Name] = {}
-    for one in sorted(names, key=lambda one: len(fold(one.text))):
-        key = fold(one.text)
-        for other in (known[name] for name in _beginnings(key) if name in known):
-            twice = one.kind == other.kind == "student's id" and key == fold(other.text)
-            if twice or one.owner != other.owner:
-                first, second = sorted((one, other), key=lambda name: name.line)
+    for name in sorted(names, key=lambda name: len(fold(name.text))):
+        key = fold(name.text)
+        for prefix in _prefixes(key):
+            if prefix not in known:
+                continue
+            other = known[prefix]
+            is_repeated = name.kind == other.kind == "student's id" and key == fold(other.text)
+            if is_repeated or name.owner != other.owner:
+                first, second = sorted((name, other), key=lambda name: name.line)
                 raise InputError(
-                    f"{path}, lines {first.line} and {second.line}: expected each name once, and none that "
-                    f"begins another; got the {first.kind} {first.text!r} and the {second.kind} "
-                    f"{second.text!r}, whose files could be taken for each other's"
+                    f"{path}, lines {first.line} and {second.line}: the {first.kind} "
+                    f"{first.text!r} and the {second.kind} {second.text!r} could be confused in "
+                    "file names; use names of which none begins another"
                 )
-        known.setdefault(key, one)
+        known.setdefault(key, name)
