@@ -125,10 +125,10 @@ def test_each_channel_is_recovered_independently(decades):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"images": "one"}, "two exposures"),
-        ({"times": [1, 1]}, "two exposures"),
-        ({"images": "black"}, "two exposures"),
-        ({"images": "white"}, "two exposures"),
+        ({"images": "one"}, "well exposed in two photos"),
+        ({"times": [1, 1]}, "well exposed in two photos"),
+        ({"images": "black"}, "well exposed in two photos"),
+        ({"images": "white"}, "well exposed in two photos"),
         ({"times": [1, 0]}, "positive exposure times"),
     ],
 )
