@@ -343,7 +343,7 @@ def test_a_report_may_be_a_notebook_instead_of_markdown(home):
         json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5})
     )
     said = words.read(home / "report.ipynb")
-    assert (said.title, [one.asked for one in said.sections]) == ("Dusk", ["results"])
+    assert (said.title, [section.topic for section in said.sections]) == ("Dusk", ["results"])
     assert (
         "<img" in said.sections[0].html
         and "script" not in said.sections[0].html

@@ -123,11 +123,11 @@ def _map(path: Path) -> dict[str, Any]:
     return sections.radiance(E) | {"size": f"{E.shape[1]} x {E.shape[0]}", "name": path.name}
 
 
-def _parts(said: words.Words, found: dict[str, Any]) -> Iterator[Part]:
+def _parts(said: words.ReportText, found: dict[str, Any]) -> Iterator[Part]:
     """Yield the sections with their figures, then the figures whose section is missing."""
     waiting = dict(found)
     for section in said.sections:
-        mine = {name: waiting.pop(name) for name in list(waiting) if AFTER[name] == section.asked}
+        mine = {name: waiting.pop(name) for name in list(waiting) if AFTER[name] == section.topic}
         yield Part(section.heading, section.html, mine)
     for name, figure in waiting.items():
         yield Part(ALONE[name], Markup(), {name: figure})
@@ -135,5 +135,5 @@ def _parts(said: words.Words, found: dict[str, Any]) -> Iterator[Part]:
 
 def example() -> str:
     """Return words to begin a report with, and what goes into `project.toml`."""
-    heads = "\n\n".join(f"## {name.capitalize()}\n\n..." for name in words.ASKED)
+    heads = "\n\n".join(f"## {name.capitalize()}\n\n..." for name in words.TOPIC_PATTERNS)
     return f"# The title of your project\n\n{heads}\n\n<!-- project.toml:\n{EXAMPLE}-->\n"

@@ -18,7 +18,7 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
-from hdrlab.course.projects.words import ASKED
+from hdrlab.course.projects.words import TOPIC_PATTERNS
 from hdrlab.course.source_code import names
 from hdrlab.course.submissions.archives.members import (
     LIMITS,
@@ -161,7 +161,7 @@ def check_report(project: Project) -> PartReview:
     all_headings = " ".join(headings)
     missing = [
         name
-        for name, pattern in ASKED.items()
+        for name, pattern in TOPIC_PATTERNS.items()
         if not re.search(pattern, all_headings, re.IGNORECASE)
     ]
     if missing:

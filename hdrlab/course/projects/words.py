@@ -1,16 +1,18 @@
-"""A student's words, in Markdown or in a short notebook, as the sections of a page.
+"""Read a student's report, in Markdown or in a short notebook, and split it into sections.
 
-Headings part them. HTML in the words is shown as it is written, links lead to the web alone, and
-pictures come out of the project's folder, decoded and encoded again.
+The headings start the sections. HTML in the text is shown as it is written, and links lead to the
+web only. Images are read from the project's folder, decoded, and encoded again.
 """
 
 import base64
 import json
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
@@ -23,151 +25,228 @@ from hdrlab.errors import InputError
 from hdrlab.io import photos, web
 from hdrlab.show.plots import figures
 
-ASKED: dict[str, str] = tomllib.loads(Path(__file__).with_name("asked.toml").read_text("utf8"))
-MOST = 5_000_000  # bytes of words
-COLUMNS = 200  # of a table; lines with more are plain text
-SIDE = 1400  # pixels of a picture
-Pictures = dict[str, bytes]
+# topic that the assignment asks for -> pattern of a heading about it
+TOPIC_PATTERNS: dict[str, str] = tomllib.loads(
+    Path(__file__).with_name("asked.toml").read_text("utf8")
+)
+MAX_CHARACTERS = 5_000_000
+# a notebook holds images, too
+MAX_FILE_BYTES = 20 * MAX_CHARACTERS
+# text whose lines have more is shown without tables: the parser's time grows with their square
+MAX_TABLE_COLUMNS = 200
+IMAGE_SIDE_PIXELS = 1400
+IMAGE_TYPES = ("image/png", "image/jpeg")
+# lower than every heading
+NO_HEADING_LEVEL = 9
+# an inline token and a closing one follow the token that opens a heading
+TOKENS_PER_HEADING = 3
+
+# encoded images, by the name under which the text refers to them
+NotebookImages = dict[str, bytes]
 
 
-class Section(NamedTuple):
-    """A part of the report: its heading, which of the asked it is, or "", and its words as HTML."""
+@dataclass(frozen=True)
+class Section:
+    """A section of a report.
+
+    Attributes
+    ----------
+    heading : its heading, or "" for the text before the first one
+    topic : the topic of the assignment that the heading names, or ""
+    html : its text
+    """
 
     heading: str
-    asked: str
+    topic: str
     html: Markup
 
 
-class Words(NamedTuple):
-    """A title, sections, and what could not be shown, in words."""
+@dataclass(frozen=True)
+class ReportText:
+    """The text of a report.
+
+    Attributes
+    ----------
+    title : its title, or ""
+    sections : its sections, in order
+    notes : what could not be shown, as sentences
+    """
 
     title: str
     sections: tuple[Section, ...]
     notes: tuple[str, ...]
 
     def missing(self) -> list[str]:
-        """Return what is asked for and has no section."""
-        return [name for name in ASKED if name not in {one.asked for one in self.sections}]
+        """Return the topics of the assignment that have no section."""
+        present = {section.topic for section in self.sections}
+        return [topic for topic in TOPIC_PATTERNS if topic not in present]
 
 
-def read(path: Path) -> Words:
-    """Read a file of words.
+def read(path: Path) -> ReportText:
+    """Read a report from a Markdown file or a notebook.
 
     Raises
     ------
-    ValueError
-        For a file that is too large, is not UTF-8, or is no notebook though it is called one.
+    InputError
+        For a file that is too large, is not UTF-8, or is named .ipynb and is no notebook.
     """
-    if path.stat().st_size > 20 * MOST:
-        raise InputError(f"{path}: expected a short report, got {path.stat().st_size} bytes")
+    size = path.stat().st_size
+    if size > MAX_FILE_BYTES:
+        raise InputError(f"{path}: expected a short report, got {size} bytes")
+    images: NotebookImages = {}
     try:
         text = path.read_text(encoding="utf8")
-        pictures = Pictures()
         if path.suffix == ".ipynb":
-            text, pictures = notebook(text)
+            text, images = notebook(text)
     except UnicodeDecodeError:
-        raise InputError(f"{path}: expected text in UTF-8") from None
+        raise InputError(f"{path}: expected text in UTF-8; save it in this encoding") from None
+    # what JSON of another form than a notebook's raises
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError(f"{path}: expected a notebook ({error})") from None
     text = text.encode("utf8", "replace").decode("utf8")  # JSON may hold half a character
-    if len(text) > MOST:
-        raise InputError(f"{path}: expected at most {MOST} characters, got {len(text)}")
-    return sections(text, path.parent, pictures)
+    if len(text) > MAX_CHARACTERS:
+        raise InputError(f"{path}: expected at most {MAX_CHARACTERS} characters, got {len(text)}")
+    return sections(text, path.parent, images)
 
 
-def notebook(text: str) -> tuple[str, Pictures]:
-    """Return the Markdown of a notebook, with the pictures that its cells have shown."""
+def notebook(text: str) -> tuple[str, NotebookImages]:
+    """Return the Markdown of a notebook, and the images in the outputs of its cells."""
     parts = []
-    pictures = Pictures()
+    images: NotebookImages = {}
     for number, cell in enumerate(json.loads(text)["cells"], 1):
         if cell["cell_type"] == "markdown":
             parts.append("".join(cell["source"]))
-        for shown in cell.get("outputs", ()):
-            data = shown.get("data", {})
-            for kind in ("image/png", "image/jpeg"):
-                if kind in data:
-                    name = f"cell-{number}-{len(pictures)}"
-                    pictures[name] = base64.b64decode("".join(data[kind]))
-                    alt = "".join(data.get("text/plain", f"Image of cell {number}"))
-                    said = re.sub(r"[^\w .,:()-]", " ", sanitize_line(alt, 120))
-                    parts.append(f"![{said}]({name})")
-                    break
-    return "\n\n".join(parts), pictures
+        for output in cell.get("outputs", ()):
+            data = output.get("data", {})
+            encoded = _output_image(data)
+            if encoded is None:
+                continue
+            name = f"cell-{number}-{len(images)}"
+            images[name] = encoded
+            alt = "".join(data.get("text/plain", f"Image of cell {number}"))
+            # no character with a meaning in Markdown
+            description = re.sub(r"[^\w .,:()-]", " ", sanitize_line(alt, 120))
+            parts.append(f"![{description}]({name})")
+    return "\n\n".join(parts), images
 
 
-def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words:
-    """Return Markdown as Words; pictures are looked up by name, and then in the folder."""
+def _output_image(data: Mapping[str, Any]) -> bytes | None:
+    """Return the encoded image in the data of a cell's output, or None if there is none."""
+    for image_type in IMAGE_TYPES:
+        if image_type in data:
+            return base64.b64decode("".join(data[image_type]))
+    return None
+
+
+def sections(text: str, folder: Path, images: NotebookImages | None = None) -> ReportText:
+    """Split Markdown into sections.
+
+    Parameters
+    ----------
+    text : the Markdown
+    folder : the project's folder, from which images are read
+    images : images that are looked up by name, before the folder
+    """
     notes: list[str] = []
-    parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable("strikethrough")
-    # else its time grows with their square
-    if max(line.count("|") for line in text.split("\n")) <= COLUMNS:
-        parser.enable("table")
-    parser.add_render_rule("image", _drawing(folder, pictures or {}, notes))
+    parser = _make_parser(text)
+    parser.add_render_rule("image", _make_image_rule(folder, images or {}, notes))
     tokens = parser.parse(text)
-    heads = [k for k, one in enumerate(tokens) if one.type == "heading_open" and not one.level]
-    levels = [int(tokens[k].tag[1]) for k in heads]
-    lone = bool(heads) and levels.count(min(levels)) == 1  # the only one of its level is the title
-    title = _text(tokens[heads[0] + 1]) if lone and levels[0] == min(levels) else ""
-    top = min((level for level in levels[bool(title) :]), default=9)
-    starts = [k for k, level in zip(heads, levels, strict=True) if level == top]
-    first = heads[0] + 3 if title else 0
-    found = []
-    ends = [*starts[1:], len(tokens)]
-    if before := tokens[first : starts[0] if starts else len(tokens)]:
-        found.append(Section("", "", _html(parser, before, top)))
-    for start, end in zip(starts, ends[: len(starts)], strict=True):
-        heading = _text(tokens[start + 1])
-        asked = (name for name, says in ASKED.items() if re.search(says, heading, re.IGNORECASE))
-        found.append(Section(heading, next(asked, ""), _html(parser, tokens[start + 3 : end], top)))
-    return Words(title, tuple(found), tuple(notes))
+    headings = [
+        index
+        for index, token in enumerate(tokens)
+        if token.type == "heading_open" and token.level == 0
+    ]
+    levels = [int(tokens[index].tag[1]) for index in headings]
+    title = ""
+    # the first heading is the title if no other one is of its level or above
+    if levels and all(level > levels[0] for level in levels[1:]):
+        title = _heading_text(tokens, headings[0])
+    if title:
+        content_start = headings[0] + TOKENS_PER_HEADING
+        top_level = min(levels[1:], default=NO_HEADING_LEVEL)
+    else:
+        content_start = 0
+        top_level = min(levels, default=NO_HEADING_LEVEL)
+    starts = [index for index, level in zip(headings, levels, strict=True) if level == top_level]
+    boundaries = [*starts, len(tokens)]
+
+    result = []
+    introduction = tokens[content_start : boundaries[0]]
+    if introduction:
+        result.append(Section("", "", _render(parser, introduction, top_level)))
+    for start, end in pairwise(boundaries):
+        heading = _heading_text(tokens, start)
+        html = _render(parser, tokens[start + TOKENS_PER_HEADING : end], top_level)
+        result.append(Section(heading, _topic(heading), html))
+    return ReportText(title, tuple(result), tuple(notes))
 
 
-def _html(parser: MarkdownIt, tokens: Sequence[Token], top: int) -> Markup:
-    """Return tokens as HTML, which holds no other tags than those of Markdown."""
-    return Markup(parser.renderer.render(_lowered(tokens, top), parser.options, {}))
+def _make_parser(text: str) -> MarkdownIt:
+    """Return a Markdown parser that keeps HTML as text; with tables, if they are narrow enough."""
+    parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable("strikethrough")
+    columns = max(line.count("|") for line in text.split("\n"))
+    if columns <= MAX_TABLE_COLUMNS:
+        parser.enable("table")
+    return parser
 
 
-def _text(inline: Token) -> str:
-    return sanitize_line("".join(one.content for one in inline.children or ()), 200)
+def _topic(heading: str) -> str:
+    """Return the first topic of the assignment that a heading names, or ""."""
+    for topic, pattern in TOPIC_PATTERNS.items():
+        if re.search(pattern, heading, re.IGNORECASE):
+            return topic
+    return ""
 
 
-def _lowered(tokens: Sequence[Token], top: int) -> Sequence[Token]:
-    """Return tokens whose headings go on from the third level: the page has the first and the second."""
-    for one in tokens:
-        if one.type in ("heading_open", "heading_close"):
-            one.tag = f"h{min(6, 2 + max(1, int(one.tag[1]) - top))}"
-    return tokens
+def _heading_text(tokens: Sequence[Token], index: int) -> str:
+    """Return the text of the heading that the token at this index opens."""
+    children = tokens[index + 1].children or ()
+    return sanitize_line("".join(child.content for child in children), 200)
 
 
-def _drawing(folder: Path, pictures: Pictures, notes: list[str]) -> Callable[..., str]:
-    """Return what draws a picture of the words."""
+def _render(parser: MarkdownIt, tokens: Sequence[Token], top_level: int) -> Markup:
+    """Return tokens as HTML, with no other tags than those of Markdown.
 
-    def draw(self: Any, tokens: Sequence[Token], at: int, options: Any, env: Any) -> str:
-        source = unquote(str(tokens[at].attrs["src"]))
-        alt = sanitize_line(tokens[at].content, 300)
+    The tokens' headings begin at the third level: the page has the first and the second.
+    """
+    for token in tokens:
+        if token.type in ("heading_open", "heading_close"):
+            depth = max(1, int(token.tag[1]) - top_level)
+            token.tag = f"h{min(6, 2 + depth)}"
+    return Markup(parser.renderer.render(tokens, parser.options, {}))
+
+
+def _make_image_rule(folder: Path, images: NotebookImages, notes: list[str]) -> Callable[..., str]:
+    """Return the parser's rule that renders an image; it notes images that it leaves out."""
+
+    def render_image(self: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
+        source = unquote(str(tokens[index].attrs["src"]))
+        alt = sanitize_line(tokens[index].content, 300)
+        short_source = sanitize_line(source, 60)
         try:
-            image = _decoded(source, folder, pictures)
-        except Exception as error:  # on damaged pictures the codecs raise what they like
-            notes.append(
-                f"the image {sanitize_line(source, 60)!r} is left out: {sanitize_line(str(error), 160)}"
-            )
-            return str(escape(f"[{alt or sanitize_line(source, 60)}]"))
+            pixels = _decode_image(source, folder, images)
+        except Exception as error:  # the codecs raise many types for damaged images
+            reason = sanitize_line(str(error), 160)
+            notes.append(f"the image {short_source!r} is left out: {reason}")
+            return str(escape(f"[{alt or short_source}]"))
         if not alt:
-            said = "has no description for readers who cannot see it; add one: ![description]"
             notes.append(
-                f"the image {sanitize_line(source, 60)!r} {said}({sanitize_line(source, 40)})"
+                f"the image {short_source!r} has no description for readers who cannot see it; "
+                f"add one: ![description]({sanitize_line(source, 40)})"
             )
-        shown = figures.photograph(image, SIDE, alt)
-        return f'<img src="{shown.src}" alt="{escape(alt)}" width="{shown.width}" height="{shown.height}">'
+        image = figures.photograph(pixels, IMAGE_SIDE_PIXELS, alt)
+        size = f'width="{image.width}" height="{image.height}"'
+        return f'<img src="{image.src}" alt="{escape(alt)}" {size}>'
 
-    return draw
+    return render_image
 
 
-def _decoded(source: str, folder: Path, pictures: Pictures) -> figures.Image:
-    """Return the pixels of a picture that a cell has shown, or of a file of the folder."""
-    if source in pictures:
-        return web.decode_picture(pictures[source])
+def _decode_image(source: str, folder: Path, images: NotebookImages) -> figures.Image:
+    """Return the pixels of an image from a cell's output, or from a file in the folder."""
+    if source in images:
+        return web.decode_picture(images[source])
     path = (folder / source).resolve()
-    if "://" in source or not path.is_relative_to(folder.resolve()) or not path.is_file():
+    is_inside = path.is_relative_to(folder.resolve()) and path.is_file()
+    if "://" in source or not is_inside:
         raise InputError("expected an image in the project's folder")
     return to_256(photos.read_photo(path))
