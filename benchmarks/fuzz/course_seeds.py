@@ -15,7 +15,7 @@ from hdrlab.course import plan as plans
 from hdrlab.course.classroom.marks import COLUMNS
 from hdrlab.course.gallery import tokens
 from hdrlab.course.grading import results
-from hdrlab.course.projects.project import EXAMPLE, MANIFEST
+from hdrlab.course.projects.project import EXAMPLE_ABOUT, MANIFEST_FILE
 from hdrlab.course.students import csv_tables
 from hdrlab.io import web
 
@@ -75,7 +75,7 @@ def gradebook(folder: Path) -> None:
 
 def project(folder: Path) -> None:
     """Write what a project says of itself."""
-    (folder / "a.toml").write_text(EXAMPLE, encoding="utf8")
+    (folder / "a.toml").write_text(EXAMPLE_ABOUT, encoding="utf8")
 
 
 def result(folder: Path) -> None:
@@ -142,7 +142,7 @@ def packed(path: Path, folder: Path) -> Iterator[Path]:
     """Yield an archive with this manifest and a picture."""
     folder.mkdir()
     with zipfile.ZipFile(folder / "fuzzed.zip", "w") as archive:
-        archive.writestr(MANIFEST, path.read_bytes())
+        archive.writestr(MANIFEST_FILE, path.read_bytes())
         archive.writestr("artifact.png", b"a picture, which is looked at later")
     yield folder / "fuzzed.zip"
 

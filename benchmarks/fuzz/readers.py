@@ -146,8 +146,8 @@ def read_project(path: Path) -> None:
     """Read what a project says of itself."""
     with seeds.removed(path.parent / "work") as folder:
         folder.mkdir()
-        (folder / project.ABOUT).write_bytes(path.read_bytes())
-        project.look(folder)
+        (folder / project.ABOUT_FILE).write_bytes(path.read_bytes())
+        project.read_project(folder)
 
 
 def read_words(path: Path) -> None:

@@ -1,5 +1,6 @@
 """The commands with which a student hands in a project: `report` and `submit`."""
 
+import dataclasses
 from pathlib import Path
 
 import click
@@ -28,14 +29,14 @@ def report(*, project: Path, example: bool) -> None:
     from hdrlab.course.projects import project as projects, report as reports
 
     if example:
-        source = project / projects.WORDS[0]
+        source = project / projects.REPORT_SOURCES[0]
         if source.exists():
             raise InputError(f"{source}: already exists; edit it, or remove it first")
         source.write_text(reports.example(), encoding="utf8")
         click.echo(source)
         return
     with elapsed("report"):
-        written = reports.write_report(projects.look(project))
+        written = reports.write_report(projects.read_project(project))
     common.echo_notes(written.notes)
     content = ", ".join(written.placed) or "text only"
     click.echo(f"{written.page}: with {content}")
@@ -60,9 +61,9 @@ def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> Non
 
     if out.exists() and not packing.is_archive(out):
         raise InputError(f"{out}: not an archive of hdrlab submit; pass another name with --out")
-    found = projects.look(project)
+    found = projects.read_project(project)
     other_files = tuple(file for file in found.files if file.resolve() != out.resolve())
-    found = found._replace(files=other_files)
+    found = dataclasses.replace(found, files=other_files)
     findings = review.review(found)
     for finding in findings:
         status = "ok" if finding.good else "MISSING"

@@ -112,7 +112,7 @@ class Page(HTMLParser):
 
 
 def bad(folder):
-    findings = review.review(project.look(folder))
+    findings = review.review(project.read_project(folder))
     return {finding.part: finding.said for finding in findings if not finding.good}
 
 
@@ -166,7 +166,7 @@ def test_photos_of_any_format_in_any_folder_go_without_their_location(
     home, tmp_path, hdrlab, suffix, folder
 ):
     photograph(home / folder / f"place.{suffix}", np.full((48, 72, 3), 90, np.uint8), 0.5)
-    packed = {file.name: file for file in handing.pack(project.look(home))}
+    packed = {file.name: file for file in handing.pack(project.read_project(home))}
     file = packed[f"{folder}/place.{suffix}"]
     assert "location" in file.removed
     with Image.open(io.BytesIO(file.data)) as image:
@@ -189,8 +189,8 @@ def test_a_video_is_packed_with_a_warning(home, hdrlab):
 
 
 def test_the_same_project_makes_the_same_archive(home, tmp_path):
-    reports.write_report(project.look(home))
-    found = project.look(home)
+    reports.write_report(project.read_project(home))
+    found = project.read_project(home)
     for name in ("a.zip", "b.zip"):
         handing.write(
             found, tmp_path / name, list(handing.pack(found)), now=handing.datetime(2026, 3, 1)
@@ -200,7 +200,7 @@ def test_the_same_project_makes_the_same_archive(home, tmp_path):
 
 def spoil(home, how):
     """Take something from a project, or break it."""
-    reports.write_report(project.look(home))
+    reports.write_report(project.read_project(home))
     for name in how.split():
         target = home / name
         if target.is_dir():
@@ -228,7 +228,7 @@ def test_a_missing_part_of_a_project_is_reported_with_what_to_do(home, gone, par
 
 
 def test_a_broken_part_of_a_project_is_reported(home):
-    reports.write_report(project.look(home))
+    reports.write_report(project.read_project(home))
     assert bad(home) == {}
     (home / "source" / "hdr.py").write_text("def f(:\n")
     (home / "map.hdr").write_bytes((home / "map.hdr").read_bytes()[:200])
@@ -261,11 +261,11 @@ def test_an_incomplete_project_is_packed_only_on_request(home, tmp_path, hdrlab)
 def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):
     (tmp_path / "secret.py").write_text("SECRET = 1")
     (home / "source" / "link.py").symlink_to(tmp_path / "secret.py")
-    assert not [one for one in project.look(home).files if one.name == "link.py"]
+    assert not [one for one in project.read_project(home).files if one.name == "link.py"]
 
 
 def test_figures_are_placed_in_their_sections(home):
-    page = Page(reports.write_report(project.look(home)).page.read_text())
+    page = Page(reports.write_report(project.read_project(home)).page.read_text())
     heads = [
         "Description",
         "What we learnt",
@@ -292,7 +292,7 @@ def test_figures_are_placed_in_their_sections(home):
 
 
 def test_the_report_runs_nothing_fetches_nothing_and_names_its_pictures(home):
-    text = reports.write_report(project.look(home)).page.read_text()
+    text = reports.write_report(project.read_project(home)).page.read_text()
     page = Page(text)
     assert "script" not in page.tags and "&lt;script&gt;" in text and "By &lt;hand&gt;." in text
     assert page.links == [] and len(page.pictures) == 7
@@ -301,7 +301,7 @@ def test_the_report_runs_nothing_fetches_nothing_and_names_its_pictures(home):
 
 def test_figures_without_their_section_get_one_of_their_own(home):
     (home / "report.md").write_text("Only a word.\n")
-    written = reports.write_report(project.look(home))
+    written = reports.write_report(project.read_project(home))
     order = Page(written.page.read_text()).order
     assert [one for one in order if one in reports.ALONE.values()] == list(reports.ALONE.values())
     assert sum("no section about" in note for note in written.notes) == 6
@@ -314,7 +314,7 @@ def test_a_picture_out_of_the_project_is_left_out_and_that_is_said(home, tmp_pat
         "![a](../secret.png) ![b](https://example.org/b.png) ![c](figures/drawing.svg)"
         " ![](figures/window.png) ![e](/etc/passwd) ![f](file:///etc/passwd)"
     )
-    written = reports.write_report(project.look(home))
+    written = reports.write_report(project.read_project(home))
     pictures = Page(written.page.read_text()).pictures
     assert sum("left out" in note for note in written.notes) >= 4
     assert sum("no description" in note for note in written.notes) == 1

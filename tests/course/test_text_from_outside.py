@@ -31,7 +31,7 @@ def test_an_absurd_number_in_a_plan_is_refused_with_the_plans_name(tmp_path, poi
 def test_a_heading_of_any_level_is_the_projects_title(tmp_path, title):
     (tmp_path / "project.toml").write_text(f"title = {title}")
     with pytest.raises(ValueError, match=r"project\.toml"):
-        project.look(tmp_path)
+        project.read_project(tmp_path)
 
 
 def test_a_deeply_nested_result_is_refused():
@@ -62,7 +62,7 @@ def test_a_member_without_a_name_is_refused(tmp_path):
 def test_a_lone_surrogate_in_a_notebook_does_not_stop_the_report(tmp_path):
     cells = [{"cell_type": "markdown", "source": "# Title \ud800 x\n\nWords \udfff."}]
     (tmp_path / "report.ipynb").write_text(json.dumps({"cells": cells}))
-    page = report.write_report(project.look(tmp_path)).page
+    page = report.write_report(project.read_project(tmp_path)).page
     assert "Title ? x" in page.read_text(encoding="utf8")
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.gallery import pictures, store
-from hdrlab.course.projects.project import MANIFEST
+from hdrlab.course.projects.project import MANIFEST_FILE
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students.roster import Roster
 from hdrlab.course.submissions.archives import unpack
@@ -105,15 +105,15 @@ def _picture(source: Path, team: str) -> Entry:
 
 
 def _archive(folder: Path, team: str) -> Entry:
-    manifest = folder / MANIFEST
+    manifest = folder / MANIFEST_FILE
     if not manifest.is_file() or manifest.stat().st_size > SMALL:
-        raise InputError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST}")
+        raise InputError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST_FILE}")
     try:
         said: Any = json.loads(manifest.read_text(encoding="utf8"))
         title, caption, artifact = (str(said[name]) for name in ("title", "caption", "artifact"))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise InputError(
-            f"expected an archive of `hdrlab submit`, its {MANIFEST} is damaged"
+            f"expected an archive of `hdrlab submit`, its {MANIFEST_FILE} is damaged"
         ) from None
     inside = {
         path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()

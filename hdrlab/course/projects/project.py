@@ -1,45 +1,76 @@
-"""A student's project as it lies in its folder: what the assignment asks for, and where it is.
+"""Find the files of a student's project in its folder.
 
 project/
   project.toml      students, title and caption of the artifact
-  report.md         the words (or report.ipynb), of which `hdrlab report` makes report.html
+  report.md         the text (or report.ipynb), from which `hdrlab report` makes report.html
   photographs/      the bracket as it came from the camera
   map.hdr           the radiance map, or .exr or .pfm
   response.csv      the response curve, as `hdrlab calibrate` or `io.response_files` writes it
-  artifact.jpg      the picture for the wall, or .png or .tif
+  artifact.jpg      the tone-mapped image for the gallery, or .png or .tif
   *.py, *.ipynb     the source, also in folders
 """
 
 import os
 import tomllib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 from hdrlab.io import response_files
 from hdrlab.io.album import SUFFIXES
 
+# names of folders and suffixes of files
 FILES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("files.toml").read_text("utf8"))
-ALBUMS, MAPS, ARTIFACTS = (tuple(FILES[one]) for one in ("albums", "maps", "artifacts"))
-ABOUT = "project.toml"
-PAGE = "report.html"
-WORDS = ("report.md", "report.ipynb")
-MANIFEST = "submission.json"  # of an archive
-EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbor"\ncaption = "Seven hand-held frames."\n'
+ALBUMS: tuple[str, ...] = tuple(FILES["albums"])
+MAP_SUFFIXES: tuple[str, ...] = tuple(FILES["maps"])
+ARTIFACT_SUFFIXES: tuple[str, ...] = tuple(FILES["artifacts"])
+MAP_STEMS = ("map", "radiance", "hdr")
+CURVE_STEMS = ("response", "curve", "response.luminance")
+ARTIFACT_STEM = "artifact"
+ABOUT_FILE = "project.toml"
+REPORT_PAGE = "report.html"
+REPORT_SOURCES = ("report.md", "report.ipynb")
+# in an archive of `hdrlab submit`
+MANIFEST_FILE = "submission.json"
+EXAMPLE_ABOUT = (
+    'students = ["b0123", "b0456"]\n'
+    'title = "Dusk at the harbor"\n'
+    'caption = "Seven hand-held frames."\n'
+)
+MAX_STUDENT_CHARACTERS = 80
+MAX_TITLE_CHARACTERS = 60
+MAX_CAPTION_CHARACTERS = 280
 
 
-class About(NamedTuple):
-    """Whose project it is, and what stands under the artifact."""
+@dataclass(frozen=True)
+class About:
+    """The students of a project, and the title and caption of its artifact."""
 
     students: tuple[str, ...] = ()
     title: str = ""
     caption: str = ""
 
 
-class Project(NamedTuple):
-    """What was found, by its paths; None or empty where there is none."""
+@dataclass(frozen=True, kw_only=True)
+class Project:
+    """The files of a project; None or empty for those that it does not have.
+
+    Attributes
+    ----------
+    folder : the project's folder
+    about : what project.toml says
+    files : all files
+    photographs : the photos of the bracket
+    map : the radiance map
+    curve : the response curve
+    artifact : the tone-mapped image
+    words : the text of the report
+    page : the report as a page
+    sources : programs and notebooks
+    """
 
     folder: Path
     about: About
@@ -57,76 +88,97 @@ class Project(NamedTuple):
         return path.relative_to(self.folder).as_posix()
 
 
-def look(folder: str | Path) -> Project:
-    """Return what a project's folder holds.
+def read_project(folder: str | Path) -> Project:
+    """Find the files of a project in its folder.
 
     Raises
     ------
-    ValueError
-        For what is no folder, and a `project.toml` that cannot be read.
+    InputError
+        If there is no such folder, or its `project.toml` cannot be read.
     """
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"{folder}: expected the folder of a project")
-    files = tuple(sorted(_files(folder)))
-    top = [path for path in files if path.parent == folder]
-    album = next((folder / name for name in ALBUMS if (folder / name).is_dir()), None)
-    words = next((folder / name for name in WORDS if (folder / name) in files), None)
+    files = tuple(sorted(_iter_files(folder)))
+    top_files = [path for path in files if path.parent == folder]
+    albums = [folder / name for name in ALBUMS if (folder / name).is_dir()]
+    photographs: tuple[Path, ...] = ()
+    if albums:
+        photographs = tuple(
+            path for path in files if path.parent == albums[0] and path.suffix.lower() in SUFFIXES
+        )
+    report_sources = [folder / name for name in REPORT_SOURCES if folder / name in files]
+    words = report_sources[0] if report_sources else None
+    page = folder / REPORT_PAGE
+    maps = _with_suffix(top_files, MAP_SUFFIXES)
+    curves = _with_suffix(top_files, tuple(response_files.FORMS))
+    artifacts = _with_suffix(top_files, ARTIFACT_SUFFIXES)
+    radiance_map = _first_named(maps, MAP_STEMS)
+    if radiance_map is None and len(maps) == 1:
+        radiance_map = maps[0]
     return Project(
-        folder,
-        _about(folder / ABOUT),
-        files,
-        tuple(path for path in files if path.parent == album and path.suffix.lower() in SUFFIXES),
-        _one(top, ("map", "radiance", "hdr"), MAPS),
-        _one(top, ("response", "curve", "response.luminance"), tuple(response_files.FORMS)),
-        _one(top, ("artifact",), ARTIFACTS, strict=True),
-        words,
-        folder / PAGE if folder / PAGE in files else None,
-        tuple(path for path in files if path.suffix.lower() in FILES["sources"] and path != words),
+        folder=folder,
+        about=_read_about(folder / ABOUT_FILE),
+        files=files,
+        photographs=photographs,
+        map=radiance_map,
+        curve=_first_named(curves, CURVE_STEMS),
+        artifact=_first_named(artifacts, (ARTIFACT_STEM,)),
+        words=words,
+        page=page if page in files else None,
+        sources=tuple(
+            path for path in files if path.suffix.lower() in FILES["sources"] and path != words
+        ),
     )
 
 
-def _files(folder: Path) -> Iterator[Path]:
-    """Yield the plain files of a folder and those below, without caches, hidden ones and links."""
-    for home, folders, names in os.walk(folder):
-        folders[:] = [one for one in folders if one not in FILES["left_out"] and one[0] != "."]
+def _iter_files(folder: Path) -> Iterator[Path]:
+    """Yield the plain files in a folder and its subfolders, without caches, hidden files and links."""
+    for parent, subfolders, names in os.walk(folder):
+        # os.walk enters the subfolders that are left in the list
+        subfolders[:] = [
+            name
+            for name in subfolders
+            if name not in FILES["left_out"] and not name.startswith(".")
+        ]
         for name in names:
-            path = Path(home, name)
-            if (
-                name[0] != "."
-                and not path.is_symlink()
-                and path.is_file()
-                and not name.endswith(".pyc")
-            ):
+            if name.startswith(".") or name.endswith(".pyc"):
+                continue
+            path = Path(parent, name)
+            if path.is_file() and not path.is_symlink():
                 yield path
 
 
-def _one(
-    files: list[Path], stems: tuple[str, ...], suffixes: tuple[str, ...], *, strict: bool = False
-) -> Path | None:
-    """Return the file of one of these names; without one, the only file of these suffixes unless `strict`."""
-    fitting = [path for path in files if path.name.lower().endswith(suffixes)]
+def _with_suffix(files: list[Path], suffixes: tuple[str, ...]) -> list[Path]:
+    """Return the files whose name ends with one of the suffixes."""
+    return [path for path in files if path.name.lower().endswith(suffixes)]
+
+
+def _first_named(files: list[Path], stems: tuple[str, ...]) -> Path | None:
+    """Return the file with the first of these names that there is, up to the first dot, or None."""
     for stem in stems:
-        for path in fitting:
+        for path in files:
             if path.name.lower().split(".")[0] == stem.split(".")[0]:
                 return path
-    return fitting[0] if len(fitting) == 1 and not strict and suffixes == MAPS else None
+    return None
 
 
-def _about(path: Path) -> About:
+def _read_about(path: Path) -> About:
+    """Read project.toml; return an empty About if there is none."""
     if not path.is_file():
         return About()
     try:
-        said: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf8"))
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: {error}; expected something like\n{EXAMPLE}") from None
-    students = said.get("students", ())
+        entries: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf8"))
+    except (ValueError, RecursionError) as error:  # no UTF-8, no TOML, or nested too deep
+        raise InputError(f"{path}: {error}; expected something like\n{EXAMPLE_ABOUT}") from None
+    students = entries.get("students", ())
     if isinstance(students, str):
         students = (students,)
-    if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
-        raise InputError(f"{path}: expected students as a list of strings, such as\n{EXAMPLE}")
-    title, caption = (
-        sanitize_line(str(said.get(key, "")), most)
-        for key, most in (("title", 60), ("caption", 280))
+    is_list = isinstance(students, list | tuple)
+    if not is_list or not all(isinstance(student, str) for student in students):
+        raise InputError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE_ABOUT}")
+    return About(
+        students=tuple(sanitize_line(student, MAX_STUDENT_CHARACTERS) for student in students),
+        title=sanitize_line(str(entries.get("title", "")), MAX_TITLE_CHARACTERS),
+        caption=sanitize_line(str(entries.get("caption", "")), MAX_CAPTION_CHARACTERS),
     )
-    return About(tuple(sanitize_line(one, 80) for one in students), title, caption)

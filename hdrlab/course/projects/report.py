@@ -13,7 +13,13 @@ from markupsafe import Markup
 
 from hdrlab.core.arrays import to_256
 from hdrlab.course.projects import words
-from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
+from hdrlab.course.projects.project import (
+    ALBUMS,
+    EXAMPLE_ABOUT,
+    REPORT_PAGE,
+    REPORT_SOURCES,
+    Project,
+)
 from hdrlab.errors import InputError
 from hdrlab.io import decode, exif_exposure, files, photos, radiance, response_files
 from hdrlab.show import plots
@@ -47,7 +53,7 @@ def write_report(project: Project) -> Written:
     Parameters
     ----------
     project : Project
-        What `project.look` found.
+        What `project.read_project` found.
 
     Raises
     ------
@@ -55,7 +61,9 @@ def write_report(project: Project) -> Written:
         Where there are no words to make a page of.
     """
     if project.words is None:
-        raise InputError(f"{project.folder}: no text for the report; write {' or '.join(WORDS)}")
+        raise InputError(
+            f"{project.folder}: expected words for the report, in {' or '.join(REPORT_SOURCES)}"
+        )
     said = words.read(project.words)
     notes = list(said.notes)
     found = dict(_figures(project, notes))
@@ -64,7 +72,7 @@ def write_report(project: Project) -> Written:
     title = said.title or project.about.title or project.folder.resolve().name
     shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
     text = templates.render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
-    return Written(files.write(project.folder / PAGE, text), tuple(found), tuple(notes))
+    return Written(files.write(project.folder / REPORT_PAGE, text), tuple(found), tuple(notes))
 
 
 def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
@@ -87,7 +95,7 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
         try:
             yield name, make(source)
         except (ValueError, OSError) as error:
-            notes.append(f"cannot show the {name}: {error}")
+            notes.append(f"the {name} cannot be shown: {error}")
 
 
 def _artifact(path: Path) -> figures.Illustration:
@@ -136,4 +144,4 @@ def _parts(said: words.ReportText, found: dict[str, Any]) -> Iterator[Part]:
 def example() -> str:
     """Return words to begin a report with, and what goes into `project.toml`."""
     heads = "\n\n".join(f"## {name.capitalize()}\n\n..." for name in words.TOPIC_PATTERNS)
-    return f"# The title of your project\n\n{heads}\n\n<!-- project.toml:\n{EXAMPLE}-->\n"
+    return f"# The title of your project\n\n{heads}\n\n<!-- project.toml:\n{EXAMPLE_ABOUT}-->\n"

@@ -17,7 +17,14 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
+from hdrlab.course.projects.project import (
+    ABOUT_FILE,
+    ALBUMS,
+    EXAMPLE_ABOUT,
+    MANIFEST_FILE,
+    REPORT_PAGE,
+    Project,
+)
 from hdrlab.course.projects.words import TOPIC_PATTERNS
 from hdrlab.course.source_code import names
 from hdrlab.course.submissions.archives.members import (
@@ -85,9 +92,13 @@ def check_students(project: Project) -> PartReview:
     """Check who hands the project in."""
     students = project.about.students
     if not students:
-        return PartReview(problems=(f"Write a file {ABOUT} with your names:\n{EXAMPLE}",))
+        return PartReview(
+            problems=(f"Write a file {ABOUT_FILE} that says who you are:\n{EXAMPLE_ABOUT}",)
+        )
     if len(students) > MAX_TEAM_SIZE:
-        problem = f"A team has at most {MAX_TEAM_SIZE} students, {ABOUT} names {len(students)}."
+        problem = (
+            f"A team has at most {MAX_TEAM_SIZE} students, {ABOUT_FILE} names {len(students)}."
+        )
         return PartReview(problems=(problem,))
     return PartReview(" and ".join(students))
 
@@ -95,14 +106,14 @@ def check_students(project: Project) -> PartReview:
 def check_title(project: Project) -> PartReview:
     """Check that the artifact has a title."""
     if project.about.students and not project.about.title:
-        return PartReview(problems=(f'Give your artifact a title: title = "..." in {ABOUT}.',))
+        return PartReview(problems=(f'Give your artifact a title: title = "..." in {ABOUT_FILE}.',))
     return PartReview()
 
 
 def check_source(project: Project) -> PartReview:
     """Check that programs and notebooks are there, can be read, and import what exists."""
     if not project.sources:
-        problem = "There is no source code: put your programs and notebooks into the folder."
+        problem = "There is no source: put your programs and notebooks into the folder."
         return PartReview(problems=(problem,))
     problems = []
     for path in project.sources:
@@ -151,11 +162,13 @@ def _missing_imports(project: Project) -> list[str]:
 def check_report(project: Project) -> PartReview:
     """Check that the report is up to date, has all sections, and loads nothing from the web."""
     if project.page is None:
-        problem = f"There is no {PAGE}. Run `hdrlab report`, which makes it from report.md."
+        problem = f"There is no {REPORT_PAGE}. Run `hdrlab report`, which makes it from report.md."
         return PartReview(problems=(problem,))
     problems = []
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:
-        problems.append(f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again.")
+        problems.append(
+            f"{project.words.name} is newer than {REPORT_PAGE}: run `hdrlab report` again."
+        )
     html = project.page.read_text(encoding="utf8", errors="replace")
     headings = re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", html, re.DOTALL | re.IGNORECASE)
     all_headings = " ".join(headings)
@@ -165,11 +178,11 @@ def check_report(project: Project) -> PartReview:
         if not re.search(pattern, all_headings, re.IGNORECASE)
     ]
     if missing:
-        problems.append(f"{PAGE} has no heading about: {', '.join(missing)}.")
+        problems.append(f"{REPORT_PAGE} has no heading about: {', '.join(missing)}.")
     external = EXTERNAL_RESOURCE.search(html)
     if external:
-        problems.append(f"{PAGE} loads {external[1][:80]}, which may be gone later.")
-    return PartReview(PAGE, tuple(problems))
+        problems.append(f"{REPORT_PAGE} loads {external[1][:80]}, which may be gone later.")
+    return PartReview(REPORT_PAGE, tuple(problems))
 
 
 def check_photographs(project: Project) -> PartReview:
@@ -191,7 +204,7 @@ def check_photographs(project: Project) -> PartReview:
             problems.append(f"{name} has no exposure time in EXIF. Use the camera's own file.")
         exposures.add(header.exposure)
     if not problems and len(exposures) == 1:
-        problems.append("All photos have the same exposure, so they are not a bracket.")
+        problems.append("All photos have the same exposure, so they form no bracket.")
     return PartReview(f"{count}, {len(exposures)} exposures", tuple(problems))
 
 
@@ -203,7 +216,7 @@ def check_map(project: Project) -> PartReview:
     E = radiance.read_radiance(project.map, clean=True)
     name = project.name(project.map)
     if not np.any(E > 0) or E.max() == E.min():
-        return PartReview(problems=(f"{name} has the same value everywhere.",))
+        return PartReview(problems=(f"{name} holds the same value everywhere.",))
     return PartReview(f"{name}, {E.shape[1]} x {E.shape[0]}")
 
 
@@ -222,10 +235,10 @@ def check_archive(project: Project, limits: ArchiveLimits = LIMITS) -> PartRevie
         Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files
     ]
     try:
-        check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
+        check_names([MANIFEST_FILE, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.max_total_bytes, limits)
     except ArchiveRejected as reason:
-        return PartReview(problems=(f"The gallery would reject the archive: {reason}.",))
+        return PartReview(problems=(f"The course would refuse the archive: {reason}.",))
     return PartReview()
 
 

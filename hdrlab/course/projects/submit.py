@@ -4,12 +4,12 @@ import hashlib
 import json
 import zipfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 import hdrlab
-from hdrlab.course.projects.project import MANIFEST, Project
+from hdrlab.course.projects.project import MANIFEST_FILE, Project
 from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, metadata
@@ -96,14 +96,14 @@ def write(
         "version": MANIFEST_VERSION,
         "made": (now or datetime.now(UTC)).isoformat(timespec="seconds"),
         "hdrlab": hdrlab.__version__,
-        **project.about._asdict(),
+        **asdict(project.about),
         "artifact": project.name(project.artifact),
         "map": project.name(project.map) if project.map else None,
         "photographs": [project.name(path) for path in project.photographs],
         "files": digests,
     }
     manifest_text = json.dumps(manifest, indent=1, ensure_ascii=False) + "\n"
-    members = {MANIFEST: manifest_text.encode()}
+    members = {MANIFEST_FILE: manifest_text.encode()}
     for file in packed_files:
         members[file.name] = file.data
     data = make_zip(members)
@@ -116,4 +116,4 @@ def is_archive(path: Path) -> bool:
     if not zipfile.is_zipfile(path):
         return False
     with zipfile.ZipFile(path) as opened:
-        return MANIFEST in opened.namelist()
+        return MANIFEST_FILE in opened.namelist()
