@@ -1,7 +1,8 @@
-"""An autograder for Gradescope: a zip with this very hdrlab, its checks, and scripts to set up and to run.
+"""Export autograders for Gradescope: a zip with hdrlab, its checks, and the scripts that Gradescope runs.
 
-The zip holds the library as it is installed here, so that what grades is what was tried. The hidden
-checks and the secret in it are for the instructor's eyes: students never see the zip.
+The zip holds the library as it is installed here, so that Gradescope grades with the version that
+the instructor has tried. It also holds the hidden checks and the secret of the course; students
+never see the zip.
 """
 
 import json
@@ -15,10 +16,11 @@ from hdrlab.course.sandbox.subprocess_runner import LIBRARY
 from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.io.files import write
 
-SKIPPED = (".pyc", ".ipynb")
-LARGE = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")  # no check needs them
-SCRIPTS = Path(__file__).parent / "gradescope_files"  # which Gradescope runs
-PROGRAMS = ("setup.sh", "run_autograder")
+SKIPPED_SUFFIXES = (".pyc", ".ipynb")
+# large files that no check needs
+SKIPPED_FILES = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")
+SCRIPTS_FOLDER = Path(__file__).parent / "gradescope_files"
+EXECUTABLE_FILES = ("setup.sh", "run_autograder")
 
 
 def export(
@@ -29,50 +31,57 @@ def export(
     plan_file: Path | None = None,
     secret: str = "",
 ) -> Iterator[Path]:
-    """Write an autograder zip for each homework, and yield each when it is there.
+    """Write an autograder zip for each homework, and yield each once it is written.
 
     Parameters
     ----------
-    plan : what is in each homework
-    folder : made where it is missing
-    hidden : folder with checks of the instructor's own
-    plan_file : the plan's file, where it is not the package's
-    secret : the course's, from which each student's inputs are drawn; without it all get the same
+    plan : the homeworks
+    folder : the folder, which is made if it is missing
+    hidden : folder with the instructor's own checks
+    plan_file : file of the plan, if it is not the package's
+    secret : secret of the course, which draws each student's inputs; without it all get the same
     """
     folder.mkdir(parents=True, exist_ok=True)
-    library, own = dict(_library()), sorted(hidden.glob("*.py")) if hidden else []
-    for name in plan.homeworks:
-        files = {
-            **library,
-            **{script.name: script.read_bytes() for script in SCRIPTS.iterdir()},
-            "requirements.txt": "\n".join(requirements()).encode() + b"\n",
-            "plan.toml": (plan_file or PLAN).read_bytes(),
-            "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),
-            **{f"hidden/{one.name}": one.read_bytes() for one in own},
-            **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
-        }
-        yield write(folder / f"{name}_autograder.zip", make_zip(files, PROGRAMS))
+    shared = dict(_library_files())
+    for script in SCRIPTS_FOLDER.iterdir():
+        shared[script.name] = script.read_bytes()
+    shared["requirements.txt"] = "\n".join(requirements()).encode() + b"\n"
+    shared["plan.toml"] = (plan_file or PLAN).read_bytes()
+    hidden_checks = {}
+    if hidden is not None:
+        for path in sorted(hidden.glob("*.py")):
+            hidden_checks[f"hidden/{path.name}"] = path.read_bytes()
+    for name, homework in plan.homeworks.items():
+        settings = json.dumps({"homework": name, "secret": secret})
+        files = {**shared, "settings.json": settings.encode(), **hidden_checks}
+        for task in homework.tasks:
+            files.update(_own_task_files(task))
+        yield write(folder / f"{name}_autograder.zip", make_zip(files, EXECUTABLE_FILES))
 
 
-def _own(task: Task) -> Iterator[tuple[str, bytes]]:
-    """Yield the files of a task that is not hdrlab's, beside the plan: solution, checks and mistakes."""
-    if task.own is not None:
-        home = task.own.parent
-        mistakes = sorted(home.glob(f"mistakes/**/{task.id}_*.py"))
-        for file in (task.own, home / f"test_{task.id}.py", *mistakes):
-            yield file.relative_to(home).as_posix(), file.read_bytes()
+def _own_task_files(task: Task) -> Iterator[tuple[str, bytes]]:
+    """Yield solution, checks and known mistakes of an instructor's own task, named from the plan."""
+    if task.own is None:
+        return
+    home = task.own.parent
+    mistakes = sorted(home.glob(f"mistakes/**/{task.id}_*.py"))
+    for path in (task.own, home / f"test_{task.id}.py", *mistakes):
+        yield path.relative_to(home).as_posix(), path.read_bytes()
 
 
 def requirements() -> list[str]:
-    """Return what hdrlab needs to run, without its extras."""
-    return [one for one in requires("hdrlab") or () if "extra ==" not in one]
+    """Return the packages that hdrlab needs, without its extras."""
+    return [
+        requirement for requirement in requires("hdrlab") or () if "extra ==" not in requirement
+    ]
 
 
-def _library() -> Iterator[tuple[str, bytes]]:
-    """Yield hdrlab's files as they stand in an installed package: handouts inside of it."""
-    for file in LIBRARY.rglob("*"):
-        name = file.relative_to(LIBRARY).as_posix()
-        if file.is_file() and file.suffix not in SKIPPED and name not in LARGE:
-            yield f"hdrlab/{name}", file.read_bytes()
-    for file in materials.folder("assignments").glob("*.ipynb"):
-        yield f"hdrlab/course/assignments/{file.name}", file.read_bytes()
+def _library_files() -> Iterator[tuple[str, bytes]]:
+    """Yield hdrlab's files as an installed package has them, handouts included."""
+    for path in LIBRARY.rglob("*"):
+        name = path.relative_to(LIBRARY).as_posix()
+        is_skipped = path.suffix in SKIPPED_SUFFIXES or name in SKIPPED_FILES
+        if path.is_file() and not is_skipped:
+            yield f"hdrlab/{name}", path.read_bytes()
+    for path in materials.folder("assignments").glob("*.ipynb"):
+        yield f"hdrlab/course/assignments/{path.name}", path.read_bytes()

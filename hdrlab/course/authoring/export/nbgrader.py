@@ -1,12 +1,12 @@
-"""A course for nbgrader: source notebooks that its own `generate_assignment` and `autograde` accept.
+"""Export the course for nbgrader, as source notebooks for its `generate_assignment` and `autograde`.
 
-The solution of a task stands inside its function, between nbgrader's marks, helpers and all, so
-that the student's version keeps signature and docstring. A test cell calls `check`, and its last
-line is a number: the points, which nbgrader takes for partial credit.
+The solution of a task is inside its function, between nbgrader's marks, with its helpers. So the
+student's version keeps signature and docstring. A test cell calls `check`, and its last line is the
+number of points, which nbgrader takes for partial credit.
 
-nbgrader runs a student's cells in the very kernel that runs the test cells. Our checks call the
-functions in another process, but what stands around them in that kernel can be tampered with: where
-grades count among strangers, grade with `hdrlab grade` and its strict tier.
+nbgrader runs a student's cells in the same kernel as the test cells. hdrlab's checks call the
+functions in another process, but a student's cells can tamper with everything around them in that
+kernel. Where students may try that, grade with `hdrlab grade` and its strict tier.
 """
 
 import ast
@@ -23,54 +23,71 @@ from hdrlab.course.source_code import inline
 from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
-SCHEMA = 3  # of nbgrader's metadata, which 0.6 to 0.9 write
-CONFIG = Path(__file__).parent / "nbgrader_config.txt"  # in nbgrader's own language
+# version of nbgrader's metadata, which nbgrader 0.6 to 0.9 write
+METADATA_SCHEMA_VERSION = 3
+CONFIG_TEMPLATE = Path(__file__).parent / "nbgrader_config.txt"
+BEGIN_SOLUTION = "    ### BEGIN SOLUTION"
+END_SOLUTION = "    ### END SOLUTION"
 
 
 def export(plan: Plan, folder: Path) -> Iterator[Path]:
-    """Write the course into a folder, and yield each file when it is there.
+    """Write the course into a folder, and yield each file once it is written.
 
     Parameters
     ----------
-    plan : what is in each homework; its notebooks are those in `assignments`
-    folder : made where it is missing
+    plan : the homeworks; their notebooks are those in `assignments`
+    folder : the folder, which is made if it is missing
     """
     for name, homework in plan.homeworks.items():
         handout = materials.folder("assignments") / f"{name}.ipynb"
         if not handout.is_file():
-            raise InputError(f"no assignment {handout}; run hdrlab course build first")
+            raise InputError(f"{handout}: there is no such handout; run `hdrlab course build`")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
         yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
-    yield handouts.write_text(folder / "nbgrader_config.py", CONFIG.read_text(encoding="utf8"))
+    config = CONFIG_TEMPLATE.read_text(encoding="utf8")
+    yield handouts.write_text(folder / "nbgrader_config.py", config)
 
 
 def source(handout: dict[str, Any], homework: Homework) -> str:
-    """Return a handout as nbgrader's source notebook: with solutions, points and locks."""
+    """Return a handout as nbgrader's source notebook, with solutions, points and locked cells."""
     tasks = {task.id: task for task in homework.tasks}
-    cells = [_cell({**cell, "source": "".join(cell["source"])}, tasks) for cell in handout["cells"]]
-    missing = set(tasks) - {
-        one.task for one in reader.cells_of(json.dumps(handout).encode(), "")[0]
-    }
+    cells = []
+    for cell in handout["cells"]:
+        marked = _mark_cell({**cell, "source": "".join(cell["source"])}, tasks)
+        if marked is not None:
+            cells.append(marked)
+    handout_cells, _ = reader.cells_of(json.dumps(handout).encode(), "")
+    missing = set(tasks) - {cell.task for cell in handout_cells}
     if missing:
+        names = ", ".join(sorted(missing))
         raise InputError(
-            f"the assignment {homework.name} has no {', '.join(sorted(missing))}; "
-            "run hdrlab course build again"
+            f"the handout of {homework.name} has no {names}; run `hdrlab course build` again"
         )
-    return handouts.to_text({**handout, "cells": [cell for cell in cells if cell is not None]})
+    return handouts.to_text({**handout, "cells": cells})
 
 
-def _cell(cell: dict[str, Any], tasks: dict[str, Task]) -> dict[str, Any] | None:
-    """Return a cell with nbgrader's marks; None for those of a task that the plan leaves out."""
+def _mark_cell(cell: dict[str, Any], tasks: dict[str, Task]) -> dict[str, Any] | None:
+    """Return a cell with nbgrader's marks; None for a cell of a task that is not in the plan."""
     kind, _, name = cell["id"].partition("-")
     if cell["cell_type"] != "code" or kind not in ("task", "check"):
         return cell
     if name not in tasks:
         return None
-    asks, points = kind == "check", tasks[name].points
-    marks = {"grade_id": cell["id"], "schema_version": SCHEMA, "task": False, "solution": not asks}
-    marks |= {"grade": asks, "locked": asks} | ({"points": points} if asks else {})
-    asked = f'found = check("{name}", worth={points:g})\ndisplay(found)\nfound.points'
-    text = asked if asks else solved(tasks[name])
+    is_check = kind == "check"
+    marks: dict[str, Any] = {
+        "grade_id": cell["id"],
+        "schema_version": METADATA_SCHEMA_VERSION,
+        "task": False,
+        "solution": not is_check,
+        "grade": is_check,
+        "locked": is_check,
+    }
+    if is_check:
+        points = tasks[name].points
+        marks["points"] = points
+        text = f'found = check("{name}", worth={points:g})\ndisplay(found)\nfound.points'
+    else:
+        text = solved(tasks[name])
     return {**cell, "metadata": {**cell["metadata"], "nbgrader": marks}, "source": text}
 
 
@@ -82,18 +99,18 @@ def solved(task: Task) -> str:
     >>> solved(Task("count", "capture.planning.count", 10)).splitlines()[2:4]
     ['    ### BEGIN SOLUTION', '    import math']
     """
-    head, block = (
-        stubs.stub(task).rpartition("\n")[0],
-        inline.inlined({task.id: task.function})[task.id],
-    )
-    around = "\n\n".join(filter(None, ("\n".join(block.imports), block.needs)))
-    inside = "\n".join(filter(None, (textwrap.indent(around, "    "), _body(block.source))))
-    return f"{head}\n    ### BEGIN SOLUTION\n{inside}\n    ### END SOLUTION"
+    # the stub without its last line, which raises NotImplementedError
+    signature, _, _ = stubs.stub(task).rpartition("\n")
+    block = inline.inlined({task.id: task.function})[task.id]
+    helpers = "\n\n".join(part for part in ("\n".join(block.imports), block.needs) if part)
+    solution = [part for part in (textwrap.indent(helpers, "    "), _body(block.source)) if part]
+    return "\n".join([signature, BEGIN_SOLUTION, *solution, END_SOLUTION])
 
 
-def _body(source: str) -> str:
+def _body(function: str) -> str:
     """Return the lines of a function below its docstring."""
-    (node,) = ast.parse(source).body
+    (node,) = ast.parse(function).body
     assert isinstance(node, ast.FunctionDef)
-    first = node.body[0].end_lineno if ast.get_docstring(node) else node.body[0].lineno - 1
-    return "\n".join(source.splitlines()[first:])
+    first = node.body[0]
+    skipped_lines = first.end_lineno if ast.get_docstring(node) else first.lineno - 1
+    return "\n".join(function.splitlines()[skipped_lines:])
