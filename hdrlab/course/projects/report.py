@@ -1,13 +1,15 @@
-"""The report on a student's project: their words, and bracket, curves, map and artifact where they belong.
+"""Write the report on a student's project as a page: text, bracket, response curve, map and artifact.
 
-The artifact opens the page. The bracket follows the description, the curves the algorithm, the map
-the results; where such a section is missing the figure gets one of its own. Nothing on the page is
-fetched, and nothing on it runs.
+The artifact opens the page. The bracket follows the section about the description, the response
+curve the one about the algorithm, and the map the results. A figure whose section is missing gets a
+section of its own. The page loads nothing from the network and runs no scripts.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 
@@ -26,122 +28,157 @@ from hdrlab.show import plots
 from hdrlab.show.pages import sections, templates
 from hdrlab.show.plots import figures
 
-AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
-ALONE = {"bracket": "The bracket", "curves": "The response", "map": "The radiance map"}
+# figure -> the topic whose section it follows
+TOPIC_OF_FIGURE = {"bracket": "description", "curves": "algorithm", "map": "results"}
+# figure -> heading of its own section, where that topic has none
+OWN_HEADINGS = {"bracket": "The bracket", "curves": "The response", "map": "The radiance map"}
+# figure -> the file from which it is made, for students who do not have it
+WANTED_FILES = {
+    "artifact": "artifact.jpg, your tone-mapped image",
+    "bracket": f"photographs in the folder {ALBUMS[0]}",
+    "curves": "response.csv, the response curve that you recovered",
+    "map": "map.hdr, your radiance map",
+}
+ARTIFACT_SIDE_PIXELS = 1600
+FRAME_SIDE_PIXELS = 400
+# of photos that do not state it, so that they can be sorted
+DEFAULT_ISO = 100.0
 TEMPLATE = "project_report.html"
 
 
-class Part(NamedTuple):
-    """A section of the page: its words and the figures that were placed in it, by name."""
+@dataclass(frozen=True)
+class Part:
+    """A section of the page: its text, and the figures that follow it, by name."""
 
     heading: str
     html: Markup
     figures: dict[str, Any]
 
 
-class Written(NamedTuple):
-    """The page, what was placed on it, and what is missing or could not be shown, in words."""
+@dataclass(frozen=True)
+class WrittenReport:
+    """The result of writing a report.
+
+    Attributes
+    ----------
+    page : the written page
+    placed : the names of its figures
+    notes : what is missing or could not be shown, as sentences
+    """
 
     page: Path
     placed: tuple[str, ...]
     notes: tuple[str, ...]
 
 
-def write_report(project: Project) -> Written:
+def write_report(project: Project) -> WrittenReport:
     """Write `report.html` into a project's folder.
 
     Parameters
     ----------
     project : Project
-        What `project.read_project` found.
+        The project, as `project.read_project` returns it.
 
     Raises
     ------
-    ValueError
-        Where there are no words to make a page of.
+    InputError
+        If the project has no text for the report.
     """
     if project.words is None:
-        raise InputError(
-            f"{project.folder}: expected words for the report, in {' or '.join(REPORT_SOURCES)}"
-        )
-    said = words.read(project.words)
-    notes = list(said.notes)
-    found = dict(_figures(project, notes))
-    parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
-    notes += [f"the report has no section about: {name}" for name in said.missing()]
-    title = said.title or project.about.title or project.folder.resolve().name
-    shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
-    text = templates.render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
-    return Written(files.write(project.folder / REPORT_PAGE, text), tuple(found), tuple(notes))
-
-
-def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
-    """Yield what can be shown, by name; what cannot is noted."""
-    makers: tuple[tuple[str, Any, Callable[[Any], Any], str], ...] = (
-        (
-            "artifact",
-            project.artifact,
-            _artifact,
-            "artifact.jpg, your tone-mapped image",
-        ),
-        ("bracket", project.photographs, _bracket, f"photographs in the folder {ALBUMS[0]}"),
-        ("curves", project.curve, _curves, "response.csv, the response curve that you recovered"),
-        ("map", project.map, _map, "map.hdr, your radiance map"),
+        names = " or ".join(REPORT_SOURCES)
+        raise InputError(f"{project.folder}: expected the text of the report, in {names}")
+    text = words.read(project.words)
+    notes = list(text.notes)
+    figure_of_name = dict(_make_figures(project, notes))
+    notes += [f"the report has no section about: {topic}" for topic in text.missing()]
+    page = templates.render_page(
+        Path(__file__).parent,
+        TEMPLATE,
+        in_words=plots.seconds,
+        title=text.title or project.about.title or project.folder.resolve().name,
+        about=project.about,
+        hero=figure_of_name.get("artifact"),
+        parts=tuple(_make_parts(text, figure_of_name)),
     )
-    for name, source, make, wanted in makers:
-        if not source:
-            notes.append(f"there is no {wanted}")
+    path = files.write(project.folder / REPORT_PAGE, page)
+    return WrittenReport(path, tuple(figure_of_name), tuple(notes))
+
+
+def _make_figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
+    """Yield the name and the content of each figure; note those that are missing or cannot be shown."""
+    makers: dict[str, Callable[[], Any] | None] = dict.fromkeys(WANTED_FILES)
+    if project.artifact:
+        makers["artifact"] = partial(_artifact, project.artifact)
+    if project.photographs:
+        makers["bracket"] = partial(_bracket, project.photographs)
+    if project.curve:
+        makers["curves"] = partial(_curves, project.curve)
+    if project.map:
+        makers["map"] = partial(_map, project.map)
+    for name, make in makers.items():
+        if make is None:
+            notes.append(f"there is no {WANTED_FILES[name]}")
             continue
         try:
-            yield name, make(source)
-        except (ValueError, OSError) as error:
+            figure = make()
+        except (ValueError, OSError) as error:  # a damaged file costs one figure
             notes.append(f"the {name} cannot be shown: {error}")
+            continue
+        yield name, figure
 
 
 def _artifact(path: Path) -> figures.Illustration:
-    return figures.photograph(
-        to_256(photos.read_photo(path)), 1600, "The artifact: the tone-mapped image"
-    )
+    """Return the artifact as a figure."""
+    pixels = to_256(photos.read_photo(path))
+    return figures.photograph(pixels, ARTIFACT_SIDE_PIXELS, "The artifact: the tone-mapped image")
 
 
 def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
-    """Return the photographs from the shortest exposure to the longest, one in memory at a time."""
+    """Return the photos from the shortest to the longest exposure; one at a time is in memory."""
     frames = []
     for path in paths:
-        header = decode.read_header(path)
-        small = figures.fit(to_256(photos.read_photo(path)), 400)
-        time = header.exposure.seconds
-        alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
-        shown = figures.photograph(small, 400, alt)
-        frames.append({"name": path.name, "exposure": header.exposure, "picture": shown})
-    return sorted(frames, key=lambda one: (_light(one["exposure"]), one["name"]))
+        exposure = decode.read_header(path).exposure
+        small = figures.fit(to_256(photos.read_photo(path)), FRAME_SIDE_PIXELS)
+        alt = f"Photograph {path.name}"
+        if exposure.seconds:
+            alt += f", exposed for {plots.seconds(exposure.seconds)}"
+        picture = figures.photograph(small, FRAME_SIDE_PIXELS, alt)
+        frames.append({"name": path.name, "exposure": exposure, "picture": picture})
+    return sorted(frames, key=lambda frame: (_relative_light(frame["exposure"]), frame["name"]))
 
 
-def _light(exposure: exif_exposure.Exposure) -> float:
-    seconds, f_number, iso = exposure
-    return (seconds or 0.0) * (iso or 100.0) / (f_number or 1.0) ** 2
+def _relative_light(exposure: exif_exposure.Exposure) -> float:
+    """Return the exposure as time * ISO / f-number**2, with 0 for an unknown time."""
+    seconds = exposure.seconds or 0.0
+    iso = exposure.iso or DEFAULT_ISO
+    f_number = exposure.f_number or 1.0
+    return seconds * iso / f_number**2
 
 
 def _curves(path: Path) -> dict[str, Any]:
+    """Return the response curve as a figure."""
     return sections.response(response_files.read_curve(path), None)
 
 
 def _map(path: Path) -> dict[str, Any]:
+    """Return the radiance map as a figure."""
     E = radiance.read_radiance(path, clean=True)
-    return sections.radiance(E) | {"size": f"{E.shape[1]} x {E.shape[0]}", "name": path.name}
+    size = f"{E.shape[1]} x {E.shape[0]}"
+    return sections.radiance(E) | {"size": size, "name": path.name}
 
 
-def _parts(said: words.ReportText, found: dict[str, Any]) -> Iterator[Part]:
+def _make_parts(text: words.ReportText, figure_of_name: dict[str, Any]) -> Iterator[Part]:
     """Yield the sections with their figures, then the figures whose section is missing."""
-    waiting = dict(found)
-    for section in said.sections:
-        mine = {name: waiting.pop(name) for name in list(waiting) if AFTER[name] == section.topic}
-        yield Part(section.heading, section.html, mine)
+    waiting = {name: figure_of_name[name] for name in TOPIC_OF_FIGURE if name in figure_of_name}
+    for section in text.sections:
+        names = [name for name in waiting if TOPIC_OF_FIGURE[name] == section.topic]
+        yield Part(section.heading, section.html, {name: waiting.pop(name) for name in names})
     for name, figure in waiting.items():
-        yield Part(ALONE[name], Markup(), {name: figure})
+        yield Part(OWN_HEADINGS[name], Markup(), {name: figure})
 
 
 def example() -> str:
-    """Return words to begin a report with, and what goes into `project.toml`."""
-    heads = "\n\n".join(f"## {name.capitalize()}\n\n..." for name in words.TOPIC_PATTERNS)
-    return f"# The title of your project\n\n{heads}\n\n<!-- project.toml:\n{EXAMPLE_ABOUT}-->\n"
+    """Return a report to start from, with the required headings and an example of `project.toml`."""
+    headings = [f"## {topic.capitalize()}\n\n..." for topic in words.TOPIC_PATTERNS]
+    body = "\n\n".join(headings)
+    return f"# The title of your project\n\n{body}\n\n<!-- project.toml:\n{EXAMPLE_ABOUT}-->\n"
