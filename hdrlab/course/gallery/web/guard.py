@@ -1,7 +1,6 @@
-"""What stands before every page: sizes, hosts, rates and the headers that tell a browser what not to do.
+"""Protect every page of the gallery: check hosts, forms and rates, and add security headers.
 
-It is written to the interface of ASGI itself, so that a request that is refused costs next to
-nothing.
+The guard uses the ASGI interface directly, so that a refused request costs next to nothing.
 """
 
 import asyncio
@@ -9,64 +8,87 @@ import time
 import tomllib
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 from urllib.parse import parse_qsl
 
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-BODY = 16_384  # bytes of a form: a ballot has a few hundred
-PATIENCE = 10.0  # seconds for a form to arrive
-FIELDS = 64
-HEADERS: dict[str, str] = tomllib.loads(Path(__file__).with_name("headers.toml").read_text("utf8"))
+MAX_FORM_BYTES = 16_384  # a ballot has a few hundred
+FORM_TIMEOUT_SECONDS = 10.0
+MAX_FORM_FIELDS = 64
+MAX_REMEMBERED_CLIENTS = 20_000
+FORM_TYPE = "application/x-www-form-urlencoded"
+HSTS_HEADER = (b"strict-transport-security", b"max-age=31536000")
+SECURITY_HEADERS: dict[str, str] = tomllib.loads(
+    Path(__file__).with_name("headers.toml").read_text("utf8")
+)
 
 
 class Refusal(Exception):
-    """A request that is not answered: the status, and a sentence for a person."""
+    """A request is refused, with an HTTP status and a sentence for the reader."""
 
-    def __init__(self, status: int, said: str) -> None:
-        super().__init__(said)
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message)
         self.status = status
-        self.said = said
+        self.message = message
 
 
-class Rate(NamedTuple):
-    """So many at once, and then so many a second."""
+@dataclass(frozen=True)
+class Rate:
+    """A limit of a token bucket: so many requests at once, and so many a second after that."""
 
     burst: float
     per_second: float
 
 
 class Rates:
-    """Who has done how much lately; the longest unseen are forgotten beyond `most` names."""
+    """Count the requests of each client; the clients that were idle longest are forgotten.
 
-    def __init__(self, *, clock: Callable[[], float] = time.monotonic, most: int = 20_000) -> None:
+    Parameters
+    ----------
+    clock : function that returns the time in seconds
+    most : number of clients that are remembered
+    """
+
+    def __init__(
+        self,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        most: int = MAX_REMEMBERED_CLIENTS,
+    ) -> None:
         self._clock = clock
         self._most = most
-        self._seen: OrderedDict[tuple[str, str], tuple[float, float]] = OrderedDict()
+        # (kind, client) -> requests left, and when that was; the client seen last is at the end
+        self._buckets: OrderedDict[tuple[str, str], tuple[float, float]] = OrderedDict()
 
-    def take(self, kind: str, who: str, rate: Rate) -> bool:
-        """Return whether there is room for one more, and count it."""
+    def take(self, kind: str, client: str, rate: Rate) -> bool:
+        """Count one more request of a client, and return whether the rate allows it."""
         now = self._clock()
-        left, then = self._seen.pop((kind, who), (rate.burst, now))
-        left = min(rate.burst, left + (now - then) * rate.per_second)
-        self._seen[kind, who] = (left - 1 if left >= 1 else left, now)
-        if len(self._seen) > self._most:
-            self._seen.popitem(last=False)
-        return left >= 1
+        left, counted_at = self._buckets.pop((kind, client), (rate.burst, now))
+        left = min(rate.burst, left + (now - counted_at) * rate.per_second)
+        is_allowed = left >= 1
+        if is_allowed:
+            left -= 1
+        self._buckets[kind, client] = (left, now)
+        if len(self._buckets) > self._most:
+            self._buckets.popitem(last=False)
+        return is_allowed
 
 
 class Guard:
-    """The application with `HEADERS` on every answer, for one host's name alone."""
+    """Add `SECURITY_HEADERS` to every answer, and answer requests for one host name only."""
 
     def __init__(self, app: ASGIApp, *, host: str, secure: bool) -> None:
         self._app = app
         self._host = host.lower()
-        self._headers = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
+        self._headers = [
+            (name.lower().encode(), value.encode()) for name, value in SECURITY_HEADERS.items()
+        ]
         if secure:
-            self._headers.append((b"strict-transport-security", b"max-age=31536000"))
+            self._headers.append(HSTS_HEADER)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""
@@ -75,8 +97,8 @@ class Guard:
 
         async def answer(message: Message) -> None:
             if message["type"] == "http.response.start":
-                own = {name for name, _ in message["headers"]}
-                extra = [one for one in self._headers if one[0] not in own]
+                present = {name for name, _ in message["headers"]}
+                extra = [(name, value) for name, value in self._headers if name not in present]
                 message = {**message, "headers": [*message["headers"], *extra]}
             await send(message)
 
@@ -84,44 +106,52 @@ class Guard:
             value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"
         ]
         if hosts != [self._host]:
-            return await PlainTextResponse("This gallery has another address.\n", 421)(
-                scope, receive, answer
-            )
+            refusal = PlainTextResponse("This gallery has another address.\n", 421)
+            return await refusal(scope, receive, answer)
         await self._app(scope, receive, answer)
 
 
 async def form(request: Request) -> list[tuple[str, str]]:
-    """Return the fields of a form, or raise a Refusal for what is none, is too large, or takes too long."""
-    if (
-        request.headers.get("content-type", "").split(";")[0].strip()
-        != "application/x-www-form-urlencoded"
-    ):
+    """Read the fields of a form.
+
+    Raises
+    ------
+    Refusal
+        For a request that has no form, and for a form that is too large, takes too long to arrive,
+        or cannot be read.
+    """
+    content_type = request.headers.get("content-type", "").split(";")[0].strip()
+    if content_type != FORM_TYPE:
         raise Refusal(415, "This is not a form of the gallery.")
     try:
-        async with asyncio.timeout(PATIENCE):
+        async with asyncio.timeout(FORM_TIMEOUT_SECONDS):
             body = await _body(request)
     except TimeoutError:
         raise Refusal(408, "The form took too long to arrive.") from None
     try:
         return parse_qsl(
-            body.decode("ascii"), keep_blank_values=True, max_num_fields=FIELDS, errors="strict"
+            body.decode("ascii"),
+            keep_blank_values=True,
+            max_num_fields=MAX_FORM_FIELDS,
+            errors="strict",
         )
     except ValueError:
         raise Refusal(400, "This form cannot be read.") from None
 
 
 async def _body(request: Request) -> bytes:
+    """Read the body of a request, and refuse it once it is too large."""
     body = b""
-    # counted as it comes: a header may claim anything
+    # the bytes are counted as they arrive, for the content-length header may be wrong
     async for piece in request.stream():
         body += piece
-        if len(body) > BODY:
+        if len(body) > MAX_FORM_BYTES:
             raise Refusal(413, "This form is too large.")
     return body
 
 
 def same_origin(request: Request, origin: str) -> None:
-    """Raise a Refusal for a form of another site: every browser names the origin of a form it posts."""
+    """Raise a Refusal for a form from another site; browsers state the origin of each form."""
     site = request.headers.get("sec-fetch-site", "same-origin")
     if request.headers.getlist("origin") != [origin] or site != "same-origin":
         raise Refusal(403, "This form did not come from the gallery.")
