@@ -158,7 +158,7 @@ def links(
             query = "SELECT id FROM voters WHERE link IS NULL ORDER BY id"
             students = [row[0] for row in db.execute(query)]
         rows = tokens.links(db, address, students, emails)
-    csv_tables.write_csv(out, tokens.LINKS, rows, private=True)
+    csv_tables.write_csv(out, tokens.LINK_COLUMNS, rows, private=True)
     click.echo(
         f"{out}: {len(rows)} personal links; send each link only to its student, "
         "because anybody who has it can vote with it"
@@ -229,6 +229,6 @@ def results(*, folder: Path, out: Path) -> None:
         rows = list(ballots.gradebook(db))
         changes = store.changes(db)
     common.echo_notes(changes)
-    csv_tables.write_csv(out, ballots.GRADEBOOK, rows, private=True)
+    csv_tables.write_csv(out, ballots.GRADEBOOK_COLUMNS, rows, private=True)
     method = ballots.METHOD.format(marks=settings.marks)
     click.echo(f"{out}: {len(rows)} students. {method}")

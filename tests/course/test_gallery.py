@@ -114,11 +114,12 @@ def test_the_gradebook_lists_who_voted_but_not_the_votes(tmp_path):
         ballots.cast(db, "dee", [], now=room.clock())
     with closing(store.connect(room.folder)) as db:
         rows = {
-            row[0]: dict(zip(ballots.GRADEBOOK, row, strict=True)) for row in ballots.gradebook(db)
+            row[0]: dict(zip(ballots.GRADEBOOK_COLUMNS, row, strict=True))
+            for row in ballots.gradebook(db)
         }
     assert [who for who, row in rows.items() if row["voted"] == "yes"] == ["ann", "cy"]
     assert [rows[who]["place"] for who in ("eve", "fay", "ann", "ben", "cy")] == [1, 2, 3, 3, 3]
-    assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(ballots.GRADEBOOK)
+    assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(ballots.GRADEBOOK_COLUMNS)
 
 
 @pytest.fixture
@@ -167,7 +168,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
         assert [row["artifact"] for row in csv.DictReader(file)] == ["Dusk", "Dusk", ""]
 
 
-@pytest.mark.parametrize("version", [0, store.VERSION - 1, store.VERSION + 1])
+@pytest.mark.parametrize("version", [0, store.SCHEMA_VERSION - 1, store.SCHEMA_VERSION + 1])
 def test_a_gallery_of_another_version_is_refused_with_a_remedy(tmp_path, hdrlab, version):
     hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00")
     with closing(store.connect(tmp_path / "g")) as db:
@@ -176,7 +177,8 @@ def test_a_gallery_of_another_version_is_refused_with_a_remedy(tmp_path, hdrlab,
         code, said = hdrlab(*words)
         assert code == 2 and said.count("\n") <= 2, said
         assert (
-            f"expected a gallery of version {store.VERSION}, got" in said and "gallery init" in said
+            f"expected a gallery of version {store.SCHEMA_VERSION}, got" in said
+            and "gallery init" in said
         )
     (tmp_path / "g" / store.DATABASE).write_text("half a database")
     assert hdrlab("close", "g")[0] == 2 and "cannot be read" in hdrlab("close", "g")[1]

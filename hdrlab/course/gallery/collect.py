@@ -1,8 +1,8 @@
-"""What is to hang: pictures named after a team or a student, and archives that `hdrlab submit` has made.
+"""Read the artifacts that students hand in: images, and archives of `hdrlab submit`.
 
-Whose an artifact is, the name of its file says, or that of the folder it lies in, as with all that
-is handed in: what stands in an archive's description is the word of whoever made it. A picture
-`team7.jpg` may have a file `team7.txt` beside it: the title in its first line, then a caption.
+The name of the file, or of the folder that holds it, says whose artifact it is, as for all
+submissions. What an archive's manifest says does not count, for anybody can write it. An image
+`team7.jpg` may have a text `team7.txt` beside it: the title in its first line, then a caption.
 """
 
 import hashlib
@@ -12,8 +12,9 @@ import sqlite3
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from hdrlab.course.gallery import pictures, store
 from hdrlab.course.projects.project import MANIFEST_FILE
@@ -22,16 +23,19 @@ from hdrlab.course.students.roster import Roster
 from hdrlab.course.submissions.archives import unpack
 from hdrlab.errors import InputError
 
-# characters
-TITLE = 60
-CAPTION = 280
-SMALL = 1_000_000  # bytes, or characters, of a text
-ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
-NOT_THESE = (".txt", ".csv")
+MAX_TITLE_CHARACTERS = 60
+MAX_CAPTION_CHARACTERS = 280
+# of an image's text file
+MAX_TEXT_CHARACTERS = 1_000_000
+MAX_MANIFEST_BYTES = 1_000_000
+ID_CHARACTERS = 24
+ARCHIVE_SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
+IGNORED_SUFFIXES = (".txt", ".csv")
 
 
-class Entry(NamedTuple):
-    """An artifact that a team hands in."""
+@dataclass(frozen=True)
+class Entry:
+    """An artifact that a team hands in, with the path of its image."""
 
     team: str
     title: str
@@ -40,31 +44,38 @@ class Entry(NamedTuple):
 
 
 def sources(paths: Sequence[Path]) -> list[tuple[Path, str]]:
-    """Return the pictures and archives of files and folders, each with the name that says whose it is."""
-    found = []
+    """Return the images and archives in files and folders, each with the name that says whose it is.
+
+    In a folder, that name is the one of a file or of a subfolder.
+    """
+    named_files = []
     for path in paths:
-        for one in sorted(path.iterdir()) if path.is_dir() else [path]:
-            inside = sorted(one.iterdir()) if one.is_dir() and not one.is_symlink() else [one]
-            found += [(file, one.name) for file in inside]
+        for item in sorted(path.iterdir()) if path.is_dir() else [path]:
+            is_folder = item.is_dir() and not item.is_symlink()
+            files = sorted(item.iterdir()) if is_folder else [item]
+            named_files += [(file, item.name) for file in files]
     return [
-        one for one in found if one[0].suffix.lower() not in NOT_THESE and one[0].name[0] != "."
+        (file, name)
+        for file, name in named_files
+        if file.suffix.lower() not in IGNORED_SUFFIXES and not file.name.startswith(".")
     ]
 
 
 @contextmanager
 def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
-    """Yield the Entry of a picture or an archive, which is unpacked meanwhile.
+    """Yield the Entry of an image or an archive; an archive is unpacked until the block ends.
 
     Parameters
     ----------
-    source, roster : the file, and the class
-    name : says whose it is; the file's own unless told
+    source : the file
+    roster : the class
+    name : the name that says whose it is; by default the file's own
 
     Raises
     ------
-    ValueError
-        For a name that is nobody's, what is no plain file, and an archive with a trap, without a
-        description or an artifact.
+    InputError
+        For a name that is nobody's, for what is no plain file, and for an archive that is rejected
+        or has no manifest or artifact.
     """
     team = roster.owner(name or source.name)
     if team is None:
@@ -73,59 +84,90 @@ def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
         )
     if source.is_symlink() or not source.is_file():
         raise InputError("expected a plain file, got a link, a pipe or a device")
-    if not source.name.lower().endswith(ARCHIVES):
-        yield _picture(source, team)
+    if not source.name.lower().endswith(ARCHIVE_SUFFIXES):
+        yield _image_entry(source, team)
         return
     with tempfile.TemporaryDirectory(prefix="hdrlab-") as scratch:
         folder = Path(scratch) / "submission"
         unpack.unpack(source, folder)
-        yield _archive(folder, team)
+        yield _archive_entry(folder, team)
 
 
-def hang(db: sqlite3.Connection, folder: Path, one: Entry, source: str = "") -> int:
-    """Make an artifact's pictures, put it on the wall, and return how many votes the one before had."""
-    prepared = pictures.prepare(one.picture)
-    seal = hmac.new(store.settings(db).secret, one.team.encode() + b"\0", hashlib.sha256)
-    seal.update(prepared.files["large"])
-    id = seal.hexdigest()[:24]  # nobody can tell the address of another picture
+def hang(db: sqlite3.Connection, folder: Path, new: Entry, source: str = "") -> int:
+    """Add an artifact to the wall in place of the team's earlier one.
+
+    Parameters
+    ----------
+    db : connection to the gallery's database
+    folder : folder of the gallery
+    new : the artifact
+    source : name of the file that was handed in, for the list of changes
+
+    Returns
+    -------
+    int
+        The number of votes of the earlier artifact, which do not count any more.
+    """
+    prepared = pictures.prepare(new.picture)
+    # the id depends on the gallery's secret, so that nobody can guess another image's address
+    keyed_hash = hmac.new(store.settings(db).secret, new.team.encode() + b"\0", hashlib.sha256)
+    keyed_hash.update(prepared.files["large"])
+    id = keyed_hash.hexdigest()[:ID_CHARACTERS]
     pictures.keep(folder / store.PICTURES, id, prepared)
+    artifact = store.Artifact(
+        id=id,
+        team=new.team,
+        title=new.title,
+        caption=new.caption,
+        width=prepared.width,
+        height=prepared.height,
+    )
     with store.transaction(db):
-        made = store.Artifact(id, one.team, one.title, one.caption, prepared.width, prepared.height)
-        return store.hang(db, made, sanitize_line(source, 80))
+        return store.hang(db, artifact, sanitize_line(source, 80))
 
 
-def _picture(source: Path, team: str) -> Entry:
-    words = source.with_suffix(".txt")
+def _image_entry(source: Path, team: str) -> Entry:
+    """Return the Entry of an image, with the title and caption of the text file beside it."""
+    text_file = source.with_suffix(".txt")
     text = ""
-    if words.is_file() and not words.is_symlink():
-        with words.open(encoding="utf8", errors="replace") as file:
-            text = file.read(SMALL)  # and no more of it, however large it is
+    if text_file.is_file() and not text_file.is_symlink():
+        with text_file.open(encoding="utf8", errors="replace") as file:
+            text = file.read(MAX_TEXT_CHARACTERS)
     title, _, caption = text.strip().partition("\n")
-    return _described(team, title, caption, source)
+    return _make_entry(team, title, caption, source)
 
 
-def _archive(folder: Path, team: str) -> Entry:
+def _archive_entry(folder: Path, team: str) -> Entry:
+    """Return the Entry of an unpacked archive."""
     manifest = folder / MANIFEST_FILE
-    if not manifest.is_file() or manifest.stat().st_size > SMALL:
+    if not manifest.is_file() or manifest.stat().st_size > MAX_MANIFEST_BYTES:
         raise InputError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST_FILE}")
     try:
-        said: Any = json.loads(manifest.read_text(encoding="utf8"))
-        title, caption, artifact = (str(said[name]) for name in ("title", "caption", "artifact"))
+        content: Any = json.loads(manifest.read_text(encoding="utf8"))
+        title = str(content["title"])
+        caption = str(content["caption"])
+        artifact = str(content["artifact"])
+    # what JSON of another form than a manifest's raises
     except (ValueError, KeyError, TypeError, RecursionError):
         raise InputError(
             f"expected an archive of `hdrlab submit`, its {MANIFEST_FILE} is damaged"
         ) from None
-    inside = {
+    # the artifact's name is looked up, and never joined to a path
+    path_of_name = {
         path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()
     }
-    if artifact not in inside:
+    if artifact not in path_of_name:
         raise InputError(
             f"expected an artifact in the archive, got the name {sanitize_line(artifact, 40)!r}"
         )
-    return _described(team, title, caption, inside[artifact])
+    return _make_entry(team, title, caption, path_of_name[artifact])
 
 
-def _described(team: str, title: str, caption: str, picture: Path) -> Entry:
+def _make_entry(team: str, title: str, caption: str, picture: Path) -> Entry:
+    """Return an Entry with a title and a caption that are safe to show and short enough."""
     return Entry(
-        team, sanitize_line(title, TITLE) or "Untitled", sanitize_line(caption, CAPTION), picture
+        team=team,
+        title=sanitize_line(title, MAX_TITLE_CHARACTERS) or "Untitled",
+        caption=sanitize_line(caption, MAX_CAPTION_CHARACTERS),
+        picture=picture,
     )

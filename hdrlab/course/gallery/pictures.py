@@ -1,11 +1,11 @@
-"""Pictures of students, made anew: decoded to pixels, brought to two sizes, and encoded again.
+"""Decode the students' images, and encode them again in two sizes.
 
-So whatever else a file holds (scripts, another format behind the first, where it was taken) stays
-behind. Its header is judged before anything of the size that it claims is allocated.
+Everything else that a file holds is lost: scripts, a second format behind the first, the location.
+The header's size is checked before anything of that size is allocated.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from hdrlab.core.arrays import to_256
 from hdrlab.errors import InputError
@@ -13,13 +13,24 @@ from hdrlab.io import decode, photos, web
 from hdrlab.io.files import write
 from hdrlab.show.plots.figures import fit
 
-SIZES = {"small": 720, "large": 2400}  # pixels along a side, at most
-MOST_BYTES = 80_000_000
-MOST_PIXELS = 64_000_000
+# name of a size -> pixels of the longer side, at most
+MAX_SIDE_PIXELS = {"small": 720, "large": 2400}
+MAX_FILE_BYTES = 80_000_000
+MAX_PIXELS = 64_000_000
+ACCEPTED_FORMATS = ("JPEG", "PNG", "TIFF")
+WEBP_QUALITY = 88
+FILE_MODE = 0o644
 
 
-class Prepared(NamedTuple):
-    """A picture as WebP, by size, and the pixels (width, height) of the large one."""
+@dataclass(frozen=True)
+class Prepared:
+    """An image as WebP files.
+
+    Attributes
+    ----------
+    files : the encoded image in each size
+    width, height : pixels of the large one
+    """
 
     files: dict[str, bytes]
     width: int
@@ -27,39 +38,41 @@ class Prepared(NamedTuple):
 
 
 def prepare(path: str | Path) -> Prepared:
-    """Read an artifact and make its pictures.
+    """Read an artifact, and encode it in the sizes of the gallery.
 
     Raises
     ------
-    ValueError
-        For what is no JPEG, PNG or TIFF picture, is damaged, or is too large.
+    InputError
+        For a file that is no JPEG, PNG or TIFF image, is damaged, or is too large.
     """
     path = Path(path)
     if not path.is_file() or path.is_symlink():
-        raise InputError(f"{path.name}: expected a picture, this is no plain file")
-    if (size := path.stat().st_size) > MOST_BYTES:
-        raise InputError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
+        raise InputError(f"{path.name}: expected an image, this is no plain file")
+    size = path.stat().st_size
+    if size > MAX_FILE_BYTES:
+        raise InputError(f"{path.name}: expected at most {MAX_FILE_BYTES} bytes, got {size}")
     header = decode.read_header(path)
-    if header.kind not in ("JPEG", "PNG", "TIFF"):
-        raise InputError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
-    if header.shape[0] * header.shape[1] > MOST_PIXELS:
+    if header.kind not in ACCEPTED_FORMATS:
+        raise InputError(f"{path.name}: expected a JPEG, PNG or TIFF image, got {header.kind}")
+    if header.shape[0] * header.shape[1] > MAX_PIXELS:
         raise InputError(
-            f"{path.name}: expected at most {MOST_PIXELS} pixels, the header has {header.shape}"
+            f"{path.name}: expected at most {MAX_PIXELS} pixels, the header has {header.shape}"
         )
     image = to_256(photos.read_photo(path))
-    brought = {name: fit(image, side) for name, side in SIZES.items()}
-    height, width = brought["large"].shape[:2]
-    return Prepared(
-        {name: web.encode_webp(one, quality=88) for name, one in brought.items()}, width, height
-    )
+    resized = {name: fit(image, side) for name, side in MAX_SIDE_PIXELS.items()}
+    height, width = resized["large"].shape[:2]
+    files = {
+        name: web.encode_webp(pixels, quality=WEBP_QUALITY) for name, pixels in resized.items()
+    }
+    return Prepared(files=files, width=width, height=height)
 
 
 def keep(folder: Path, id: str, prepared: Prepared) -> None:
-    """Write the pictures of an artifact into the gallery's folder."""
-    for name, data in prepared.files.items():
-        write(place(folder, id, name), data).chmod(0o644)
+    """Write the files of an artifact into the gallery's folder of pictures."""
+    for size, data in prepared.files.items():
+        write(place(folder, id, size), data).chmod(FILE_MODE)
 
 
 def place(folder: Path, id: str, size: str) -> Path:
-    """Return where a picture is kept."""
+    """Return the path of an artifact's file in one size."""
     return folder / f"{id}-{size}.webp"

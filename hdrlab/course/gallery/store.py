@@ -1,30 +1,45 @@
-"""The gallery on disk: one folder with its pictures and a database, in which a voter has one ballot.
+"""Store the gallery in one folder: its pictures, and a database in which each voter has one ballot.
 
-What must never happen is forbidden by the database itself, whatever the program above it does: a
-second ballot (its key is the voter), a vote for one's own team and a vote too many (triggers), a
-vote for what is
-not there (a foreign key) or hangs no longer (a trigger). A ballot is acknowledged after it is on the disk:
-WAL with full synchronisation. An artifact that another replaces stays with its votes, which do not
-count.
+The database itself forbids what must never happen, whatever the program does: a second ballot (its
+key is the voter), a vote for one's own team, too many votes, or a vote for a replaced artifact
+(triggers), and a vote for an artifact that does not exist (a foreign key). A ballot is acknowledged
+once it is on the disk: WAL with full synchronization. A replaced artifact keeps its votes, which do
+not count.
 """
 
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from secrets import token_bytes
-from typing import NamedTuple
 
 from hdrlab.errors import InputError
 
 DATABASE = "gallery.sqlite"
 PICTURES = "pictures"
-VERSION = 2  # of the tables
+SCHEMA_FILE = Path(__file__).parent / "schema.sql"
+SCHEMA_VERSION = 2
+SECRET_BYTES = 32
+# seconds to wait while another process writes
+LOCK_TIMEOUT_SECONDS = 10
+# readable by the owner only
+DATABASE_MODE = 0o600
+PRAGMAS = ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF")
 
 
-class Settings(NamedTuple):
-    """What the gallery is called, until when it takes ballots, and how many votes are on one."""
+@dataclass(frozen=True)
+class Settings:
+    """The settings of a gallery.
+
+    Attributes
+    ----------
+    title : its title
+    closes : the end of the vote
+    marks : the largest number of votes on a ballot
+    secret : the key for artifacts' ids and for the order on the wall
+    """
 
     title: str
     closes: datetime
@@ -32,12 +47,13 @@ class Settings(NamedTuple):
     secret: bytes
 
     def is_open(self, now: float) -> bool:
-        """Return whether a ballot that arrives at this time (seconds of the epoch) counts."""
+        """Return whether a ballot counts that arrives at this time, in seconds since the epoch."""
         return now < self.closes.timestamp()
 
 
-class Artifact(NamedTuple):
-    """What hangs on the wall; width and height are those of its large picture."""
+@dataclass(frozen=True)
+class Artifact:
+    """An artifact on the wall; width and height are the pixels of its large picture."""
 
     id: str
     team: str
@@ -47,8 +63,9 @@ class Artifact(NamedTuple):
     height: int
 
 
-class Voter(NamedTuple):
-    """Who may vote."""
+@dataclass(frozen=True)
+class Voter:
+    """A student who may vote."""
 
     id: str
     name: str
@@ -56,41 +73,49 @@ class Voter(NamedTuple):
 
 
 def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None:
-    """Make a gallery in a folder that holds none.
+    """Make a gallery in a folder that has none.
+
+    Parameters
+    ----------
+    folder : the folder, which is made if it is missing
+    title : the gallery's title
+    closes : the end of the vote, with its time zone
+    marks : the largest number of votes on a ballot
 
     Raises
     ------
     FileExistsError
-        Where there is one.
-    ValueError
-        For an end without a time zone, or marks below 1.
+        If the folder has a gallery.
+    InputError
+        For an end without a time zone, or fewer than 1 vote on a ballot.
     """
     folder = Path(folder)
+    database = folder / DATABASE
     if closes.tzinfo is None:
         raise InputError(
             f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}"
         )
     if marks < 1:
         raise InputError(f"expected at least 1 vote on a ballot, got {marks}")
-    if (folder / DATABASE).exists():
+    if database.exists():
         raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
     (folder / PICTURES).mkdir(parents=True, exist_ok=True)
-    (folder / DATABASE).touch(mode=0o600)
-    with closing(_opened(folder / DATABASE)) as db:
-        schema = (Path(__file__).parent / "schema.sql").read_text(encoding="utf8")
-        db.executescript(f"BEGIN; {schema} PRAGMA user_version = {VERSION}; COMMIT;")
-        row = (title, closes.isoformat(), marks, token_bytes(32))
+    database.touch(mode=DATABASE_MODE)
+    with closing(_open(database)) as db:
+        schema = SCHEMA_FILE.read_text(encoding="utf8")
+        db.executescript(f"BEGIN; {schema} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;")
+        row = (title, closes.isoformat(), marks, token_bytes(SECRET_BYTES))
         db.execute("INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", row)
 
 
 def connect(folder: str | Path) -> sqlite3.Connection:
-    """Return a connection to the gallery of a folder.
+    """Open the gallery of a folder.
 
     Raises
     ------
-    ValueError
-        Where there is none, a damaged one, or one that another hdrlab has made, whose tables are
-        others.
+    InputError
+        If there is no gallery, its database is damaged, or it has the tables of another version of
+        hdrlab.
     """
     path = Path(folder) / DATABASE
     if not path.is_file():
@@ -98,116 +123,135 @@ def connect(folder: str | Path) -> sqlite3.Connection:
             f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one"
         )
     try:
-        db = _opened(path)
+        db = _open(path)
         (version,) = db.execute("PRAGMA user_version").fetchone()
     except sqlite3.DatabaseError as error:
         raise InputError(
             f"{path}: expected a gallery's database, it cannot be read: {error}"
         ) from None
-    if version != VERSION:
+    if version != SCHEMA_VERSION:
         db.close()
         raise InputError(
-            f"{folder}: expected a gallery of version {VERSION}, got {max(version, 1)}: end this vote with "
-            "the hdrlab that made it, or make a new gallery by `hdrlab gallery init`"
+            f"{folder}: expected a gallery of version {SCHEMA_VERSION}, got {max(version, 1)}; end "
+            "this vote with the hdrlab that made it, or make a new gallery with `hdrlab gallery init`"
         )
     return db
 
 
-def _opened(path: Path) -> sqlite3.Connection:
-    db = sqlite3.connect(path, timeout=10, isolation_level=None, check_same_thread=False)
-    for pragma in (
-        "journal_mode = WAL",
-        "synchronous = FULL",
-        "foreign_keys = ON",
-        "trusted_schema = OFF",
-    ):
+def _open(path: Path) -> sqlite3.Connection:
+    """Return a connection without implicit transactions, on which ballots are safe."""
+    db = sqlite3.connect(
+        path, timeout=LOCK_TIMEOUT_SECONDS, isolation_level=None, check_same_thread=False
+    )
+    for pragma in PRAGMAS:
         db.execute(f"PRAGMA {pragma}")
     return db
 
 
 @contextmanager
 def writing(folder: str | Path) -> Iterator[sqlite3.Connection]:
-    """Yield a connection within a transaction, which counts when the block ends well."""
+    """Yield a connection within a transaction, which is committed if the block raises nothing."""
     with closing(connect(folder)) as db, transaction(db):
         yield db
 
 
 @contextmanager
 def transaction(db: sqlite3.Connection) -> Iterator[None]:
-    """Take all that the block writes, or nothing."""
+    """Commit everything that the block writes, or nothing if it raises."""
     with db:
         db.execute("BEGIN IMMEDIATE")
         yield
 
 
 def settings(db: sqlite3.Connection) -> Settings:
-    """Return the Settings as they are now."""
-    title, closes, marks, secret = db.execute(
-        "SELECT title, closes, marks, secret FROM gallery"
-    ).fetchone()
-    return Settings(title, datetime.fromisoformat(closes), marks, secret)
+    """Read the settings of a gallery."""
+    row = db.execute("SELECT title, closes, marks, secret FROM gallery").fetchone()
+    title, closes, marks, secret = row
+    return Settings(title=title, closes=datetime.fromisoformat(closes), marks=marks, secret=secret)
 
 
 def close(db: sqlite3.Connection, now: datetime) -> None:
-    """Let the time for ballots end now."""
+    """Set the end of the vote to now."""
     db.execute("UPDATE gallery SET closes = ?", (now.isoformat(),))
 
 
 def artifacts(db: sqlite3.Connection) -> dict[str, Artifact]:
-    """Return the artifacts that hang, by id."""
+    """Return the artifacts on the wall, by id."""
     rows = db.execute(
         "SELECT id, team, title, caption, width, height FROM artifacts WHERE hangs ORDER BY id"
     )
-    return {row[0]: Artifact(*row) for row in rows}
+    return {
+        id: Artifact(id=id, team=team, title=title, caption=caption, width=width, height=height)
+        for id, team, title, caption, width, height in rows
+    }
 
 
 def hangs(db: sqlite3.Connection, id: str) -> bool:
-    """Return whether there is such an artifact."""
-    return (
-        db.execute("SELECT 1 FROM artifacts WHERE hangs AND id = ?", (id,)).fetchone() is not None
-    )
+    """Return whether an artifact is on the wall."""
+    row = db.execute("SELECT 1 FROM artifacts WHERE hangs AND id = ?", (id,)).fetchone()
+    return row is not None
 
 
 def hang(db: sqlite3.Connection, artifact: Artifact, source: str = "") -> int:
-    """Hang an artifact in the place of the team's earlier one, and return how many votes that one had.
+    """Put an artifact on the wall in place of the team's earlier one.
 
-    The earlier one keeps its votes, which count again if it is hung again; the change is written
-    down.
+    The earlier one keeps its votes, which count again if the team hands it in again. The database
+    records the change.
+
+    Parameters
+    ----------
+    db : connection to the database, within a transaction
+    artifact : the new artifact
+    source : name of the file that was handed in
+
+    Returns
+    -------
+    int
+        The number of votes of the earlier artifact, which do not count any more.
     """
-    before = db.execute(
+    earlier = db.execute(
         "SELECT id FROM artifacts WHERE hangs AND team = ?", (artifact.team,)
     ).fetchone()
     db.execute("UPDATE artifacts SET hangs = 0 WHERE team = ?", (artifact.team,))
-    update = "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption, hangs = 1"
-    db.execute(f"INSERT INTO artifacts VALUES (?, ?, ?, ?, ?, ?, 1) {update}", artifact)
-    if before is None or before[0] == artifact.id:
+    insert = (
+        "INSERT INTO artifacts VALUES (:id, :team, :title, :caption, :width, :height, 1) "
+        "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption, hangs = 1"
+    )
+    db.execute(insert, asdict(artifact))
+    if earlier is None or earlier[0] == artifact.id:
         return 0
-    (votes,) = db.execute("SELECT count(*) FROM votes WHERE artifact = ?", before).fetchone()
-    row = (datetime.now(UTC).isoformat(), artifact.team, source, before[0], artifact.id, votes)
-    db.execute("INSERT INTO changes VALUES (?, ?, ?, ?, ?, ?)", row)
+    (votes,) = db.execute("SELECT count(*) FROM votes WHERE artifact = ?", earlier).fetchone()
+    now = datetime.now(UTC).isoformat()
+    change = (now, artifact.team, source, earlier[0], artifact.id, votes)
+    db.execute("INSERT INTO changes VALUES (?, ?, ?, ?, ?, ?)", change)
     return int(votes)
 
 
 def changes(db: sqlite3.Connection) -> list[str]:
-    """Return in words which artifacts took the place of another, from the first change on."""
+    """Return a sentence for each artifact that replaced another, the first change first."""
     rows = db.execute("SELECT at, team, source, votes FROM changes ORDER BY at")
     return [
-        f"{at[:19]} UTC: {team} has hung another picture ({source}); {votes} votes for the first do not count"
+        f"{at[:19]} UTC: {team} has hung another picture ({source}); "
+        f"{votes} votes for the first do not count"
         for at, team, source, votes in rows
     ]
 
 
 def voters(db: sqlite3.Connection) -> list[Voter]:
-    """Return who may vote, by id."""
-    return [Voter(*row) for row in db.execute("SELECT id, name, team FROM voters ORDER BY id")]
+    """Return the voters, sorted by id."""
+    rows = db.execute("SELECT id, name, team FROM voters ORDER BY id")
+    return [Voter(id=id, name=name, team=team) for id, name, team in rows]
 
 
 def admit(db: sqlite3.Connection, voter: Voter) -> None:
-    """Let somebody vote; who is there already gets the new name and team."""
-    update = "ON CONFLICT (id) DO UPDATE SET name = excluded.name, team = excluded.team"
-    db.execute(f"INSERT INTO voters (id, name, team) VALUES (?, ?, ?) {update}", voter)
+    """Add a voter, or change the name and team of one that is there."""
+    insert = (
+        "INSERT INTO voters (id, name, team) VALUES (:id, :name, :team) "
+        "ON CONFLICT (id) DO UPDATE SET name = excluded.name, team = excluded.team"
+    )
+    db.execute(insert, asdict(voter))
 
 
 def format_time(when: datetime) -> str:
-    """Return a time as a sentence has it, with its zone."""
+    """Return a time as it is written in a sentence, with its time zone."""
     return f"{when:%A} {when.day} {when:%B %Y}, {when:%H:%M} ({when.tzname()})"

@@ -1,9 +1,9 @@
-"""Links and sessions: what their bearer shows, and what the gallery keeps of it.
+"""Make and check the tokens of personal links and sessions.
 
-A token is 12 characters by which it is found, and 43 that prove it: 256 random bits. Of those the
-gallery
-keeps a digest alone, so that whoever reads its database can neither vote nor enter. A plain SHA-256 does:
-there is no list of likely secrets to try. A personal link opens a session once.
+A token has a handle of 12 characters, by which the gallery finds it, and a secret of 43 characters
+(256 random bits). The gallery stores only a digest of the secret, so that nobody who reads its
+database can vote or enter. A plain SHA-256 suffices, because nobody can try a list of likely
+secrets. A personal link opens one session, and works once.
 """
 
 import hashlib
@@ -12,139 +12,166 @@ import re
 import secrets
 import sqlite3
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Literal
 
 from hdrlab.course.gallery import store
 from hdrlab.errors import InputError
 
-Kind = Literal["session", "link"]  # of a token, and the column of its handle
-Row = tuple[str, ...]
-LINKS = ("student", "name", "email", "link")
-TOKEN = re.compile(r"([A-Za-z0-9_-]{12})([A-Za-z0-9_-]{43})", re.ASCII)
+# a kind of token is also the name of the column that holds its handle
+Kind = Literal["session", "link"]
+LinkRow = tuple[str, str, str, str]
+LINK_COLUMNS = ("student", "name", "email", "link")
+TOKEN_PATTERN = re.compile(r"([A-Za-z0-9_-]{12})([A-Za-z0-9_-]{43})", re.ASCII)
+# as bytes, before they become URL-safe text
+HANDLE_BYTES = 9
+SECRET_BYTES = 32
+# the digest of no secret that anybody could find
+IMPOSSIBLE_DIGEST = bytes(32)
 
 
-class Token(NamedTuple):
-    """A new token: its text goes to the bearer and nowhere else."""
+@dataclass(frozen=True)
+class Token:
+    """A new token; its text goes to the bearer only, handle and digest into the database."""
 
     text: str
     handle: str
     digest: bytes
 
 
-class Shown(NamedTuple):
-    """A token that somebody shows."""
+@dataclass(frozen=True)
+class PresentedToken:
+    """The parts of a token that a browser sends."""
 
     handle: str
     secret: str
 
 
-NOBODY = bytes(32)  # the digest of no secret that could be found
-
-
 def make() -> Token:
     """Return a new token."""
-    handle = secrets.token_urlsafe(9)
-    secret = secrets.token_urlsafe(32)
-    return Token(handle + secret, handle, digest(secret))
+    handle = secrets.token_urlsafe(HANDLE_BYTES)
+    secret = secrets.token_urlsafe(SECRET_BYTES)
+    return Token(text=handle + secret, handle=handle, digest=digest(secret))
 
 
 def digest(secret: str) -> bytes:
-    """Return what is kept of a secret."""
+    """Return the digest of a secret, which the gallery stores."""
     return hashlib.sha256(secret.encode("ascii")).digest()
 
 
-def read(text: str) -> Shown | None:
-    """Return the parts of a token, or None for what is none."""
-    found = TOKEN.fullmatch(text)
-    return Shown(*found.groups()) if found else None
+def read(text: str) -> PresentedToken | None:
+    """Return the parts of a token, or None if the text is no token."""
+    match = TOKEN_PATTERN.fullmatch(text)
+    if match is None:
+        return None
+    return PresentedToken(handle=match[1], secret=match[2])
 
 
-def proves(shown: Shown, kept: bytes | None) -> bool:
-    """Return whether a secret is the one whose digest is kept.
+def proves(presented: PresentedToken, stored_digest: bytes | None) -> bool:
+    """Return whether a token's secret has the stored digest.
 
-    It takes as long where nothing is kept under its handle.
+    The check takes the same time if nothing is stored under the token's handle.
 
     Examples
     --------
     >>> token = make()
-    >>> shown = read(token.text)
-    >>> proves(shown, token.digest), proves(shown, None), proves(shown, make().digest)
-    (True, False, False)
+    >>> presented = read(token.text)
+    >>> digests = (token.digest, None, make().digest)
+    >>> [proves(presented, stored_digest) for stored_digest in digests]
+    [True, False, False]
     """
-    return hmac.compare_digest(digest(shown.secret), kept or NOBODY)
+    return hmac.compare_digest(digest(presented.secret), stored_digest or IMPOSSIBLE_DIGEST)
 
 
-def form_key(session: Shown) -> str:
-    """Return what a form of this session carries, and no other site can know."""
+def form_key(session: PresentedToken) -> str:
+    """Return the key that a session's forms carry, which no other site can know."""
     return hmac.new(session.secret.encode("ascii"), b"form", hashlib.sha256).hexdigest()
 
 
 def shuffled(ids: list[str], secret: bytes, voter: str) -> list[str]:
-    """Return ids in an order of the voter's own, the same at every visit.
+    """Return ids in the order of one voter, which is the same at every visit.
 
     Examples
     --------
     >>> ids = list("abcdefgh")
-    >>> shuffled(ids, b"s", "anna") == shuffled(ids[::-1], b"s", "anna") != shuffled(ids, b"s", "ben")
-    True
+    >>> anna = shuffled(ids, b"s", "anna")
+    >>> anna == shuffled(ids[::-1], b"s", "anna"), anna == shuffled(ids, b"s", "ben")
+    (True, False)
     """
-    return sorted(
-        ids, key=lambda id: hmac.new(secret, f"{voter}\0{id}".encode(), hashlib.sha256).digest()
-    )
+
+    def sort_key(id: str) -> bytes:
+        return hmac.new(secret, f"{voter}\0{id}".encode(), hashlib.sha256).digest()
+
+    return sorted(ids, key=sort_key)
 
 
 def new_link(db: sqlite3.Connection, voter: str) -> str:
-    """Return a new personal token; an older one, and a session that it began, end."""
+    """Return a new personal token; the voter's older one and its session become invalid."""
     token = make()
-    update = "UPDATE voters SET link = ?, link_digest = ?, session = NULL, session_digest = NULL WHERE id = ?"
+    update = (
+        "UPDATE voters SET link = ?, link_digest = ?, session = NULL, session_digest = NULL "
+        "WHERE id = ?"
+    )
     if not db.execute(update, (token.handle, token.digest, voter)).rowcount:
         raise InputError(f"expected a voter of this gallery, got {voter!r}")
     return token.text
 
 
 def spend(db: sqlite3.Connection, text: str) -> tuple[store.Voter, str] | None:
-    """Return the voter of a personal token and a session's token, once; None for what is none, or spent."""
+    """Use up a personal token, and return its voter and the token of a new session.
+
+    Return None if the text is no valid token, or one that has been used.
+    """
     voter = whose(db, text, "link")
     if voter is None:
         return None
     session = make()
-    update = "UPDATE voters SET link_digest = NULL, session = ?, session_digest = ? WHERE id = ? AND link = ?"
-    row = (session.handle, session.digest, voter.id, text[: len(session.handle)])
-    db.execute(update, row)
+    update = (
+        "UPDATE voters SET link_digest = NULL, session = ?, session_digest = ? "
+        "WHERE id = ? AND link = ?"
+    )
+    link_handle = text[: len(session.handle)]
+    db.execute(update, (session.handle, session.digest, voter.id, link_handle))
     return voter, session.text
 
 
 def whose(db: sqlite3.Connection, text: str, kind: Kind = "session") -> store.Voter | None:
-    """Return the voter of a session's or a link's token, or None."""
-    shown = read(text)
-    if shown is None:
+    """Return the voter of a session's or a link's token, or None if it is not valid."""
+    presented = read(text)
+    if presented is None:
         return None
-    # a column, nobody's text
+    # `kind` is one of two names of columns, and never text from outside
     query = f"SELECT id, name, team, {kind}_digest FROM voters WHERE {kind} = ?"
-    row = db.execute(query, (shown.handle,)).fetchone()
-    proven = proves(shown, row[3] if row else None)
-    return store.Voter(*row[:3]) if row and proven else None
+    row = db.execute(query, (presented.handle,)).fetchone()
+    stored_digest = row[3] if row else None
+    # also without a row, so that an unknown handle takes the same time
+    is_valid = proves(presented, stored_digest)
+    if row is None or not is_valid:
+        return None
+    return store.Voter(id=row[0], name=row[1], team=row[2])
 
 
 def spent_by(db: sqlite3.Connection, text: str) -> str | None:
-    """Return the id of the voter whose link this was: it leads a browser on, and proves nothing."""
-    shown = read(text)
-    row = (
-        db.execute("SELECT id FROM voters WHERE link = ?", (shown.handle,)).fetchone()
-        if shown
-        else None
-    )
+    """Return the id of the voter whose personal link this was, used or not.
+
+    The result is good enough to redirect a browser, and proves nothing.
+    """
+    presented = read(text)
+    if presented is None:
+        return None
+    row = db.execute("SELECT id FROM voters WHERE link = ?", (presented.handle,)).fetchone()
     return row[0] if row else None
 
 
 def links(
     db: sqlite3.Connection, address: str, ids: Sequence[str], emails: dict[str, str]
-) -> list[Row]:
-    """Return new personal links of these voters; their older ones end."""
-    names = {id: name for id, name, _ in store.voters(db)}
+) -> list[LinkRow]:
+    """Make new personal links for these voters, and return a row for each; their older links end."""
+    name_of_id = {voter.id: voter.name for voter in store.voters(db)}
     with store.transaction(db):
-        fresh = [(id, new_link(db, id)) for id in ids]
+        token_of_id = {id: new_link(db, id) for id in ids}
+    base = address.rstrip("/")
     return [
-        (id, names[id], emails.get(id, ""), f"{address.rstrip('/')}/enter/{text}")
-        for id, text in fresh
+        (id, name_of_id[id], emails.get(id, ""), f"{base}/enter/{token}")
+        for id, token in token_of_id.items()
     ]

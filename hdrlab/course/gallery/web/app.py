@@ -1,8 +1,8 @@
-"""The gallery as a web application: a wall, a closer look, two beside each other, a ballot, and results.
+"""The gallery's web application: the wall, one artifact or two side by side, the ballot, the results.
 
-Every answer is a page, a picture or a line of JSON. Nothing is uploaded here and nobody signs up:
-artifacts and voters come by the command line. Addresses hold no state, pages no inline script or
-style.
+Every answer is a page, a picture or a line of JSON. Nobody uploads anything here or signs up:
+instructors add artifacts and voters on the command line. Addresses hold no state, and pages have no
+inline script or style.
 """
 
 import mimetypes
@@ -21,51 +21,64 @@ from starlette.routing import Route
 from starlette.types import ASGIApp
 
 from hdrlab.course.gallery import ballots, pictures, store, tokens
-from hdrlab.course.gallery.web.front import HERE, HINTS, Front
+from hdrlab.course.gallery.web.front import HERE, STATUS_MESSAGES, Front
 from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_origin
 
-KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
-FOREVER = "private, max-age=31536000, immutable"
-BALLOTS = Rate(30, 1)  # of a voter
-SPENT = "This link has been used. It works once. If you cannot get in, ask your instructor for a new one."
+# for which a browser stays signed in
+SESSION_SECONDS = 60 * 60 * 24 * 180
+PICTURE_CACHE_CONTROL = "private, max-age=31536000, immutable"
+STATIC_CACHE_CONTROL = "max-age=300"
+# of a voter
+BALLOT_RATE = Rate(burst=30, per_second=1)
+USED_LINK_MESSAGE = (
+    "This link has been used. It works once. "
+    "If you cannot get in, ask your instructor for a new one."
+)
 
 
 class Gallery(Front):
-    """The pages."""
+    """The pages of the gallery."""
 
     async def wall(self, request: Request) -> Response:
         """Show all artifacts, in the voter's own order, with the voter's ballot."""
-        voter, shown = self.voter(request)
-        set_up = store.settings(self.db)
-        hung = store.artifacts(self.db)
-        when, chosen = ballots.read_ballot(self.db, voter.id)
-        order = tokens.shuffled(list(hung), set_up.secret, voter.id)
-        may = set_up.is_open(self.clock())
-        key = tokens.form_key(shown)
-        each = [
-            (hung[id], {"own": hung[id].team == voter.team, "chosen": id in chosen}) for id in order
-        ]
-        cards = [Markup(self.card(one=one, open=may, **said)) for one, said in each]
-        at = (
-            None
-            if when is None
-            else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
+        voter, session = self.voter(request)
+        settings = store.settings(self.db)
+        artifacts = store.artifacts(self.db)
+        cast_at, chosen = ballots.read_ballot(self.db, voter.id)
+        is_open = settings.is_open(self.clock())
+        cards = []
+        for id in tokens.shuffled(list(artifacts), settings.secret, voter.id):
+            artifact = artifacts[id]
+            card = self.card(
+                one=artifact,
+                open=is_open,
+                own=artifact.team == voter.team,
+                chosen=id in chosen,
+            )
+            cards.append(Markup(card))
+        when = None
+        if cast_at is not None:
+            when = store.format_time(datetime.fromtimestamp(cast_at, settings.closes.tzinfo))
+        return self.page(
+            "wall.html",
+            cards=cards,
+            marks=settings.marks,
+            chosen=len(chosen),
+            when=when,
+            key=tokens.form_key(session),
         )
-        marks = set_up.marks
-        count = len(chosen)
-        return self.page("wall.html", cards=cards, marks=marks, chosen=count, when=at, key=key)
 
     async def ballot(self, request: Request) -> Response:
-        """Take a ballot, which replaces the one before, and answer when it is on the disk."""
+        """Store a ballot, which replaces the earlier one, and answer once it is on the disk."""
         same_origin(request, self.origin)
-        voter, shown = self.voter(request)
-        if not self.rates.take("ballots", voter.id, BALLOTS):
+        voter, session = self.voter(request)
+        if not self.rates.take("ballots", voter.id, BALLOT_RATE):
             raise Refusal(
                 429, "Too many changes at once. Your last ballot counts. Try again later."
             )
         fields = await form(request)
         keys = [value for name, value in fields if name == "key"]
-        if keys != [tokens.form_key(shown)]:
+        if keys != [tokens.form_key(session)]:
             raise Refusal(403, "This form is too old, or it is not yours. Open the gallery again.")
         marked = [value for name, value in fields if name == "mark"]
         try:
@@ -80,29 +93,33 @@ class Gallery(Front):
         return RedirectResponse("/", 303)
 
     async def link(self, request: Request) -> Response:
-        """Show a button for a personal link: a mail's preview, which fetches links ahead, spends none."""
+        """Show a button that opens a session.
+
+        Opening the link itself does not use it up, because mail programs fetch links for previews.
+        """
         token = request.path_params["token"]
         if tokens.whose(self.db, token, "link"):
             return self.page("enter.html", token=token)
         voter = tokens.whose(self.db, request.cookies.get(self.cookie, ""))
         if voter and voter.id == tokens.spent_by(self.db, token):
             return RedirectResponse("/", 303)
-        self.failed(request)
-        raise Refusal(404, SPENT)
+        self.count_failure(request)
+        raise Refusal(404, USED_LINK_MESSAGE)
 
     async def enter(self, request: Request) -> Response:
-        """Take a personal link, once, and begin a session."""
+        """Use up a personal link, and begin a session."""
         same_origin(request, self.origin)
         token = request.path_params["token"]
         entered = await self.writer.do(lambda db: tokens.spend(db, token))
         if entered is None:
-            self.failed(request)
-            raise Refusal(404, SPENT)
+            self.count_failure(request)
+            raise Refusal(404, USED_LINK_MESSAGE)
+        _, session_token = entered
         response = RedirectResponse("/", 303)
         response.set_cookie(
             self.cookie,
-            entered[1],
-            max_age=KEPT,
+            session_token,
+            max_age=SESSION_SECONDS,
             path="/",
             secure=self.secure,
             httponly=True,
@@ -111,66 +128,79 @@ class Gallery(Front):
         return response
 
     async def look(self, request: Request) -> Response:
-        """Show one artifact closely, between its neighbours in the voter's order."""
+        """Show one artifact in detail, with links to its neighbors in the voter's order."""
         voter, _ = self.voter(request)
-        hung = store.artifacts(self.db)
-        order = tokens.shuffled(list(hung), store.settings(self.db).secret, voter.id)
+        artifacts = store.artifacts(self.db)
         id = request.path_params["id"]
-        if id not in hung:
-            raise Refusal(404, HINTS[404])
-        at = order.index(id)
-        near: dict[str, Any] = {"before": order[at - 1], "after": order[(at + 1) % len(order)]}
-        return self.page("look.html", shown=[hung[id]], place=at + 1, count=len(order), **near)
+        if id not in artifacts:
+            raise Refusal(404, STATUS_MESSAGES[404])
+        order = tokens.shuffled(list(artifacts), store.settings(self.db).secret, voter.id)
+        index = order.index(id)
+        return self.page(
+            "look.html",
+            shown=[artifacts[id]],
+            place=index + 1,
+            count=len(order),
+            before=order[index - 1],
+            after=order[(index + 1) % len(order)],
+        )
 
     async def compare(self, request: Request) -> Response:
-        """Show two artifacts beside each other."""
+        """Show two artifacts side by side."""
         self.voter(request)
-        hung = store.artifacts(self.db)
+        artifacts = store.artifacts(self.db)
         wanted = request.query_params.getlist("with")
-        if len(set(wanted)) != 2 or not set(wanted) <= hung.keys():
+        if len(set(wanted)) != 2 or not set(wanted) <= artifacts.keys():
             raise Refusal(400, "Choose two artifacts on the wall, and compare again.")
-        return self.page("look.html", shown=[hung[id] for id in wanted], place=0, count=len(hung))
+        shown = [artifacts[id] for id in wanted]
+        return self.page("look.html", shown=shown, place=0, count=len(artifacts))
 
     async def picture(self, request: Request) -> Response:
-        """Send a picture that this program has encoded."""
+        """Send a picture that the gallery has encoded."""
         self.voter(request)
         id = request.path_params["id"]
         size = request.path_params["size"]
-        if size not in pictures.SIZES or not store.hangs(self.db, id):
-            raise Refusal(404, HINTS[404])
+        if size not in pictures.MAX_SIDE_PIXELS or not store.hangs(self.db, id):
+            raise Refusal(404, STATUS_MESSAGES[404])
         data = self.bytes_of(pictures.place(self.folder / store.PICTURES, id, size))
-        return Response(data, media_type="image/webp", headers={"Cache-Control": FOREVER})
+        return Response(
+            data, media_type="image/webp", headers={"Cache-Control": PICTURE_CACHE_CONTROL}
+        )
 
     async def results(self, request: Request) -> Response:
-        """Show the places, after the end and not before."""
+        """Show the results once the vote has closed."""
         self.voter(request)
-        set_up = store.settings(self.db)
-        hung = store.artifacts(self.db)
-        if set_up.is_open(self.clock()):
-            closes = store.format_time(set_up.closes)
+        settings = store.settings(self.db)
+        artifacts = store.artifacts(self.db)
+        if settings.is_open(self.clock()):
+            closes = store.format_time(settings.closes)
             raise Refusal(403, f"The results are shown after the vote has closed: {closes}.")
-        cast = [one for one in ballots.every(self.db).values() if one]
-        rows = [(row, hung[row.artifact]) for row in ballots.standings(hung, cast)]
-        method = ballots.METHOD.format(marks=set_up.marks)
-        voters = store.voters(self.db)
-        return self.page("results.html", rows=rows, cast=len(cast), voters=voters, method=method)
+        cast = [ballot for ballot in ballots.every(self.db).values() if ballot]
+        standings = ballots.standings(artifacts, cast)
+        return self.page(
+            "results.html",
+            rows=[(standing, artifacts[standing.artifact]) for standing in standings],
+            cast=len(cast),
+            voters=store.voters(self.db),
+            method=ballots.METHOD.format(marks=settings.marks),
+        )
 
     async def static(self, request: Request) -> Response:
-        """Send a style sheet or a script; anybody may have them."""
+        """Send a style sheet or a script, also without a session."""
         file = HERE / "static" / request.path_params["name"]
         if not file.is_file():
-            raise Refusal(404, HINTS[404])
+            raise Refusal(404, STATUS_MESSAGES[404])
         kind, _ = mimetypes.guess_type(file.name)
         return Response(
-            self.bytes_of(file), media_type=kind, headers={"Cache-Control": "max-age=300"}
+            self.bytes_of(file), media_type=kind, headers={"Cache-Control": STATIC_CACHE_CONTROL}
         )
 
 
 def application(gallery: Gallery) -> ASGIApp:
-    """Return the pages as an ASGI application, which closes the gallery when it ends."""
+    """Return the gallery as an ASGI application, which closes the database at the end."""
 
     @asynccontextmanager
-    async def life(app: Starlette) -> Any:
+    async def close_at_end(app: Starlette) -> Any:
         yield
         await gallery.close()
 
@@ -188,5 +218,5 @@ def application(gallery: Gallery) -> ASGIApp:
     handlers: Mapping[Any, Any] = dict.fromkeys(
         (Refusal, HTTPException, sqlite3.Error), gallery.refused
     )
-    app = Starlette(routes=routes, exception_handlers=handlers, lifespan=life)
+    app = Starlette(routes=routes, exception_handlers=handlers, lifespan=close_at_end)
     return Guard(app, host=gallery.host, secure=gallery.secure)

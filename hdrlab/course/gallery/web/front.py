@@ -1,4 +1,4 @@
-"""What every page of the gallery stands on: who asks, how fast, and how an answer is written."""
+"""The base of the gallery's application: voters, rates, pages and refusals."""
 
 import time
 from collections.abc import Callable
@@ -17,16 +17,18 @@ from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import templates
 
 HERE = Path(__file__).parent
-# in memory: what a class looks at again and again
-KEPT_FILES = 400
-KEPT_CARDS = 4000
-REQUESTS = guard.Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
-FAILURES = guard.Rate(30, 0.5)  # of an address, with links or sessions that are none
-HINTS = {404: "This page does not exist.", 405: "This page does not accept this request."}
+# kept in memory, for a class looks at them again and again
+MAX_CACHED_FILES = 400
+MAX_CACHED_CARDS = 4000
+# of a voter: a wall of hundreds of pictures loads at once
+REQUEST_RATE = guard.Rate(burst=600, per_second=20)
+# of an address, with links or sessions that are not valid
+FAILURE_RATE = guard.Rate(burst=30, per_second=0.5)
+STATUS_MESSAGES = {404: "This page does not exist.", 405: "This page does not accept this request."}
 
 
 class Front:
-    """One folder's gallery at one address."""
+    """The gallery of one folder, served at one address."""
 
     def __init__(
         self, folder: str | Path, address: str, clock: Callable[[], float] = time.time
@@ -46,54 +48,65 @@ class Front:
         self.db = store.connect(folder)
         self.writer = writer.Writer(folder)
         self.pages = templates(HERE / "templates")
-        self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
-        self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
+        self.bytes_of = lru_cache(MAX_CACHED_FILES)(Path.read_bytes)
+        self.card = lru_cache(MAX_CACHED_CARDS)(self.pages.get_template("card.html").render)
 
     async def close(self) -> None:
-        """Write what waits, and let go of the database."""
+        """Write what waits, and close the database."""
         await self.writer.close()
         self.db.close()
 
-    def page(self, name: str, status: int = 200, **words: Any) -> HTMLResponse:
-        """Return a page."""
-        set_up = store.settings(self.db)
-        closes = store.format_time(set_up.closes)
-        known = {"title": set_up.title, "open": set_up.is_open(self.clock()), "closes": closes}
-        return HTMLResponse(self.pages.get_template(name).render(known | words), status)
+    def page(self, name: str, status: int = 200, **context: Any) -> HTMLResponse:
+        """Render the template of a page."""
+        settings = store.settings(self.db)
+        shared = {
+            "title": settings.title,
+            "open": settings.is_open(self.clock()),
+            "closes": store.format_time(settings.closes),
+        }
+        return HTMLResponse(self.pages.get_template(name).render(shared | context), status)
 
-    def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
-        """Return who asks, or raise a Refusal."""
+    def voter(self, request: Request) -> tuple[store.Voter, tokens.PresentedToken]:
+        """Return the voter of a request, and the token of the session.
+
+        Raises
+        ------
+        guard.Refusal
+            For a request without a valid session, and after too many requests.
+        """
         text = request.cookies.get(self.cookie, "")
-        shown = tokens.read(text)
+        session = tokens.read(text)
         voter = tokens.whose(self.db, text)
-        if voter is None or shown is None:
+        if voter is None or session is None:
             if text:
-                self.failed(request)
+                self.count_failure(request)
             raise guard.Refusal(
                 401, "To see the gallery, open the personal link that your course sent you."
             )
-        if not self.rates.take("requests", voter.id, REQUESTS):
+        if not self.rates.take("requests", voter.id, REQUEST_RATE):
             raise guard.Refusal(429, "Too many requests at once. Wait a moment, and try again.")
-        return voter, shown
+        return voter, session
 
-    def failed(self, request: Request) -> None:
-        """Count a link or session that is none; after many of them raise another Refusal.
+    def count_failure(self, request: Request) -> None:
+        """Count an invalid link or session of an address, and refuse the request after too many.
 
-        What is good passes always: a class behind one address is not locked out by one of it.
+        Valid requests are never refused for it, so one student cannot lock out a class that has the
+        same address.
         """
-        if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
+        address = request.client.host if request.client else ""
+        if not self.rates.take("failures", address, FAILURE_RATE):
             raise guard.Refusal(
                 429, "Too many attempts from this address. Wait a minute, and try again."
             )
 
     async def refused(self, request: Request, error: Exception) -> Response:
-        """Say why, in a page or in JSON."""
+        """Answer a request that failed, with a page or with JSON that says why."""
         if isinstance(error, guard.Refusal):
             status = error.status
-            why = error.said
+            message = error.message
         else:
             status = error.status_code if isinstance(error, HTTPException) else 500
-            why = HINTS.get(status, "Something went wrong. Your last ballot counts.")
+            message = STATUS_MESSAGES.get(status, "Something went wrong. Your last ballot counts.")
         if "application/json" in request.headers.get("accept", ""):
-            return JSONResponse({"error": why}, status)
-        return self.page("word.html", status, why=why, known=status != 401)
+            return JSONResponse({"error": message}, status)
+        return self.page("word.html", status, why=message, known=status != 401)
