@@ -176,7 +176,9 @@ def _read_about(path: Path) -> About:
         students = (students,)
     is_list = isinstance(students, list | tuple)
     if not is_list or not all(isinstance(student, str) for student in students):
-        raise InputError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE_ABOUT}")
+        raise InputError(
+            f"{path}: expected students as a list of strings, such as\n{EXAMPLE_ABOUT}"
+        )
     return About(
         students=tuple(sanitize_line(student, MAX_STUDENT_CHARACTERS) for student in students),
         title=sanitize_line(str(entries.get("title", "")), MAX_TITLE_CHARACTERS),

@@ -86,7 +86,7 @@ def write_report(project: Project) -> WrittenReport:
     """
     if project.words is None:
         names = " or ".join(REPORT_SOURCES)
-        raise InputError(f"{project.folder}: expected the text of the report, in {names}")
+        raise InputError(f"{project.folder}: no text for the report; write {names}")
     text = words.read(project.words)
     notes = list(text.notes)
     figure_of_name = dict(_make_figures(project, notes))
@@ -122,7 +122,7 @@ def _make_figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any
         try:
             figure = make()
         except (ValueError, OSError) as error:  # a damaged file costs one figure
-            notes.append(f"the {name} cannot be shown: {error}")
+            notes.append(f"cannot show the {name}: {error}")
             continue
         yield name, figure
 

@@ -93,7 +93,7 @@ def check_students(project: Project) -> PartReview:
     students = project.about.students
     if not students:
         return PartReview(
-            problems=(f"Write a file {ABOUT_FILE} that says who you are:\n{EXAMPLE_ABOUT}",)
+            problems=(f"Write a file {ABOUT_FILE} with your names:\n{EXAMPLE_ABOUT}",)
         )
     if len(students) > MAX_TEAM_SIZE:
         problem = (
@@ -113,7 +113,7 @@ def check_title(project: Project) -> PartReview:
 def check_source(project: Project) -> PartReview:
     """Check that programs and notebooks are there, can be read, and import what exists."""
     if not project.sources:
-        problem = "There is no source: put your programs and notebooks into the folder."
+        problem = "There is no source code: put your programs and notebooks into the folder."
         return PartReview(problems=(problem,))
     problems = []
     for path in project.sources:
@@ -204,7 +204,7 @@ def check_photographs(project: Project) -> PartReview:
             problems.append(f"{name} has no exposure time in EXIF. Use the camera's own file.")
         exposures.add(header.exposure)
     if not problems and len(exposures) == 1:
-        problems.append("All photos have the same exposure, so they form no bracket.")
+        problems.append("All photos have the same exposure, so they are not a bracket.")
     return PartReview(f"{count}, {len(exposures)} exposures", tuple(problems))
 
 
@@ -216,7 +216,7 @@ def check_map(project: Project) -> PartReview:
     E = radiance.read_radiance(project.map, clean=True)
     name = project.name(project.map)
     if not np.any(E > 0) or E.max() == E.min():
-        return PartReview(problems=(f"{name} holds the same value everywhere.",))
+        return PartReview(problems=(f"{name} has the same value everywhere.",))
     return PartReview(f"{name}, {E.shape[1]} x {E.shape[0]}")
 
 
@@ -238,7 +238,7 @@ def check_archive(project: Project, limits: ArchiveLimits = LIMITS) -> PartRevie
         check_names([MANIFEST_FILE, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.max_total_bytes, limits)
     except ArchiveRejected as reason:
-        return PartReview(problems=(f"The course would refuse the archive: {reason}.",))
+        return PartReview(problems=(f"The gallery would reject the archive: {reason}.",))
     return PartReview()
 
 

@@ -41,7 +41,7 @@ def export(plan: Plan, folder: Path) -> Iterator[Path]:
     for name, homework in plan.homeworks.items():
         handout = materials.folder("assignments") / f"{name}.ipynb"
         if not handout.is_file():
-            raise InputError(f"{handout}: there is no such handout; run `hdrlab course build`")
+            raise InputError(f"no assignment {handout}; run hdrlab course build first")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
         yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
     config = CONFIG_TEMPLATE.read_text(encoding="utf8")
@@ -61,7 +61,7 @@ def source(handout: dict[str, Any], homework: Homework) -> str:
     if missing:
         names = ", ".join(sorted(missing))
         raise InputError(
-            f"the handout of {homework.name} has no {names}; run `hdrlab course build` again"
+            f"the assignment {homework.name} has no {names}; run hdrlab course build again"
         )
     return handouts.to_text({**handout, "cells": cells})
 
