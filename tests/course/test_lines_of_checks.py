@@ -163,7 +163,10 @@ def test_a_check_says_of_its_ending_what_was_written_down(heard):
     line = ending("fail", "no answer", message="m" * 2001, said="s\x07" * 4001, kind="late")
     (*_, found) = heard(check("fail", hints=("a", "b")), line)
     (one,) = found.checks
-    assert one[:3] == ("hat", "fail", "It fails") and one.hints == ("a", "b")
+    assert (one.task, one.name, one.promise) == ("hat", "fail", "It fails") and one.hints == (
+        "a",
+        "b",
+    )
     assert (one.outcome, one.kind, one.hidden, one.drawing) == (
         "no answer",
         "late",
