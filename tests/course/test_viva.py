@@ -363,7 +363,7 @@ def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more
     monkeypatch.setattr(examining, "QuestionGenerator", Asked)
     run = examining.Examining.__new__(examining.Examining)
     run.job, run.failed = {"seed": "1", "sources": dict.fromkeys(tasks, ""), "timeout": 1}, set()
-    run.calls, run.submission = {task: [None] for task in tasks}, SimpleNamespace(left=1)
+    run.calls, run.submission = {task: [None] for task in tasks}, SimpleNamespace(seconds_left=1)
     run._replace_sandbox, run._write = lambda: None, lambda **one: written.append(one)
     run.pytest_sessionfinish(SimpleNamespace(items=[]))
     asked = [one["question"] for one in written if "question" in one]
