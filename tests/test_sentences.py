@@ -70,7 +70,7 @@ SENTENCES = {
             -5 < n.place(mode).off < -4 for mode in ("centre", "average", "matrix")
         ),
         "With up to 6 pixels of shake, alignment fixes all of it": lambda n: (
-            worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
+            worst(n.shaken(6).aligned, n.shaken(6).truth, 10) <= 0.05
         ),
         "most modes need two shots": lambda n: (
             {len(n.steps(18, mode)) for mode in n.metering.MODES} == {2, 3}
