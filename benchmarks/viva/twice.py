@@ -42,7 +42,8 @@ class Nowhere:
 class InProcess:
     """What a check asks, as `checks.subject.Subject`, of functions to trust that run in this process."""
 
-    said, left = "", math.inf
+    printed = ""
+    seconds_left = math.inf
 
     def __init__(self, sources: dict[str, str]) -> None:
         self.texts, self.functions = dict(sources), dict[str, Any]()
