@@ -2,7 +2,7 @@
 
     python tests/timetable.py     # writes the minutes into the site's course.md, and makes COURSE.md of it
 
-A notebook: a minute for every 150 words, one for each prediction, one for each cell that draws. A
+A notebook: a minute for every 160 words, one for each prediction, one for each cell that draws. A
 task: ten minutes, and three for each line of code that the library's own function needs. No class
 has been timed.
 """
@@ -18,7 +18,7 @@ import distance
 ROOT = distance.ROOT
 PAGE = ROOT / "hdrlab/course/site/pages/course.md"
 COPY = ROOT / "COURSE.md"  # the same, with links that lead on from the top of the repository
-WORDS_A_MINUTE = 150
+WORDS_A_MINUTE = 160
 # minutes
 PREDICTION, PICTURE, SHEET, CODE_LINE, STEP = 1, 1, 10, 3, 5
 DRAWS = re.compile(r"pictures\.|widgets\.")

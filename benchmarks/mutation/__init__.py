@@ -54,7 +54,7 @@ ROOMS = (
 )
 GRADER = (
     *("grading.py", "plan.py", "submission.py", "scratch.py", "checks/*.py", "classroom/**/*.py"),
-    *("code/*.py", "archives/*.py", "sandbox/*.py", "reports/*.py"),
+    *("source_code/*.py", "submissions/**/*.py", "sandbox/*.py", "reports/*.py"),
 )
 # seconds of tests that are asked of a mutant: of those that run its line, and of those that run its
 # file

@@ -138,9 +138,15 @@ def test_the_lab_fits_two_hours_and_says_what_is_left(page):
     assert f"That leaves {120 - taken} minutes" in page and taken <= 110
 
 
-def test_a_minute_is_150_words_a_prediction_or_a_picture(tmp_path):
-    words = {"cell_type": "markdown", "source": ["## One\n", "word " * 298]}
-    asked = {"cell_type": "markdown", "source": ["**Predict.** " + "word " * 149]}
+def test_reading_a_prediction_and_a_figure_take_a_minute_each(tmp_path):
+    words = {
+        "cell_type": "markdown",
+        "source": ["## One\n", "word " * (2 * timetable.WORDS_A_MINUTE - 2)],
+    }
+    asked = {
+        "cell_type": "markdown",
+        "source": ["**Predict.** " + "word " * (timetable.WORDS_A_MINUTE - 1)],
+    }
     drawn = {"cell_type": "code", "source": ["pictures.picture(x)"]}
     path = tmp_path / "x.ipynb"
     path.write_text(json.dumps({"cells": [words, asked, drawn]}), encoding="utf8")

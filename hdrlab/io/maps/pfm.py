@@ -11,7 +11,7 @@ import sys
 from io import FileIO
 from math import prod
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -132,7 +132,7 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
     return E
 
 
-def _read_rows(file: FileIO, rows: list[F32]) -> int:
+def _read_rows(file: FileIO, rows: list[Any]) -> int:
     """Read the next bytes of a file into the rows, each in its place, and return their number."""
     if hasattr(os, "readv"):  # not on Windows
         return os.readv(file.fileno(), rows)
