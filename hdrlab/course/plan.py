@@ -29,12 +29,17 @@ ANSWER_TIMEOUT_SECONDS = 10.0
 
 
 class Task(NamedTuple):
-    """One function to write: what it is called in the checks, where the library has it, and its points.
+    """A function that students write.
 
-    A function that is not the library's is written as the path of its file, a colon, and its name.
-    `minimum` marks what everybody is to write, also those who write little. `parameters` are those
-    in which students' sheets differ, and `variant` is what one of them asks; see
-    `variants.rewording`.
+    Attributes
+    ----------
+    id : its name in the assignment and in the checks
+    function : where the library defines it; for an instructor's own, the path of the file, a colon
+        and the function's name
+    points : what it is worth
+    minimum : whether it is required of every student
+    parameters : names of the parameters that differ between students; see `variants.rewording`
+    variant : the values of these parameters for one student, "" for the library's own
     """
 
     id: str
@@ -51,13 +56,13 @@ class Task(NamedTuple):
 
     @property
     def own(self) -> Path | None:
-        """The file of a function that is not the library's, or None."""
+        """The file of an instructor's own function, or None."""
         file = self.function.rpartition(":")[0]
         return Path(file) if file else None
 
 
 class ManualTask(NamedTuple):
-    """What a person judges, and a line for each number of points that says what earns them."""
+    """A task that a person grades, with its rubric: a line for each number of points."""
 
     title: str
     points: float
@@ -65,7 +70,7 @@ class ManualTask(NamedTuple):
 
 
 class Homework(NamedTuple):
-    """A sheet of tasks, when it is due, and how many points count at most where its tasks give more."""
+    """An assignment: its tasks, its due date, and the points that count at most if its tasks give more."""
 
     name: str
     title: str
@@ -76,26 +81,26 @@ class Homework(NamedTuple):
 
     @property
     def points(self) -> float:
-        """What the checks can give."""
-        whole = sum(task.points for task in self.tasks)
-        return whole if self.at_most is None else min(whole, self.at_most)
+        """Points that the checks can give."""
+        possible = sum(task.points for task in self.tasks)
+        return possible if self.at_most is None else min(possible, self.at_most)
 
 
 class Late(NamedTuple):
-    """What being late costs: nothing for so many days of the whole course, and then points a day."""
+    """The late-day rule: free days for the whole course, and the cost of each further day in points."""
 
     free_days: int = 0
     points_a_day: float = 0.0
 
 
 class Plan(NamedTuple):
-    """The course's homeworks by name, and its rule for what comes late."""
+    """The course's homeworks by name, and its late-day rule."""
 
     homeworks: dict[str, Homework]
     late: Late = Late()
 
     def task(self, id: str) -> Task:
-        """Return the task of that id, or raise a KeyError that lists those there are."""
+        """Return the task with an id; raise a KeyError that lists all tasks if there is none."""
         tasks = {task.id: task for homework in self.homeworks.values() for task in homework.tasks}
         if id not in tasks:
             raise KeyError(f"expected a task out of {', '.join(tasks)}, got {id!r}")
@@ -109,10 +114,11 @@ class GradingOptions:
     Attributes
     ----------
     tier : "strict", "container" or "practice"
-    student, secret : what the inputs are drawn from; without a student they are the public ones
-    hidden : folder with the instructor's own checks, test_<task>.py
-    timeout : seconds for one answer
-    draw : whether pictures of differences are drawn
+    student, secret : the inputs of the checks are drawn from both; without a student, they are the
+        public inputs
+    hidden : folder with the instructor's hidden checks, test_<task>.py
+    timeout : seconds for one call of a student's function
+    draw : whether differences are drawn as images
     """
 
     tier: str = "strict"
@@ -124,12 +130,12 @@ class GradingOptions:
 
 
 def read(path: str | Path | None = None) -> Plan:
-    """Return the Plan that stands in the file at `path`; None is the one that comes with hdrlab.
+    """Read a plan. Without a path, read the plan that comes with hdrlab.
 
     Raises
     ------
-    ValueError
-        For a file that is no plan: which homework and what is wrong with it.
+    InputError
+        For a file that is no plan; the message names the homework and what is wrong with it.
 
     Examples
     --------
@@ -142,23 +148,22 @@ def read(path: str | Path | None = None) -> Plan:
     path = PLAN if path is None else Path(path)
     try:
         sheets = tomllib.loads(path.read_text(encoding="utf8"))
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # of digits beyond counting, and brackets in brackets
+    # ValueError also for numbers with too many digits, RecursionError for brackets in brackets
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
     plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
-    twice = sorted({id for id in ids if ids.count(id) > 1})
-    if not ids or twice:
-        raise InputError(
-            f"{path}: expected tasks, each once, got {', '.join(twice) or 'none':.200}"
-        )
+    if not ids:
+        raise InputError(f"{path}: expected tasks, got none")
+    repeated = sorted({id for id in ids if ids.count(id) > 1})
+    if repeated:
+        raise InputError(f"{path}: expected each task once, got {', '.join(repeated):.200} twice")
     return plan
 
 
 def _late(table: dict[str, Any], path: Path) -> Late:
+    """Return the late-day rule of a plan."""
     with suppress(TypeError):
         late = Late(**table)
         if late.free_days >= 0 and late.points_a_day >= 0:
@@ -169,62 +174,80 @@ def _late(table: dict[str, Any], path: Path) -> Late:
 
 
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
+    """Return a homework from its table in a plan; raise an InputError if something is wrong with it."""
     here = f"[{name:.80}]"
     try:
-        tasks = tuple(_task(one, path) for one in sheet["tasks"])
-        by_hand = tuple(
-            ManualTask(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
-            for one in sheet.get("by_hand", ())
+        homework = Homework(
+            name=name,
+            title=sheet["title"],
+            due=sheet["due"],
+            tasks=tuple(_task(table, path) for table in sheet["tasks"]),
+            by_hand=tuple(_manual_task(table) for table in sheet.get("by_hand", ())),
+            at_most=float(sheet["at_most"]) if "at_most" in sheet else None,
         )
-        at_most = float(sheet["at_most"]) if "at_most" in sheet else None
-        made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand, at_most)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{path}: expected title, due and tasks in {here}, {error!r:.200}"
         ) from None
-    if not isinstance(made.due, datetime) or made.due.tzinfo is None:
+    due = homework.due
+    if not isinstance(due, datetime) or due.tzinfo is None:
         raise InputError(
-            f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}"
+            f"{path}: expected due of {here} as a date with time and zone, got {due!s:.80}"
         )
-    points = [one.points for one in tasks] + [one.points for one in by_hand]
+    points = [task.points for task in homework.tasks]
+    points += [manual.points for manual in homework.by_hand]
     if not (points and min(points) >= 0 and sum(points) < math.inf):
         raise InputError(
             f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}"
         )
-    if at_most is not None and not 0 < at_most <= sum(points):
-        most = sum(points)
+    at_most = homework.at_most
+    possible = sum(points)
+    if at_most is not None and not 0 < at_most <= possible:
         raise InputError(
-            f"{path}: expected at_most of {here} above 0 and at most {most:g}, got {at_most:g}"
+            f"{path}: expected at_most of {here} above 0 and at most {possible:g}, got {at_most:g}"
         )
-    return made
+    return homework
 
 
-def _task(one: dict[str, Any], plan: Path) -> Task:
-    id, function, parameters = (
-        one["id"],
-        _placed(one["function"], plan),
-        tuple(one.get("parameters", ())),
-    )
+def _manual_task(table: dict[str, Any]) -> ManualTask:
+    """Return a task that a person grades, from its table in a plan."""
+    rubric = tuple(str(line) for line in table.get("rubric", ()))
+    return ManualTask(title=table["title"], points=float(table["points"]), rubric=rubric)
+
+
+def _task(table: dict[str, Any], plan: Path) -> Task:
+    """Return a task from its table in a plan."""
+    id = table["id"]
+    function = _with_folder(table["function"], plan)
+    parameters = tuple(table.get("parameters", ()))
     known = {} if ":" in function else rewording.parameters(id)
-    if not {*parameters} <= {*known}:
+    if not set(parameters) <= set(known):
         raise InputError(
             f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}"
         )
-    return Task(id, function, float(one["points"]), one.get("minimum") is True, parameters)
+    return Task(
+        id=id,
+        function=function,
+        points=float(table["points"]),
+        minimum=table.get("minimum") is True,
+        parameters=parameters,
+    )
 
 
-def _placed(function: str, plan: Path) -> str:
-    """Return a function as a plan names it, the file of one that is not the library's with its folder."""
+def _with_folder(function: str, plan: Path) -> str:
+    """Return the name of a function in a plan, with the plan's folder for an instructor's own file."""
     file, colon, name = function.rpartition(":")
-    if colon and not (file.endswith(".py") and file == Path(file).name and name):
+    if not colon:
+        return function
+    if not (file.endswith(".py") and file == Path(file).name and name):
         raise InputError(
             f"expected a function of hdrlab, or FILE.py:NAME beside the plan, got {function}"
         )
-    return f"{plan.resolve().parent / file}:{name}" if colon else function
+    return f"{plan.resolve().parent / file}:{name}"
 
 
 def function(task: Task) -> Callable[..., Any]:
-    """Return the function that solves a task: the library's, a variant of it, or the instructor's."""
+    """Return the function that solves a task: the library's, a variant of it, or an instructor's own."""
     if task.variant:
         return rewording.function(task.id, task.function, task.variant)
     if task.own is not None:
@@ -234,41 +257,42 @@ def function(task: Task) -> Callable[..., Any]:
 
 
 def read_secret(path: Path) -> tuple[str, bool]:
-    """Return the course's secret, and whether it was made just now: it is where the file is missing.
+    """Return the course's secret, and whether this call created it because the file did not exist.
 
     Raises
     ------
-    ValueError
-        For an empty file.
+    InputError
+        For an empty file, and one that is not text.
     """
-    made = not path.exists()
-    if made:
-        with open(
-            os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf8"
-        ) as file:
+    is_new = not path.exists()
+    if is_new:
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with open(descriptor, "w", encoding="utf8") as file:
             file.write(secrets.token_urlsafe(32) + "\n")
     try:
         secret = path.read_text(encoding="utf8").strip()
     except UnicodeDecodeError:
         raise FileFormatError(f"{path}: the secret file is not a text file in UTF-8") from None
     if not secret:
-        raise InputError(f"{path}: expected a line that nobody else knows, it is empty")
-    return secret, made
+        raise InputError(
+            f"{path}: the secret file is empty; write a line into it that nobody else knows"
+        )
+    return secret, is_new
 
 
 def seed(secret: str, student: str, task: str) -> int:
-    """Return what a student's inputs to a task are drawn from: HMAC(course secret, student, task).
+    """Return the seed of a student's inputs to a task: HMAC(course secret, student, task).
 
-    Nobody without the secret can tell another's inputs, and the same three give the same inputs
-    again.
+    Nobody can compute it without the secret, and it is always the same for the same student and
+    task.
 
     Examples
     --------
     >>> seed("salt", "ada", "gsolve") == seed("salt", "ada", "gsolve") != seed("salt", "ada", "merge")
     True
     """
-    drawn = hmac.digest(secret.encode(), f"{student}\0{task}".encode(), "sha256")
-    return int.from_bytes(drawn, "big")
+    digest = hmac.digest(secret.encode(), f"{student}\0{task}".encode(), "sha256")
+    return int.from_bytes(digest, "big")
 
 
 def draw_variants(

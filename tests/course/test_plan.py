@@ -164,9 +164,9 @@ def test_a_task_occurs_in_one_homework_only_and_is_found_by_its_id(read):
     assert found.task("gsolve").points == 7.5
     with pytest.raises(KeyError, match="task out of gsolve.*'merge'"):
         found.task("merge")
-    with pytest.raises(ValueError, match="tasks, each once.*gsolve$"):
+    with pytest.raises(ValueError, match="gsolve"):
         read(tasks=f"{{ {TASK}, points = 1 }}, {{ {TASK}, points = 2 }}")
-    with pytest.raises(ValueError, match="tasks, each once.*none"):
+    with pytest.raises(ValueError, match="expected tasks"):
         read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
 
 
@@ -187,7 +187,7 @@ def test_a_secret_is_created_once_and_readable_by_its_owner_only(tmp_path):
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
     assert plan.read_secret(file) == (secret, False)
     file.write_text(" \n", encoding="utf8")
-    with pytest.raises(ValueError, match="line that nobody else knows, it is empty"):
+    with pytest.raises(ValueError, match="secret file is empty"):
         plan.read_secret(file)
     file.unlink()
     assert plan.read_secret(file)[0] != secret

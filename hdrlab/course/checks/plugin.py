@@ -147,14 +147,16 @@ class GradingPlugin:
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write a line for each task whose answers show a known mistake."""
-        for task in sorted(self.failed):
-            with suppress(
-                Exception
-            ):  # whatever was answered costs this task its sentence, and no other
-                (asked,) = (plan.Task(*one) for one in self.job["tasks"] if one[0] == task)
-                if found := misconceptions.closest(asked, self.calls.get(task, [])):
+        tasks = {task.id: task for task in (plan.Task(*values) for values in self.job["tasks"])}
+        for task_id in sorted(self.failed):
+            # an answer that breaks the search costs this task its sentence, and no other task
+            with suppress(Exception):
+                mistake = misconceptions.closest(tasks[task_id], self.calls.get(task_id, []))
+                if mistake:
                     self._write(
-                        recognised=task, sentence=found.sentence, once=found.costs_half_at_most
+                        recognised=task_id,
+                        sentence=mistake.sentence,
+                        once=mistake.costs_half_at_most,
                     )
 
     def pytest_unconfigure(self) -> None:

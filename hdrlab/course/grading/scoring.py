@@ -51,27 +51,36 @@ def attribute_failures(
     Parameters
     ----------
     checks : of one task, each with its max_points and its outcome
-    needs : name of a check -> name of the one about the substance without which it earns nothing
-    named : whether a well-known mistake explains the answers
-    once : whether that one costs half at most
+    needs : name of a check -> name of the main check; without that one, the check earns nothing
+    named : whether a known mistake explains the failures
+    once : whether that mistake costs at most half of the points
     """
-    broken = {one.name: one for one in checks if one.outcome != "holds" and not one.hidden}
-    left = Fraction(floor(sum(one.max_points for one in checks)), 2) if once else None
-    found = []
+    failures = {
+        check.name: check for check in checks if check.outcome != "holds" and not check.hidden
+    }
+    max_loss = None
+    if once:
+        max_loss = Fraction(floor(sum(check.max_points for check in checks)), 2)
+    attributed = []
     for check in checks:
-        missing = broken.get(needs.get(check.name, "")) if not once else None
-        lost = check.max_points if check.outcome != "holds" or missing else Fraction()
-        if left is not None:
-            lost = min(lost, left)
-            left -= lost
-        if check.name in broken and not check.hidden:
-            root = next(iter(broken.values())) if named else _root(check, broken, needs)
+        missing = None if once else failures.get(needs.get(check.name, ""))
+        lost = Fraction()
+        if check.outcome != "holds" or missing:
+            lost = check.max_points
+        if max_loss is not None:
+            lost = min(lost, max_loss)
+            max_loss -= lost
+        if check.name in failures and not check.hidden:
+            root = next(iter(failures.values())) if named else _root(check, failures, needs)
             check = replace(check, follows="" if root.name == check.name else root.promise)
         elif check.outcome == "holds" and missing:
-            says = f"This check passes, but it only earns points if this one passes, too: {missing.promise}"
-            check = replace(check, message=says)
-        found.append(replace(check, points=check.max_points - lost))
-    return found
+            message = (
+                "This check passes, but it only earns points if this one passes, too: "
+                f"{missing.promise}"
+            )
+            check = replace(check, message=message)
+        attributed.append(replace(check, points=check.max_points - lost))
+    return attributed
 
 
 def _root(check: Check, broken: Mapping[str, Check], needs: Mapping[str, str]) -> Check:
