@@ -38,8 +38,9 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
         raise InputError(
             f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"
         )
-    for template in sorted(TEMPLATES.rglob("*.txt")):
-        name = template.relative_to(TEMPLATES).as_posix().removesuffix(".txt")
+    templates = [path for path in TEMPLATES.rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    for template in sorted(templates):
+        name = template.relative_to(TEMPLATES).as_posix()
         path = folder / _fill_in(name, task, homework)
         text = _fill_in(template.read_text(encoding="utf8"), task, homework)
         present = path.read_text(encoding="utf8") if path.exists() else ""

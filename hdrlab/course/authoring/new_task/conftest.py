@@ -1,4 +1,4 @@
-"""Under `python -m pytest` the checks ask the solutions beside them; the grader asks a student's code instead."""
+"""Run the checks on the solutions in this folder. The grader runs them on a student's code instead."""
 
 from pathlib import Path
 
@@ -11,11 +11,11 @@ from hdrlab.course.checks import inprocess
 
 @pytest.fixture
 def subject():
-    """subject.name(...) -> what the solution answers, as plain arrays."""
+    """Return the solutions: subject.name(...) calls one, and its answer comes as plain arrays."""
     return inprocess.library(plan.read(Path(__file__).with_name("plan.toml")))
 
 
 @pytest.fixture
 def rng():
-    """A random generator, afresh for every check; the grader draws another for each student."""
+    """Return a new random generator for each check; the grader draws another for each student."""
     return np.random.default_rng(0)
