@@ -20,6 +20,7 @@ in a notebook. `SEEDS=3 python -m benchmarks fairness` is a shorter run.
 import inspect
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
 from itertools import zip_longest
@@ -129,7 +130,7 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
         except Exception as error:  # whatever an answer leads to costs that promise, and no other
             kind = error.kind if isinstance(error, NoAnswer) else ""
             outcome: Outcome = "no answer" if kind else "fails"
-            ended = ended._replace(outcome=outcome, kind=kind, message=str(error))
+            ended = replace(ended, outcome=outcome, kind=kind, message=str(error))
         checks.append(ended)
         calls += [(one.args, one.kwargs, one.answer) for one in subject.calls]
     broken = tuple(one.name for one in checks if one.outcome != "holds")

@@ -238,13 +238,13 @@ def test_checks_that_are_ended_from_outside_are_no_result(tmp_path, killing):
 
 
 @PROC
-def test_a_function_whose_process_is_ended_from_outside_is_asked_again(tmp_path, killing):
+def test_a_function_whose_process_something_kills_is_graded_again(tmp_path, killing):
     (tmp_path / "b1.py").write_text(SLOW)
     job = jobs.GradingJob("b1", tmp_path / "b1.py", "key")
-    grader = classroom.Grader(HAT, GradingOptions(tier="practice"))
+    class_grader = classroom.Grader(HAT, GradingOptions(tier="practice"))
     killing(b"supervisor.py", below=True)
-    once = grader.grade(job.path, HAT, grader.conditions)
+    once = grader.grade(job.path, HAT, class_grader.conditions)
     assert "no answer" in {one.outcome for one in once.checks}
     killing(b"supervisor.py", below=True)
-    result = results.from_json(grader.grade(job))
+    result = results.from_json(class_grader.grade(job))
     assert {one.outcome for one in result.checks} == {"holds"}
