@@ -98,7 +98,7 @@ def installed(wheel, tmp_path, words):
     lent = [path for path in sys.path if path.endswith("site-packages")]
     code = (
         f"import sys; sys.path += {lent!r}\n"
-        "import hdrlab; from hdrlab import cli; from hdrlab.course.material import materials\n"
+        "import hdrlab; from hdrlab import cli; from hdrlab.course import materials\n"
         f"assert hdrlab.__file__.startswith({str(site)!r}), hdrlab.__file__\n"
         "assert list(materials.folder('notebooks').glob('*.ipynb'))\n"
         "assert list(materials.folder('assignments').glob('*.ipynb'))\n"
