@@ -126,7 +126,7 @@ def test_nothing_is_downloaded(monkeypatch):
     ],
 )
 def test_invalid_room_parameters_raise_an_error(knobs):
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="expected"):
         view.room(**{"shape": (8, 8), **knobs})
 
 
