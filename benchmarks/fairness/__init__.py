@@ -34,7 +34,7 @@ from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.authoring import solutions
 from hdrlab.course.checks import compare, misconceptions, plugin
-from hdrlab.course.checks.subject import DEFAULT_CALL_TIMEOUT_SECONDS, NoAnswer, Subject
+from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Outcome
 from hdrlab.course.plan import Homework
@@ -98,7 +98,7 @@ def graded(item: tuple[Homework, dict[str, tuple[str, str]], int]) -> list[Score
     sources = {task: source for task, (_, source) in chosen.items()}
     modules = tuple(imported_numpy_modules(sources.values()))
     with Subject(
-        sources, tiers.choose("practice"), DEFAULT_CALL_TIMEOUT_SECONDS * seeds, modules
+        sources, tiers.choose("practice"), plan.CALL_TIMEOUT_SECONDS * seeds, modules
     ) as subject:
         return [
             score(subject, task, chosen[task.id][0], f"student {k}")

@@ -85,7 +85,7 @@ def check(
 @click.option(
     "--timeout",
     type=click.FloatRange(0.1),
-    default=10.0,
+    default=plans.CALL_TIMEOUT_SECONDS,
     help="Time limit for one call of a function, in seconds, see above.",
 )
 @click.option(

@@ -25,7 +25,9 @@ from hdrlab.course.variants import rewording
 from hdrlab.errors import FileFormatError, InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
-ANSWER_TIMEOUT_SECONDS = 10.0
+# for one call of a student's function, by default; `checks.subject` and `grading.grader` derive or state
+# the limits of a check, of a submission and of all checks, and SECURITY.md adds them up
+CALL_TIMEOUT_SECONDS = 10.0
 
 
 class Task(NamedTuple):
@@ -125,7 +127,7 @@ class GradingOptions:
     student: str = ""
     secret: str = ""
     hidden: Path | None = None
-    timeout: float = ANSWER_TIMEOUT_SECONDS
+    timeout: float = CALL_TIMEOUT_SECONDS
     draw: bool = True
 
 

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple, NoReturn, Self
 
 from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
+from hdrlab.course.plan import CALL_TIMEOUT_SECONDS
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.session import Sandbox, SandboxSession
 
-DEFAULT_CALL_TIMEOUT_SECONDS = 10.0
 # limits as multiples of the time of one call: for one check, for all checks of a submission, and
 # for the processor time of all calls of a submission
 CHECK_TIMEOUT_FACTOR = 3
@@ -117,7 +117,7 @@ class Subject:
         self,
         sources: Mapping[str, str],
         sandbox: Sandbox,
-        timeout: float = DEFAULT_CALL_TIMEOUT_SECONDS,
+        timeout: float = CALL_TIMEOUT_SECONDS,
         modules: Sequence[str] = (),
     ) -> None:
         self._sources = dict(sources)

@@ -36,7 +36,8 @@ from hdrlab.course.submissions.reader import SubmittedCode
 from hdrlab.course.variants import rewording
 from hdrlab.errors import InputError
 
-# for all checks of a homework; `checks.subject` limits the calls of the student's functions
+# for all checks of a homework: 40 s more than the calls of the student's functions may take by
+# default (20 times 10 s, see `checks.subject`)
 ALL_CHECKS_TIMEOUT_SECONDS = 240.0
 MAX_MESSAGE_LENGTH = 2000
 MAX_PRINTED_LENGTH = 4000

@@ -36,6 +36,7 @@ ARCHIVE_LIMITS = ArchiveLimits(max_total_bytes=256 * 2**20)
 READING_CPU_SECONDS = 2  # a finished homework takes 0.1 s
 UNPACKING_CPU_SECONDS = 3  # in addition, for an archive
 READING_MEMORY_BYTES = 500 * 2**20
+# a submission is read twice, so that it costs at most 2 x 25 s beside its checks
 READING_TIMEOUT_SECONDS = 25.0
 MAX_ATTEMPTS = 3  # for a process that something else kills
 MAX_SHOWN_PROBLEMS = 12
