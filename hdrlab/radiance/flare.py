@@ -264,6 +264,6 @@ def note(result: Deglared) -> str:
     power = result.spread.power
     percent = 100 * result.region.mean()
     return (
-        f"veiling glare: the lens scattered {share:.1f} % of the light, falling with the power {power:g} of "
-        f"the distance; removed in {percent:.0f} % of the pixels"
+        f"veiling glare: the lens scattered {share:.1f} % of the light, which falls off with the "
+        f"power {power:g} of the distance; the glare was removed in {percent:.0f} % of the pixels"
     )
