@@ -89,8 +89,8 @@ pictures.picture(
 #
 # The histogram `h` (256,) counts the pixels of each pixel value. The threshold is the lowest value
 # for which at least a fraction $q$ of all pixels lie at or below it. For $q = 1/2$ that is the
-# median; if the median is clipped, another fraction is used. $q$ may be an array: then return an
-# array of thresholds.
+# median; if the median is clipped, an aligner chooses another fraction. $q$ may be an array: then
+# return an array of thresholds.
 
 # %% task="threshold"
 
@@ -165,7 +165,8 @@ pictures.picture(
 # ## All checks
 #
 # The last cell runs all checks with a progress bar, just like grading. Only the grader's result
-# counts. It draws its own inputs for you, so answers that only fit the examples do not get far.
+# counts. It generates its own random inputs for you, so a solution that only works for the examples
+# here does not pass.
 
 # %%
 check("hw1")

@@ -134,8 +134,9 @@ pictures.picture(
 # Yield the state of one channel before the first iteration and after each iteration.
 
 # %% [markdown] about="recover_steps"
-# **Predict.** Photos that are two stops apart leave something undetermined: any pattern in $\ln E$
-# with a period of two stops can move from $f^{-1}$ into the $E_i$. What will that look like?
+# **Predict.** Photos that are two stops apart leave something undetermined. Add a function of ln
+# exposure with a period of two stops to $\ln f^{-1}$, and the same function to the $\ln E_i$: then
+# $f^{-1}(Z_{ij}) = E_i t_j$ holds as well as before. What will that look like in the curve?
 
 # %% about="recover_steps hat"
 states = list(recover_steps(sampling.by_rank(grays, 800), bracket.times, hat()))
@@ -151,17 +152,17 @@ pictures.picture(
 # %% [markdown] about="recover"
 # ## 6 · Mitsunaga and Nayar: a polynomial, and rough times ({points})
 #
-# A response function is smooth, so a polynomial of low order can represent its inverse:
-# $f^{-1}(M) = \sum_{k=1}^{K} c_k M^k$ with $M = Z/255$ and $f^{-1}(1) = 1$. Shutter times are only
-# roughly known, so the method corrects them, alternating with the curve. For photos with
-# adjacent exposure times and the ratio $R_q = t_q / t_{q+1} < 1$,
+# A response function is smooth, so a polynomial of low order can represent its inverse: $f^{-1}(M)
+# = \sum_{k=1}^{K} c_k M^k$ with $M = Z/255$ and $f^{-1}(1) = 1$. Shutter times are only roughly
+# known, so the method improves the curve and the times in turn. For photos with adjacent exposure
+# times and the ratio $R_q = t_q / t_{q+1} < 1$,
 #
 # $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #
-# is a least-squares problem in the $c_k$. Then each $R_q$ becomes the sum of $f^{-1}$ over the one
-# frame divided by the sum over the other. (The paper takes the mean of quotients, to which dark
+# is a least-squares problem in the $c_k$. Then set each $R_q$ to the sum of $f^{-1}$ over photo
+# $q$, divided by the sum over photo $q + 1$. (The paper takes the mean of quotients, to which dark
 # pixels add mostly noise.) Repeat both steps until $f^{-1}$ changes by less than `eps`, or for
-# fifty iterations. Each channel may have its own ratios. The sum begins with $k = 1$, so
+# thirty iterations. Each channel may have its own ratios. The sum begins with $k = 1$, so
 # $f^{-1}(0) = 0$ and $g(0) = -\infty$. Return that for value 0, or use a fraction of the exposure
 # of value 1.
 #

@@ -8,8 +8,8 @@
 # meet a question of honesty: what should the map say about a pixel that no photo has measured?
 #
 # {choice} The map and two file formats, tasks 1 to 6, are enough. You can replace some of them, but
-# not the minimum, by a file format with more bits, ghost detection, or the exposure ratio of two
-# photos.
+# not a required task, with a file format with more bits, ghost detection, or the exposure ratio of
+# two photos.
 #
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what differs.
 # Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be imported when
@@ -82,7 +82,7 @@ pictures.radiance(E, alt="The radiance map of the room in false color")
 # Use the tightest bounds. If there is one bound, the map takes it. Between two bounds it takes the
 # middle of their logarithms. Without any bound, $E = 0$.
 #
-# - `Z` is `(P, M)`: the values of $M$ such pixels. A value between 1 and `top` gives no bound.
+# - `Z` is `(P, M)`: the values of $M$ such pixels. A value from 1 to `top` − 1 gives no bound.
 # - `B` is `(P,)`: ln times.
 # - `shown` `(P, M)` is False if a photo does not show the pixel at all.
 #
@@ -108,7 +108,7 @@ pictures.radiance(E, alt="The radiance map of the room in false color")
 # %% [markdown] about="from_bytes"
 # ## 4 · Read a portable float map ({points})
 #
-# Now read such a file, also if another program wrote it. Any white space may separate the parts of
+# Now read such a file, even if another program wrote it. Any white space may separate the parts of
 # the header, the bytes may be in either order, and exactly one white-space character follows the
 # number. The next byte belongs to the image, even if it looks like a space.
 
@@ -178,7 +178,7 @@ for word in (0x3C00, 0xC100, 0x7BFF, 0x0001, 0x7C00):
 # $$v = \frac{\sum_j w_j\,(x_j - \bar x)^2}{\sum_j w_j}, \qquad
 #   \bar x = \frac{\sum_j w_j\, x_j}{\sum_j w_j}.$$
 #
-# `x` and `w` are `(P, H, W)`. All $x$ are finite, also where $w = 0$, and no weight is negative.
+# `x` and `w` are `(P, H, W)`. All $x$ are finite, even where $w = 0$, and no weight is negative.
 # Return $v$ `(H, W)`. Where all weights are 0, no photos contradict each other: $v = 0$.
 
 # %% task="weighted_variance"
@@ -218,8 +218,8 @@ pictures.picture(
 # %% [markdown] about="dilate"
 # ## 10 · Dilate the mask and fill its holes ({points})
 #
-# A mask (H, W) marks pixels where the photos contradict each other. Movement is visible at
-# outlines, so the mask must grow in two steps:
+# A mask (H, W) marks pixels where the photos contradict each other. Movement is often visible only
+# at outlines, so the mask must grow in two steps:
 #
 # 1. Add every pixel whose center is at most `margin` pixels, in a straight line, from the center of
 #    a pixel of the mask.
@@ -263,10 +263,10 @@ pictures.picture(
 # ## 12 · The exposure ratio of a linear camera ({points})
 #
 # A linear camera's pixel value is proportional to exposure. So if one photo got $k$ times the
-# exposure of another, a value $x$ in the darker photo is $y = k\, x$ in the brighter one. Pairs of such
-# values, each with a weight $v$, determine $k$ (Cerman and Hlavac, 2006). Least squares minimize
-# $\sum \bigl(v\,(y - k\,x)\bigr)^2$ over the pairs in use. Some pairs are wrong, for example
-# because something moved. They are found in rounds:
+# exposure of another, a value $x$ in the darker photo is $y = k\, x$ in the brighter one. Pairs of
+# such values, each with a weight $v$, determine $k$ (Cerman and Hlavac, 2006). Least squares
+# minimize $\sum \bigl(v\,(y - k\,x)\bigr)^2$ over the pairs in use. Some pairs are wrong, for
+# example because something moved. Find them in rounds:
 #
 # 1. At first all pairs are in use. Compute $k$, and the mean $V$ of $\bigl(v\,(y - k\,x)\bigr)^2$
 #    over them.

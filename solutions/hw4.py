@@ -7,9 +7,9 @@
 # Five papers give five answers: one curve for all pixels, a base layer that holds the illumination,
 # a histogram with limited contrast, a scale that varies slowly, and attenuated gradients.
 #
-# {choice} Everybody begins with Reinhard's curve. Of the four papers after it, choose those whose
-# images you like. Durand with Ward is enough, so is Chiu with Fattal, and so are any three. Half of
-# a paper counts, too.
+# {choice} Everybody begins with Reinhard's curve. Then choose from the other four papers, for
+# example those whose images you like best. Durand with Ward is enough, so is Chiu with Fattal, and
+# so are any three. You also get the points of single tasks of a paper.
 #
 # | symbol | meaning | shape |
 # |---|---|---|
@@ -48,9 +48,9 @@ pictures.radiance(room, alt="The radiance of the room in false color")
 #
 # $$\bar L = \exp\Bigl(\frac 1 N \sum \ln(\delta + L)\Bigr).$$
 #
-# A small $\delta$ keeps black pixels finite. `delta` is given in medians of $L$, so that the unit
-# of $L$ cancels: $\delta$ is `delta` times the median of all pixels that are not black. Return a
-# number.
+# A small $\delta$ keeps the logarithm of black pixels finite. `delta` is given in medians of $L$,
+# so that the unit of $L$ cancels: $\delta$ is `delta` times the median of all pixels that are not
+# black. Return a number.
 
 # %% task="log_average"
 # Return Lav = exp(mean(log(delta + L))), delta in medians of L.
@@ -80,9 +80,10 @@ pictures.picture(
 # %% [markdown] about="scale_steps"
 # ## 3 · Reinhard: dodging and burning ({points})
 #
-# A photographer exposes each region by its own surroundings: the largest neighborhood that is still
-# even. `blurred` contains $V_1(s)$, which is $L_m$ blurred at the widths
-# $s = 1, 1.6, 1.6^2, \ldots$ At each width, the next one is the surround $V_2$:
+# In the darkroom, a photographer exposes each region of the print according to its surroundings.
+# Here these are the largest neighborhood that is still even. `blurred` contains $V_1(s)$, which is
+# $L_m$ blurred at the widths $s = 1, 1.6, 1.6^2, \ldots$ At each width $s$, the image blurred at
+# the next width is the surround $V_2$:
 #
 # $$V(s) = \frac{V_1(s) - V_2(s)}{2^\phi a / s^2 + V_1(s)}, \qquad V_2(s) = V_1(1.6\, s).$$
 #
@@ -138,9 +139,10 @@ pictures.picture(
 #
 # The sum in the denominator, $k(p)$, says how many pixels contribute to the mean at $p$. A pixel
 # that differs from all its neighbors only has itself: it is its own base and keeps no detail. The
-# paper uses another base for such pixels. We use the mean, blurred by a Gaussian of $\sigma = 2$
-# pixels. The certainty $u$ of a base increases with the logarithm of $k$, from 0 at $k = 1$ to 1
-# where $k$ reaches the square root of the effective number of pixels, $2 \pi \sigma_s^2$:
+# paper uses another base for such pixels. We use `mean`, the base from the filter, blurred by a
+# Gaussian of $\sigma = 2$ pixels. The certainty $u$ of a base increases with the logarithm of $k$,
+# from 0 at $k = 1$ to 1 where $k$ reaches the square root of the effective number of pixels, $2 \pi
+# \sigma_s^2$:
 #
 # $$u = \frac{\ln k}{\ln \sqrt{2 \pi \sigma_s^2}}, \text{ at least 0 and at most 1}, \qquad
 #   \text{base} = u\, \text{mean} + (1 - u)\, \mathrm{blur}(\text{mean}).$$
@@ -162,11 +164,11 @@ pictures.picture(
 #
 # $$h(b) \le \frac{T\, \Delta b}{D}.$$
 #
-# Cut $h$ at the ceiling. That lowers $T$, and with it the next ceiling, so repeat. Stop when less
-# than `tolerance` of the $T$ before the trim was cut off, or when at most `tolerance` of the first
-# $T$ is left. Discard what was cut off. Yield the original histogram, and the histogram after every
-# trim, as $h$, the ceiling, that $T$, and the trimmed amount. At first, the ceiling and
-# the trimmed amount are infinite.
+# Cut $h$ at the ceiling. That lowers $T$, and with it the next ceiling, so repeat. Stop when a trim
+# cuts off less than the fraction `tolerance` of $T$ (taken before that trim), or when at most the
+# fraction `tolerance` of the first $T$ is left. Discard what was cut off. Yield $h$, the ceiling,
+# the $T$ from which the ceiling was computed, and the trimmed amount: for the original histogram,
+# and after every trim. At first, the ceiling and the trimmed amount are infinite.
 
 # %% task="adjust_steps"
 # Yield (h, ceiling, T, trimmings): the original histogram, and the histogram after every trim.

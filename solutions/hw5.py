@@ -57,7 +57,7 @@ pictures.radiance(room, alt="The radiance of the room in false color")
 #
 # A sensor counts photons, which arrive at random: the variance of a count equals the count itself
 # (*shot noise*). At exposure $X$ the count is $X N$ electrons. Reading it out adds *read noise*:
-# $R$ electrons of standard deviation, independent of the light. At last the value is rounded to a
+# $R$ electrons of standard deviation, independent of the light. Finally, the result is rounded to a
 # pixel value. All exposures in an interval of width $D$ are rounded to the same value, and the true
 # one lies anywhere in the interval, with equal probability.
 #
@@ -101,9 +101,9 @@ pictures.picture(
 # The sums are over the photos that measure the pixel: `measured` is False where a photo is clipped,
 # and `X` and `D` have no meaning there. One problem is left. A photo that caught too few photons by
 # chance has too small an $X$, so too small a $V$, and would get too much weight. The variance
-# should be that of the true light, $E\,t$. But $E$ is unknown. So begin with the variance of $X$,
-# compute the mean, and then twice compute $V$ from $E\,t$ and the mean again. The checks do not
-# notice more iterations.
+# should be that of the true light, $E\,t$. But $E$ is unknown. So begin with the variance of $X$
+# and compute the mean $E$. Then do the following twice: compute $V$ from the exposures $E\,t$, and
+# with this $V$ a new mean. The checks do not notice more iterations.
 #
 # `X`, `D` and `measured` are `(P, H, W)`. Return $E$ and $s$, both `(H, W)`. You may call your
 # `variance`. In the checks, at least one photo measures each pixel.
@@ -170,8 +170,9 @@ pictures.picture(
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
 # with + where $l$ is above $g$ and - where it is below. $\alpha$ below 1 amplifies details, and
-# $\beta$ is the remaining fraction of edges. ($l$ and the number $g$ are natural logarithms.
-# $\sigma$ is `sigma` and $\alpha$ is `alpha`, both above 0; $\beta$ is `beta`.)
+# $\beta$ is the fraction that remains of an edge's contrast beyond $\sigma$. ($l$ and the number
+# $g$ are natural logarithms. $\sigma$ is `sigma` and $\alpha$ is `alpha`, both above 0; $\beta$ is
+# `beta`.)
 
 # %% task="remap"
 # Return the remapped r of log luminance lL (H, W), for the reference value g.
@@ -250,8 +251,8 @@ pictures.picture(
 #
 # $$G = \text{low} + (\text{high} - \text{low})\, g^{1 / \gamma}.$$
 #
-# A screen that reaches as far above white as the map applies the whole gain. Another screen applies
-# a fraction $W$ of its stops, from 0 to 1, and shows
+# If a screen reaches as far above white as the map does, it applies the whole gain. Any other
+# screen multiplies the gain, in stops, by a fraction $W$ from 0 to 1, and shows
 #
 # $$(\text{sdr} + k_\text{sdr})\; 2^{W G} - k_\text{hdr}.$$
 #
@@ -470,17 +471,18 @@ pictures.picture(
 #   chi-square distribution with $s - 1$ degrees of freedom. The patch is flat if this is at most
 #   $\chi^2_{s-1}(\psi)$, which noise exceeds by chance in a fraction $\psi$ = `psi` of all flat
 #   patches: `scipy.stats.chi2.isf(psi, s - 1)`.
-# - For **several frames**, estimate the noise from the frames and ignore `sigma`. The variance of a
-#   pixel over the frames, divided by $t - 1$, is that of one frame; its mean over the patch is
-#   $\sigma_t^2$. The average of $t$ frames has $\sigma_t^2 / t$. This estimate has $s\,(t - 1)$
-#   degrees of freedom, so the limit is a different one. The patch is flat if
+# - For **several frames**, estimate the noise from the frames and ignore `sigma`. The sum of a
+#   pixel's squared deviations over the frames, divided by $t - 1$, estimates the noise variance of
+#   one frame; the mean of these estimates over the patch is $\sigma_t^2$. The average of $t$ frames
+#   has $\sigma_t^2 / t$. This estimate has $s\,(t - 1)$ degrees of freedom, so the limit is a
+#   different one. The patch is flat if
 #
 # $$\frac{s\,\sigma_s^2}{\sigma_t^2 / t} \le (s - 1)\, F_{s-1,\; s(t-1)}(\psi),$$
 #
 #   which is `scipy.stats.f.isf(psi, s - 1, s * (t - 1))`.
 #
-# If the edge of the image cuts a patch, that is, within `size // 2` pixels of the edge, nothing is
-# flat. Return a mask (H, W), of bool, or 0 and 1.
+# A pixel within `size // 2` pixels of the edge of the image never counts as flat, because the edge
+# cuts its patch. Return a mask (H, W), of bool, or 0 and 1.
 
 # %% task="flat"
 # Return a mask (H, W) of the pixels with a flat patch around them, for frames A (t, H, W).

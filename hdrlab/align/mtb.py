@@ -69,7 +69,7 @@ def shrink(Y: Array) -> Array:
 
 
 def threshold(h: Array, q: ArrayLike) -> NDArray[np.int64]:
-    """Return t, the lowest code with a fraction q of the pixels at or below it: for q = 0.5 the median."""
+    """Return t, the lowest pixel value with a fraction q of the pixels at or below it."""
     below = np.cumsum(h)
     return np.searchsorted(below, np.asarray(q) * below[-1])
 

@@ -83,7 +83,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     B : (P,) float
         Natural logarithm of the exposure times in seconds.
     smoothness : float
-        lambda; 10 to 100 for photographs.
+        lambda; 10 to 100 for photos.
     w : (n,) float
         Weights. A level beyond a cut is in no equation; it takes the value of the nearest level
         that is in one.
@@ -96,7 +96,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     Raises
     ------
     ValueError
-        If the arrays do not fit together, or no sample is seen well in two different exposures.
+        If the arrays do not fit together, or no sample is well exposed in two photos.
 
     References
     ----------

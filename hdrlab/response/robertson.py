@@ -107,7 +107,7 @@ def recover_steps(
     Raises
     ------
     ValueError
-        If no sample is seen well in two exposures.
+        If no sample is well exposed in two photos.
 
     Examples
     --------

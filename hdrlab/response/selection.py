@@ -74,9 +74,9 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     size : int
         Side of the patch, pixels.
     psi : float
-        The share of flat patches that are lost.
+        The fraction of flat patches that the test rejects.
     sigma : float
-        Noise of a single frame, where there is no other to estimate it from.
+        Noise of a single frame, if A has only one.
 
     Returns
     -------

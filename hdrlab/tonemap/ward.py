@@ -37,7 +37,7 @@ class Trim(NamedTuple):
     ----------
     h : (bins,), nothing above `ceiling`
     ceiling : counts, from the T before this trim; infinite before the first
-    T : that T; P = sum of h / T has slopes of at most 1
+    T : the sum of h before this trim; P = sum of h / T has slopes of at most 1
     trimmings : what was cut off
     """
 

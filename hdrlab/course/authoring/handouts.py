@@ -166,8 +166,8 @@ def _fill_in(text: str, homework: Homework, task: Task | None, late: str) -> str
         "points": _points_text(task),
         "total": f"{homework.points + points_by_hand:g}",
         "choice": (
-            f"Choose: the tasks give {points_of_tasks:g} points, of which {homework.points:g} count "
-            "at most."
+            f"Choose: the tasks are worth {points_of_tasks:g} points in total, but at most "
+            f"{homework.points:g} count."
         ),
         "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
         "late": late,
