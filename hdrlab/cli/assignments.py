@@ -27,10 +27,13 @@ homework_option = click.option(
 secret_option = click.option(
     "--secret-file",
     type=common.INPUT_PATH,
-    help="File with the course's secret, see hdrlab grade. hdrlab creates it if it is missing.",
+    help="File with the course's secret. If it does not exist, hdrlab creates it.",
 )
 tier_option = common.choice_option(
-    "--tier", TIERS, help="Sandbox tier for the submitted code, see hdrlab doctor."
+    "--tier",
+    TIERS,
+    help="Sandbox: strict (bubblewrap), container (inside a disposable container) or practice "
+    "(none; not for credit).",
 )
 
 

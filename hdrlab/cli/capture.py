@@ -225,7 +225,7 @@ def meter(photo: Path, mode: str, at: str) -> None:
     """Meter PHOTO like a camera, and report the correct exposure.
 
     hdrlab assumes an sRGB photo. The true brightness of clipped pixels is unknown. So if many are
-    clipped, take a photo with the reported time and meter that one again.
+    clipped, take another photo with the reported time, and meter that one.
     """
     import numpy as np
 

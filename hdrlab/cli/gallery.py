@@ -62,7 +62,7 @@ def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
 )
 @click.argument("artifacts", nargs=-1, type=common.INPUT_PATH)
 def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
-    """Add voters and ARTIFACTS to the gallery in FOLDER.
+    """Add voters and project images (ARTIFACTS) to the gallery in FOLDER.
 
     The voters are the students of the roster. ARTIFACTS are files or folders. The name of a
     file, or of its folder, starts with the team or the student: team7.jpg, b0123/submission.zip. A
@@ -119,7 +119,7 @@ def _echo_note(text: str) -> None:
 @click.option(
     "--roster",
     type=common.INPUT_PATH,
-    help="Class list with a column email, to copy to the table of links.",
+    help="Class list. hdrlab copies its column email to the table of links.",
 )
 @click.option(
     "--renew",
@@ -215,7 +215,7 @@ def close(*, folder: Path) -> None:
 def results(*, folder: Path, out: Path) -> None:
     """Write the results, after the end of the vote.
 
-    The CSV file shows who voted, and the votes of each student's artifact.
+    For each student, the CSV file shows whether they voted, and how many votes their image got.
     """
     from hdrlab.course.gallery import ballots
 

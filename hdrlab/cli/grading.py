@@ -161,9 +161,10 @@ def grade(
     The course's secret determines the inputs of each student's checks. It is one line in the file
     of --secret-file. Do not share or lose it.
 
-    From a folder, hdrlab grades every submission, several at the same time. It also writes a
-    gradebook and a page about the class. If you interrupt it, run it again to grade the rest. The
-    options from --roster to --cluster apply only to a folder, which requires --roster.
+    If SUBMISSION is a folder, hdrlab grades all submissions in it, several at the same time. It
+    also writes a gradebook and a page about the class. If you interrupt it, run it again to grade
+    the rest. The options from --roster to --cluster apply only to a folder, which requires
+    --roster.
     """
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder

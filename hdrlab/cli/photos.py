@@ -42,7 +42,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     default="exif",
     help="Source of the exposure times, see above.",
 )
-@click.option("--keep-times", is_flag=True, help="Do not correct the times of a FILE.")
+@click.option("--keep-times", is_flag=True, help="Like --times stated, for the times of a FILE.")
 @click.option(
     "--stops",
     type=click.FloatRange(0, min_open=True),
@@ -124,16 +124,17 @@ def assemble(
 
     --times exif (the default) reads time, ISO and f-number from EXIF. If EXIF has no times, hdrlab
     looks in the folder for a list with lines such as `a.jpg 1/60`. --times FILE reads such a list.
-    In both cases, hdrlab corrects times that the pixels contradict. --times stated does not correct
-    them. --times estimate computes all times from the pixels.
+    In both cases, hdrlab corrects times that the pixels contradict. --times stated reads the
+    times as exif does, but never corrects them. --times estimate computes all times from the
+    pixels.
 
     --align mtb shifts the photos onto each other. --align cerman also rotates them, and --align
     homography also corrects perspective. --align auto starts with mtb and uses the other methods
     only if mtb is not enough.
 
     --ghosts regions finds regions in which something moved, and takes each from the photo that
-    exposed it best. --ghosts auto does the same, but only if much has moved. --ghosts reference
-    takes all moving objects from the middle photo.
+    exposed it best. --ghosts auto does so only if movement covers between 1.5 % and 50 % of the
+    image. --ghosts reference takes all moving objects from the middle photo.
 
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
     file repeat them.
@@ -272,7 +273,7 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
     help="Source of the times: EXIF, an estimate from the pixels, or a list in a FILE.",
 )
 @click.option(
-    "--estimate-times", is_flag=True, help="Correct the times from EXIF or FILE with the pixels."
+    "--estimate-times", is_flag=True, help="Use the pixels to correct the times from EXIF or FILE."
 )
 @common.mask_option
 @common.choice_option("--align", ALIGN_METHODS, "mtb", help="Alignment method, as in assemble.")

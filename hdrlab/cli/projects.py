@@ -22,7 +22,7 @@ project_argument = click.argument("project", type=common.INPUT_PATH, default="."
 def report(*, project: Path, example: bool) -> None:
     """Make report.html from PROJECT's report.md or report.ipynb.
 
-    hdrlab inserts the artifact (artifact.jpg), the bracket (photographs/), the response
+    hdrlab inserts the final image (artifact.jpg), the bracket (photographs/), the response
     (response.csv) and the radiance map (map.hdr). It writes the page as a single file.
     """
     from hdrlab.cli.terminal import elapsed
@@ -55,7 +55,7 @@ def submit(*, project: Path, out: Path, keep_metadata: bool, force: bool) -> Non
     """Check PROJECT, and pack it into one archive.
 
     hdrlab reports what is missing. It removes location, serial numbers and maker notes from the
-    photos. It does not change pixels and exposure data.
+    photos. It does not change pixels or exposure data.
     """
     from hdrlab.course.projects import project as projects, review, submit as packing
 

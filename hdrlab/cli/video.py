@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     "--key",
     type=float,
     default=0.18,
-    help="Brightness to which to map the log average of the frames.",
+    help="Brightness that the log average of the frames gets in the video.",
 )
 @click.option(
     "--span",
@@ -61,16 +61,16 @@ def video(
     """Make an HDR video from FRAMES with alternating exposure times.
 
     FRAMES is a folder of photos, sorted by name, or a video. Reading or writing a video needs the
-    extra `video`. The frames have the --times in turn: the first frame has the first time, the
-    second frame the second time, and after the last time the first one again.
+    extra `video`. The exposure times of the frames repeat in the order of --times. With
+    --times 1/1000,1/60, frame 1 has 1/1000 s, frame 2 has 1/60 s, frame 3 has 1/1000 s, and so on.
 
     For each frame, hdrlab takes clipped and dark pixels from its neighbors, after motion
     compensation. If --out ends in .gif or .mp4, hdrlab writes a tone-mapped video. If it has no
     suffix, hdrlab writes a folder of radiance maps: 0001.exr and so on.
 
     hdrlab estimates the response from the first frame of each exposure time. These frames should
-    show nearly the same scene. --response auto fits a curve to measured ones. A curve that you have
-    saved with `hdrlab calibrate` is more accurate.
+    show nearly the same scene. --response auto estimates the curve with a model of measured camera
+    responses. A curve that you have saved with `hdrlab calibrate` is more accurate.
     """
     from hdrlab.beyond import video as merging
     from hdrlab.io import sequence

@@ -39,7 +39,7 @@ class VivaOptions:
     "--student",
     default="",
     show_default=False,
-    help="Student whose own questions to write. Requires --secret-file.",
+    help="Student for whom to write the questions. Requires --secret-file.",
 )
 @click.option(
     "--seed", type=click.IntRange(0), help="Seed, to get other questions for a second exam."
