@@ -81,12 +81,20 @@ def plan(
 
     With --snr 20, hdrlab also plans a second bracket: the fastest one with a signal-to-noise ratio
     of at least 20 from LOW to HIGH. It assumes that the photos are merged with inverse-variance
-    weights. The --camera file describes the noise of the camera. It may contain, with these
-    defaults: full_well = 20000 and read_noise = 5 (electrons), gain = 5 (electrons per pixel
-    value), converter_noise = 0 (pixel values), pause = 0.2 (seconds after each photo), aperture = 8
-    (f-number) and speeds = [100] (ISO speeds to choose from, such as [100, 400]; full_well and gain
-    apply to the lowest).
-    """
+    weights. The --camera file describes the noise of the camera. It may contain these lines,
+    whose defaults are shown:
+
+    \b
+      full_well = 20000      electrons
+      read_noise = 5         electrons
+      gain = 5               electrons per pixel value
+      converter_noise = 0    pixel values
+      pause = 0.2            seconds after each photo
+      aperture = 8           f-number
+      speeds = [100]         ISO speeds to choose from, such as [100, 400]
+
+    full_well and gain apply to the lowest ISO speed.
+    """  # noqa: D301  # click needs the backspace itself
     from hdrlab.capture import planning
 
     low = _either(low, low_option, "LOW")

@@ -64,8 +64,8 @@ def video(
     extra `video`. The exposure times of the frames repeat in the order of --times. With
     --times 1/1000,1/60, frame 1 has 1/1000 s, frame 2 has 1/60 s, frame 3 has 1/1000 s, and so on.
 
-    For each frame, hdrlab takes clipped and dark pixels from its neighbors, after motion
-    compensation. If --out ends in .gif or .mp4, hdrlab writes a tone-mapped video. If it has no
+    In each frame, hdrlab replaces clipped and dark pixels with those of the neighboring frames,
+    after motion compensation. If --out ends in .gif or .mp4, hdrlab writes a tone-mapped video. If it has no
     suffix, hdrlab writes a folder of radiance maps: 0001.exr and so on.
 
     hdrlab estimates the response from the first frame of each exposure time. These frames should
