@@ -246,6 +246,8 @@ def test_no_location_serial_number_or_owner_remains(name):
 
 @pytest.mark.parametrize("name", PHOTOS)
 def test_pixels_exposure_and_camera_are_unchanged(name, tmp_path):
+    if name == "a.dng":
+        pytest.importorskip("rawpy", reason="the pixels of a DNG need the extra `raw`")
     (tmp_path / "before").mkdir()
     before = tmp_path / "before" / name
     before.write_bytes(PHOTOS[name]())

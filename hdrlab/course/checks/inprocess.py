@@ -14,7 +14,8 @@ class Subject:
     """
 
     def __init__(self, functions):
-        self._functions, self.calls = functions, []
+        self._functions = functions
+        self.calls = []
 
     def __getattr__(self, task):
         if task.startswith("_") or task not in self._functions:

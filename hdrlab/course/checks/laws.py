@@ -112,5 +112,6 @@ def drawn_response(rng):
 def curve_error(g, truth):
     """Return the RMSE of f^-1 over levels 10 to 250 of 256, its unit fitted, per its largest value."""
     at = np.arange(10, 251) * (len(g) - 1) // 255
-    X, true = np.exp(g[at]), np.exp(truth[at])
+    X = np.exp(g[at])
+    true = np.exp(truth[at])
     return np.sqrt(np.mean((X * (X @ true) / (X @ X) - true) ** 2)) / true.max()

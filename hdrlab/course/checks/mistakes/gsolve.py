@@ -19,7 +19,9 @@ def weight_of_the_neighbour(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z + 1] * np.array([1, -2, 1])
@@ -48,7 +50,9 @@ def smoothness_not_weighted(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness * np.array([1, -2, 1])
@@ -77,7 +81,9 @@ def right_side_not_weighted(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
@@ -106,7 +112,9 @@ def not_weighted(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = 1
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
@@ -135,7 +143,9 @@ def lambda_inverted(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = 1 / smoothness * w[z] * np.array([1, -2, 1])
@@ -164,7 +174,9 @@ def lambda_read_as_1(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = w[z] * np.array([1, -2, 1])
@@ -193,7 +205,9 @@ def log2_of_the_times(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j] / np.log(2)
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j] / np.log(2)
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
@@ -222,7 +236,9 @@ def root_of_lambda(Z, B, smoothness, w):
         b = np.zeros(N * P + n - 1)
         for k, (i, j) in enumerate(np.ndindex(N, P)):
             wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
+            A[k, Z[i, j]] = wij
+            A[k, n + i] = -wij
+            b[k] = wij * B[j]
         A[N * P, n // 2] = 1
         for z in range(1, n - 1):
             A[N * P + z, z - 1 : z + 2] = smoothness**0.5 * w[z] * np.array([1, -2, 1])

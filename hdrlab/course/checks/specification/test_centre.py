@@ -8,7 +8,9 @@ from hdrlab.course.checks.compare import finite, points, same
 
 def asked(subject, rng):
     """Return the student's weights and the expected ones."""
-    H, W = shape = int(rng.integers(20, 30)), int(rng.integers(36, 48))
+    H = int(rng.integers(20, 30))
+    W = int(rng.integers(36, 48))
+    shape = (H, W)
     at = float(rng.uniform(0.2, 0.3)), float(rng.uniform(0.65, 0.8))
     inside = float(rng.uniform(0.6, 0.8))
     share = int(rng.integers(120, 300)) / (H * W)
