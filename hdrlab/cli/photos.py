@@ -136,6 +136,9 @@ def assemble(
     exposed it best. --ghosts auto does so only if movement covers between 1.5 % and 50 % of the
     image. --ghosts reference takes all moving objects from the middle photo.
 
+    If EXIF states time, ISO and f-number, hdrlab knows how bright the scene was, and the image of a
+    night stays dark.
+
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
     file repeat them.
     """
@@ -241,7 +244,9 @@ def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
     from hdrlab.pipeline import pictures
 
     if not assembly.fallback:
-        return pictures.develop_and_describe(assembly.E, tonemap)
+        return pictures.develop_and_describe(
+            assembly.E, tonemap, luminance_of_unit=assembly.bracket.luminance_of_unit
+        )
     from hdrlab.fast import mertens
 
     fused = mertens.fuse(assembly.bracket.images).clip(0, 1)

@@ -28,6 +28,8 @@ class Bracket:
         not (the border of a registered scan)
     linear : True where the values are proportional to exposure (RAW), so that there is no response
         to recover
+    luminance_of_unit : cd/m^2 of a surface with E = 1 in the radiance map, by the formula of
+        exposure meters; None where the photographs do not state time, ISO and f-number
     """
 
     images: Array
@@ -35,6 +37,7 @@ class Bracket:
     names: tuple[str, ...]
     valid: Mask | None = None
     linear: bool = False
+    luminance_of_unit: float | None = None
 
     # A Bracket was a named tuple of these five fields up to version 0.2: old code may still use it
     # as one, with a warning. New fields do not become part of the tuple.
@@ -66,6 +69,7 @@ def bracket(
     *,
     valid: ArrayLike | None = None,
     linear: bool = False,
+    luminance_of_unit: float | None = None,
 ) -> Bracket:
     """Return the Bracket of `images` and `times`, checked and sorted from short to long.
 
@@ -96,7 +100,14 @@ def bracket(
         names = tuple(names[j] for j in order)
         if mask is not None:
             mask = mask[order]
-    return Bracket(images=images, times=times, names=names, valid=mask, linear=linear)
+    return Bracket(
+        images=images,
+        times=times,
+        names=names,
+        valid=mask,
+        linear=linear,
+        luminance_of_unit=luminance_of_unit,
+    )
 
 
 def short_to_long(images: Array, times: F64) -> Indices:

@@ -29,6 +29,8 @@ ISO_TAGS = (
 # What ISOSpeedRatings holds if the speed does not fit into its 16 bits.
 UNKNOWN_ISO = 65535
 MAX_APEX = 40
+# cd/m^2: the calibration constant K of exposure meters for reflected light, ISO 2720
+METER_CONSTANT = 12.5
 MIN_VALUE = 1e-12
 MAX_VALUE = 1e12
 
@@ -88,6 +90,29 @@ def equivalent_seconds(names: Sequence[str], exposures: Sequence[Exposure]) -> l
         t * (S / speeds[0]) * (f_numbers[0] / N) ** 2
         for t, S, N in zip(times, speeds, f_numbers, strict=True)
     ]
+
+
+def luminance_of_unit(exposures: Sequence[Exposure]) -> float | None:
+    """Return the luminance in cd/m^2 that gets a middle pixel value in one second, or None.
+
+    The f-number N and the ISO speed S are those to which `equivalent_seconds` refers. An exposure
+    meter gives a luminance L = K N^2 / (t S) a middle gray. Cameras depart from this by up to about
+    one stop. The result is None if no photo states N, or none states S.
+
+    Examples
+    --------
+    >>> luminance_of_unit([Exposure(1 / 60, 4, 200), Exposure(1 / 15, 4, 200)])
+    1.0
+    """
+    f_number = _first_known([exposure.f_number for exposure in exposures])
+    iso = _first_known([exposure.iso for exposure in exposures])
+    if f_number is None or iso is None:
+        return None
+    return METER_CONSTANT * f_number**2 / iso
+
+
+def _first_known(values: Sequence[float | None]) -> float | None:
+    return next((value for value in values if value is not None), None)
 
 
 def _all_or_none(names: Sequence[str], values: Sequence[float | None], what: str) -> list[float]:

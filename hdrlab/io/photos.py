@@ -19,6 +19,7 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
+from hdrlab.io.exif_exposure import luminance_of_unit
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
 JPEG_OPTIONS = {"quality": 95, "subsampling": 0}
@@ -114,7 +115,9 @@ def read_bracket(
     for sentence in (*notes, *more_notes, *_processing_notes(headers)):
         note(sentence)
     names = [header.path.name for header in headers]
-    seconds, inverse = bracket_times(names, [header.exposure for header in headers], times)
+    exposures = [header.exposure for header in headers]
+    seconds, inverse = bracket_times(names, exposures, times)
+    luminance = luminance_of_unit(exposures) if times is None else None
     order = np.argsort(seconds, kind="stable")
     headers = [headers[j] for j in order]
     names = [header.path.name for header in headers]
@@ -139,7 +142,14 @@ def read_bracket(
         brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
         if are_inverse(sorted(seconds), brightness):
             seconds = inverse
-    return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=is_raw)
+    return bracket(
+        images,
+        [seconds[j] for j in order],
+        names,
+        valid=valid,
+        linear=is_raw,
+        luminance_of_unit=luminance,
+    )
 
 
 def write_picture(path: str | Path, image: ArrayLike) -> None:

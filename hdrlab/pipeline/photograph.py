@@ -24,6 +24,8 @@ from hdrlab.errors import InputError
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
 
+# cd/m^2: the calibration constant K of exposure meters for reflected light, ISO 2720
+METER_CONSTANT = 12.5
 # half of the guided filter's window, as a fraction of the longer side
 WINDOW_FRACTION = 0.03
 # nodes of the coarse grid in half a window
@@ -42,6 +44,16 @@ LIGHT_QUANTILES = (0.005, 0.995)
 LEVEL_QUANTILES = (0.01, 0.99)
 # key of a map whose log luminance is symmetric about its mean
 MIDDLE_KEY = 0.24
+# A map is dark for its range if its skew is below this; it gets a lower key, as nights do.
+DARK_SKEW = -0.35
+# EV at ISO 100 of a scene that gets the full key, and of one that gets the key of a night.
+BRIGHT_SCENE_EV = 8.0
+NIGHT_SCENE_EV = 0.0
+# key of a night relative to the key of a bright scene
+NIGHT_KEY_FRACTION = 0.08 / 0.18
+# largest display luminance that becomes black at night, and the fraction of the pixels
+NIGHT_MAX_BLACK = 0.02
+NIGHT_BLACK_FRACTION = 0.05
 # contrast of the picture relative to that of x
 CONTRAST = 1.25
 # fraction of the pixels that become white
@@ -83,14 +95,44 @@ class Levels:
     high: float
 
 
-def choose_settings(E: ArrayLike) -> dict[str, float]:
+def measure_scene_ev(E: ArrayLike, luminance_of_unit: float) -> float:
+    """Return the exposure value of a scene at ISO 100, from the geometric mean of its luminance.
+
+    EV = log2(L S / K) with S = 100 and the constant K = 12.5 cd/m^2 of exposure meters. A sunny
+    landscape has about EV 15, a living room in the evening EV 5, a lit street at night EV 2.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3)
+        Radiance map.
+    luminance_of_unit : float
+        cd/m^2 of a surface with E = 1.
+
+    Examples
+    --------
+    >>> measure_scene_ev(np.full((2, 3), 4.0), luminance_of_unit=0.5)
+    4.0
+    """
+    E = as_radiance(E)
+    step = max(1, min(E.shape[:2]) // MIN_SAMPLED_SIDE)
+    L = colour.luminance(E[::step, ::step])
+    if not L.any():
+        return -np.inf
+    mean_log2 = np.log2(L[L > 0]).mean(dtype=np.float64)
+    return round(float(mean_log2 + np.log2(luminance_of_unit * 100 / METER_CONSTANT)), 2)
+
+
+def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str, float]:
     """Choose the settings of `photograph`, and the saturation, for a radiance map E (H, W[, 3]).
+
+    `scene_ev` is the result of `measure_scene_ev`; None if it is unknown. It keeps a night dark:
+    between EV 8 and EV 0, the key falls to four ninths, and more pixels become black.
 
     share
         The fraction of the light's contrast that remains, 1 where it spans at most DISPLAY_DECADES.
     key
-        MIDDLE_KEY; up to twice that if most of the map is bright for its range, down to half of it
-        if most is dark.
+        MIDDLE_KEY; up to twice that if most of the map is bright for its range, less than half of
+        it if most is dark.
     white, black
         The scaled and the display luminance beyond which WHITE_FRACTION and BLACK_FRACTION of the
         pixels lie.
@@ -116,16 +158,27 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     x = compress_light(lL, share, light)
     levels = find_levels(x)
     skew = (2 * levels.mean - levels.low - levels.high) / max(levels.high - levels.low, 1e-6)
-    key = MIDDLE_KEY * 2**skew
+    darkness = 0.0 if scene_ev is None else _measure_darkness(scene_ev)
+    # Without an absolute luminance, the histogram decides.
+    excess = min(0.0, skew - DARK_SKEW) if scene_ev is None else 0.0
+    key = MIDDLE_KEY * 2 ** (skew + 2 * excess) * NIGHT_KEY_FRACTION**darkness
     Lm = scale(x, levels.mean, key)
     white = max(1.0, float(np.quantile(Lm, 1 - WHITE_FRACTION)))
-    black = min(MAX_BLACK, float(np.quantile(display(Lm, Lm, white), BLACK_FRACTION)))
+    max_black = MAX_BLACK + darkness * (NIGHT_MAX_BLACK - MAX_BLACK)
+    black_fraction = BLACK_FRACTION + darkness * (NIGHT_BLACK_FRACTION - BLACK_FRACTION)
+    black = min(max_black, float(np.quantile(display(Lm, Lm, white), black_fraction)))
     saturation = 1.0
     if E.ndim == 3 and L.any():
         colors = E[L > 0]
         purity = 1 - colors.min(axis=-1) / colors.max(axis=-1)
         saturation = 1.25 - 0.3 * float(np.median(purity))
     return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
+
+
+def _measure_darkness(scene_ev: float) -> float:
+    """Return 0 for scenes from BRIGHT_SCENE_EV, 1 for scenes up to NIGHT_SCENE_EV."""
+    darkness = (BRIGHT_SCENE_EV - scene_ev) / (BRIGHT_SCENE_EV - NIGHT_SCENE_EV)
+    return float(np.clip(darkness, 0, 1))
 
 
 def find_logarithm(L: F32) -> Callable[[F32], F32]:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import colour
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
-from hdrlab.pipeline.photograph import choose_settings, photograph
+from hdrlab.pipeline.photograph import choose_settings, measure_scene_ev, photograph
 
 # The default operator, which chooses its settings for the map.
 AUTO = "photograph"
@@ -32,6 +32,7 @@ def develop(
     *,
     saturation: float | None = None,
     way: str = "hue",
+    luminance_of_unit: float | None = None,
     **knobs: Any,
 ) -> NDArray[np.uint8]:
     """Tone-map a radiance map to a picture, sRGB in 8 bits.
@@ -49,6 +50,8 @@ def develop(
     way : {"hue", "ratio"}
         How colors are restored, and what happens to colors that the display cannot show: "hue"
         makes them a little darker and paler, "ratio" clips a channel; see `core.colour`.
+    luminance_of_unit : float, optional
+        cd/m^2 of a surface with E = 1. With it, "photograph" knows a night and keeps it dark.
     **knobs
         Settings of the operator; for "photograph" share, key, white and black, instead of what it
         chooses.
@@ -62,7 +65,9 @@ def develop(
     InputError
         If the radiance is not finite or is negative, or a setting is out of its range.
     """
-    return develop_and_describe(E, tonemap, saturation=saturation, way=way, **knobs).picture
+    return develop_and_describe(
+        E, tonemap, saturation=saturation, way=way, luminance_of_unit=luminance_of_unit, **knobs
+    ).picture
 
 
 def develop_and_describe(
@@ -71,6 +76,7 @@ def develop_and_describe(
     *,
     saturation: float | None = None,
     way: str = "hue",
+    luminance_of_unit: float | None = None,
     **knobs: Any,
 ) -> Developed:
     """Return the picture of `develop`, and its settings in words for a report; same parameters.
@@ -84,7 +90,7 @@ def develop_and_describe(
     'reinhard, key 0.36, saturation 1'
     """
     operator = find_operator(tonemap)
-    settings, default_saturation = resolve_settings(operator, E, knobs)
+    settings, default_saturation = resolve_settings(operator, E, knobs, luminance_of_unit)
     if saturation is None:
         saturation = default_saturation
     L = colour.luminance(E)
@@ -93,6 +99,8 @@ def develop_and_describe(
     name = _name_operator(tonemap)
     described = settings | {"saturation": float(saturation)}
     parts = [name, *(_describe_setting(knob, value) for knob, value in described.items())]
+    if operator is photograph and luminance_of_unit is not None:
+        parts.append(f"for a scene of EV {measure_scene_ev(E, luminance_of_unit):.0f}")
     return Developed(picture, ", ".join(parts))
 
 
@@ -116,14 +124,18 @@ def find_operator(tonemap: Method) -> Callable[..., Any]:
 
 
 def resolve_settings(
-    operator: Callable[..., Any], E: ArrayLike, knobs: Mapping[str, Any] = MappingProxyType({})
+    operator: Callable[..., Any],
+    E: ArrayLike,
+    knobs: Mapping[str, Any] = MappingProxyType({}),
+    luminance_of_unit: float | None = None,
 ) -> tuple[dict[str, Any], float]:
     """Return an operator's settings for a map, and its default saturation.
 
     The settings are `knobs`, and for `photograph` also those that it chooses.
     """
     if operator is photograph:
-        settings = choose_settings(E) | dict(knobs)
+        scene_ev = None if luminance_of_unit is None else measure_scene_ev(E, luminance_of_unit)
+        settings = choose_settings(E, scene_ev=scene_ev) | dict(knobs)
         saturation = settings.pop("saturation")
         return settings, saturation
     return dict(knobs), _default_saturation(operator)

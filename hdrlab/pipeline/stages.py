@@ -271,7 +271,12 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     if state.quality[y : y + 1, x : x + 1].any():
         raise InputError(f"no photo is well exposed at {x},{y}; choose another pixel")
     factor = np.float32(scales.fit_unit(state.E, x, y, reading))
-    calibrated = replace(state, E=state.E * factor, s=None if state.s is None else state.s * factor)
+    calibrated = replace(
+        state,
+        bracket=replace(state.bracket, luminance_of_unit=1.0),
+        E=state.E * factor,
+        s=None if state.s is None else state.s * factor,
+    )
     return calibrated.with_note(
         f"1 in the map is 1 cd/m^2: the light meter read {reading:g} cd/m^2 at {x},{y}"
     )

@@ -152,7 +152,8 @@ def refine_times(state: Assembly, response: Method, stated_spread: float) -> Ass
         relative_times = estimate_relative_times(state.bracket).times
         relative = correct_times(replace(rising.bracket, times=relative_times), response)
         if relative.spread < MIN_WORTHLESS_STOPS / 2:
-            state = rising
+            # relative times do not tell how bright the scene was
+            state = replace(rising, bracket=replace(rising.bracket, luminance_of_unit=None))
             corrected = relative
             doubts = (_describe_replaced_times(stated_spread, relative_times),)
     estimate = corrected.estimate

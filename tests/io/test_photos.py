@@ -194,6 +194,15 @@ def test_aperture_and_iso_change_the_equivalent_exposure(tmp_path):
     assert read_bracket(tmp_path).times == pytest.approx([0.5, 4])
 
 
+def test_the_luminance_of_a_unit_is_what_an_exposure_meter_reads(tmp_path):
+    """The meter's formula L = 12.5 N^2 / (t S), with the f-number and ISO of the first photo."""
+    save(tmp_path / "a.jpg", RGB8, seconds=0.5, f_number=8.0, iso=100)
+    save(tmp_path / "b.jpg", RGB8, seconds=0.5, f_number=4.0, iso=200)
+    bracket = read_bracket(tmp_path)
+    assert bracket.luminance_of_unit == pytest.approx(12.5 * 8**2 / 100)
+    assert read_bracket(tmp_path, [1, 2]).luminance_of_unit is None
+
+
 @pytest.mark.parametrize("f_number", [0.0, None])
 def test_f_number_of_0_or_infinity_is_ignored(tmp_path, f_number):
     bracket_of(tmp_path, f_number=f_number, iso=100)

@@ -14,6 +14,7 @@ from hdrlab.pipeline.photograph import (
     filter_light,
     find_logarithm,
     interpolation_weights,
+    measure_scene_ev,
     photograph,
 )
 from hdrlab.tonemap import durand
@@ -153,3 +154,36 @@ def test_find_logarithm_equals_the_logarithm_of_the_lesson():
     L = np.random.default_rng(5).lognormal(0, 4, (40, 60)).astype(np.float32)
     L[:3] = 0
     assert np.allclose(find_logarithm(L)(L), durand.logarithm(L), rtol=1e-6)
+
+
+def with_scene_ev(E, ev):
+    """Return the luminance of a unit with which the map E is a scene of this exposure value."""
+    return 2 ** (ev - measure_scene_ev(E, 1.0))
+
+
+def test_a_night_is_darker_than_the_same_map_by_day(E):
+    day = statistics(develop(E, luminance_of_unit=with_scene_ev(E, 12))).mean
+    evening = statistics(develop(E, luminance_of_unit=with_scene_ev(E, 4))).mean
+    night = statistics(develop(E, luminance_of_unit=with_scene_ev(E, 0))).mean
+    assert night < 95
+    assert night < evening < day
+
+
+def test_a_bright_scene_gets_the_same_picture_whether_its_luminance_is_known_or_not(E):
+    known = develop(E, luminance_of_unit=with_scene_ev(E, 10))
+    assert np.array_equal(known, develop(E))
+
+
+def test_a_night_does_not_depend_on_the_unit_of_its_map(E):
+    night = develop(E, luminance_of_unit=0.01)
+    scaled = develop(8 * E, luminance_of_unit=0.01 / 8)
+    assert np.abs(night.astype(int) - scaled).max() <= 1
+
+
+def test_a_key_that_is_asked_for_is_kept_at_night():
+    assert "key 0.3" in develop_and_describe(GRAY, luminance_of_unit=1e-6, key=0.3).settings
+
+
+def test_a_black_map_has_an_exposure_value_below_every_night():
+    assert measure_scene_ev(np.zeros((4, 4), np.float32), 1.0) == -np.inf
+    assert not develop(np.zeros((4, 4), np.float32), luminance_of_unit=1.0).any()
