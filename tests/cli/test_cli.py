@@ -130,7 +130,7 @@ def test_assemble_writes_map_picture_and_report_from_a_folder(photographs, tmp_p
 def test_map_is_complete_although_its_picture_fails_or_is_interrupted(
     error, code, photographs, tmp_path, monkeypatch
 ):
-    def fail(*_):
+    def fail(*_, **__):
         raise error
 
     folder, times = photographs
