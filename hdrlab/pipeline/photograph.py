@@ -7,9 +7,11 @@ Lm      scaled luminance           key 10^(CONTRAST (x - mean of x)), about 1 wh
 Ld      (curve of Lm - black) / (1 - black), with the curve of `tonemap.reinhard` and its `white`
 
 The defaults of Reinhard's paper look flat for a photograph: the black point is not set, and half of
-the display's range is kept for the brightest pixels. A guided filter does not reverse gradients
-next to soft edges, unlike a bilateral filter. Its a and b are computed on a coarse grid (He and
-Sun, Fast guided filter, 2015).
+the display's range is kept for the brightest pixels. The a and b of the guided filter are computed
+on a coarse grid (He and Sun, Fast guided filter, 2015), from the means and variances of the grid's
+cells. The grid is centered in the image, so a mirrored image gets a mirrored picture. Where `share`
+is below 1, the picture can reverse gradients next to an edge of light, as with a bilateral filter:
+before an edge of three decades, it gets darker by about 5 of 255 pixel values.
 """
 
 from collections.abc import Callable
@@ -18,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hdrlab.core import colour, extremes
-from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance
+from hdrlab.core.arrays import F32, Array, ArrayLike, Indices, as_luminance, as_radiance
 from hdrlab.core.filters.blur import blur_matrix
+from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import InputError
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
@@ -28,8 +31,10 @@ from hdrlab.tonemap.reinhard import display
 METER_CONSTANT = 12.5
 # half of the guided filter's window, as a fraction of the longer side
 WINDOW_FRACTION = 0.03
-# nodes of the coarse grid in half a window
-NODES_PER_RADIUS = 4
+# cells of the coarse grid in half a window
+CELLS_PER_RADIUS = 4
+# rows of an image whose cells are averaged at a time
+ROWS_PER_BAND = 256
 # Darker pixels than this fraction of the median luminance have no more detail.
 MIN_LUMINANCE_FRACTION = 1e-6
 # decades; a step of light that remains an edge
@@ -71,10 +76,10 @@ MIN_SAMPLED_SIDE = 360
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """The large-scale light of an image, a lL + b, with a and b at the nodes of a coarse grid.
+    """The large-scale light of an image, a lL + b, with a and b in the cells of a coarse grid.
 
-    slope, offset : (h, W), a and b at h nodes of each column
-    row_weights : (H, h), weights of the nodes in each row of the image
+    slope, offset : (h, W), a and b in h rows of cells, at each column of the image
+    row_weights : (H, h), weights of the rows of cells in each row of the image
     """
 
     slope: Array
@@ -194,54 +199,104 @@ def find_logarithm(L: F32) -> Callable[[F32], F32]:
 def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> Light:
     """Return the Light of an image by a guided filter on a coarse grid [He15].
 
-    `take` computes lL from L (H, W); it is called for the nodes alone. The slope a is near 1 at
-    edges of light, and near 0 in detail.
+    `take` computes lL from rows of L (H, W). The slope a is near 1 at edges of light, and near 0 in
+    detail.
     """
     radius = max(1, round(WINDOW_FRACTION * max(L.shape)))
-    step = max(1, radius // NODES_PER_RADIUS)
-    nodes = take(L[::step, ::step])
+    step = max(1, radius // CELLS_PER_RADIUS)
+    row_averages = cell_weights(L.shape[0], step)
+    column_averages = cell_weights(L.shape[1], step)
+    cells, squares = average_cells(L, take, row_averages, column_averages)
     width = 2 * (radius // step) + 1
     kernel = np.full(width, 1 / width)
-    blur_rows = blur_matrix(nodes.shape[0], kernel)
-    blur_columns = blur_matrix(nodes.shape[1], kernel)
-    mean: Array = blur_rows @ nodes @ blur_columns
-    variance: Array = np.maximum(blur_rows @ (nodes * nodes) @ blur_columns - mean * mean, 0)
+    blur_rows = blur_matrix(cells.shape[0], kernel)
+    blur_columns = blur_matrix(cells.shape[1], kernel)
+    mean: Array = blur_rows @ cells @ blur_columns
+    variance: Array = np.maximum(blur_rows @ squares @ blur_columns - mean * mean, 0)
     a = variance / (variance + np.float32(EDGE_DECADES**2))
     b = mean - a * mean
-    row_weights = interpolation_weights(L.shape[0], nodes.shape[0], step)
-    column_weights = interpolation_weights(L.shape[1], nodes.shape[1], step)
-    blur_and_enlarge = blur_columns @ column_weights.T
+    blur_and_enlarge = blur_columns @ interpolation_weights(L.shape[1], step).T
     return Light(
         slope=blur_rows @ a @ blur_and_enlarge,
         offset=blur_rows @ b @ blur_and_enlarge,
-        row_weights=row_weights,
+        row_weights=interpolation_weights(L.shape[0], step),
     )
 
 
-def interpolation_weights(n: int, m: int, step: int) -> F32:
-    """Return the weights (n, m) of linear interpolation at n pixels from m nodes, `step` pixels apart.
+def average_cells(
+    L: F32, take: Callable[[F32], F32], row_averages: F32, column_averages: F32
+) -> tuple[F32, F32]:
+    """Return the means (h, w) of lL and of lL^2 in the cells, a band of rows at a time.
 
-    Pixels beyond the last node take its value.
+    `row_averages` (h, H) and `column_averages` (w, W) are `cell_weights`.
     """
-    position = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
-    distance = np.abs(position[:, None] - np.arange(m, dtype=np.float32))
-    return np.maximum(1 - distance, 0)
+    mean = np.zeros((len(row_averages), len(column_averages)), np.float32)
+    squared_mean = np.zeros_like(mean)
+
+    def average_band(top: int) -> tuple[Indices, F32, F32]:
+        rows = slice(top, top + ROWS_PER_BAND)
+        lL = take(L[rows])
+        cell_rows = np.flatnonzero(row_averages[:, rows].any(axis=1))
+        averages = row_averages[cell_rows, rows]
+        means: F32 = averages @ lL @ column_averages.T
+        squared_means: F32 = averages @ (lL * lL) @ column_averages.T
+        return cell_rows, means, squared_means
+
+    bands = map_in_threads(average_band, range(0, len(L), ROWS_PER_BAND), pixels=L.size)
+    for cell_rows, means, squared_means in bands:
+        mean[cell_rows] += means
+        squared_mean[cell_rows] += squared_means
+    return mean, squared_mean
+
+
+def cell_weights(n: int, step: int) -> F32:
+    """Return the weights (m, n) of n pixels in the means of m cells, `step` pixels wide.
+
+    The cells are centered. The first and the last one can reach beyond the pixels, where they count
+    only the part with pixels.
+
+    Examples
+    --------
+    >>> cell_weights(5, 2)  # the outer cells have one and a half pixels in the image
+    array([[0.6666667 , 0.33333334, 0.        , 0.        , 0.        ],
+           [0.        , 0.25      , 0.5       , 0.25      , 0.        ],
+           [0.        , 0.        , 0.        , 0.33333334, 0.6666667 ]],
+          dtype=float32)
+    """
+    cell_count = -(-n // step)
+    starts = (n - cell_count * step) / 2 + step * np.arange(cell_count)
+    pixels = np.arange(n)
+    ends = np.minimum(pixels + 1, starts[:, None] + step)
+    overlap = np.maximum(ends - np.maximum(pixels, starts[:, None]), 0)
+    return (overlap / overlap.sum(axis=1, keepdims=True)).astype(np.float32)
+
+
+def interpolation_weights(n: int, step: int) -> F32:
+    """Return the weights (n, m) of linear interpolation at n pixels from the centers of m cells.
+
+    The cells are those of `cell_weights`. Pixels beyond the center of the last cell take its value.
+    """
+    cell_count = -(-n // step)
+    first_center = (n - cell_count * step + step - 1) / 2
+    position = np.clip((np.arange(n) - first_center) / step, 0, cell_count - 1)
+    distance = np.abs(position[:, None] - np.arange(cell_count))
+    return np.maximum(1 - distance, 0).astype(np.float32)
 
 
 def compress_light(lL: F32, share: float, light: Light, row_weights: F32 | None = None) -> F32:
     """Return x = lL - (1 - share) (a lL + b).
 
-    For some rows (n, W) of an image, give the weights (n, h) of the nodes in these rows.
+    For some rows (n, W) of an image, give the weights (n, h) of the cells in these rows.
     """
     if share == 1:
         return lL
     if row_weights is None:
         row_weights = light.row_weights
-    # A few rows depend on a few nodes only.
-    nodes = np.flatnonzero(row_weights.any(axis=0))
-    weights = row_weights[:, nodes]
-    a = weights @ (np.float32(1 - share) * light.slope[nodes])
-    b = weights @ (np.float32(1 - share) * light.offset[nodes])
+    # A few rows depend on a few cells only.
+    cells = np.flatnonzero(row_weights.any(axis=0))
+    weights = row_weights[:, cells]
+    a = weights @ (np.float32(1 - share) * light.slope[cells])
+    b = weights @ (np.float32(1 - share) * light.offset[cells])
     return np.asarray(lL - (a * lL + b), np.float32)
 
 
