@@ -233,12 +233,12 @@ def average_cells(
     mean = np.zeros((len(row_averages), len(column_averages)), np.float32)
     squared_mean = np.zeros_like(mean)
 
-    def average_band(top: int) -> tuple[Indices, F32, F32]:
+    def average_band(top: int) -> tuple[Indices, Array, F32]:
         rows = slice(top, top + ROWS_PER_BAND)
         lL = take(L[rows])
         cell_rows = np.flatnonzero(row_averages[:, rows].any(axis=1))
         averages = row_averages[cell_rows, rows]
-        means: F32 = averages @ lL @ column_averages.T
+        means: Array = averages @ lL @ column_averages.T
         squared_means: F32 = averages @ (lL * lL) @ column_averages.T
         return cell_rows, means, squared_means
 
