@@ -13,6 +13,11 @@ S / K, so
 is a straight line, whose slope is 1 / K, and the dark pair lies where it begins. The difference of
 two photographs is taken because dust, vignetting and unlike pixels are the same in both: they
 cancel.
+
+Two conditions hold for the read noise. Rounding adds 1 / 12 only to noise of about half a level or
+more; the variance of less noise depends on where black lies between two levels, and tells nothing.
+And the levels must not be cut off at 0, where they lose the lower half of the noise: there, the
+levels above the median give black and noise.
 """
 
 from dataclasses import dataclass
@@ -24,6 +29,13 @@ from hdrlab.errors import InputError
 
 # levels^2: what rounding to whole levels adds
 ROUNDING_VARIANCE = 1 / 12
+# Less noise is hidden by rounding: its variance depends on where black lies between two levels.
+MAX_HIDDEN_NOISE_LEVELS = 0.5
+MIN_DARK_VARIANCE = MAX_HIDDEN_NOISE_LEVELS**2 + ROUNDING_VARIANCE
+# fraction of the dark pair at level 0 beyond which its noise is cut off
+MAX_CUT_FRACTION = 0.01
+# standard deviations of a normal distribution on either side that hold 95 %
+DEVIATIONS_OF_95_PERCENT = 1.96
 # of the highest signal: above it a full well may cut the noise off
 SAFE_SIGNAL_SHARE = 0.8
 
@@ -35,7 +47,9 @@ class Transfer:
     Attributes
     ----------
     gain : K, electrons per level
-    read_noise : R, electrons
+    read_noise : R, electrons; NaN where rounding hides it
+    read_noise_interval : 95 % interval of R, electrons, from the number of pixels; where rounding
+        hides R, from 0 to half a level
     black : level of no light
     full_well : electrons at the highest measured signal; the well, where the brightest pair is full
     S, V : (M,) levels and levels^2, the photon transfer curve
@@ -44,6 +58,7 @@ class Transfer:
 
     gain: float
     read_noise: float
+    read_noise_interval: tuple[float, float]
     black: float
     full_well: float
     S: F64
@@ -54,6 +69,18 @@ class Transfer:
 def variance(pair: Array) -> float:
     """Return V = var(Z_1 - Z_2) / 2 of two photographs (2, H, W): of their noise, and of nothing else."""
     return float((pair[0].astype(np.float64) - pair[1]).var() / 2)
+
+
+def dark_level(pair: Array) -> tuple[float, float]:
+    """Return black and V_0 of the dark pair: its mean and `variance`, if no levels are cut off at 0.
+
+    Otherwise black is the median, and V_0 the mean square of the distance of the brighter half.
+    """
+    if (pair == 0).mean() <= MAX_CUT_FRACTION:
+        return float(pair.mean()), variance(pair)
+    black = float(np.median(pair))
+    above = pair[pair > black] - black
+    return black, float(np.sum(above**2) / (pair.size / 2))
 
 
 def line(S: F64, V: F64) -> float:
@@ -80,9 +107,12 @@ def calibrate(Z: ArrayLike) -> Transfer:
     -------
     transfer : Transfer
 
+        `read_noise` is NaN if the dark pair has noise of less than half a level: use a camera
+        setting with a lower gain K, such as a higher ISO speed.
+
     Raises
     ------
-    ValueError
+    InputError
         For levels that are no pairs, or fewer than two bright pairs below the full ones, or no
         noise to read.
 
@@ -110,9 +140,9 @@ def calibrate(Z: ArrayLike) -> Transfer:
         raise InputError(
             f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}"
         )
-    mean = Z.mean(axis=(1, 2, 3))
-    S = mean - mean[0]
-    V = np.array([variance(pair) for pair in Z])
+    black, dark_variance = dark_level(Z[0])
+    S = np.concatenate([[0], Z[1:].mean(axis=(1, 2, 3)) - black])
+    V = np.array([dark_variance, *(variance(pair) for pair in Z[1:])])
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
         got = S.round(1).tolist()
@@ -124,13 +154,24 @@ def calibrate(Z: ArrayLike) -> Transfer:
         raise InputError(
             "expected noise that grows with the light, as in RAW photos; use RAW pixel values"
         )
-    R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope
+    R, interval = _read_noise(dark_variance, Z[0, 0].size)
     return Transfer(
         gain=1 / slope,
-        read_noise=float(R),
-        black=float(mean[0]),
+        read_noise=R / slope,
+        read_noise_interval=(interval[0] / slope, interval[1] / slope),
+        black=black,
         full_well=float(S.max() / slope),
         S=S,
         V=V,
         used=used,
     )
+
+
+def _read_noise(V_0: float, n: int) -> tuple[float, tuple[float, float]]:
+    """Return R / K in levels and its 95 % interval, from the variance of a dark pair of n pixels."""
+    if V_0 < MIN_DARK_VARIANCE:
+        return np.nan, (0.0, MAX_HIDDEN_NOISE_LEVELS)
+    error = DEVIATIONS_OF_95_PERCENT * V_0 * np.sqrt(2 / n)
+    variances = np.array([V_0, V_0 - error, V_0 + error]) - ROUNDING_VARIANCE
+    noise, low, high = np.sqrt(np.maximum(variances, 0)).tolist()
+    return noise, (low, high)

@@ -218,6 +218,41 @@ def test_photon_transfer_raises_an_error_for_jpegs_whose_noise_does_not_grow():
         photon_transfer.calibrate(curved)
 
 
+def counted_wall(gain, read_noise, black, *, seed=0):
+    """Return pairs (M, 2, 200, 200) of RAW levels of an even wall, cut off at 0."""
+    rng = np.random.default_rng(seed)
+    electrons = np.linspace(0, 20_000, 10)[:, None, None, None] * np.ones((10, 2, 200, 200))
+    noisy = rng.poisson(electrons) + rng.normal(0, read_noise, electrons.shape)
+    return np.round(noisy / gain + black).clip(0).astype(np.uint16)
+
+
+@pytest.mark.parametrize("black", [100.0, 100.3, 100.5])
+def test_read_noise_below_half_a_level_is_an_interval_and_no_number(black):
+    """12 bits at base ISO: the dark pair's variance depends on where black lies in a level."""
+    found = photon_transfer.calibrate(counted_wall(10, 2, black))
+    low, high = found.read_noise_interval
+    assert np.isnan(found.read_noise)
+    assert low <= 2 <= high <= 5.1
+    assert found.gain == pytest.approx(10, rel=0.02)
+
+
+@pytest.mark.parametrize("read_noise", [6, 20])
+def test_black_at_level_0_changes_neither_read_noise_nor_gain(read_noise):
+    found = photon_transfer.calibrate(counted_wall(2, read_noise, 0))
+    assert found.read_noise == pytest.approx(read_noise, rel=0.03)
+    assert found.gain == pytest.approx(2, rel=0.01)
+    assert found.black == pytest.approx(0, abs=0.1)
+
+
+def test_the_interval_of_the_read_noise_contains_it_in_about_95_of_100_walls():
+    inside = 0
+    for seed in range(60):
+        pairs = counted_wall(2, 6, 100, seed=seed)[:, :, :40, :40]
+        low, high = photon_transfer.calibrate(pairs).read_noise_interval
+        inside += low <= 6 <= high
+    assert 52 <= inside <= 60
+
+
 @pytest.mark.parametrize(
     "Z",
     [
