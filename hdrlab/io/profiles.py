@@ -8,6 +8,7 @@ is part of the response that a bracket shows.
 """
 
 import io
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,24 @@ SRGB_COLORANTS = (
     (0.1431, 0.0606, 0.7141),
 )
 COLORANT_TOLERANCE = 0.005
+# Below this determinant of their XYZ, three colorants are no primaries: sRGB's have 0.2.
+MIN_COLORANT_DETERMINANT = 1e-3
+
+
+@dataclass(frozen=True)
+class LinearPixels:
+    """Linear light in the primaries that the pixels have in the file.
+
+    Attributes
+    ----------
+    light
+        (H, W, 3) or (H, W) float32, 1 = white.
+    to_srgb
+        (3, 3) the matrix from these primaries to those of sRGB.
+    """
+
+    light: arrays.F32
+    to_srgb: arrays.F64
 
 
 def to_srgb(path: str | Path, pixels: arrays.Array, icc: bytes) -> arrays.Array:
@@ -49,6 +68,80 @@ def to_srgb(path: str | Path, pixels: arrays.Array, icc: bytes) -> arrays.Array:
         raise
     except Exception as error:  # on damaged profiles LittleCMS raises exceptions of any type
         raise InputError(f"{path}: its color profile is damaged or not for RGB ({error})") from None
+
+
+def to_linear(path: str | Path, pixels: arrays.Array, icc: bytes) -> LinearPixels:
+    """Return the linear light of pixels in their own primaries, which cuts no color.
+
+    Gray pixels, and those with the primaries of sRGB, are decoded by the curve of sRGB, as `to_srgb`
+    leaves them.
+
+    Parameters
+    ----------
+    path
+        The file, for messages.
+    pixels
+        (H, W, 3) or (H, W) uint8 or uint16.
+    icc
+        The profile of the pixels, empty for sRGB.
+
+    Raises
+    ------
+    InputError
+        Naming `path`, for a profile that is damaged or not of RGB.
+    """
+    matrix = np.eye(3) if pixels.ndim == 2 else primaries_to_srgb(path, icc)
+    if np.array_equal(matrix, np.eye(3)):
+        scale = np.float32(np.iinfo(pixels.dtype).max)
+        return LinearPixels(colour.decode_srgb(pixels / scale), np.eye(3))
+    XYZ = _to_xyz(np.ascontiguousarray(pixels), icc)
+    light = XYZ @ np.linalg.inv(_colorants(icc)).astype(np.float32)
+    return LinearPixels(light, matrix)
+
+
+def primaries_to_srgb(path: str | Path, icc: bytes) -> arrays.F64:
+    """Return the matrix (3, 3) from the primaries of a profile to those of sRGB.
+
+    It is meant for columns (R, G, B) of linear light. No profile stands for sRGB.
+
+    Raises
+    ------
+    InputError
+        Naming `path`, for a profile that is damaged or not of RGB.
+    """
+    try:
+        if not icc or _is_srgb(icc):
+            return np.eye(3)
+        srgb = optional.imagecodecs.cms_profile("srgb")
+        matrix = np.linalg.solve(_colorants(srgb).T, _colorants(icc).T)
+        return matrix.astype(np.float64)
+    except ModuleNotFoundError:
+        raise
+    except Exception as error:  # on damaged profiles LittleCMS raises exceptions of any type
+        raise InputError(f"{path}: its color profile is damaged or not for RGB ({error})") from None
+
+
+def _colorants(icc: bytes) -> arrays.F64:
+    """Return XYZ (3, 3) under D50 of full red, green and blue, one a row."""
+    primaries = np.eye(3, dtype=np.float32)[None]
+    colorants = _to_xyz(primaries, icc)[0].astype(np.float64)
+    if not abs(np.linalg.det(colorants)) > MIN_COLORANT_DETERMINANT:
+        raise InputError("its red, green and blue are not independent")
+    return colorants
+
+
+def _to_xyz(pixels: arrays.Array, icc: bytes) -> arrays.F32:
+    """Return XYZ (H, W, 3) float32 under D50 of RGB pixels."""
+    cms = optional.imagecodecs
+    return cms.cms_transform(
+        pixels,
+        _source_profile(icc),
+        cms.cms_profile("xyz"),
+        colorspace="rgb",
+        outcolorspace="xyz",
+        outdtype="float32",
+        flags=cms.CMS.FLAGS.NOOPTIMIZE,
+    )
 
 
 def _is_srgb(icc: bytes) -> bool:

@@ -5,13 +5,17 @@ second is the gain map of `core.gainmap`, gray or RGB, often smaller. An index i
 where the second is (MPF, CIPA DC-007). The second states its metadata twice: in binary [ISO 21496-1]
 and in XMP (Adobe's `hdrgm`), which older phones wrote alone. Apple's own gain maps are a different
 format, which hdrlab does not read.
+
+Gains of three channels depend on the primaries that they are meant in. A flag says which: those of
+the picture, or those of the HDR rendition, which the profile of the gain map states. hdrlab applies
+the gains there, to linear light that no gamut has cut, and converts the result to sRGB.
 """
 
 import io
 import re
 import struct
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +25,9 @@ from PIL import Image
 from hdrlab.core import colour, gainmap
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radiance, describe
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import decode, files, web
+from hdrlab.io import decode, files, profiles, web
 from hdrlab.io.codecs import decode_jpeg, jpeg_end
-from hdrlab.io.photos import PICTURES, read_photo
+from hdrlab.io.photos import PICTURES
 
 # What the segments of a JPEG begin with: binary metadata, XMP, and the index.
 ISO = b"urn:iso:std:iso:ts:21496:-1\0"
@@ -35,11 +39,17 @@ APP2 = b"\xe2"
 # The flags of ISO 21496-1, by the standard's names.
 FLAG_MULTICHANNEL = 0x80
 FLAG_USE_BASE_COLOR_SPACE = 0x40
-# libultrahdr's extension: one denominator serves all fractions.
+# libultrahdr's extensions: the picture is the HDR rendition; one denominator serves all fractions.
+FLAG_BACKWARD_DIRECTION = 0x04
 FLAG_COMMON_DENOMINATOR = 0x08
+# The newest version of the metadata that hdrlab reads.
+SUPPORTED_VERSION = 0
 # Two headrooms, and for each channel min, max, gamma and two offsets.
 HEADROOMS = 2
 VALUES_PER_CHANNEL = 5
+# Whether the numerators of a channel's values are signed: those of min, max and the offsets are.
+# All denominators, and the numerators of headrooms and gamma, are unsigned.
+HAS_SIGNED_NUMERATOR = (True, True, False, True, True)
 DENOMINATOR = 2**20
 
 # The properties of `hdrgm` in the order of ISO 21496-1, with their defaults; NaN has none.
@@ -73,6 +83,8 @@ class GainMapMetadata:
     """What the values of a gain map mean; each field is a number for each channel, or for all.
 
     `low` and `high` are the gains of 0 and 1, in stops; `gamma` is the exponent of the values.
+    `in_base_primaries` says whether the gains are meant in the primaries of the picture, or else in
+    those of the gain map's profile.
     """
 
     low: F32
@@ -80,6 +92,7 @@ class GainMapMetadata:
     gamma: F32
     offset_sdr: F32
     offset_hdr: F32
+    in_base_primaries: bool
 
 
 def read(path: str | Path) -> F32:
@@ -91,12 +104,16 @@ def read(path: str | Path) -> F32:
 
     Returns
     -------
-    (H, W, 3) or (H, W) float32, upright, with the primaries of sRGB
+    (H, W, 3) or (H, W) float32, upright, with the primaries of sRGB; colors that these cannot show
+    lose their negative parts
 
     Raises
     ------
     FileFormatError
-        For a file that is no JPEG, is damaged, or has no gain map.
+        For a file that is no JPEG, is damaged, has no gain map, or has one of a newer version or
+        for a picture that is itself the HDR rendition.
+    InputError
+        For a color profile that is damaged.
 
     Examples
     --------
@@ -107,20 +124,28 @@ def read(path: str | Path) -> F32:
     [0.5, 0.5, 0.5]
     """
     header = decode.read_header(path)
-    sdr = colour.decode_srgb(read_photo(path) / np.float32(255))
+    pixels = np.empty(header.shape, header.dtype)
+    decode.decode_photo(replace(header, icc=b""), pixels)
+    base = profiles.to_linear(path, pixels, header.icc)
     try:
         second_jpeg = _find_gain_map_jpeg(Path(path).read_bytes())
         metadata = _read_metadata(second_jpeg)
-        gains = _decode_gain_map(header, second_jpeg)
+        gains, gains_icc = _decode_gain_map(header, second_jpeg)
     except Exception as error:  # on damaged files the codecs raise exceptions of any type
         raise FileFormatError(
             f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})"
         ) from None
+    sdr = base.light
+    to_srgb = base.to_srgb
+    if gains_icc and not metadata.in_base_primaries:
+        to_srgb = profiles.primaries_to_srgb(path, gains_icc)
+        base_to_alternate = np.linalg.inv(to_srgb) @ base.to_srgb
+        sdr = _convert_primaries(sdr, base_to_alternate)
     offsets = (metadata.offset_sdr, metadata.offset_hdr)
     hdr = gainmap.apply_gain(
         sdr, gains, metadata.low, metadata.high, gamma=metadata.gamma, k=offsets
     )
-    return np.maximum(hdr, 0)
+    return np.maximum(_convert_primaries(hdr, to_srgb), 0)
 
 
 def write_picture(
@@ -145,6 +170,7 @@ def write_picture(
     Examples
     --------
     >>> import tempfile
+    >>> from hdrlab.io.photos import read_photo
     >>> file = Path(tempfile.mkdtemp()) / "wall.jpg"
     >>> write_picture(file, np.full((4, 6), 128, np.uint8), np.ones((4, 6)))
     >>> read_photo(file).shape
@@ -178,6 +204,13 @@ def write_picture(
     index_offset = first_jpeg.index(MPF) + len(MPF)
     index = _mpf_index(len(first_jpeg), len(second_jpeg), index_offset)
     files.write(path, first_jpeg.replace(placeholder, index) + second_jpeg)
+
+
+def _convert_primaries(light: F32, matrix: F64) -> F32:
+    """Return light (H, W, 3) in other primaries, by the matrix from the ones to the others."""
+    if light.ndim == 2 or np.allclose(matrix, np.eye(3), rtol=0, atol=1e-12):
+        return light
+    return light @ matrix.T.astype(np.float32)
 
 
 def _encode_jpeg(image: Array, encoding: dict[str, Any], segments: bytes = b"") -> bytes:
@@ -254,10 +287,22 @@ def _find_gain_map_jpeg(data: bytes) -> bytes:
 def _read_metadata(jpeg: bytes) -> GainMapMetadata:
     """Return the metadata of a gain map, from binary if it is there and from XMP otherwise."""
     start = jpeg.find(ISO)
-    values = _values_from_xmp(jpeg) if start < 0 else _values_from_binary(jpeg[start + len(ISO) :])
+    if start < 0:
+        if re.search(rb'hdrgm:BaseRenditionIsHDR(="|>)\s*true', jpeg, re.IGNORECASE):
+            raise FileFormatError(
+                "the picture itself is the HDR rendition, which hdrlab cannot read"
+            )
+        values = _values_from_xmp(jpeg)
+        # Adobe's description knows no other primaries.
+        in_base_primaries = True
+    else:
+        body = jpeg[start + len(ISO) :]
+        values = _values_from_binary(body)
+        in_base_primaries = bool(_read_flags(body) & FLAG_USE_BASE_COLOR_SPACE)
     min_headroom, max_headroom = values[:HEADROOMS]
     channels = values[HEADROOMS:].reshape(-1, VALUES_PER_CHANNEL).T.astype(np.float32)
-    metadata = GainMapMetadata(*channels)
+    low, high, gamma, offset_sdr, offset_hdr = channels
+    metadata = GainMapMetadata(low, high, gamma, offset_sdr, offset_hdr, in_base_primaries)
     is_within_range = bool(np.all(np.abs(values) <= MAX_GAIN_STOPS))
     is_ordered = bool(np.all(metadata.low <= metadata.high)) and min_headroom < max_headroom
     if not (is_within_range and is_ordered and np.all(metadata.gamma > 1 / MAX_GAIN_STOPS)):
@@ -268,19 +313,38 @@ def _read_metadata(jpeg: bytes) -> GainMapMetadata:
     return metadata
 
 
+def _read_flags(body: bytes) -> int:
+    """Return the flags of the metadata of ISO 21496-1, after a check that hdrlab can read it."""
+    minimum_version, _, flags = struct.unpack_from(">2HB", body)
+    if minimum_version > SUPPORTED_VERSION:
+        raise FileFormatError(
+            f"its gain map needs a reader of version {minimum_version}, "
+            f"hdrlab reads version {SUPPORTED_VERSION}"
+        )
+    if flags & FLAG_BACKWARD_DIRECTION:
+        raise FileFormatError("the picture itself is the HDR rendition, which hdrlab cannot read")
+    return flags
+
+
 def _values_from_binary(body: bytes) -> F64:
     """Return headrooms and channel values as ISO 21496-1 stores them: fractions behind flags."""
-    flags_offset = 4
-    flags = body[flags_offset]
+    flags = _read_flags(body)
     channels = 3 if flags & FLAG_MULTICHANNEL else 1
-    count = HEADROOMS + channels * VALUES_PER_CHANNEL
+    is_signed = np.array((False,) * HEADROOMS + HAS_SIGNED_NUMERATOR * channels)
+    count = len(is_signed)
     has_common_denominator = bool(flags & FLAG_COMMON_DENOMINATOR)
     stored = count + 1 if has_common_denominator else 2 * count
-    numbers = np.frombuffer(body, ">i4", stored, flags_offset + 1).astype(np.float64)
+    numbers = np.frombuffer(body, ">u4", stored, struct.calcsize(">2HB"))
+    if has_common_denominator:
+        numerators = numbers[1:]
+        denominators = numbers[:1]
+    else:
+        numerators = numbers[::2]
+        denominators = numbers[1::2]
+    signed_numerators = numerators.astype(np.uint32).view(np.int32)
+    exact_numerators = np.where(is_signed, signed_numerators, numerators.astype(np.float64))
     with np.errstate(divide="ignore", invalid="ignore"):
-        if has_common_denominator:
-            return numbers[1:] / numbers[0]
-        return numbers[::2] / numbers[1::2]
+        return exact_numerators / denominators
 
 
 def _values_from_xmp(jpeg: bytes) -> F64:
@@ -305,8 +369,11 @@ def _xmp_numbers(jpeg: bytes, name: str, default: float) -> list[float]:
     return [float(number) for number in text.split()] or [default]
 
 
-def _decode_gain_map(header: decode.PhotoHeader, jpeg: bytes) -> F32:
-    """Return the values of the gain map, upright, with the size and channels of the picture."""
+def _decode_gain_map(header: decode.PhotoHeader, jpeg: bytes) -> tuple[F32, bytes]:
+    """Return the values of the gain map and its profile.
+
+    The values are upright, with the size and channels of the picture.
+    """
     height, width = header.shape[:2]
     if header.orientation > 4:
         height, width = width, height
@@ -318,5 +385,7 @@ def _decode_gain_map(header: decode.PhotoHeader, jpeg: bytes) -> F32:
     ):
         min_bytes = image.height * image.width // decode.BEST_COMPRESSION_RATIO
         files.check_size(header.path, image.height, image.width, min_bytes, available=len(jpeg))
+        icc = image.info.get("icc_profile") or b""
         gains = image.convert(mode).resize((width, height))
-    return decode.upright(np.asarray(gains, np.float32) / 255, header.orientation)
+    values = decode.upright(np.asarray(gains, np.float32) / 255, header.orientation)
+    return values, icc

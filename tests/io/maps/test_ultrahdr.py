@@ -12,7 +12,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
 from hdrlab.core import colour, gainmap
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import radiance
 from hdrlab.io.maps import ultrahdr
 from hdrlab.io.photos import read_bracket, read_photo, write_picture
@@ -307,3 +307,176 @@ def test_damaged_ultra_hdr_is_read_or_rejected_by_name(lamp):
         else:
             assert found.dtype == np.float32 and np.all(found >= 0) and np.isfinite(found).all()
     assert 20 < refused < 220
+
+
+# x, y of red, green and blue [ITU-R BT.709, SMPTE EG 432-1, ITU-R BT.2020], and of white, D65.
+CHROMATICITIES = {
+    "srgb": ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06)),
+    "p3": ((0.68, 0.32), (0.265, 0.69), (0.15, 0.06)),
+    "bt2020": ((0.708, 0.292), (0.17, 0.797), (0.131, 0.046)),
+}
+WHITE = (0.3127, 0.3290)
+# libultrahdr's numbers of these primaries.
+GAMUTS = {"srgb": 0, "p3": 1, "bt2020": 2}
+PATCH_PIXELS = 16
+# A lamp, leaves, a neon sign, brass, skin, dark leaves, and white.
+PATCHES = np.array(
+    [
+        [6.0, 0.9, 0.2],
+        [0.1, 3.0, 0.2],
+        [0.1, 0.2, 3.0],
+        [2.0, 1.8, 0.1],
+        [0.3, 0.25, 0.2],
+        [0.02, 0.3, 0.02],
+        [1.0, 1.0, 1.0],
+    ]
+)
+
+
+def primaries(name):
+    """Return the XYZ of red, green and blue as columns; their sum is white."""
+    XYZ = np.array([[x / y, 1, (1 - x - y) / y] for x, y in CHROMATICITIES[name]]).T
+    x, y = WHITE
+    return XYZ * np.linalg.solve(XYZ, [x / y, 1, (1 - x - y) / y])
+
+
+def matrix_between(source, target):
+    return np.linalg.solve(primaries(target), primaries(source))
+
+
+def profile(name):
+    """Return an ICC profile with these primaries and the curve of sRGB."""
+    xyY = [value for x, y in CHROMATICITIES[name] for value in (x, y, 1)]
+    curve = colour.decode_srgb(np.linspace(0, 1, 4096, dtype=np.float32))
+    return imagecodecs.cms_profile(
+        "rgb", whitepoint=(*WHITE, 1), primaries=xyY, transferfunction=curve
+    )
+
+
+def jpeg(pixel, **options):
+    """Return the JPEG of an area of one color."""
+    file = io.BytesIO()
+    area = np.broadcast_to(np.uint8(pixel), (16, 16, 3))
+    Image.fromarray(np.ascontiguousarray(area)).save(
+        file, "JPEG", quality=100, subsampling=0, keep_rgb=True, **options
+    )
+    return file.getvalue()
+
+
+def binary_metadata(numbers, flags=0xC0, minimum_version=0, signed=True):
+    form = ">2HB" + f"{len(numbers)}{'i' if signed else 'I'}"
+    return segment(b"\xe2", ultrahdr.ISO + struct.pack(form, minimum_version, 0, flags, *numbers))
+
+
+def write_one_color(path, base, gain_stops, *, base_profile, gains_profile, flags):
+    """Write an Ultra HDR file of one color, with offsets of 0; return the light of its base."""
+    base_levels = np.rint(255 * colour.encode_srgb(np.array(base)))
+    numbers = [0, 1, 4, 1]
+    for stops in gain_stops:
+        high = round(stops * 10**6)
+        numbers += [high - 10**6, 10**6, high, 10**6, 1, 1, 0, 1, 0, 1]
+    options = {"icc_profile": gains_profile} if gains_profile else {}
+    gains = jpeg([255, 255, 255], extra=binary_metadata(numbers, flags), **options)
+    path.write_bytes(jpeg(base_levels, icc_profile=base_profile) + gains)
+    return colour.decode_srgb(base_levels / 255)
+
+
+@pytest.mark.parametrize(
+    ("flags", "space"), [(0xC0, "p3"), (0x80, "bt2020")], ids=["base", "alternate"]
+)
+def test_gains_are_applied_in_the_primaries_that_the_flag_names(flags, space, tmp_path):
+    """The light in these primaries, times 2^G for each channel, and then in those of sRGB."""
+    stops = np.array([2.9, 1.58, 0.4])
+    path = tmp_path / "lamp.jpg"
+    base = write_one_color(
+        path,
+        [0.8, 0.3, 0.15],
+        stops,
+        base_profile=profile("p3"),
+        gains_profile=profile("bt2020"),
+        flags=flags,
+    )
+    expected = matrix_between(space, "srgb") @ (matrix_between("p3", space) @ base * 2**stops)
+    assert expected.min() > 0
+    assert ultrahdr.read(path)[8, 8] == pytest.approx(expected, rel=0.01)
+
+
+def test_base_outside_srgb_is_not_clipped_before_the_gains(tmp_path):
+    """Green of P3 has a negative red in sRGB, which gains of red must not lose."""
+    stops = np.array([3.0, 0.5, 1.0])
+    path = tmp_path / "leaf.jpg"
+    base = write_one_color(
+        path,
+        [0.1, 0.8, 0.1],
+        stops,
+        base_profile=profile("p3"),
+        gains_profile=b"",
+        flags=0xC0,
+    )
+    assert (matrix_between("p3", "srgb") @ base)[0] < 0
+    expected = matrix_between("p3", "srgb") @ (base * 2**stops)
+    assert expected.min() > 0
+    assert ultrahdr.read(path)[8, 8] == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("name", GAMUTS)
+def test_saturated_patches_of_libultrahdr_are_read_as_it_reads_them(name, tmp_path):
+    """It writes the base in Display P3, and 0x40 is set for sRGB and P3, clear for BT.2020.
+
+    Within 2 % of the brightest channel of each patch, which is half a level of its JPEGs.
+    """
+    row = np.repeat(PATCHES, PATCH_PIXELS, axis=0)
+    light = np.ones((PATCH_PIXELS, len(row), 4), np.float16)
+    light[..., :3] = row
+    data = imagecodecs.ultrahdr_encode(
+        light, transfer=0, gamut=GAMUTS[name], crange=1, nits=1600, scale=1
+    )
+    path = tmp_path / "patches.jpg"
+    path.write_bytes(data)
+    middle = np.s_[PATCH_PIXELS // 2, PATCH_PIXELS // 2 :: PATCH_PIXELS]
+    theirs = imagecodecs.ultrahdr_decode(data)[middle][..., :3].astype(np.float64)
+    # Its pixels have the primaries of the light that was given.
+    expected = np.maximum(theirs @ matrix_between(name, "srgb").T, 0)
+    error = np.abs(ultrahdr.read(path)[middle] - expected).max(axis=-1)
+    assert np.all(error < 0.02 * expected.max(axis=-1))
+
+
+def test_unsigned_fractions_are_read_as_unsigned(lamp):
+    """Headrooms, gamma and all denominators go up to 2^32 - 1; the other numerators are signed."""
+    path, *_ = lamp
+    first = path.read_bytes()[: ultrahdr.jpeg_end(path.read_bytes())]
+    big = 3_000_000_000
+
+    def write(numbers, **options):
+        gains = jpeg([99, 180, 40], extra=binary_metadata(numbers, 0x40, signed=False, **options))
+        path.write_bytes(first + gains)
+        return ultrahdr.read(path)
+
+    minus_one = 2**32 - 1
+    small = write([0, 1, 3, 1, minus_one, 1, 3, 1, 2, 1, 1, 1024, minus_one, 1024])
+    headroom = (4_200_000_000, 1_400_000_000)
+    large = write(
+        [0, big, *headroom, 2**32 - big // 2, big // 2, 2_100_000_000, 700_000_000]
+        + [big, big // 2, 2929688, big, 2**32 - 2929688, big]
+    )
+    assert np.allclose(large, small, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changed", "word"),
+    [({"minimum_version": 7}, "version"), ({"flags": 0x44}, "HDR rendition")],
+)
+def test_gain_maps_of_a_newer_version_or_an_hdr_base_are_refused(changed, word, lamp):
+    path, *_ = lamp
+    first = path.read_bytes()[: ultrahdr.jpeg_end(path.read_bytes())]
+    numbers = [0, 1, 3, 1, -1, 1, 3, 1, 1, 1, 1, 64, 1, 64]
+    options = {"flags": 0x40, **changed}
+    path.write_bytes(first + jpeg([9, 9, 9], extra=binary_metadata(numbers, **options)))
+    with pytest.raises(FileFormatError, match=rf"lamp\.jpg.*{word}"):
+        ultrahdr.read(path)
+    adobe = b'<rdf:Description hdrgm:BaseRenditionIsHDR="True" hdrgm:GainMapMax="3"'
+    adobe += b' hdrgm:HDRCapacityMax="3"/>'
+    extra = segment(b"\xe1", ultrahdr.ADOBE + adobe)
+    path.write_bytes(first + jpeg([9, 9, 9], extra=extra))
+    with pytest.raises(FileFormatError, match=r"lamp\.jpg.*HDR rendition"):
+        ultrahdr.read(path)
