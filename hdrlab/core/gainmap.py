@@ -68,11 +68,15 @@ def gain_map(
 def weight(screen: float, headroom: float) -> float:
     """Return W = log2(screen) / log2(headroom), clipped to 0 ... 1: how much of the gain a screen shows.
 
+    Both are at least 1. W is 0 for a headroom of 1, where hdr is no brighter than sdr.
+
     Examples
     --------
     >>> weight(1, 8), round(weight(2, 8), 2), weight(16, 8)
     (0.0, 0.33, 1.0)
     """
+    if headroom <= 1:
+        return 0.0
     return float(np.clip(np.log2(screen) / np.log2(headroom), 0, 1))
 
 
@@ -99,9 +103,23 @@ def apply_gain(
 
 
 def expose(E: F32, sdr: Array, headroom: float) -> F32:
-    """Return hdr = min(s E, headroom), where s gives the light the log average of the picture's."""
+    """Return hdr = s E, at most the headroom, with s from the log averages of sdr and E.
+
+    s gives hdr the log average luminance of sdr. Where the largest channel of s E is above the
+    headroom, all channels are scaled down together, so lamps keep their color and do not turn white.
+
+    Examples
+    --------
+    >>> flame = np.float32([[[9.0, 4.5, 1.5]]])
+    >>> expose(flame, flame, 6.0).round(2).tolist()
+    [[[6.0, 3.0, 1.0]]]
+    """
     L = luminance(E)
     Ld = luminance(sdr)
     lit = (L > 0) & (Ld > 0)
     s = np.exp(np.mean(np.log(Ld[lit] / L[lit]))) if lit.any() else 1.0
-    return np.minimum(np.float32(s) * E, np.float32(headroom))
+    hdr = np.float32(s) * E
+    largest = hdr.max(axis=-1, keepdims=True) if E.ndim == 3 else hdr
+    is_beyond = largest > headroom
+    scale = np.divide(headroom, largest, out=np.ones_like(largest), where=is_beyond)
+    return np.minimum(hdr * scale, np.float32(headroom))

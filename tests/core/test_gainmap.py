@@ -70,4 +70,20 @@ def test_light_gets_the_log_average_of_the_picture_in_any_unit():
     assert hdr.max() == 4 and np.allclose(gainmap.expose(1000 * E, sdr, 4.0), hdr, rtol=1e-4)
     L, Ld = (one @ [0.2126, 0.7152, 0.0722] for one in (gainmap.expose(E, sdr, np.inf), sdr))
     assert np.log(L).mean() == pytest.approx(np.log(Ld).mean(), abs=1e-4)
+    assert np.all(gainmap.expose(np.zeros((2, 2, 3)), np.zeros((2, 2, 3), np.float32), 4.0) == 0)
     assert np.all(gainmap.expose(np.zeros((2, 2)), np.zeros((2, 2), np.float32), 4.0) == 0)
+
+
+def test_lamps_beyond_the_headroom_keep_their_color():
+    """The chapel's flame (92.9, 42.1, 13.0) is as red at the headroom as it is in the scene."""
+    E = np.full((40, 60, 3), 0.5, np.float32)
+    E[5, 7] = flame = (92.9, 42.1, 13.0)
+    E[9, 9] = (7.9, 3.0, 1.0)
+    hdr = gainmap.expose(E, E, 8.0)
+    assert hdr[5, 7] == pytest.approx(8 * np.array(flame) / 92.9, rel=1e-4)
+    assert hdr.max() <= 8
+    assert np.allclose(hdr[9:], E[9:])  # what is within the headroom stays
+
+
+def test_headroom_of_1_has_no_gain_to_show():
+    assert gainmap.weight(1, 1) == 0 and gainmap.weight(4, 1) == 0
