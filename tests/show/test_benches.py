@@ -119,7 +119,14 @@ def test_staircase_shows_all_values_of_the_converter():
 def test_line_of_a_photon_transfer_curve_has_slope_1_over_the_gain():
     S = np.linspace(0, 4000, 9)
     found = photon_transfer.Transfer(
-        gain=5.0, read_noise=5.0, black=64.0, full_well=20_000.0, S=S, V=1 + S / 5, used=S < 3000
+        gain=5.0,
+        read_noise=5.0,
+        read_noise_interval=(4.9, 5.1),
+        black=64.0,
+        full_well=20_000.0,
+        S=S,
+        V=1 + S / 5,
+        used=S < 3000,
     )
     line = sensors.transfer(found).lines[-1]
     (x0, x1), (y0, y1) = line.get_xdata(), line.get_ydata()
