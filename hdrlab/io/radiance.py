@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 
 from hdrlab.core import arrays, gamut
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.files import require_no_folder, require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
@@ -25,6 +25,8 @@ SUFFIXES: dict[str, ModuleType] = {
     ".tif": tiff,
     ".tiff": tiff,
 }
+# Below this determinant of their x, y and z, three colors are no primaries: sRGB's have 0.2.
+MIN_PRIMARIES_DETERMINANT = 1e-3
 # Ultra HDR files need a picture as well as a radiance map, so `write_radiance` cannot write them.
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
@@ -85,18 +87,46 @@ def read_valid(path: str | Path) -> arrays.F32:
 
 
 def primaries_of(path: str | Path) -> tuple[float, ...] | None:
-    """Return the primaries and the white of an .exr file, or None if they are those of sRGB.
+    """Return the primaries and the white of a map, or None if they are those of sRGB.
 
-    With them, two files of one photo in different primaries give the same radiance map. Files of
-    other formats are assumed to have the primaries of sRGB, as nearly all do.
+    OpenEXR and RGBE files can state them. With them, two files of one photo in different primaries
+    give the same radiance map. Other files are assumed to have the primaries of sRGB, as nearly all
+    do.
+
+    Raises
+    ------
+    FileFormatError
+        For primaries that are none, such as eight zeros.
     """
-    if format_of(path, READ) is not exr:
+    form = format_of(path, READ)
+    if form is exr:
+        header = exr.read_header(path)
+        named = header.attributes.get("chromaticities") if header.is_color else None
+    elif form is rgbe:
+        named = rgbe.read_header(path).primaries
+    else:
+        named = None
+    if named is None or np.allclose(named, gamut.SRGB, atol=1e-3):
         return None
-    header = exr.read_header(path)
-    named = header.attributes.get("chromaticities")
-    if named is None or len(header.channels) < 3 or np.allclose(named, gamut.SRGB, atol=1e-3):
-        return None
-    return tuple(map(float, named))
+    primaries = tuple(map(float, named))
+    _require_primaries(path, primaries)
+    return primaries
+
+
+def _require_primaries(path: str | Path, primaries: tuple[float, ...]) -> None:
+    """Raise a FileFormatError for x and y that no red, green, blue and white have."""
+    xy = np.array(primaries).reshape(4, 2)
+    is_possible = bool(np.isfinite(xy).all() and xy[:, 1].all())
+    if is_possible:
+        xyz = np.column_stack([xy, 1 - xy.sum(axis=1)])
+        mixture = np.linalg.det(xyz[:3])
+        is_possible = abs(mixture) > MIN_PRIMARIES_DETERMINANT and xy[3, 1] > 0
+    if not is_possible:
+        values = ", ".join(f"{value:.4g}" for value in primaries)
+        raise FileFormatError(
+            f"{path}: its header states primaries that no colors have, x and y are {values}; "
+            "remove them from the header if the primaries are those of sRGB"
+        )
 
 
 def write_radiance(

@@ -1,14 +1,15 @@
 """OpenEXR files, .exr, through the official OpenEXR module.
 
-Half, float and unsigned channels become float32. R, G and B are a color, Y or a single channel is a
-luminance. Alpha is dropped: it is the coverage of a pixel, whose radiance is in R, G and B. The
-image is the display window. Where the data window is smaller, the rest is 0; where it is larger,
+Half, float and unsigned channels, which a file may mix, become float32. R, G and B are a color, Y or
+a single channel is a luminance. hdrlab leaves out all other channels, such as alpha (the coverage of
+a pixel, whose radiance is in R, G and B), Z (its depth), and those of layers, as most programs do.
+The image is the display window. Where the data window is smaller, the rest is 0; where it is larger,
 it is cut.
 """
 
 import errno
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,8 +31,10 @@ BEST_COMPRESSION_RATIO = 2**16
 # A display window may be far larger than the data window only if it is small itself.
 MAX_LARGE_FRAME_PIXELS = 2**22
 MAX_FRAME_TO_DATA_RATIO = 64
-# The channels of a color image. OpenEXR gives them in one array, under one name.
-COLOR_CHANNELS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
+# The channels of a color image, in the order of its array.
+COLOR_CHANNELS = ("R", "G", "B")
+# Differences of color that belong to a luminance Y.
+CHROMA_CHANNELS = {"RY", "BY"}
 # OpenEXR prints its errors, and all threads share the stream that hdrlab redirects to read them.
 STDOUT_LOCK = Lock()
 
@@ -63,6 +66,11 @@ class Header:
     data: Window
     display: Window
     attributes: dict[str, Any]
+
+    @property
+    def is_color(self) -> bool:
+        """Whether the image has the channels R, G and B."""
+        return set(COLOR_CHANNELS) <= set(self.channels)
 
 
 def read_header(path: str | Path) -> Header:
@@ -126,19 +134,40 @@ def read(path: str | Path) -> F32:
     (2, 3, 3)
     """
     header = read_header(path)
+    names = _select_channels(path, header)
+    ((_, planes),) = read_parts(path, 1)
+    E = stack_channels(planes, names)
+    return _place_on_display(path, E, header)
+
+
+def stack_channels(planes: Mapping[str, Array], names: Sequence[str]) -> F32:
+    """Return channels of any types as one array, (H, W) for one of them and else (H, W, n) float32."""
+    if len(names) == 1:
+        return planes[names[0]].astype(np.float32, copy=False)
+    height, width = planes[names[0]].shape
+    stacked = np.empty((height, width, len(names)), np.float32)
+    for k, name in enumerate(names):
+        stacked[..., k] = planes[name]
+    return stacked
+
+
+def _select_channels(path: str | Path, header: Header) -> tuple[str, ...]:
+    """Return the names of the channels that are the image: R, G and B, or one of luminance."""
     names = set(header.channels)
-    is_color = names in COLOR_CHANNELS
-    is_luminance = names - {"A"} == {"Y"} or len(names) == 1
-    if not is_color and not is_luminance:
+    if header.is_color:
+        return COLOR_CHANNELS
+    if names & CHROMA_CHANNELS:
         raise FileFormatError(
-            f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
+            f"{path}: it stores color as luminance and chroma ({', '.join(header.channels)}), "
+            "which hdrlab does not read; save it with the channels R, G and B"
         )
-    ((_, planes),) = read_parts(path, 1, separate_channels=not is_color)
-    if is_color:
-        E = next(iter(planes.values()))[..., :3]
-    else:
-        E = planes["Y" if "Y" in names else header.channels[0]]
-    return _place_on_display(path, E.astype(np.float32, copy=False), header)
+    if "Y" in names:
+        return ("Y",)
+    if len(names) == 1:
+        return header.channels
+    raise FileFormatError(
+        f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
+    )
 
 
 def decode_half(bits: Array) -> F32:
@@ -162,7 +191,7 @@ def decode_half(bits: Array) -> F32:
 def read_dtypes(path: str | Path) -> tuple[str, ...]:
     """Return the name of each channel's dtype: float16, float32 or uint32."""
     header = read_header(path)
-    ((_, planes),) = read_parts(path, 1, separate_channels=True)
+    ((_, planes),) = read_parts(path, 1)
     return tuple(planes[name].dtype.name for name in header.channels)
 
 
@@ -217,7 +246,6 @@ def read_parts(
     count: int | None = None,
     *,
     header_only: bool = False,
-    separate_channels: bool = False,
 ) -> list[Part]:
     """Return the header and the pixels by channel of the first `count` parts of a file.
 
@@ -229,8 +257,6 @@ def read_parts(
         The number of parts to read, by default all of them.
     header_only
         Whether to leave the pixels out.
-    separate_channels
-        Whether R, G and B are arrays of their own, instead of one.
 
     Raises
     ------
@@ -248,7 +274,8 @@ def read_parts(
             STDOUT_LOCK,
             silence(2),
             redirect_stdout(printed),
-            open_exr(str(path), separate_channels, header_only) as exr_file,
+            # R, G and B as one array would need one type for all three.
+            open_exr(str(path), True, header_only) as exr_file,
         ):
             parts = [_copy_part(part) for part in exr_file.parts[:count]]
             # OpenEXR leaves out a part that it cannot read, and prints why.

@@ -14,7 +14,7 @@ from hdrlab.core.optional import OpenEXR
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.maps import exr
 
-# OpenEXR's name for images with so many channels; a single channel is a depth.
+# The channels of images with so many of them; a single channel is a depth.
 CHANNEL_NAMES = {1: "Z", 3: "RGB", 4: "RGBA"}
 # The layers that `assemble --uncertainty` writes.
 UNCERTAINTY_LAYERS = ("radiance", "standard deviation")
@@ -47,12 +47,12 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     layers: dict[str, F32] = {}
     for number, (header, planes) in enumerate(exr.read_parts(path)):
         name = header.get("name", f"part {number}")
-        channels = next(iter(planes))
-        if len(planes) != 1 or channels not in CHANNEL_NAMES.values():
+        channels = CHANNEL_NAMES.get(len(planes), "")
+        if set(planes) != set(channels):
             raise FileFormatError(
                 f"{path}: expected {name} to have RGB, RGBA or Z, got {', '.join(planes)}"
             )
-        layers[name] = planes[channels].astype(np.float32)
+        layers[name] = exr.stack_channels(planes, channels)
     sizes = {layer.shape[:2] for layer in layers.values()}
     if len(sizes) > 1:
         raise FileFormatError(f"{path}: expected parts of one size, got {sorted(sizes)}")

@@ -2,7 +2,7 @@
 
 PF is RGB and Pf is gray. A negative scale means little endian. Rows run from the bottom to the top.
 The scale's magnitude is not applied, because the format never settled whether to multiply or to
-divide by it.
+divide by it. Header lines end in LF; a file with CR LF is read if its length fits.
 """
 
 import os
@@ -72,7 +72,7 @@ def read_header(path: str | Path) -> Header:
     Raises
     ------
     FileFormatError
-        For a file that is no PFM file, or is shorter than its header claims.
+        For a file that is no PFM file, is shorter than its header claims, or was copied as text.
     """
     with open(path, "rb") as file:
         head = file.read(256)
@@ -82,10 +82,31 @@ def read_header(path: str | Path) -> Header:
         raise FileFormatError(
             f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}"
         )
-    header = Header(int(match[3]), int(match[2]), match[1] == b"PF", scale, match.end())
-    size = header.height * header.width * (12 if header.colour else 4)
-    check_size(path, header.height, header.width, size + header.start)
-    return header
+    height = int(match[3])
+    width = int(match[2])
+    is_color = match[1] == b"PF"
+    size = height * width * (12 if is_color else 4)
+    check_size(path, height, width, size + match.end())
+    start = match.end()
+    if head[start - 1 : start + 1] == b"\r\n":
+        start = _find_start_after_cr_lf(path, start, size)
+    return Header(height, width, is_color, scale, start)
+
+
+def _find_start_after_cr_lf(path: str | Path, after_cr: int, size: int) -> int:
+    """Return where the values start behind CR and LF: the LF ends the header, or is in a value.
+
+    The length of the file decides. If neither fits, a program has replaced each LF by CR LF, in the
+    values, too.
+    """
+    file_size = os.path.getsize(path)
+    for start in (after_cr + 1, after_cr):
+        if file_size == start + size:
+            return start
+    raise FileFormatError(
+        f"{path}: its line ends are CR LF and its length does not fit, so a program copied it as "
+        "text; copy the original again, as a binary file"
+    )
 
 
 def read(path: str | Path, *, flip: bool = True) -> F32:

@@ -7,6 +7,9 @@ E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 
 Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio
 and most others decode m / 256, the lower end, and so does hdrlab: a file read and written again is
 then unchanged. imagecodecs decodes run-length scanlines; the equations below serve the other files.
+
+Values of E have the primaries of the header's PRIMARIES line. Without one, Radiance means
+`RADIANCE_PRIMARIES`, but most other programs, and hdrlab, take those of sRGB.
 """
 
 import re
@@ -43,6 +46,9 @@ MAX_COMMENT_CHARACTERS = 100
 BAND_ROWS = 64
 # Pixels of which a flat file stores a repetition count have this value, without the exponent.
 REPEAT_MARK = 0x010101
+# x and y of red, green, blue and white, if no line states them [Radiance, common/color.h].
+RADIANCE_PRIMARIES = (0.64, 0.33, 0.29, 0.60, 0.15, 0.06, 1 / 3, 1 / 3)
+PRIMARIES_TOLERANCE = 1e-3
 MIN_EXPOSURE = 1e-30
 MAX_EXPOSURE = 1e30
 
@@ -59,6 +65,9 @@ class Header:
         Order and signs of the resolution line. "-Y+X" means rows from the top, each from the left.
     exposure
         (3,) what the pixels were multiplied by: the product of all EXPOSURE and COLORCORR lines.
+    primaries
+        x and y of red, green, blue and white by the last PRIMARIES line, or None without such a
+        line, and if it states what Radiance takes without one.
     lines
         The lines of the header.
     start
@@ -69,6 +78,7 @@ class Header:
     width: int
     axes: str
     exposure: F64
+    primaries: tuple[float, ...] | None
     lines: tuple[str, ...]
     start: int
 
@@ -76,7 +86,7 @@ class Header:
 def read(path: str | Path) -> F32:
     """Read a Radiance RGBE file, in any of the eight orientations.
 
-    Scanlines may be flat, or coded by the old or the new kind of run lengths.
+    Scanlines may be flat, or coded by the old or the new kind of run lengths, each in its own way.
 
     Parameters
     ----------
@@ -84,7 +94,8 @@ def read(path: str | Path) -> F32:
 
     Returns
     -------
-    (H, W, 3) float32, radiance: the pixels' values divided by the header's exposures.
+    (H, W, 3) float32, radiance: the pixels' values divided by the header's exposures. They have the
+    primaries that the header states; `io.radiance.read_radiance` converts them to sRGB.
 
     Raises
     ------
@@ -111,7 +122,9 @@ def read(path: str | Path) -> F32:
     with open(path, "rb") as file:
         file.seek(header.start)
         data = file.read()
-    if _has_run_length_scanlines(data, length):
+    if _has_mixed_scanlines(data, scanlines, length):
+        E = to_radiance(_decode_mixed_scanlines(path, data, scanlines, length))
+    elif _has_run_length_scanlines(data, length):
         E = _decode_run_lengths(path, data, scanlines, length)
     else:
         files.check_size(path, scanlines, length, 4 * scanlines, available=len(data))
@@ -185,6 +198,102 @@ def to_pixels(E: F32) -> NDArray[np.uint8]:
     return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
 
 
+def _run_length_mark(length: int) -> bytes:
+    """Return what a run-length scanline begins with: 2, 2 and its length in two bytes."""
+    return b"\2\2" + length.to_bytes(2, "big")
+
+
+def _has_mixed_scanlines(data: bytes, scanlines: int, length: int) -> bool:
+    """Return whether some scanlines may have run lengths, and others not.
+
+    In a file of run-length scanlines alone, each has its mark. More marks may be pixels, so that
+    True is only a possibility.
+    """
+    if not MIN_RUN_LENGTH_SCANLINE <= length <= MAX_RUN_LENGTH_SCANLINE:
+        return False
+    marks = data.count(_run_length_mark(length))
+    begins_with_mark = data.startswith(_run_length_mark(length))
+    return marks != (scanlines if begins_with_mark else 0)
+
+
+def _decode_mixed_scanlines(
+    path: str | Path, data: bytes, scanlines: int, length: int
+) -> NDArray[np.uint8]:
+    """Return the pixels (H, W, 4) of scanlines of which each is flat or has run lengths."""
+    mark = _run_length_mark(length)
+    # A flat scanline of one color takes a pixel and a mark that repeats it.
+    files.check_size(path, scanlines, length, 8 * scanlines, available=len(data))
+    rows: list[NDArray[np.uint8]] = []
+    start = 0
+    try:
+        for _ in range(scanlines):
+            if data.startswith(mark, start):
+                row, start = _decode_run_length_scanline(data, start + len(mark), length)
+            else:
+                row, start = _decode_flat_scanline(data, start, length)
+            rows.append(row)
+    except (IndexError, ValueError):
+        raise FileFormatError(
+            f"{path}: scanline {len(rows) + 1} of {scanlines} is damaged or cut short"
+        ) from None
+    return np.stack(rows)
+
+
+def _decode_run_length_scanline(
+    data: bytes, start: int, length: int
+) -> tuple[NDArray[np.uint8], int]:
+    """Return the pixels (W, 4) of a run-length scanline behind its mark, and where the next starts.
+
+    Red, green, blue and exponents follow each other. A count above 128 is a run of count - 128
+    times the next byte, another count is that of the bytes that follow.
+    """
+    channels = bytearray()
+    while len(channels) < 4 * length:
+        count = data[start]
+        if count > 128:
+            run = data[start + 1 : start + 2] * (count - 128)
+            start += 2
+        else:
+            run = data[start + 1 : start + 1 + count]
+            start += 1 + count
+        end_of_channel = (len(channels) // length + 1) * length
+        if not run or len(channels) + len(run) > end_of_channel:
+            raise ValueError("a run is empty or goes past its channel")
+        channels += run
+    pixels = np.frombuffer(bytes(channels), np.uint8).reshape(4, length)
+    return pixels.T, start
+
+
+def _decode_flat_scanline(data: bytes, start: int, length: int) -> tuple[NDArray[np.uint8], int]:
+    """Return the pixels (W, 4) of a flat scanline, and where the next one starts."""
+    words = np.frombuffer(data, "<u4", min((len(data) - start) // 4, length), start)
+    is_mark = (words & 0xFFFFFF) == REPEAT_MARK
+    if is_mark.any():
+        counts = _count_repetitions(words, is_mark)
+        totals = np.cumsum(counts)
+        last = int(np.searchsorted(totals, length))
+        if is_mark[0] or totals[last] != length:
+            raise ValueError("repetitions do not fill the scanline")
+        words = words[_last_pixels(is_mark)[: last + 1]].repeat(counts[: last + 1])
+        start += 4 * (last + 1)
+    else:
+        start += 4 * length
+    if len(words) != length:
+        raise ValueError("the scanline is cut short")
+    return words.view(np.uint8).reshape(length, 4), start
+
+
+def _last_pixels(is_mark: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return for each word the place of the last one that is no mark of repetition, -1 for none."""
+    return np.maximum.accumulate(np.where(is_mark, -1, np.arange(len(is_mark))))
+
+
+def _count_repetitions(words: NDArray[np.uint32], is_mark: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return how many pixels each word stands for: 1, or the digit of a mark times a power of 256."""
+    digit = np.clip(np.arange(len(words)) - _last_pixels(is_mark) - 1, 0, 4)
+    return np.where(is_mark, (words >> 24).astype(np.int64) << 8 * digit, 1)
+
+
 def _has_run_length_scanlines(data: bytes, length: int) -> bool:
     """Return whether the first scanline begins with 2, 2 and its length in two bytes."""
     is_possible = MIN_RUN_LENGTH_SCANLINE <= length <= MAX_RUN_LENGTH_SCANLINE
@@ -221,17 +330,13 @@ def _decode_flat_pixels(
     count = scanlines * length
     words = np.frombuffer(data, "<u4", min(len(data) // 4, count))
     is_mark = (words & 0xFFFFFF) == REPEAT_MARK
-    place = np.arange(len(words))
-    # For each word, the place of the last one that is not a mark.
-    pixel = np.maximum.accumulate(np.where(is_mark, -1, place))
-    digit = np.clip(place - pixel - 1, 0, 4)
-    counts = np.where(is_mark, (words >> 24).astype(np.int64) << 8 * digit, 1)
+    counts = _count_repetitions(words, is_mark)
     totals = np.cumsum(counts)
     last = int(np.searchsorted(totals, count))
     if last == len(totals) or totals[last] != count or is_mark[0]:
         size = f"{scanlines} scanlines of {length} pixels"
         raise FileFormatError(f"{path}: the {size} are damaged or cut short")
-    repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
+    repeated = words[_last_pixels(is_mark)[: last + 1]].repeat(counts[: last + 1])
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
 
 
@@ -280,6 +385,7 @@ def parse_header(path: str | Path, head: bytes) -> Header:
         width=width,
         axes=sign + axis + second_sign + second_axis,
         exposure=_parse_exposure(path, lines),
+        primaries=_parse_primaries(path, lines),
         lines=tuple(lines),
         start=start,
     )
@@ -319,3 +425,20 @@ def _parse_exposure(path: str | Path, lines: list[str]) -> F64:
             f"{path}: expected positive exposures in its header, got {product.tolist()}"
         )
     return product
+
+
+def _parse_primaries(path: str | Path, lines: list[str]) -> tuple[float, ...] | None:
+    """Return x and y of red, green, blue and white by the last PRIMARIES line, see `Header`."""
+    stated = [line for line in lines if line.partition("=")[0] == "PRIMARIES"]
+    if not stated:
+        return None
+    line = stated[-1]
+    try:
+        primaries = np.array(line.partition("=")[2].split(), dtype=np.float64).reshape(8)
+    except ValueError:
+        raise FileFormatError(
+            f"{path}: expected x and y of red, green, blue and white, got {line[:90]!r}"
+        ) from None
+    if np.allclose(primaries, RADIANCE_PRIMARIES, rtol=0, atol=PRIMARIES_TOLERANCE):
+        return None
+    return tuple(map(float, primaries))

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from hdrlab.core import colour, gainmap
+from hdrlab.core import colour, gainmap, gamut
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radiance, describe
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, profiles, web
@@ -104,8 +104,8 @@ def read(path: str | Path) -> F32:
 
     Returns
     -------
-    (H, W, 3) or (H, W) float32, upright, with the primaries of sRGB; colors that these cannot show
-    lose their negative parts
+    (H, W, 3) or (H, W) float32, upright, with the primaries of sRGB; colors that these cannot mix
+    become less colorful, see `core.gamut.desaturate`
 
     Raises
     ------
@@ -145,7 +145,10 @@ def read(path: str | Path) -> F32:
     hdr = gainmap.apply_gain(
         sdr, gains, metadata.low, metadata.high, gamma=metadata.gamma, k=offsets
     )
-    return np.maximum(_convert_primaries(hdr, to_srgb), 0)
+    hdr = _convert_primaries(hdr, to_srgb)
+    if hdr.ndim == 3 and not np.array_equal(to_srgb, np.eye(3)):
+        hdr = gamut.desaturate(hdr)
+    return np.maximum(hdr, 0)
 
 
 def write_picture(

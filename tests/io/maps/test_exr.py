@@ -4,7 +4,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from hdrlab.errors import FileFormatError
 from hdrlab.io.maps import exr
+from hdrlab.io.maps.layers import read_layers
 from hdrlab.io.radiance import read_radiance
 
 RGB = np.exp2(np.random.default_rng(0).uniform(-20, 15, (37, 21, 3))).astype(np.float32)
@@ -180,3 +182,60 @@ def test_real_exr_with_nan_and_infinity_is_rejected_unless_cleaned(shared):
         read_radiance(path)
     mended, good = read_radiance(path, clean=True), np.isfinite(E)
     assert np.array_equal(mended[good], np.maximum(E[good], 0)) and np.all(np.isfinite(mended))
+
+
+TYPES = {"R": np.float16, "G": np.float32, "B": np.float16, "A": np.float16, "Z": np.float32}
+
+
+def channels_of(names, types=TYPES):
+    rng = np.random.default_rng(5)
+    return {name: rng.random((5, 7)).astype(types.get(name, np.float32)) for name in names}
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["R", "G", "B"],
+        ["R", "G", "B", "A"],
+        ["R", "G", "B", "Z"],
+        ["R", "G", "B", "A", "Z"],
+        ["R", "G", "B", "Y"],
+        ["R", "G", "B", "left.R", "left.G", "left.B", "normal.X"],
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("types", [TYPES, {}], ids=["mixed", "float"])
+def test_color_is_read_bit_for_bit_from_mixed_types_and_among_other_channels(
+    tmp_path, names, types
+):
+    channels = channels_of(names, types)
+    path = wrote(tmp_path / "x.exr", {name: plane.copy() for name, plane in channels.items()})
+    E = exr.read(path)
+    for k, name in enumerate("RGB"):
+        assert np.array_equal(E[..., k], channels[name].astype(np.float32))
+
+
+@pytest.mark.parametrize("names", [["Y", "Z"], ["Y", "A", "Z"]])
+def test_luminance_is_read_among_other_channels(tmp_path, names):
+    channels = channels_of(names)
+    path = wrote(tmp_path / "x.exr", {name: plane.copy() for name, plane in channels.items()})
+    assert np.array_equal(exr.read(path), channels["Y"])
+
+
+def test_luminance_and_chroma_are_rejected_and_not_read_as_gray(tmp_path):
+    path = wrote(tmp_path / "x.exr", channels_of(["Y", "RY", "BY"]))
+    with pytest.raises(FileFormatError, match=r"x\.exr: .*luminance and chroma"):
+        exr.read(path)
+
+
+def test_layers_of_mixed_types_are_read(tmp_path):
+    channels = channels_of("RGB")
+    path = wrote(tmp_path / "x.exr", {name: plane.copy() for name, plane in channels.items()})
+    (layer,) = read_layers(path).values()
+    assert np.array_equal(layer, np.stack([channels[name] for name in "RGB"], axis=-1))
+
+
+def test_impossible_chromaticities_are_rejected(tmp_path):
+    path = wrote(tmp_path / "x.exr", {"RGB": RGB}, chromaticities=(0.0,) * 8)
+    with pytest.raises(FileFormatError, match=r"x\.exr: .*primaries"):
+        read_radiance(path)

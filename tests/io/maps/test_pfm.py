@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from hdrlab.errors import FileFormatError
 from hdrlab.io.maps import pfm
 
 RGB = np.random.default_rng(0).random((37, 21, 3)).astype(np.float32)
@@ -101,3 +102,26 @@ def test_reading_without_readv_gives_the_same_values(tmp_path, monkeypatch):
     tall = np.random.default_rng(1).random((1100, 2)).astype(np.float32)
     pfm.write(tmp_path / "x.pfm", tall)
     assert np.array_equal(pfm.read(tmp_path / "x.pfm"), tall)
+
+
+@pytest.mark.parametrize("E", [RGB, GRAY])
+@pytest.mark.parametrize(("scale", "dtype"), [("-1.0", "<f4"), ("1.0", ">f4")])
+def test_header_lines_may_end_in_cr_lf(tmp_path, E, scale, dtype):
+    kind = "PF" if E.ndim == 3 else "Pf"
+    header = f"{kind}\r\n{E.shape[1]} {E.shape[0]}\r\n{scale}\r\n".encode()
+    (tmp_path / "x.pfm").write_bytes(header + E[::-1].astype(dtype).tobytes())
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm"), E)
+
+
+def test_line_feed_behind_a_single_cr_belongs_to_the_values(tmp_path):
+    data = np.array([0x3F80000A, 0x3F800000], "<u4").view("<f4")
+    (tmp_path / "x.pfm").write_bytes(b"Pf 2 1 -1\r" + data.tobytes())
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm"), data[None])
+
+
+def test_error_for_a_pfm_copied_as_text_says_so(tmp_path):
+    values = np.array([0x3F800A0A, 0x3F80000A], "<u4").tobytes()
+    data = b"Pf\n2 1\n-1.0\n" + values
+    (tmp_path / "x.pfm").write_bytes(data.replace(b"\n", b"\r\n"))
+    with pytest.raises(FileFormatError, match=r"x\.pfm: .*CR LF.*text"):
+        pfm.read(tmp_path / "x.pfm")

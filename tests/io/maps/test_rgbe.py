@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from hdrlab.errors import FileFormatError
 from hdrlab.io.maps import rgbe
 from hdrlab.io.maps.rgbe import read_header
+from hdrlab.io.radiance import read_radiance
 
 SIZES = [(1, 1), (3, 7), (5, 8), (130, 127), (4, 129), (2, 514), (1, 32767), (1, 32768), (2, 40000)]
 
@@ -282,3 +284,120 @@ def test_memorial_map_is_read_although_its_magic_line_is_second(shared):
     low, high = np.percentile(E[..., 1], [0.1, 99.9])
     assert E.shape == (768, 512, 3) and 14 < np.log2(high / low) < 16
     assert read_header(path).lines[0].startswith("VIEW=")
+
+
+def run_length_scanline(row):
+    """Return a run-length scanline of pixels (W, 4), half of it literals and half runs."""
+    coded = bytearray(b"\2\2" + len(row).to_bytes(2, "big"))
+    half = len(row) // 2
+    for channel in row.T:
+        for start in range(0, half, 100):
+            literals = channel[start : min(start + 100, half)]
+            coded += bytes([len(literals), *literals])
+        for value in channel[half:]:
+            coded += bytes([128 + 1, value])
+    return bytes(coded)
+
+
+def repeated_scanline(row):
+    """Return a scanline of one color by the oldest run lengths."""
+    repetitions = len(row) - 1
+    coded = bytes(row[0])
+    while repetitions > 0:
+        coded += bytes([1, 1, 1, repetitions % 256])
+        repetitions //= 256
+    return coded
+
+
+CODINGS = {
+    "flat": lambda row: row.tobytes(),
+    "runs": run_length_scanline,
+    "repeats": repeated_scanline,
+}
+
+
+def mixed_file(path, order, width):
+    """Write scanlines that are coded in this order; return their pixels."""
+    rng = np.random.default_rng(3)
+    rows = []
+    data = b""
+    for coding in order.split():
+        row = rng.integers(4, 250, (width, 4)).astype(np.uint8)  # above 2 and 1, which are marks
+        row[:, 3] = rng.integers(120, 136, width)
+        if coding == "repeats":
+            row[:] = row[0]
+        rows.append(row)
+        data += CODINGS[coding](row)
+    header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {len(rows)} +X {width}\n"
+    path.write_bytes(header.encode() + data)
+    return np.array(rows)
+
+
+@pytest.mark.parametrize(
+    "order",
+    ["flat runs", "runs flat", "repeats runs flat", "runs runs repeats", "flat flat runs repeats"],
+)
+@pytest.mark.parametrize("width", [8, 130, 513, 514])
+def test_each_scanline_may_be_coded_in_its_own_way(tmp_path, order, width):
+    """As Radiance reads them: the first bytes of each scanline say how it is coded."""
+    path = tmp_path / "x.hdr"
+    pixels = mixed_file(path, order, width)
+    assert np.array_equal(rgbe.read(path), rgbe.to_radiance(pixels))
+
+
+@pytest.mark.parametrize("order", ["flat runs", "runs flat", "runs repeats runs"])
+def test_truncated_files_of_mixed_scanlines_are_rejected(tmp_path, order):
+    path = tmp_path / "x.hdr"
+    mixed_file(path, order, 20)
+    data = path.read_bytes()
+    for end in range(data.index(b"+X 20\n") + 6, len(data)):
+        path.write_bytes(data[:end])
+        with pytest.raises(FileFormatError, match=r"x\.hdr"):
+            rgbe.read(path)
+
+
+@pytest.mark.parametrize("width", [514, 8])
+def test_flat_pixels_that_look_like_a_mark_stay_pixels(tmp_path, width):
+    """(2, 2, high, low) is a mark only where a scanline begins."""
+    pixels = np.full((3, width, 4), 9, np.uint8)
+    pixels[1, 3] = [2, 2, width // 256, width % 256]
+    path = file(tmp_path / "x.hdr", pixels)
+    assert np.array_equal(rgbe.read(path), rgbe.to_radiance(pixels))
+
+
+# x, y of red, green, blue and white [ITU-R BT.2020].
+BT2020 = "0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290"
+
+
+def test_stated_primaries_are_converted_to_srgb(tmp_path):
+    """By the matrix of ITU-R BT.2087, annex 2, from BT.2020 to BT.709."""
+    pixels = rgbe.to_pixels(np.full((2, 3, 3), [0.5, 0.25, 0.125], np.float32))
+    header = f"PRIMARIES= {BT2020}\nEXPOSURE=0.5\n"
+    path = file(tmp_path / "x.hdr", pixels, header=header)
+    to_bt709 = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]]
+    expected = np.array(to_bt709) @ [1, 0.5, 0.25]
+    assert read_radiance(path)[1, 2] == pytest.approx(expected, abs=2e-4)
+    assert rgbe.read(path)[1, 2].tolist() == [1, 0.5, 0.25]
+
+
+@pytest.mark.parametrize(
+    "stated",
+    [
+        "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329",
+        "0.640 0.330 0.290 0.600 0.150 0.060 0.3333 0.3333",
+        f"{BT2020}\nPRIMARIES= 0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329",
+    ],
+    ids=["sRGB", "Radiance's own", "the last line counts"],
+)
+def test_primaries_of_srgb_and_of_radiance_change_nothing(tmp_path, stated):
+    pixels = rgbe.to_pixels(scene(4, 5))
+    path = file(tmp_path / "x.hdr", pixels, header=f"PRIMARIES= {stated}\n")
+    assert np.array_equal(read_radiance(path), rgbe.to_radiance(pixels))
+
+
+@pytest.mark.parametrize("stated", ["", "wide", "0.3 0.3", "0 0 0 0 0 0 0 0", " ".join("1" * 8)])
+def test_impossible_primaries_are_rejected(tmp_path, stated):
+    pixels = rgbe.to_pixels(scene(4, 5))
+    path = file(tmp_path / "x.hdr", pixels, header=f"PRIMARIES= {stated}\n")
+    with pytest.raises(FileFormatError, match=r"x\.hdr"):
+        read_radiance(path)
