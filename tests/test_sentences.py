@@ -453,15 +453,38 @@ SENTENCES = {
         "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
             round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
         ),
+        "With 12 bits the steps of PQ": lambda n: bits_without_bands(n, "PQ") == 12,
+        "HLG needs 13 bits to reach the same": lambda n: (
+            bits_without_bands(n, "HLG, 1000 cd/m²") == 13
+        ),
+        "and the gamma 15": lambda n: bits_without_bands(n, "gamma") == 15,
+        "$v = 0.58$ in PQ": lambda n: round(float(n.transfer.pq(203)), 2) == 0.58,
+        "and 0.75 in HLG": lambda n: (
+            round(float(n.transfer.hlg((203 / 1000) ** (1 / 1.2))), 2) == 0.75
+        ),
+        "1000 / 203 = 4.9 times as bright: a headroom of 2.3 stops": lambda n: (
+            round(1000 / 203, 1) == 4.9 and round(np.log2(1000 / 203), 1) == 2.3
+        ),
         "the walls then have half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
-        "whose step is a fortieth of a stop": lambda n: (
-            0.02 < np.max(n.largest - n.lowest) / 255 < 0.025
+        "whose step is less than a fiftieth of a stop": lambda n: (
+            np.max(n.largest - n.lowest) / 255 < 0.02
         ),
         "over eight stops a code is a thirtieth of a stop": lambda n: round(255 / 8) == 32,
         "At 2 it applies a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
         "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
     },
 }
+
+
+def bits_without_bands(n, encoding):
+    """Return the fewest bits with which no step is larger than the eye sees, on page 25."""
+    visible_percent = {0.01: 3, 1: 1, 900: 0.5}
+    for bits in range(8, 17):
+        size = n.step_sizes(bits)[encoding]
+        steps = [np.interp(np.log10(F), n.DECADES, size) for F in visible_percent]
+        if all(np.less(steps, list(visible_percent.values()))):
+            return bits
+    return None
 
 
 def levels_met(n, time):
