@@ -25,6 +25,8 @@ M2 = 128 * 2523 / 4096
 C1 = 3424 / 4096
 C2 = 32 * 2413 / 4096
 C3 = 32 * 2392 / 4096
+# cd/m2, the peaks for which BT.2100 fitted its line of the system gamma
+LINE_PEAKS = (400, 2000)
 # a, b, c of HLG [BT.2100 table 5]: square root and logarithm meet at E = 1/12 with the same slope,
 # and v = 1 at E = 1
 A = 0.17883277
@@ -79,15 +81,53 @@ def hlg_inverse(v: ArrayLike) -> F64:
     return np.where(v <= 0.5, v**2 / 3, (np.exp((v - C) / A) + B) / 12)
 
 
+def system_gamma(peak: float) -> float:
+    """Return gamma = 1.2 + 0.42 log10(L_W / 1000) for L_W of 400 to 2000 cd/m2 [BT.2100 table 5].
+
+    Beyond this range, the line would fall to 0 and below. There gamma = 1.2 * 1.111^log2(L_W / 1000)
+    [BT.2390 sec. 6.2], which is 0.01 above the line where they meet.
+
+    Parameters
+    ----------
+    peak : L_W, cd/m2
+
+    Returns
+    -------
+    gamma : the exponent of the light of a scene, larger for a brighter display
+
+    Raises
+    ------
+    InputError
+        For a peak that is not positive and finite.
+
+    Examples
+    --------
+    >>> [round(system_gamma(peak), 2) for peak in (100, 1000, 10_000)]
+    [0.85, 1.2, 1.7]
+    """
+    if not 0 < peak < np.inf:
+        raise InputError(f"expected the display's white in cd/m2, above 0, got {peak}")
+    lowest, highest = LINE_PEAKS
+    if lowest <= peak <= highest:
+        return float(1.2 + 0.42 * np.log10(peak / 1000))
+    return float(1.2 * 1.111 ** np.log2(peak / 1000))
+
+
 def display_light(E: ArrayLike, *, peak: float = 1000.0) -> F64:
-    """Return FD = L_W E^gamma of a gray, gamma = 1.2 + 0.42 log10(L_W / 1000) [BT.2100 table 5, OOTF]."""
-    return peak * within(E, 1) ** (1.2 + 0.42 * np.log10(peak / 1000))
+    """Return FD = L_W E^gamma of a gray, with the `system_gamma` of L_W [BT.2100 table 5, OOTF].
+
+    A color's channels are multiplied by L_W Y^(gamma - 1), where Y is the luminance of E.
+    """
+    return peak * within(E, 1) ** system_gamma(peak)
 
 
 def codes(
     encode: Callable[[float], ArrayLike], low: float, high: float, *, bits: int = 10
 ) -> float:
     """Return the number of codes between two luminances, (2^bits - 1) (encode(high) - encode(low)).
+
+    The codes are those of the full range, 0 to 2^bits - 1, as files of photos have them. Films use
+    the narrow range, with 10 bits 64 to 940: 876 steps instead of 1023.
 
     Examples
     --------

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from hdrlab.errors import InputError
 from hdrlab.tonemap import transfer
 
 LIGHT = np.concatenate([[0], np.geomspace(1e-5, 10_000, 500)])
@@ -58,6 +59,31 @@ def test_a_brighter_display_has_a_steeper_gamma():
     assert transfer.display_light(0.1) == pytest.approx(1000 * 0.1**1.2)
     assert transfer.display_light(0.1, peak=4000) / 4000 < transfer.display_light(0.1) / 1000
     assert transfer.display_light(1, peak=4000) == 4000
+
+
+@pytest.mark.parametrize("peak", [400, 700, 1000, 2000])
+def test_hlg_gamma_is_the_line_of_bt2100_in_its_range(peak):
+    assert transfer.system_gamma(peak) == pytest.approx(1.2 + 0.42 * np.log10(peak / 1000))
+
+
+@pytest.mark.parametrize("peak", [1, 50, 100, 399, 2001, 4000, 10_000])
+def test_hlg_gamma_is_a_power_of_the_peak_outside_of_the_range(peak):
+    """BT.2390: 11.1 % for each doubling, so it is positive for each display, and black is black."""
+    assert transfer.system_gamma(peak) == pytest.approx(1.2 * (peak / 1000) ** np.log2(1.111))
+    FD = transfer.display_light(np.linspace(0, 1, 50), peak=peak)
+    assert FD[0] == 0 and np.all(np.diff(FD) > 0) and FD[-1] == pytest.approx(peak)
+
+
+def test_hlg_gamma_has_no_large_step_at_the_ends_of_the_range():
+    for end in transfer.LINE_PEAKS:
+        below, above = (transfer.system_gamma(end * factor) for factor in (0.999, 1.001))
+        assert above == pytest.approx(below, abs=0.015)
+
+
+@pytest.mark.parametrize("peak", [0, -100, np.nan, np.inf])
+def test_displays_without_light_are_rejected(peak):
+    with pytest.raises(InputError, match="cd/m2"):
+        transfer.display_light(0.5, peak=peak)
 
 
 def test_pq_and_hlg_agree_with_colour_science():
