@@ -87,7 +87,7 @@ def _assemble_steps(out: Path, bracket: Bracket) -> Generator[str, None, DemoRes
     yield f"picture    {developed.settings}"
     for suffix in (".hdr", ".exr", ".pfm"):
         radiance.write_radiance(out / f"radiance{suffix}", assembly.E)
-    photos.write_picture(out / "picture.png", developed.picture)
+    photos.write_picture(out / "picture.png", developed.picture, is_result=True)
     yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
     return DemoResult(assembly, developed)
 

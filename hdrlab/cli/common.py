@@ -114,7 +114,7 @@ class Command(click.Command):
 
         This happens before the command starts, because some commands work for minutes.
         """
-        from hdrlab.io.files import require_other
+        from hdrlab.io.files import require_distinct, require_other
 
         written: list[Path] = []
         read: list[Path] = []
@@ -128,6 +128,7 @@ class Command(click.Command):
             if param.type.check is not None:
                 checks += [partial(param.type.check, path) for path in paths]
         if written:
+            require_distinct(written)
             photos = [photo for path in read for photo in _photos_in(path)]
             require_other(written, [*read, *photos])
         for check in checks:
@@ -149,12 +150,17 @@ def _paths(value: object) -> list[Path]:
 
 
 def _photos_in(folder: Path) -> list[Path]:
-    """Return the photos in a folder: a command that gets the folder reads them. Files have none."""
+    """Return the photos in a folder: a command that gets the folder reads them. Files have none.
+
+    The pictures that hdrlab wrote there are none, so that a command can be repeated.
+    """
     from hdrlab.io import album
+    from hdrlab.io.own_pictures import is_own_picture
 
     if not os.path.isdir(folder):
         return []
-    return [path for path in folder.iterdir() if path.suffix.lower() in album.SUFFIXES]
+    photos = [path for path in folder.iterdir() if path.suffix.lower() in album.SUFFIXES]
+    return [path for path in photos if not is_own_picture(path)]
 
 
 def choice_option(

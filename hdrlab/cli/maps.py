@@ -132,7 +132,7 @@ def _write_image(
     from hdrlab.pipeline import screens
 
     if kind == "picture":
-        photos.write_picture(out, picture)
+        photos.write_picture(out, picture, is_result=True)
     elif kind == "ultrahdr":
         ultrahdr.write_picture(out, picture, E, headroom=headroom)
     elif kind == "jxl":

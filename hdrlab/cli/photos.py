@@ -202,7 +202,7 @@ def assemble(
             layers.write_layers(uncertainty, both, comments=comments)
             click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
         if developed and picture:
-            photo_files.write_picture(picture, developed.picture)
+            photo_files.write_picture(picture, developed.picture, is_result=True)
             click.echo(f"{picture}: {developed.settings}")
         if developed and report:
             from hdrlab.show.pages.report import write_report

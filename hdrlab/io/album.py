@@ -13,6 +13,7 @@ from pathlib import Path
 
 from hdrlab.errors import InputError
 from hdrlab.io import decode, files, raw
+from hdrlab.io.own_pictures import is_own_picture
 
 SUFFIXES = raw.SUFFIXES | {
     ".jpg",
@@ -46,6 +47,7 @@ def select(paths: Paths) -> Selection:
 
     Several paths are used as they are. From a folder, hdrlab skips
 
+    - pictures that hdrlab wrote,
     - photos whose names say that they are edited copies of others,
     - all but one of the photos that differ by their suffix alone, as a RAW file and a JPEG do,
     - images with a palette, of CMYK or of floating-point numbers,
@@ -66,7 +68,7 @@ def select(paths: Paths) -> Selection:
     if not is_folder:
         return selected, []
     notes: list[str] = []
-    for skip in (_skip_edited_copies, _skip_other_formats, _skip_other_sizes):
+    for skip in (_skip_own_pictures, _skip_edited_copies, _skip_other_formats, _skip_other_sizes):
         selected, more_notes = skip(selected)
         notes += more_notes
     _require_two(selected, notes)
@@ -111,6 +113,18 @@ def _require_two(paths: list[Path], notes: Sequence[str] = ()) -> None:
     if len(paths) < MIN_PHOTOS:
         got = "; ".join([", ".join(map(str, paths)) or "none", *notes])
         raise InputError(f"expected two photographs or more, got {got}")
+
+
+def _skip_own_pictures(paths: list[Path]) -> Selection:
+    """Skip pictures that hdrlab wrote."""
+    kept = []
+    notes = []
+    for path in paths:
+        if is_own_picture(path):
+            notes.append(f"{path.name}: skipped, because hdrlab made this picture")
+        else:
+            kept.append(path)
+    return kept, notes
 
 
 def _skip_edited_copies(paths: list[Path]) -> Selection:

@@ -5,7 +5,7 @@ import os
 import secrets
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
 from typing import BinaryIO
 
@@ -146,6 +146,20 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
             raise InputError(
                 f"{path}: writing would overwrite the input {source}; pass another name"
             )
+
+
+def require_distinct(written: Iterable[Path]) -> None:
+    """Raise an InputError if two files to be written are one file, under whatever names."""
+    for first, second in combinations(written, 2):
+        is_same_name = os.path.realpath(first) == os.path.realpath(second)
+        if is_same_name or _is_same_file(first, second):
+            raise InputError(f"two outputs have the same name, {second}; pass another name for one")
+
+
+def _is_same_file(first: Path, second: Path) -> bool:
+    if not (os.path.exists(first) and os.path.exists(second)):
+        return False
+    return os.path.samefile(first, second)
 
 
 def reserve(file: BinaryIO, size: int) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
@@ -20,6 +21,7 @@ from hdrlab.errors import InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.exif_exposure import luminance_of_unit
+from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
 JPEG_OPTIONS = {"quality": 95, "subsampling": 0}
@@ -152,7 +154,7 @@ def read_bracket(
     )
 
 
-def write_picture(path: str | Path, image: ArrayLike) -> None:
+def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False) -> None:
     """Write a picture as PNG, JPEG or TIFF, by its suffix.
 
     If writing fails, an existing file stays as it was.
@@ -161,6 +163,8 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     ----------
     path : the file; what it held is replaced
     image : (H, W) or (H, W, 3) uint8
+    is_result : whether the file is a result, not a photo; it then names hdrlab as its software, and
+        hdrlab skips it in a folder of photos
 
     Raises
     ------
@@ -179,9 +183,22 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     picture = as_picture(image)
     with files.replacing(path) as name:
         if suffix == ".png" and imagecodecs:
-            name.write_bytes(imagecodecs.png_encode(picture, **PNG_OPTIONS))
+            data = imagecodecs.png_encode(picture, **PNG_OPTIONS)
+            name.write_bytes(mark_png(data) if is_result else data)
         else:
-            Image.fromarray(picture).save(name, **PICTURES[suffix])
+            options = PICTURES[suffix] | (_mark(suffix) if is_result else {})
+            Image.fromarray(picture).save(name, **options)
+
+
+def _mark(suffix: str) -> dict[str, Any]:
+    """Return Pillow's options that mark a picture as written by hdrlab."""
+    if suffix == ".png":
+        text = PngInfo()
+        text.add_text("Software", SOFTWARE)
+        return {"pnginfo": text}
+    if suffix in (".tif", ".tiff"):
+        return {"software": SOFTWARE}
+    return {"exif": make_exif()}
 
 
 def require_writable(path: str | Path) -> str:

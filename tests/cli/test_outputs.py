@@ -15,6 +15,10 @@ COMMANDS = {
     "assemble a folder": "photos --stops 2 -o room.hdr --picture photos/b.png",
     "assemble in a folder": "{here}/photos --stops 2 -o room.hdr --picture ./photos/../photos/b.png",
     "assemble --uncertainty": "photos --stops 2 -o room.hdr --uncertainty photos/link.exr",
+    "assemble into one file": "photos --stops 2 -o new.tif --picture new.tif",
+    "assemble into one file by another path": "photos --stops 2 -o new.tif --picture ./photos/../new.tif",
+    "assemble into one file by a link": "photos --stops 2 -o link.exr --uncertainty photos/link.exr",
+    "calibrate into one file": "photos --times times.csv -o new.csv -o new.csv",
     "calibrate --times": "photos --times times.csv -o times.csv",
     "calibrate --plot": "photos --times times.csv --plot photos/b.png",
     "correct": "photos/b.png -o photos/b.png",
@@ -40,6 +44,7 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "times.csv").write_text("file,seconds\na.png,0.1\nb.png,0.4\n")
     (tmp_path / "hw2.py").write_text("def hat():\n    pass\n")
     os.link(tmp_path / "photos/room.hdr", tmp_path / "hard.hdr")
+    (tmp_path / "link.exr").symlink_to("photos/link.exr")
     (tmp_path / "link.png").symlink_to("photos/room.hdr")
     (tmp_path / "photos/link.exr").symlink_to("a.png")
     monkeypatch.chdir(tmp_path)
@@ -65,22 +70,17 @@ def test_no_command_overwrites_its_input(name, here, capsys):
     assert contents(here) == before
 
 
-def test_command_can_be_repeated_with_its_output_among_the_photos(here, capsys):
+@pytest.mark.parametrize("picture", ["c.png", "c.jpg", "c.tif"])
+def test_command_can_be_repeated_with_its_outputs_among_the_photos(picture, here, capsys):
+    command = f"assemble photos --stops 2 -o photos/room.hdr --picture photos/{picture}"
+    maps = []
     for _ in range(2):
         with pytest.raises(SystemExit) as stop:
-            cli.run(
-                [
-                    "assemble",
-                    "photos",
-                    "--stops",
-                    "2",
-                    "-o",
-                    "photos/room.hdr",
-                    "--picture",
-                    "room.png",
-                ]
-            )
+            cli.run(command.split())
         assert not stop.value.code
+        maps.append((here / "photos/room.hdr").read_bytes())
+    assert maps[0] == maps[1]
+    assert picture in capsys.readouterr().err  # a note says that the picture is no photo
 
 
 def test_require_other_finds_two_names_of_one_file(tmp_path):

@@ -426,3 +426,15 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
 def test_error_for_the_crusader_bracket_without_times_says_what_to_do(shared):
     with pytest.raises(ValueError, match="1.jpeg.*EXIF.*--times"):
         read_bracket(shared("crusader") / "frames")
+
+
+@pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif"])
+def test_a_result_is_skipped_among_photos_and_has_the_pixels_of_any_picture(tmp_path, suffix):
+    for name, level in ("a", 50), ("b", 200):
+        write_picture(tmp_path / f"{name}{suffix}", np.full((20, 30, 3), level, np.uint8))
+    write_picture(tmp_path / f"c{suffix}", np.full((20, 30, 3), 90, np.uint8), is_result=True)
+    notes = []
+    bracket = read_bracket(tmp_path, [1, 4], note=notes.append)
+    assert bracket.names == (f"a{suffix}", f"b{suffix}")
+    assert f"c{suffix}" in notes[0]
+    assert np.abs(read_photo(tmp_path / f"c{suffix}").astype(int) - 90).max() <= 1
