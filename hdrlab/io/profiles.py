@@ -10,6 +10,7 @@ is part of the response that a bracket shows.
 import io
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import ImageCms
@@ -32,6 +33,10 @@ SRGB_COLORANTS = (
     (0.1431, 0.0606, 0.7141),
 )
 COLORANT_TOLERANCE = 0.005
+# Values of each channel that are tried together, and how far from a product of curves and a matrix
+# the light may be.
+TESTED_VALUES = 5
+TABLE_TOLERANCE = 1e-4
 # Below this determinant of their XYZ, three colorants are no primaries: sRGB's have 0.2.
 MIN_COLORANT_DETERMINANT = 1e-3
 
@@ -94,8 +99,12 @@ def to_linear(path: str | Path, pixels: arrays.Array, icc: bytes) -> LinearPixel
     if np.array_equal(matrix, np.eye(3)):
         scale = np.float32(np.iinfo(pixels.dtype).max)
         return LinearPixels(colour.decode_srgb(pixels / scale), np.eye(3))
-    XYZ = _to_xyz(np.ascontiguousarray(pixels), icc)
-    light = XYZ @ np.linalg.inv(_colorants(icc)).astype(np.float32)
+    tables = _make_tables(pixels.dtype, icc)
+    if tables is None:
+        return LinearPixels(_to_light(np.ascontiguousarray(pixels), icc), matrix)
+    light = np.empty(pixels.shape, np.float32)
+    for channel, table in enumerate(tables):
+        light[..., channel] = table[pixels[..., channel]]
     return LinearPixels(light, matrix)
 
 
@@ -119,6 +128,30 @@ def primaries_to_srgb(path: str | Path, icc: bytes) -> arrays.F64:
         raise
     except Exception as error:  # on damaged profiles LittleCMS raises exceptions of any type
         raise InputError(f"{path}: its color profile is damaged or not for RGB ({error})") from None
+
+
+def _make_tables(dtype: np.dtype[Any], icc: bytes) -> arrays.F32 | None:
+    """Return the light (3, n) of each value of each channel, or None if channels influence each other.
+
+    Most profiles are a curve for each channel and a matrix. For them tables are faster than
+    LittleCMS.
+    """
+    count = np.iinfo(dtype).max + 1
+    ramps = np.zeros((3, count, 3), dtype)
+    for channel in range(3):
+        ramps[channel, :, channel] = np.arange(count)
+    light = _to_light(ramps, icc)
+    tables = np.stack([light[channel, :, channel] for channel in range(3)])
+    # A few colors show whether the channels are independent.
+    values = np.linspace(0, count - 1, TESTED_VALUES).astype(dtype)
+    colors = np.stack(np.meshgrid(values, values, values), axis=-1).reshape(1, -1, 3)
+    by_tables = np.stack([tables[channel][colors[..., channel]] for channel in range(3)], axis=-1)
+    return tables if np.allclose(by_tables, _to_light(colors, icc), atol=TABLE_TOLERANCE) else None
+
+
+def _to_light(pixels: arrays.Array, icc: bytes) -> arrays.F32:
+    """Return the linear light of RGB pixels (H, W, 3) in the primaries of their profile."""
+    return _to_xyz(pixels, icc) @ np.linalg.inv(_colorants(icc)).astype(np.float32)
 
 
 def _colorants(icc: bytes) -> arrays.F64:
