@@ -64,6 +64,7 @@ ONLY_IN = {  # package -> rooms
             "imageio",
             "tifffile",
             "imagecodecs",
+            "simplejpeg",
             "OpenEXR",
             "Imath",
             "rawpy",

@@ -1,8 +1,10 @@
 """Decode the pixels of one file as they are stored, by a decoder for each format.
 
-imagecodecs decodes JPEG and PNG, because it keeps all 16 bits (Pillow cuts RGB to 8) and writes into
-an array that is given, and AVIF of more than 8 bits. Pillow decodes WebP and other AVIF, pillow-heif
-HEIC, and tifffile TIFF.
+simplejpeg decodes JPEG, because it reports what libjpeg only warns of: imagecodecs and Pillow fill
+the missing parts of a damaged JPEG with gray or with shifted blocks, and say nothing. imagecodecs
+decodes PNG, because it keeps all 16 bits (Pillow cuts RGB to 8) and writes into an array that is
+given, and AVIF of more than 8 bits. Pillow decodes WebP and other AVIF, pillow-heif HEIC, and
+tifffile TIFF.
 """
 
 import io
@@ -15,7 +17,7 @@ import numpy as np
 from PIL import Image
 
 from hdrlab.core.arrays import Array
-from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
+from hdrlab.core.optional import imagecodecs, pillow_heif, simplejpeg, tifffile
 from hdrlab.errors import FileFormatError
 from hdrlab.io import jpegxl
 
@@ -105,9 +107,25 @@ def jpeg_end(data: bytes, start: int = 0) -> int:
 
 
 def decode_jpeg(data: bytes, out: Array | None = None) -> Array:
-    """Decode a JPEG, without what follows it."""
+    """Decode a JPEG, without what follows it.
+
+    Pillow decodes it where simplejpeg is not installed, and then nobody reports damaged parts.
+
+    Raises
+    ------
+    ValueError
+        For a JPEG of which any part is damaged or missing.
+    """
     data = data[: jpeg_end(data)]
-    return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else decode_by_pillow(data)
+    if not simplejpeg:
+        return decode_by_pillow(data)
+    height, width, color_space, _ = simplejpeg.decode_jpeg_header(data)
+    is_gray = color_space == "Gray"
+    shape = (height, width) if is_gray else (height, width, 3)
+    if out is None or out.shape != shape or not out.flags.c_contiguous:
+        out = np.empty(shape, np.uint8)
+    simplejpeg.decode_jpeg(data, "GRAY" if is_gray else "RGB", buffer=out, strict=True)
+    return out
 
 
 def decode_png(data: bytes, out: Array | None = None) -> Array:
