@@ -37,6 +37,9 @@ COLORANT_TOLERANCE = 0.005
 # the light may be.
 TESTED_VALUES = 5
 TABLE_TOLERANCE = 1e-4
+# Gray values, up to white, whose light shows whether a curve is a straight line.
+TESTED_GRAYS = (0.18, 0.5, 1.0)
+LINEARITY_TOLERANCE = 0.005
 # Below this determinant of their XYZ, three colorants are no primaries: sRGB's have 0.2.
 MIN_COLORANT_DETERMINANT = 1e-3
 
@@ -128,6 +131,32 @@ def primaries_to_srgb(path: str | Path, icc: bytes) -> arrays.F64:
         raise
     except Exception as error:  # on damaged profiles LittleCMS raises exceptions of any type
         raise InputError(f"{path}: its color profile is damaged or not for RGB ({error})") from None
+
+
+def find_primaries(path: str | Path, icc: bytes) -> tuple[float, ...] | None:
+    """Return x and y of red, green, blue and white of a profile, or None for those of sRGB.
+
+    They are adapted to D50, the white of profiles.
+
+    Raises
+    ------
+    InputError
+        Naming `path`, for a profile that is damaged or not of RGB.
+    """
+    if np.array_equal(primaries_to_srgb(path, icc), np.eye(3)):
+        return None
+    colorants = _colorants(icc)
+    XYZ = np.vstack([colorants, colorants.sum(axis=0)])
+    xy = XYZ[:, :2] / XYZ.sum(axis=1, keepdims=True)
+    return tuple(map(float, xy.ravel()))
+
+
+def is_linear(icc: bytes) -> bool:
+    """Return whether the curve of a profile of RGB is a straight line."""
+    grays = np.array(TESTED_GRAYS, np.float32)
+    pixels = np.repeat(grays[None, :, None], 3, axis=2)
+    Y = _to_xyz(pixels, icc)[0, :, 1]
+    return np.allclose(Y / Y[-1], grays, atol=LINEARITY_TOLERANCE)
 
 
 def _make_tables(dtype: np.dtype[Any], icc: bytes) -> arrays.F32 | None:

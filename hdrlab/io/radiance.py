@@ -89,9 +89,9 @@ def read_valid(path: str | Path) -> arrays.F32:
 def primaries_of(path: str | Path) -> tuple[float, ...] | None:
     """Return the primaries and the white of a map, or None if they are those of sRGB.
 
-    OpenEXR and RGBE files can state them. With them, two files of one photo in different primaries
-    give the same radiance map. Other files are assumed to have the primaries of sRGB, as nearly all
-    do.
+    OpenEXR and RGBE files can state them, and the color profile of a TIFF. With them, two files of
+    one photo in different primaries give the same radiance map. Other files are assumed to have the
+    primaries of sRGB, as nearly all do.
 
     Raises
     ------
@@ -104,6 +104,8 @@ def primaries_of(path: str | Path) -> tuple[float, ...] | None:
         named = header.attributes.get("chromaticities") if header.is_color else None
     elif form is rgbe:
         named = rgbe.read_header(path).primaries
+    elif form is tiff:
+        named = tiff.find_primaries(path)
     else:
         named = None
     if named is None or np.allclose(named, gamut.SRGB, atol=1e-3):

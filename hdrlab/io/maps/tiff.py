@@ -2,6 +2,9 @@
 
 Samples have 16, 32 or 64 bits; images are gray or RGB; an alpha channel is dropped. JPEG XL files
 of floats are read as well. Files of whole numbers are photos, which `io.photos` reads.
+
+A color profile states the primaries of RGB samples. Its curve has to be a straight line, because
+other samples are not linear light.
 """
 
 from collections.abc import Sequence
@@ -10,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from hdrlab.core import arrays, optional
-from hdrlab.io import decode, files
+from hdrlab.errors import FileFormatError
+from hdrlab.io import decode, files, profiles
 
 
 def read(path: str | Path) -> arrays.F32:
@@ -22,7 +26,8 @@ def read(path: str | Path) -> arrays.F32:
 
     Returns
     -------
-    (H, W, 3) or (H, W) float32, upright
+    (H, W, 3) or (H, W) float32, upright, with the primaries of the file's profile, see
+    `find_primaries`
 
     Raises
     ------
@@ -43,6 +48,34 @@ def read(path: str | Path) -> arrays.F32:
     # What is too large for 32 bits becomes infinite, which `read_radiance` refuses.
     with np.errstate(over="ignore"):
         return E.astype(np.float32, copy=False)
+
+
+def find_primaries(path: str | Path) -> tuple[float, ...] | None:
+    """Return x and y of red, green, blue and white by the profile of a file of floats.
+
+    Returns
+    -------
+    8 numbers, or None without a profile and for the primaries of sRGB
+
+    Raises
+    ------
+    FileFormatError
+        For a profile with a curve.
+    InputError
+        For a profile that is damaged or not of RGB.
+    """
+    header = decode.read_header(path, samples="floating")
+    # EXIF's Adobe RGB is about the photo that a camera wrote, not about these floats.
+    has_profile = header.icc not in (b"", profiles.ADOBE)
+    if header.kind != "TIFF" or len(header.shape) != 3 or not has_profile:
+        return None
+    primaries = profiles.find_primaries(path, header.icc)
+    if not profiles.is_linear(header.icc):
+        raise FileFormatError(
+            f"{path}: its color profile has a curve, so its floats are not linear light; "
+            "export it with a linear profile, or remove the profile if the values are linear"
+        )
+    return primaries
 
 
 def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()) -> None:

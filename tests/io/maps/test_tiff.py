@@ -1,10 +1,13 @@
 """Floating-point TIFF, against OpenCV's reader and writer."""
 
 import cv2
+import imagecodecs
 import numpy as np
 import pytest
 import tifffile
 
+from hdrlab.core import gamut
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.maps import tiff
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import read_radiance, write_radiance
@@ -87,3 +90,43 @@ def test_doubles_beyond_float32_are_rejected_as_infinite(tmp_path):
     tifffile.imwrite(tmp_path / "a.tif", np.array([[1e300, 1.0]]), photometric="minisblack")
     with pytest.raises(ValueError, match=r"a.tif: .*1 infinite"):
         read_radiance(tmp_path / "a.tif")
+
+
+def profile(primaries, **curve):
+    """Return a profile of these primaries, with the given gamma or table as its curve."""
+    xy = np.array(primaries).reshape(4, 2)
+    xyY = np.column_stack([xy[:3], np.ones(3)])
+    white = (*xy[3], 1)
+    return imagecodecs.cms_profile("rgb", whitepoint=white, primaries=xyY.ravel(), **curve)
+
+
+def test_primaries_of_a_linear_profile_are_converted_to_srgb(tmp_path):
+    """By the matrix of ITU-R BT.2087, annex 2, from BT.2020 to BT.709."""
+    E = np.full((4, 5, 3), [2.0, 1.5, 1.0], np.float32)
+    path = tmp_path / "wide.tif"
+    icc = profile(gamut.WIDE["bt2020"], gamma=1.0)
+    tifffile.imwrite(path, E, photometric="rgb", iccprofile=icc)
+    to_bt709 = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]]
+    expected = np.array(to_bt709) @ E[0, 0]
+    assert read_radiance(path)[1, 2] == pytest.approx(expected, rel=2e-3)
+
+
+def test_linear_profile_of_srgb_changes_nothing(tmp_path):
+    path = tmp_path / "srgb.tif"
+    tifffile.imwrite(path, RGB, photometric="rgb", iccprofile=profile(gamut.SRGB, gamma=1.0))
+    assert np.array_equal(read_radiance(path), RGB)
+
+
+@pytest.mark.parametrize("primaries", [gamut.SRGB, gamut.WIDE["p3"]], ids=["sRGB", "P3"])
+def test_floats_that_a_profile_calls_coded_are_rejected(tmp_path, primaries):
+    path = tmp_path / "coded.tif"
+    tifffile.imwrite(path, RGB, photometric="rgb", iccprofile=profile(primaries, gamma=2.2))
+    with pytest.raises(FileFormatError, match=r"coded\.tif.*linear"):
+        read_radiance(path)
+
+
+def test_damaged_profile_of_a_map_is_rejected_by_name(tmp_path):
+    path = tmp_path / "broken.tif"
+    tifffile.imwrite(path, RGB, photometric="rgb", iccprofile=b"no profile at all")
+    with pytest.raises(InputError, match=r"broken\.tif"):
+        read_radiance(path)
