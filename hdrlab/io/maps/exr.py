@@ -94,10 +94,13 @@ def _make_header(path: str | Path, attributes: dict[str, Any]) -> Header:
     """Return the header that the attributes of a part make, after a check of what they claim."""
     if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
         raise FileFormatError(f"{path}: expected a flat image, got {attributes['type'].name}")
-    channels, horizontal_steps, vertical_steps = zip(*attributes["channels"], strict=True)
-    if {*horizontal_steps, *vertical_steps} != {1}:
+    channels = tuple(name for name, _, _ in attributes["channels"])
+    subsampled = [name for name, *steps in attributes["channels"] if steps != [1, 1]]
+    if CHROMA_CHANNELS & set(subsampled):
+        raise _chroma_error(path, channels)
+    if subsampled:
         raise FileFormatError(
-            f"{path}: expected channels of full size, got subsampled {', '.join(channels)}"
+            f"{path}: expected channels of full size, got subsampled {', '.join(subsampled)}"
         )
     data = _make_window(path, attributes["dataWindow"], len(channels))
     display = _make_window(path, attributes["displayWindow"], len(channels))
@@ -157,16 +160,21 @@ def _select_channels(path: str | Path, header: Header) -> tuple[str, ...]:
     if header.is_color:
         return COLOR_CHANNELS
     if names & CHROMA_CHANNELS:
-        raise FileFormatError(
-            f"{path}: it stores color as luminance and chroma ({', '.join(header.channels)}), "
-            "which hdrlab does not read; save it with the channels R, G and B"
-        )
+        raise _chroma_error(path, header.channels)
     if "Y" in names:
         return ("Y",)
     if len(names) == 1:
         return header.channels
     raise FileFormatError(
         f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}"
+    )
+
+
+def _chroma_error(path: str | Path, channels: Sequence[str]) -> FileFormatError:
+    """Return the error for an image of luminance and chroma."""
+    return FileFormatError(
+        f"{path}: it stores color as luminance and chroma ({', '.join(channels)}), "
+        "which hdrlab does not read; save it with the channels R, G and B"
     )
 
 

@@ -228,6 +228,18 @@ def test_luminance_and_chroma_are_rejected_and_not_read_as_gray(tmp_path):
         exr.read(path)
 
 
+def test_subsampled_chroma_is_rejected_as_luminance_and_chroma(tmp_path):
+    """As OpenEXR's own programs write it: RY and BY have half the rows and columns."""
+    path = wrote(tmp_path / "x.exr", {name: np.ones((4, 6), "f4") for name in ("Y", "RY", "BY")})
+    data = path.read_bytes()
+    for name in (b"RY", b"BY"):
+        at = data.index(name + b"\0") + len(name) + 1 + 8
+        data = data[:at] + np.array([2, 2], "<i4").tobytes() + data[at + 8 :]
+    path.write_bytes(data)
+    with pytest.raises(FileFormatError, match=r"x\.exr: .*luminance and chroma"):
+        exr.read(path)
+
+
 def test_layers_of_mixed_types_are_read(tmp_path):
     channels = channels_of("RGB")
     path = wrote(tmp_path / "x.exr", {name: plane.copy() for name, plane in channels.items()})
