@@ -6,11 +6,16 @@ The typical patch of two neighbors, flat or not, misses their times by some stop
 photos agree without one photo, that one is wrong: its time is wrong, or it shows another scene, or
 another light. If the others agree without either of two photos, as three of four often do, nobody
 can tell which one is wrong.
+
+A photo that is nearly black says little, and its darkest levels say the least. So a photo is wrong
+only if its well exposed patches contradict two other photos over a large part of the image.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
-from hdrlab.core.arrays import F64, ArrayLike, as_stack
+from hdrlab.core.arrays import F64, ArrayLike, Mask, as_mask, as_stack, levels
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # stops in a typical patch, by which photos contradict each other
@@ -20,6 +25,18 @@ MAX_AGREEING_STOPS = 0.1
 # At least so many photos remain, and this fraction of them.
 MIN_KEPT_PHOTOS = 3
 MIN_KEPT_FRACTION = 2 / 3
+# Darker levels do not show whether photos contradict each other.
+MIN_SURE_LEVEL = 16
+# patches that contradict another photo, as a fraction of the image
+MIN_CONTRARY_AREA = 0.02
+# and as a fraction of the patches that both photos measure
+MIN_CONTRARY_FRACTION = 0.5
+# other photos that a wrong photo contradicts
+MIN_CONTRADICTED_PHOTOS = 2
+# pixels at this fraction of the top level and above are clipped
+CLIPPING_LEVEL = 0.98
+# Highlights are brighter than this fraction of the other pixels of their photo.
+HIGHLIGHT_QUANTILE = 0.95
 
 
 def find_outlying_frames(
@@ -32,7 +49,8 @@ def find_outlying_frames(
     Returns
     -------
     outliers : tuple of int
-        Empty if more than a third of the photos would be left out.
+        Empty if more than a third of the photos would be left out. Photos that contradict no two
+        others over a large area are never among them.
     rivals : tuple of int
         Photos that could be left out in place of the last one: the others agree as well.
 
@@ -69,7 +87,104 @@ def find_outlying_frames(
         kept = remaining[best]
     if error > MAX_AGREEING_STOPS:
         return (), ()
-    return tuple(j for j in range(len(B)) if j not in kept), rivals
+    outliers = [j for j in range(len(B)) if j not in kept]
+    wrong = tuple(j for j in outliers if contradicts_others(patches, B, j, kept))
+    return wrong, rivals if wrong else ()
+
+
+def contradicts_others(
+    patches: flat_patches.FlatPatches, B: F64, frame: int, others: Sequence[int]
+) -> bool:
+    """Return whether a photo contradicts two of the others over a large part of the image."""
+    contradicted_count = 0
+    for errors in _measure_errors(patches, B, frame, others):
+        is_contrary = np.abs(errors) > MIN_CONTRARY_STOPS
+        is_large = is_contrary.mean() >= MIN_CONTRARY_AREA
+        shared_count = np.isfinite(errors).sum()
+        if is_large and is_contrary.sum() >= MIN_CONTRARY_FRACTION * shared_count:
+            contradicted_count += 1
+    return contradicted_count >= MIN_CONTRADICTED_PHOTOS
+
+
+def measure_time_error(
+    images: ArrayLike,
+    times: ArrayLike,
+    frame: int,
+    others: Sequence[int],
+    *,
+    valid: ArrayLike | None = None,
+) -> float:
+    """Return by how many stops the time of a photo is too long, according to the other photos.
+
+    It is NaN if no other time makes the photo agree with them.
+    """
+    stack = as_stack(images)
+    B = np.log(response_steps.as_ascending_times(times, len(stack)))
+    patches = flat_patches.find_flat_patches(stack, valid=valid)
+    errors = _measure_errors(patches, B, frame, others)
+    errors = errors[np.isfinite(errors)]
+    if not len(errors):
+        return float("nan")
+    time_error = -np.median(errors)
+    remaining = np.median(np.abs(errors + time_error))
+    return float(time_error) if remaining <= MIN_CONTRARY_STOPS / 2 else float("nan")
+
+
+def _measure_errors(
+    patches: flat_patches.FlatPatches, B: F64, frame: int, others: Sequence[int]
+) -> F64:
+    """Return the errors in stops between a photo and each of the others, (len(others), h, w).
+
+    The response is that of the others. An error is NaN where a patch is not well exposed in both.
+    It is positive where the photo is too bright for its time.
+    """
+    kept = list(others)
+    kept_patches = patches.of(kept)
+    H = flat_patches.count_pairs(kept_patches.Z, np.ones(patches.Z.shape[2:], bool))
+    fit = response_steps.fit_steps(H, B[kept], np.zeros((len(kept), 0)))
+    channel = np.arange(patches.Z.shape[1])[:, None, None]
+    g = fit.g[channel, patches.Z]
+    is_sure = (patches.Z >= MIN_SURE_LEVEL).all(axis=1)
+    steps = (g[frame] - g[kept]).mean(axis=1)
+    stated_steps = (B[frame] - B[kept])[:, None, None]
+    errors = (steps - stated_steps) / np.log(2)
+    return np.where(is_sure[frame] & is_sure[kept], errors, np.nan)
+
+
+def find_highlights_of(images: ArrayLike, frame: int, *, valid: ArrayLike | None = None) -> Mask:
+    """Return the pixels that are clipped in every photo but one, (H, W).
+
+    The mask is empty if these pixels are not the brightest ones of that photo, as in a photo of
+    another scene.
+
+    Examples
+    --------
+    >>> images = np.array([[[2, 90, 4]], [[9, 255, 20]]], np.uint8)
+    >>> find_highlights_of(images, 0).tolist()
+    [[False, True, False]]
+    """
+    stack = as_stack(images)
+    mask = as_mask(valid, stack)
+    clipped_level = CLIPPING_LEVEL * (levels(stack) - 1)
+    is_highlight = np.ones(stack.shape[1:3], bool)
+    for j, image in enumerate(stack):
+        brightest = image if image.ndim == 2 else image.max(axis=2)
+        is_clipped = brightest > clipped_level
+        if j == frame:
+            own = brightest
+            is_highlight &= ~is_clipped
+            if mask is not None:
+                is_highlight &= mask[j]
+        elif mask is None:
+            is_highlight &= is_clipped
+        else:
+            is_highlight &= is_clipped | ~mask[j]
+    if not is_highlight.any() or is_highlight.all():
+        return is_highlight
+    threshold = np.quantile(own[~is_highlight], HIGHLIGHT_QUANTILE)
+    if np.median(own[is_highlight]) <= threshold:
+        return np.zeros_like(is_highlight)
+    return is_highlight
 
 
 def measure_misfit(patches: flat_patches.FlatPatches, B: F64) -> float:

@@ -13,11 +13,15 @@ from hdrlab.radiance import flare
 from hdrlab.radiance.merge import Merged
 
 
-def drop_outlying_frames(state: Assembly, *, has_relative_times: bool) -> Assembly:
+def drop_outlying_frames(
+    state: Assembly, *, has_relative_times: bool, keeps_times: bool = False
+) -> Assembly:
     """Return the Assembly without the photos that contradict all others, and a note or a warning.
 
-    It is a warning where another photo may be the wrong one just as well. Relative times are as
-    rough as all others, so with them it is a note in any case.
+    It is a warning where another photo may be the wrong one just as well, and where more than one
+    photo is left out. Relative times are as rough as all others, so with them rivals are no reason
+    for a warning. A photo that alone holds highlights gets another time instead, with a warning, if
+    that makes it agree with the others. With `keeps_times`, it stays with the time that it has.
     """
     bracket = state.bracket
     outliers, rivals = outlying_frames.find_outlying_frames(
@@ -25,15 +29,52 @@ def drop_outlying_frames(state: Assembly, *, has_relative_times: bool) -> Assemb
     )
     if not outliers:
         return state
-    names = ", ".join(bracket.names[j] for j in outliers)
+    agreeing = [j for j in range(len(bracket.times)) if j not in outliers]
+    dropped = []
+    for frame in outliers:
+        corrected = _correct_time_for_highlights(state, frame, agreeing)
+        if corrected is None:
+            dropped.append(frame)
+        elif not keeps_times:
+            state = corrected
+    if not dropped:
+        return state
+    names = ", ".join(bracket.names[j] for j in dropped)
     text = warning_text("contrary", frames=names)
-    if rivals and not has_relative_times:
+    has_rivals = bool(rivals) and not has_relative_times
+    if has_rivals:
         rival_names = " or ".join(bracket.names[j] for j in rivals)
-        state = state.with_doubt(text + warning_text("rivals", frames=rival_names))
-    else:
-        state = state.with_note(text)
-    kept = np.delete(np.arange(len(bracket.times)), outliers)
+        text += warning_text("rivals", frames=rival_names)
+    is_warning = has_rivals or len(dropped) > 1
+    state = state.with_doubt(text) if is_warning else state.with_note(text)
+    kept = np.delete(np.arange(len(bracket.times)), dropped)
     return select_photos(state, kept)
+
+
+def _correct_time_for_highlights(
+    state: Assembly, frame: int, agreeing: list[int]
+) -> Assembly | None:
+    """Return the Assembly with the time of a photo that alone holds highlights, and a warning.
+
+    Return None if the photo holds none, if no other time makes it agree with the others, or if that
+    time is not between those of its neighbors.
+    """
+    bracket = state.bracket
+    highlights = outlying_frames.find_highlights_of(bracket.images, frame, valid=bracket.valid)
+    if not highlights.any():
+        return None
+    stops = outlying_frames.measure_time_error(
+        bracket.images, bracket.times, frame, agreeing, valid=bracket.valid
+    )
+    if np.isnan(stops):
+        return None
+    times = bracket.times.copy()
+    times[frame] /= 2**stops
+    if np.any(np.diff(times) < 0):
+        return None
+    state = replace(state, bracket=replace(bracket, times=times))
+    text = warning_text("highlights", frame=bracket.names[frame], stops=-stops)
+    return state.with_doubt(text)
 
 
 def remove_ghosts(

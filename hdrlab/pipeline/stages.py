@@ -197,7 +197,11 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         yield state
 
     if not has_true_times:
-        state = corrections.drop_outlying_frames(state, has_relative_times=has_relative_times)
+        state = corrections.drop_outlying_frames(
+            state,
+            has_relative_times=has_relative_times,
+            keeps_times=options.times == "stated",
+        )
         choice = recovery.choose_response(options.response, state.bracket)
     if state.bracket is not checked_bracket:
         contradictions_task = checks.start_finding_contradictions(state.bracket)

@@ -39,6 +39,13 @@ def test_a_frame_that_contradicts_all_others_is_dropped_with_a_warning_only_if_i
     assert ": d;" in said and ("b or c" in said) == doubted
 
 
+def test_more_than_one_dropped_frame_is_a_warning(monkeypatch):
+    monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((0, 3), ()))
+    found = corrections.drop_outlying_frames(STATE, has_relative_times=True)
+    assert found.bracket.names == ("b", "c", "e")
+    assert found.doubts and not found.notes
+
+
 @pytest.mark.parametrize(
     ("way", "moved", "fixed", "most"),
     [
