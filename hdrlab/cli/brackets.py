@@ -65,12 +65,13 @@ def read_bracket(
     from hdrlab.io import album, photos as photo_files
 
     color = common.parse_color(mask)
-    paths, _notes = album.select(photos)
+    selection = album.select(photos)
     bracket = photo_files.read_bracket(
         photos,
-        _find_times(paths, times, stops),
+        _find_times(selection.paths, times, stops),
         mask=color,
         note=lambda note: common.echo_notes([note]),
+        warn=lambda warning: None,  # the assembly repeats the warnings, see Bracket.damaged
         progress=lambda paths: common.progress(paths, "reading"),
     )
     if stops:

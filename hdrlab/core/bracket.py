@@ -30,6 +30,7 @@ class Bracket:
         to recover
     luminance_of_unit : cd/m^2 of a surface with E = 1 in the radiance map, by the formula of
         exposure meters; None where the photographs do not state time, ISO and f-number
+    damaged : sentences that name the photographs that were left out because they are damaged
     """
 
     images: Array
@@ -38,6 +39,7 @@ class Bracket:
     valid: Mask | None = None
     linear: bool = False
     luminance_of_unit: float | None = None
+    damaged: tuple[str, ...] = ()
 
     # A Bracket was a named tuple of these five fields up to version 0.2: old code may still use it
     # as one, with a warning. New fields do not become part of the tuple.
@@ -70,6 +72,7 @@ def bracket(
     valid: ArrayLike | None = None,
     linear: bool = False,
     luminance_of_unit: float | None = None,
+    damaged: Sequence[str] = (),
 ) -> Bracket:
     """Return the Bracket of `images` and `times`, checked and sorted from short to long.
 
@@ -107,6 +110,7 @@ def bracket(
         valid=mask,
         linear=linear,
         luminance_of_unit=luminance_of_unit,
+        damaged=tuple(damaged),
     )
 
 

@@ -8,10 +8,10 @@ the ones it skipped.
 import re
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, raw
 from hdrlab.io.own_pictures import is_own_picture
 
@@ -39,13 +39,33 @@ APPLE_EDITED_NAME = re.compile(r"(img_)e(\d{4})", re.I)
 
 Paths = str | Path | Sequence[str | Path]
 # The photos, and a sentence on each group of photos that was skipped.
-Selection = tuple[list[Path], list[str]]
+KeptAndNotes = tuple[list[Path], list[str]]
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The photos of a bracket.
+
+    Attributes
+    ----------
+    paths
+        The photos.
+    notes
+        A sentence on each group of photos that was skipped.
+    damaged
+        The error of each photo that was left out because its header is damaged.
+    """
+
+    paths: list[Path]
+    notes: list[str]
+    damaged: list[FileFormatError]
 
 
 def select(paths: Paths) -> Selection:
-    """Return the photos of a bracket, and notes on those that were skipped.
+    """Return the photos of a bracket, and why others were skipped.
 
-    Several paths are used as they are. From a folder, hdrlab skips
+    Photos with a damaged header are left out, if two or more others remain. Otherwise, several
+    paths are used as they are. From a folder, hdrlab skips
 
     - pictures that hdrlab wrote,
     - photos whose names say that they are edited copies of others,
@@ -62,17 +82,19 @@ def select(paths: Paths) -> Selection:
     ------
     InputError
         For a folder among other paths, and if fewer than two photos are left.
+    FileFormatError
+        For a damaged photo, if fewer than two others are left.
     """
-    selected = photographs(paths)
+    selected, damaged = _leave_out_damaged(photographs(paths))
     is_folder = isinstance(paths, str | Path) or len(paths) == 1
     if not is_folder:
-        return selected, []
+        return Selection(selected, [], damaged)
     notes: list[str] = []
     for skip in (_skip_own_pictures, _skip_edited_copies, _skip_other_formats, _skip_other_sizes):
         selected, more_notes = skip(selected)
         notes += more_notes
-    _require_two(selected, notes)
-    return selected, notes
+    _require_two(selected, [*notes, *map(str, damaged)])
+    return Selection(selected, notes, damaged)
 
 
 def photographs(paths: Paths) -> list[Path]:
@@ -115,7 +137,7 @@ def _require_two(paths: list[Path], notes: Sequence[str] = ()) -> None:
         raise InputError(f"expected two photographs or more, got {got}")
 
 
-def _skip_own_pictures(paths: list[Path]) -> Selection:
+def _skip_own_pictures(paths: list[Path]) -> KeptAndNotes:
     """Skip pictures that hdrlab wrote."""
     kept = []
     notes = []
@@ -127,7 +149,33 @@ def _skip_own_pictures(paths: list[Path]) -> Selection:
     return kept, notes
 
 
-def _skip_edited_copies(paths: list[Path]) -> Selection:
+def _leave_out_damaged(paths: list[Path]) -> tuple[list[Path], list[FileFormatError]]:
+    """Return the photos whose headers can be read, and the errors of the others."""
+    kept = []
+    errors = []
+    for path in paths:
+        try:
+            decode.read_header(path)
+        except files.OtherPixels:  # they are not damaged
+            kept.append(path)
+        except FileFormatError as error:
+            errors.append(error)
+        else:
+            kept.append(path)
+    require_enough_sound(errors, len(kept))
+    return kept, errors
+
+
+def require_enough_sound(errors: Sequence[FileFormatError], count: int) -> None:
+    """Raise a FileFormatError that names a damaged photo, if fewer than two others are left."""
+    if errors and count < MIN_PHOTOS:
+        raise FileFormatError(
+            f"{errors[0]}; only {count} of the {count + len(errors)} photos can be read, "
+            "a map needs two or more"
+        )
+
+
+def _skip_edited_copies(paths: list[Path]) -> KeptAndNotes:
     """Skip photos whose names say that they are edited copies of others."""
     stems = {path.stem.lower(): path.stem for path in paths}
     kept = []
@@ -150,7 +198,7 @@ def _original_stem(stem: str) -> str:
     return apple[1] + apple[2] if apple else ""
 
 
-def _skip_other_formats(paths: list[Path]) -> Selection:
+def _skip_other_formats(paths: list[Path]) -> KeptAndNotes:
     """From photos that differ by suffix alone, keep the most frequent suffix, and RAW in a tie."""
     by_stem = defaultdict(list)
     for path in paths:
@@ -169,7 +217,7 @@ def _skip_other_formats(paths: list[Path]) -> Selection:
     return kept, [f"{len(chosen)} photos exist in several formats; hdrlab uses {suffixes}"]
 
 
-def _skip_other_sizes(paths: list[Path]) -> Selection:
+def _skip_other_sizes(paths: list[Path]) -> KeptAndNotes:
     """Keep the photos of one size and kind, if these are more than half of them."""
     kinds: dict[Path, Hashable] = {}
     notes = []

@@ -18,7 +18,7 @@ from PIL import Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import imagecodecs, pillow_heif, simplejpeg, tifffile
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import jpegxl
 
 # hdrlab's own errors report what is wrong with a file.
@@ -58,6 +58,8 @@ def decode_stored_pixels(path: Path, kind: str, out: Array | None = None) -> Arr
     ------
     FileFormatError
         For a damaged file.
+    InputError
+        If there is not enough memory.
     """
     data = path.read_bytes()
     try:
@@ -65,7 +67,7 @@ def decode_stored_pixels(path: Path, kind: str, out: Array | None = None) -> Arr
     except ModuleNotFoundError:  # without its codec, a file may still be good
         raise
     except MemoryError:
-        raise FileFormatError(f"{path}: there is not enough memory to decode it") from None
+        raise InputError(f"{path}: there is not enough memory to decode it") from None
     except Exception as error:  # on damaged files the codecs raise exceptions of any type
         reason = str(error)[:200] or type(error).__name__
         raise FileFormatError(f"{path}: it is cut short or damaged ({reason})") from None

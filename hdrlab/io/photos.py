@@ -5,7 +5,7 @@ order. Then each frame is decoded once, straight into its place, several at a ti
 """
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import map_in_threads
-from hdrlab.errors import InputError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.exif_exposure import luminance_of_unit
@@ -77,9 +77,13 @@ def read_bracket(
     *,
     mask: tuple[int, int, int] | None = None,
     note: Callable[[str], object] = warnings.warn,
+    warn: Callable[[str], object] = warnings.warn,
     progress: Callable[[Sequence[Path]], Iterable[Path]] = iter,
 ) -> Bracket:
     """Read a bracket of photos, with their exposure times.
+
+    A damaged photo is left out, if two or more others remain; the field `damaged` of the bracket
+    names it.
 
     Parameters
     ----------
@@ -90,6 +94,7 @@ def read_bracket(
         a list without a unit are seconds or 1/seconds, whichever fits the brightness of the photos
     mask : the color (R, G, B) of pixels to ignore, such as the border of a registered scan
     note : called with each note: which photos were skipped, and what the camera had changed
+    warn : called with a sentence on each damaged photo that was left out
     progress : wraps the paths while they are decoded, such as tqdm
 
     Returns
@@ -99,8 +104,9 @@ def read_bracket(
     Raises
     ------
     InputError
-        For files that are no photos or do not go together, and for times that are missing or not
-        positive.
+        For photos that do not go together, and for times that are missing or not positive.
+    FileFormatError
+        For files that are damaged or no photos, if fewer than two others remain.
 
     Examples
     --------
@@ -111,13 +117,14 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    selected, notes = album.select(paths)
-    headers, more_notes = album.turn_alike([read_header(path) for path in selected])
+    selection = album.select(paths)
+    headers, more_notes = album.turn_alike([read_header(path) for path in selection.paths])
     _check_alike(headers)
-    for sentence in (*notes, *more_notes, *_processing_notes(headers)):
+    for sentence in (*selection.notes, *more_notes, *_processing_notes(headers)):
         note(sentence)
     names = [header.path.name for header in headers]
     exposures = [header.exposure for header in headers]
+    times = _drop_times_of_damaged(times, paths, selection)
     seconds, inverse = bracket_times(names, exposures, times)
     luminance = luminance_of_unit(exposures) if times is None else None
     order = np.argsort(seconds, kind="stable")
@@ -132,17 +139,34 @@ def read_bracket(
         )
     valid = None if mask is None else np.empty(images.shape[:3], bool)
 
+    errors: dict[int, FileFormatError] = {}
+
     def decode_frame(j: int) -> None:
-        decode_photo(headers[j], images[j], balance=balance)
+        try:
+            decode_photo(headers[j], images[j], balance=balance)
+        except FileFormatError as error:
+            errors[j] = error
+            return
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
     decoded = map_in_threads(decode_frame, range(len(headers)))
     for _ in progress([header.path for header in headers]):
         next(decoded)
+    sound = [j for j in range(len(headers)) if j not in errors]
+    damaged = [*selection.damaged, *(errors[j] for j in sorted(errors))]
+    album.require_enough_sound(damaged, len(sound))
+    warnings_of_damage = [f"{error}; it was left out" for error in damaged]
+    for sentence in warnings_of_damage:
+        warn(sentence)
+    if errors:
+        images = images[sound]
+        valid = None if valid is None else valid[sound]
+        names = [names[j] for j in sound]
+        order = order[sound]
     if inverse:
         brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
-        if are_inverse(sorted(seconds), brightness):
+        if are_inverse([seconds[j] for j in order], brightness):
             seconds = inverse
     return bracket(
         images,
@@ -151,7 +175,22 @@ def read_bracket(
         valid=valid,
         linear=is_raw,
         luminance_of_unit=luminance,
+        damaged=warnings_of_damage,
     )
+
+
+def _drop_times_of_damaged(
+    times: Times | None, paths: album.Paths, selection: album.Selection
+) -> Times | None:
+    """Return times in the order of the photos without those of photos that were left out."""
+    is_in_order = times is not None and not isinstance(times, str | Path | Mapping)
+    if not is_in_order or not selection.damaged:
+        return times
+    listed = album.photographs(paths)
+    if len(times) != len(listed) or len(selection.paths) == len(times):
+        return times
+    kept = set(selection.paths)
+    return [seconds for path, seconds in zip(listed, times, strict=True) if path in kept]
 
 
 def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False) -> None:

@@ -181,6 +181,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
 
     # Misaligned photos contradict each other, so contradictions are no news from here on.
     is_misaligned = bool(state.doubts)
+    state = replace(state, doubts=(*bracket.damaged, *state.doubts))
     checked_bracket = state.bracket
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
     choice = recovery.choose_response(options.response, state.bracket)
