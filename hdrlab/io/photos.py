@@ -183,8 +183,7 @@ def _drop_times_of_damaged(
     times: Times | None, paths: album.Paths, selection: album.Selection
 ) -> Times | None:
     """Return times in the order of the photos without those of photos that were left out."""
-    is_in_order = times is not None and not isinstance(times, str | Path | Mapping)
-    if not is_in_order or not selection.damaged:
+    if times is None or isinstance(times, str | Path | Mapping) or not selection.damaged:
         return times
     listed = album.photographs(paths)
     if len(times) != len(listed) or len(selection.paths) == len(times):
