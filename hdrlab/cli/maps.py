@@ -224,13 +224,21 @@ def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
 @click.command(cls=common.Command)
 @click.argument("files", nargs=-1, required=True, type=common.INPUT_PATH)
 def info(*, files: tuple[Path, ...]) -> None:
-    """Describe FILES, which are radiance maps or photos.
+    """Describe FILES, which are radiance maps, photos or folders of photos.
 
-    hdrlab prints the format, size, values and exposure of each file.
+    hdrlab prints the format, size, values and exposure of each file. For a folder, it prints a
+    table: the exposure of each photo, its exposure value (EV at ISO 100), the camera, and what the
+    photo does not state. If the folder holds several brackets, each has its own table.
     """
+    from hdrlab.show import bracket_table
     from hdrlab.show.describe import describe_file
 
     for file in files:
+        if file.is_dir():
+            click.echo(file)
+            for line in bracket_table.describe_folder(file):
+                click.echo(f"  {terminal.visible(line)}".rstrip())
+            continue
         description = describe_file(file)
         click.echo(description.pop("file"))
         for key, value in description.items():

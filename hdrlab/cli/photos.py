@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from hdrlab.cli import brackets, common
-from hdrlab.errors import InputError
+from hdrlab.cli import brackets, common, terminal
+from hdrlab.errors import HdrlabError, InputError
 from hdrlab.pipeline import catalogue
 
 if TYPE_CHECKING:
@@ -97,7 +97,16 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     is_flag=True,
     help=f"Exit with code {EXIT_DOUBTFUL_MAP} if there are warnings. hdrlab still writes the map.",
 )
+@click.option(
+    "--all",
+    "all_brackets",
+    is_flag=True,
+    help="Assemble each bracket of a folder. The name of its first photo is added to each output.",
+)
+@click.pass_context
 def assemble(
+    ctx: click.Context,
+    /,
     *,
     photos: tuple[Path, ...],
     out: Path,
@@ -117,10 +126,13 @@ def assemble(
     report: Path | None,
     uncertainty: Path | None,
     strict: bool,
+    all_brackets: bool,
 ) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
-    From a folder, hdrlab uses the photos that form one bracket, and lists the ones it skipped.
+    From a folder, hdrlab uses the photos that form one bracket, and lists the ones it skipped. If
+    the folder holds several brackets, hdrlab uses the first, or each with --all. `hdrlab info
+    FOLDER` lists the photos and the brackets of a folder.
 
     --times exif (the default) reads time, ISO and f-number from EXIF. If EXIF has no times, hdrlab
     looks in the folder for a list with lines such as `a.jpg 1/60`. --times FILE reads such a list.
@@ -157,6 +169,9 @@ def assemble(
         require_folder_name(report)
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
+    if all_brackets:
+        _assemble_each(ctx, photos)
+        return
 
     bracket = brackets.read_bracket(photos, times, mask, stops)
     times_mode = "correct"
@@ -222,7 +237,52 @@ def assemble(
     agreement = common.describe_agreement(assembly.spread)
     click.echo(f"{out}: {description.result()}, {agreement}")
     if strict and assembly.doubts:
-        click.get_current_context().exit(EXIT_DOUBTFUL_MAP)
+        ctx.exit(EXIT_DOUBTFUL_MAP)
+
+
+def _assemble_each(ctx: click.Context, photos: tuple[Path, ...]) -> None:
+    """Assemble each bracket of a folder. A bracket that fails does not stop the others."""
+    from hdrlab.io import album, files
+
+    if len(photos) != 1 or not photos[0].is_dir():
+        raise InputError("--all needs one folder; pass the folder that holds the photos")
+    bracket_paths, selection = album.select_brackets(photos)
+    common.echo_notes(selection.notes)
+    common.echo_warnings(selection.damaged)
+    outputs = []
+    for paths in bracket_paths:
+        named = {}
+        for option in ("out", "picture", "uncertainty", "report"):
+            path = ctx.params[option]
+            named[option] = path and _add_photo_name(path, paths[0], is_folder=option == "report")
+        outputs.append(named)
+    written = [path for named in outputs for path in named.values() if path]
+    files.require_distinct(written)
+    files.require_other(written, [path for paths in bracket_paths for path in paths])
+    exit_code = 0
+    failed = []
+    for number, (paths, named) in enumerate(zip(bracket_paths, outputs, strict=True), 1):
+        title = f"{paths[0].name} to {paths[-1].name}"
+        click.echo(f"bracket {number} of {len(bracket_paths)}: {title}", err=True)
+        settings = {**ctx.params, **named, "photos": tuple(paths), "all_brackets": False}
+        try:
+            ctx.invoke(assemble, **settings)
+        except (HdrlabError, OSError, MemoryError) as error:
+            failed.append(title)
+            click.echo(f"hdrlab: {terminal.visible(error)}", err=True)
+        except click.exceptions.Exit as stop:
+            exit_code = stop.exit_code
+    if failed:
+        names = "; ".join(failed)
+        raise InputError(f"{len(failed)} of {len(bracket_paths)} brackets have no map: {names}")
+    ctx.exit(exit_code)
+
+
+def _add_photo_name(output: Path, photo: Path, *, is_folder: bool) -> Path:
+    """Return the path of an output with the name of a bracket's first photo added."""
+    if is_folder:
+        return output / photo.stem
+    return output.with_name(f"{output.stem}_{photo.stem}{output.suffix}")
 
 
 def _run_steps(steps: "Iterable[Assembly]", count: int, align: str) -> "Assembly":

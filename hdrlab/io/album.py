@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import decode, files, raw
+from hdrlab.io import decode, files, raw, splitting
 from hdrlab.io.own_pictures import is_own_picture
 
 SUFFIXES = raw.SUFFIXES | {
@@ -30,6 +30,7 @@ SUFFIXES = raw.SUFFIXES | {
     ".jxl",
 }
 MIN_PHOTOS = 2
+MAX_LISTED_BRACKETS = 10
 # What programs append to the name of a photo that they have edited: IMG_1-edited, IMG_1~2.
 EDITED_NAME = re.compile(
     r"(.+?)([-_ .]*(edit|edited|bearbeitet|hdr|thumb|thumbnail|small|preview)|~\d+)", re.I
@@ -61,8 +62,8 @@ class Selection:
     damaged: list[FileFormatError]
 
 
-def select(paths: Paths) -> Selection:
-    """Return the photos of a bracket, and why others were skipped.
+def select(paths: Paths, *, split: bool = True) -> Selection:
+    """Return the photos of one bracket, and why others were skipped.
 
     Photos with a damaged header are left out, if two or more others remain. Otherwise, several
     paths are used as they are. From a folder, hdrlab skips
@@ -71,12 +72,15 @@ def select(paths: Paths) -> Selection:
     - photos whose names say that they are edited copies of others,
     - all but one of the photos that differ by their suffix alone, as a RAW file and a JPEG do,
     - images with a palette, of CMYK or of floating-point numbers,
-    - photos of another size or kind than more than half of them, as thumbnails are.
+    - photos of another size or kind than more than half of them, as thumbnails are,
+    - all brackets but the first, if the photos are several brackets, see `hdrlab.io.splitting`.
 
     Parameters
     ----------
     paths
         A folder, or photos.
+    split
+        Whether a folder may hold several brackets, of which the first is used.
 
     Raises
     ------
@@ -85,16 +89,50 @@ def select(paths: Paths) -> Selection:
     FileFormatError
         For a damaged photo, if fewer than two others are left.
     """
+    brackets, selection = select_brackets(paths)
+    if not split or len(brackets) == 1:
+        return selection
+    notes = [*selection.notes, _describe_brackets(brackets)]
+    return replace(selection, paths=brackets[0], notes=notes)
+
+
+def select_brackets(paths: Paths) -> tuple[list[list[Path]], Selection]:
+    """Return the photos of each bracket of a folder, and the selection of all of them.
+
+    `select` has the parameters and errors. Several paths are one bracket.
+    """
     selected, damaged = _leave_out_damaged(photographs(paths))
     is_folder = isinstance(paths, str | Path) or len(paths) == 1
     if not is_folder:
-        return Selection(selected, [], damaged)
+        return [selected], Selection(selected, [], damaged)
     notes: list[str] = []
     for skip in (_skip_own_pictures, _skip_edited_copies, _skip_other_formats, _skip_other_sizes):
         selected, more_notes = skip(selected)
         notes += more_notes
     _require_two(selected, [*notes, *map(str, damaged)])
-    return Selection(selected, notes, damaged)
+    groups = splitting.split_into_brackets([decode.read_header(path) for path in selected])
+    brackets = [
+        sorted(header.path for header in group) for group in groups if len(group) >= MIN_PHOTOS
+    ]
+    if not brackets or len(groups) == 1:
+        return [selected], Selection(selected, notes, damaged)
+    for group in groups:
+        if len(group) < MIN_PHOTOS:
+            notes.append(f"{group[0].path.name}: skipped, because it belongs to no bracket")
+    used = [path for bracket in brackets for path in bracket]
+    return brackets, Selection(used, notes, damaged)
+
+
+def _describe_brackets(brackets: list[list[Path]]) -> str:
+    """Return the note that lists the brackets of a folder, of which hdrlab uses the first."""
+    ranges = [f"{paths[0].name} to {paths[-1].name}" for paths in brackets[:MAX_LISTED_BRACKETS]]
+    if len(brackets) > MAX_LISTED_BRACKETS:
+        ranges.append(f"{len(brackets) - MAX_LISTED_BRACKETS} more")
+    listed = "; ".join(ranges)
+    return (
+        f"the folder holds {len(brackets)} brackets, and hdrlab uses the first: {listed}; "
+        "assemble --all makes a map of each"
+    )
 
 
 def photographs(paths: Paths) -> list[Path]:
@@ -107,7 +145,7 @@ def photographs(paths: Paths) -> list[Path]:
     """
     listed = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
     if len(listed) == 1 and listed[0].is_dir():
-        listed = _list_folder(listed[0])
+        listed = list_folder(listed[0])
     for path in listed:
         if path.is_dir():
             raise InputError(
@@ -117,7 +155,7 @@ def photographs(paths: Paths) -> list[Path]:
     return listed
 
 
-def _list_folder(folder: Path) -> list[Path]:
+def list_folder(folder: Path) -> list[Path]:
     """Return the photos of a folder, sorted by name."""
     found = [
         path

@@ -10,6 +10,7 @@ import re
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +21,7 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw
+from hdrlab.io.exif_camera import read_camera, read_time_taken
 from hdrlab.io.exif_exposure import Exposure, read_exposure
 from hdrlab.io.files import OtherPixels, check_size, require_no_folder
 
@@ -101,6 +103,10 @@ class PhotoHeader:
         Why the photo cannot be a frame of a bracket, empty if it can.
     comments
         The lines of a TIFF's description.
+    camera
+        The camera's name, empty if unknown.
+    taken
+        When the photo was taken, by the camera's clock, or None.
     """
 
     path: Path
@@ -112,6 +118,8 @@ class PhotoHeader:
     icc: bytes = b""
     processing: str = ""
     comments: Sequence[str] = ()
+    camera: str = ""
+    taken: datetime | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +130,8 @@ class ExifFacts:
     exposure: Exposure = Exposure()
     is_adobe_rgb: bool = False
     is_blended: bool = False
+    camera: str = ""
+    taken: datetime | None = None
 
     def icc(self, stored: bytes | None) -> bytes:
         """Return the profile of a file, or that of the space which EXIF names."""
@@ -157,7 +167,17 @@ def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeade
     require_no_folder(path, "a photo")
     if path.suffix.lower() in raw.SUFFIXES:
         raw_shape, exposure = raw.read_shape_and_exposure(path)
-        return PhotoHeader(path, "RAW", raw_shape, np.dtype(np.uint16), exposure=exposure)
+        with open(path, "rb") as stream:
+            facts = _read_exif(lambda exif: exif.load_from_fp(stream))
+        return PhotoHeader(
+            path,
+            "RAW",
+            raw_shape,
+            np.dtype(np.uint16),
+            exposure=exposure,
+            camera=facts.camera,
+            taken=facts.taken,
+        )
     with open(path, "rb") as file:
         head = file.read(HEADER_BYTES)
     kind = _identify_format(path, head)
@@ -305,6 +325,8 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
         exposure=facts.exposure,
         icc=facts.icc(info.get("icc_profile")),
         processing=facts.processing,
+        camera=facts.camera,
+        taken=facts.taken,
     )
 
 
@@ -341,6 +363,8 @@ def _read_jxl_header(path: Path, head: bytes) -> PhotoHeader:
         exposure=facts.exposure,
         icc=profiles.DISPLAY_P3 if header.primaries == jpegxl.P3_PRIMARIES else b"",
         processing=IS_PQ_OR_HLG if is_pq_or_hlg else facts.processing,
+        camera=facts.camera,
+        taken=facts.taken,
     )
 
 
@@ -389,6 +413,8 @@ def _read_tiff_header(path: Path) -> PhotoHeader:
         icc=facts.icc(icc),
         processing=facts.processing,
         comments=comments,
+        camera=facts.camera,
+        taken=facts.taken,
     )
 
 
@@ -403,6 +429,8 @@ def _read_exif(load: Callable[[Image.Exif], None]) -> ExifFacts:
             exposure = read_exposure(exif)
             interop_index = exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)
             rendering = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered)
+            camera = read_camera(exif)
+            taken = read_time_taken(exif)
     except Exception:  # on damaged EXIF Pillow raises exceptions of any type
         return ExifFacts()
     return ExifFacts(
@@ -410,4 +438,6 @@ def _read_exif(load: Callable[[Image.Exif], None]) -> ExifFacts:
         exposure=exposure,
         is_adobe_rgb=interop_index == INTEROP_ADOBE_RGB,
         is_blended=rendering in CUSTOM_RENDERED_HDR,
+        camera=camera,
+        taken=taken,
     )

@@ -5,6 +5,7 @@ is the software's name, where each format has a place for it.
 """
 
 import struct
+import warnings
 import zlib
 from pathlib import Path
 
@@ -35,8 +36,11 @@ def mark_png(data: bytes) -> bytes:
 def is_own_picture(path: Path) -> bool:
     """Return whether a PNG, JPEG or TIFF file is a result of hdrlab; False for a file it cannot open."""
     try:
-        with Image.open(path) as image:
-            named = image.info.get("Software") or image.getexif().get(Base.Software)
+        with warnings.catch_warnings():
+            # Pillow warns of odd EXIF, which does not matter here.
+            warnings.simplefilter("ignore")
+            with Image.open(path) as image:
+                named = image.info.get("Software") or image.getexif().get(Base.Software)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return False
     return named == SOFTWARE

@@ -7,9 +7,10 @@ order. Then each frame is decoded once, straight into its place, several at a ti
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
@@ -118,6 +119,9 @@ def read_bracket(
     ('b.png', 'a.png')
     """
     selection = album.select(paths)
+    if _are_in_order(times) and len(times) > len(selection.paths):
+        # the caller knows that all photos of the folder are one bracket
+        selection = album.select(paths, split=False)
     headers, more_notes = album.turn_alike([read_header(path) for path in selection.paths])
     _check_alike(headers)
     for sentence in (*selection.notes, *more_notes, *_processing_notes(headers)):
@@ -179,11 +183,16 @@ def read_bracket(
     )
 
 
+def _are_in_order(times: Times | None) -> TypeGuard[Sequence[float] | NDArray[np.floating]]:
+    """Return whether times are given in the order of the photos, and not by their names."""
+    return times is not None and not isinstance(times, str | Path | Mapping)
+
+
 def _drop_times_of_damaged(
     times: Times | None, paths: album.Paths, selection: album.Selection
 ) -> Times | None:
     """Return times in the order of the photos without those of photos that were left out."""
-    if times is None or isinstance(times, str | Path | Mapping) or not selection.damaged:
+    if not _are_in_order(times) or not selection.damaged:
         return times
     listed = album.photographs(paths)
     if len(times) != len(listed) or len(selection.paths) == len(times):
