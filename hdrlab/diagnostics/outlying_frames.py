@@ -144,7 +144,7 @@ def _measure_errors(
     fit = response_steps.fit_steps(H, B[kept], np.zeros((len(kept), 0)))
     channel = np.arange(patches.Z.shape[1])[:, None, None]
     g = fit.g[channel, patches.Z]
-    is_sure = (patches.Z >= MIN_SURE_LEVEL).all(axis=1)
+    is_sure = np.all(patches.Z >= MIN_SURE_LEVEL, axis=1)
     steps = (g[frame] - g[kept]).mean(axis=1)
     stated_steps = (B[frame] - B[kept])[:, None, None]
     errors = (steps - stated_steps) / np.log(2)

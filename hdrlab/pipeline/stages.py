@@ -16,9 +16,10 @@ from hdrlab.core import steps
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import run_in_background
 from hdrlab.diagnostics import consistency, motion
+from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable, merge_with_quality
-from hdrlab.pipeline import checks, corrections, recovery, registration, timing
+from hdrlab.pipeline import checks, corrections, dark_pixels, recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.checks import MAX_EXPLAINED_SPREAD
 from hdrlab.pipeline.options import FLARE, GHOSTS, MERGES, TIMES, WEIGHTS, Options
@@ -247,8 +248,15 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     if options.release and is_usable and not removes_ghosts:
         state = replace(state, bracket=replace(state.bracket, images=images[:0].copy()))
         images = images.view(Expendable)
+    # The certainty is measured first, because the merge may free the photos.
+    certainty = dark_pixels.measure_color_certainty(images, times, valid=valid)
     merged = merge(images, times, response.g, pixel_weights, valid=valid)
     state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
+    if certainty is not None:
+        state = replace(state, E=dark_pixels.fade_to_neutral(state.E, certainty))
+        black_fraction = dark_pixels.measure_black_fraction(certainty)
+        if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
+            state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
     yield state
 
     if removes_ghosts:

@@ -1,0 +1,165 @@
+"""Pixels that are black in every photo have no color.
+
+Z   pixel values of a photo   (H, W, 3) uint8 or uint16
+s   noise, in pixel values
+c   color certainty           (H, W): 0 where no photo measures the color, 1 where one does
+
+The ratios of three pixel values near 0 are noise, and the response of these values is hardly known.
+So a night sky gets blue or violet blotches. The longest photo shows how well a dark pixel is
+measured: its brightest channel over the noise. With less certainty, the pixel fades to gray of the
+same luminance.
+"""
+
+import numpy as np
+
+from hdrlab.core.arrays import F32, ArrayLike, Mask, as_mask, as_radiance, as_stack
+from hdrlab.core.colour import luminance
+
+# Up to this signal-to-noise ratio of its brightest channel, a pixel has no color.
+MIN_SIGNAL_TO_NOISE = 2
+# From this ratio on, it has all of its color.
+FULL_SIGNAL_TO_NOISE = 10
+# noise of 8-bit photos in pixel values; compression may hide it, and texture may look like it
+MIN_NOISE_LEVELS = 1.0
+MAX_NOISE_LEVELS = 2.0
+# pixel values of 8-bit photos that are dark enough to show the noise
+MAX_DARK_LEVEL = 16
+# side of the square whose mean value decides, in pixels
+WINDOW_SIDE = 5
+# standard deviation over median absolute deviation, of a normal distribution
+DEVIATION_PER_MAD = 1.4826
+# below this certainty a pixel counts as black in every photo
+MAX_BLACK_CERTAINTY = 0.25
+# fraction of black pixels from which a longer exposure is missing
+MIN_BLACK_FRACTION = 0.02
+
+
+def measure_color_certainty(
+    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+) -> F32 | None:
+    """Return how certain the color of each pixel is, from 0 to 1.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+    times : (P,)
+        Exposure times in seconds.
+    valid : (P, H, W) bool, optional
+        False where a photo shows nothing of the scene.
+
+    Returns
+    -------
+    (H, W) float32 or None
+        None if every pixel is bright enough in the longest photo.
+
+    Raises
+    ------
+    InputError
+        If the images are no stack of photos, or the mask has another shape.
+
+    Examples
+    --------
+    >>> images = np.full((2, 9, 9, 3), 2, np.uint8)
+    >>> images[1, :, 5:] = 200
+    >>> measure_color_certainty(images, [1, 2])[4].tolist()
+    [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    stack = as_stack(images)
+    mask = as_mask(valid, stack)
+    longest = int(np.argmax(np.asarray(times)))
+    image = stack[longest].reshape(*stack.shape[1:3], -1)
+    noise = _measure_dark_noise(image)
+    full_level = FULL_SIGNAL_TO_NOISE * noise
+    is_dark = image.max(axis=2) < full_level
+    if mask is not None:
+        is_dark &= mask[longest]
+    if not is_dark.any():
+        return None
+    # Imported here, because SciPy's filters take a fifth of a second to import.
+    from scipy.ndimage import uniform_filter
+
+    signal = np.zeros(image.shape[:2], np.float32)
+    for channel in range(image.shape[2]):
+        mean = uniform_filter(image[..., channel].astype(np.float32), WINDOW_SIDE, mode="nearest")
+        np.maximum(signal, mean, out=signal)
+    signal_to_noise = signal / np.float32(noise)
+    span = FULL_SIGNAL_TO_NOISE - MIN_SIGNAL_TO_NOISE
+    certainty = np.clip((signal_to_noise - MIN_SIGNAL_TO_NOISE) / span, 0, 1)
+    # Something that moved may be bright in another photo.
+    is_bright_elsewhere = _find_bright(stack, is_dark, full_level, mask)
+    certainty[~is_dark | is_bright_elsewhere] = 1
+    if np.all(certainty == 1):
+        return None
+    return certainty.astype(np.float32)
+
+
+def measure_black_fraction(certainty: ArrayLike) -> float:
+    """Return the fraction of the image that is black in every photo."""
+    return float(np.mean(np.asarray(certainty) < MAX_BLACK_CERTAINTY))
+
+
+def fade_to_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
+    """Return the map in which uncertain pixels are gray, with the same luminance.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3)
+        Radiance.
+    certainty : (H, W)
+        See `measure_color_certainty`.
+
+    Returns
+    -------
+    (H, W) or (H, W, 3) float32
+
+    Raises
+    ------
+    InputError
+        If E is no radiance map.
+
+    Examples
+    --------
+    >>> fade_to_neutral([[[0.5, 0.5, 4.0]]], [[1.0]]).tolist()
+    [[[0.5, 0.5, 4.0]]]
+    >>> faded = fade_to_neutral([[[0.5, 0.5, 4.0]]], [[0.0]])
+    >>> bool(np.ptp(faded) < 1e-6)
+    True
+    """
+    radiance = as_radiance(E)
+    is_uncertain = np.asarray(certainty) < 1
+    if radiance.ndim == 2 or not is_uncertain.any():
+        return radiance
+    faded = radiance.copy()
+    colored = radiance[is_uncertain]
+    gray = luminance(colored[None])[0][:, None]
+    color_weight = np.asarray(certainty, np.float32)[is_uncertain][:, None]
+    faded[is_uncertain] = gray + color_weight * (colored - gray)
+    return faded
+
+
+def _measure_dark_noise(image: np.ndarray) -> float:
+    """Return the noise of the dark pixels of a photo (H, W, C), in pixel values."""
+    is_byte = image.dtype == np.uint8
+    dark_level = MAX_DARK_LEVEL if is_byte else 257 * MAX_DARK_LEVEL
+    left = image[:, :-1].astype(np.int32)
+    right = image[:, 1:].astype(np.int32)
+    is_dark = (left < dark_level) & (right < dark_level) & (left > 0) & (right > 0)
+    differences = np.abs(right - left)[is_dark]
+    if not len(differences):
+        return MIN_NOISE_LEVELS
+    noise = DEVIATION_PER_MAD * float(np.median(differences)) / np.sqrt(2)
+    most = MAX_NOISE_LEVELS if is_byte else 257 * MAX_NOISE_LEVELS
+    return float(np.clip(noise, MIN_NOISE_LEVELS, most))
+
+
+def _find_bright(stack: np.ndarray, is_dark: Mask, level: float, mask: Mask | None) -> Mask:
+    """Return the dark pixels of the longest photo that another photo shows brighter than `level`."""
+    is_bright = np.zeros(is_dark.shape, bool)
+    for j, image in enumerate(stack):
+        values = image[is_dark]
+        brightest = values if values.ndim == 1 else values.max(axis=1)
+        is_over = brightest >= level
+        if mask is not None:
+            is_over &= mask[j][is_dark]
+        is_bright[is_dark] |= is_over
+    return is_bright

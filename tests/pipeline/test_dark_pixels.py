@@ -1,0 +1,65 @@
+"""What is black in every photo has no color, and what a photo measures keeps its color."""
+
+import numpy as np
+
+from hdrlab.capture import camera
+from hdrlab.core.bracket import bracket
+from hdrlab.pipeline import dark_pixels, stages
+
+BLACK = np.s_[:, 130:180]
+RED = np.s_[10:50, 70:110]
+
+
+def photograph_night(*, longest_factor=1.0):
+    """Return photos of a night with a lamp ramp, a red wall and a black sky of blue noise."""
+    E = np.empty((120, 180, 3), np.float32)
+    ramp = np.geomspace(0.02, 4, 60)[None, :, None]
+    E[:, :60] = ramp
+    E[:, 60:120] = 0.05
+    E[10:50, 70:110] = [0.06, 0.015, 0.015]
+    E[:, 120:] = 2e-5
+    times = np.array([0.03, 0.12, 0.5, 2]) * longest_factor
+    noisy = camera.Camera(response="gamma", full_well=20000, read_noise=4)
+    taken = camera.shoot(E, times, noisy, rng=1)
+    images = taken.images.astype(int)
+    images = images + [0, 0, 2] * (images.max(axis=-1, keepdims=True) < 4)
+    images = np.clip(images, 0, 255).astype(np.uint8)
+    return bracket(images, times)
+
+
+def measure_log_ratios(E):
+    """Return the typical log2 of red and blue over green."""
+    return np.median(np.log2(E[..., [0, 2]] / E[..., [1]]), axis=(0, 1))
+
+
+def test_black_of_every_frame_is_gray_with_a_warning():
+    assembly = stages.assemble(photograph_night(), align="none")
+    assert np.abs(measure_log_ratios(assembly.E[BLACK])).max() < 0.15
+    assert assembly.doubts
+
+
+def test_dark_red_that_a_frame_measures_stays_red():
+    assembly = stages.assemble(photograph_night(), align="none")
+    red_over_green, _ = measure_log_ratios(assembly.E[RED])
+    assert abs(red_over_green - 2) < 0.2
+
+
+def test_well_measured_dark_pixels_bring_no_warning_and_no_change():
+    night = photograph_night()
+    bright = night.images[:, :, :120]
+    assert stages.assemble(bracket(bright, night.times), align="none").doubts == ()
+    assert dark_pixels.measure_color_certainty(bright, night.times) is None
+
+
+def test_a_dark_16_bit_photo_above_its_noise_keeps_its_color():
+    rng = np.random.default_rng(1)
+    images = np.full((2, 20, 30, 3), [600, 150, 150]) + rng.integers(-9, 10, (2, 20, 30, 3))
+    assert dark_pixels.measure_color_certainty(images.astype(np.uint16), [1, 2]) is None
+
+
+def test_what_is_bright_in_another_photo_keeps_its_color():
+    images = np.full((2, 20, 20, 3), 1, np.uint8)
+    images[0, 5:15, 5:15] = [150, 20, 20]
+    certainty = dark_pixels.measure_color_certainty(images, [1, 2])
+    assert np.all(certainty[5:15, 5:15] == 1)
+    assert certainty[0, 0] == 0
