@@ -60,7 +60,9 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     "--weight", ["gaussian", "hat", "flat", "snr"], help="Weight function of the pixel values."
 )
 @common.choice_option(
-    "--merge", ["log", "likelihood", "mean", "shot"], help="Method that merges the exposures."
+    "--merge",
+    ["shot", "log", "likelihood", "mean"],
+    help="Mean of the exposures. shot and likelihood prefer long exposures, log is the lecture's.",
 )
 @common.choice_option(
     "--ghosts",

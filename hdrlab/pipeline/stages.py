@@ -48,7 +48,7 @@ def assemble(
     align: Method = "auto",
     response: Method = "auto",
     weight: str = "gaussian",
-    merge: str = "log",
+    merge: str = "shot",
     times: str = "correct",
     ghosts: str = "auto",
     flare: str = "none",
@@ -74,8 +74,11 @@ def assemble(
     weight : {"gaussian", "hat", "flat", "snr"}
         Weight of each pixel value in the merge. With "gaussian", which nearly ignores very dark and
         very bright values, the photos of real brackets contradict each other least.
-    merge : {"log", "likelihood", "mean", "shot"}
-        How the photos are merged, see `radiance.merge`.
+    merge : {"shot", "log", "likelihood", "mean"}
+        How the photos are merged, see `radiance.merge`. "shot" and "likelihood" weight a photo by
+        its exposure time, too: a long exposure measures the dark parts better than many short ones,
+        in which the noise of the camera or the black floor of a scanner hides them. "log" is the
+        mean of Debevec and Malik, whose weight depends on the pixel value alone.
     times : {"correct", "stated", "estimate"}
         "correct" refines rough exposure times by the pixels, if held-out pixels confirm it. It
         replaces times that are all equal, or that contradict the pixels everywhere, by relative
@@ -139,7 +142,7 @@ def assemble_steps(
     align: Method = "auto",
     response: Method = "auto",
     weight: str = "gaussian",
-    merge: str = "log",
+    merge: str = "shot",
     times: str = "correct",
     ghosts: str = "auto",
     flare: str = "none",

@@ -7,6 +7,7 @@ import pytest
 
 from hdrlab import pipeline
 from hdrlab.cli.brackets import read_bracket
+from hdrlab.io import radiance
 
 pytestmark = pytest.mark.papers
 
@@ -29,6 +30,8 @@ def assembled(shared):
     return assemble
 
 
+LIST = "memorial.hdr_image_list.txt"
+
 SOUND = [
     ("window", {}, 0.026),
     ("stlouis_arch", {}, 0.02),
@@ -46,6 +49,24 @@ def test_a_consistent_real_bracket_gives_no_warning(assembled, folder, options, 
     assert found.doubts == () and found.fallback == ""
     assert found.spread <= spread + 5e-4 and np.all(np.isfinite(found.E))
     assert found.moving is None or not found.moving.any()  # nothing is taken for motion
+
+
+def test_the_dark_wood_of_the_church_is_as_dark_and_as_red_as_in_the_map_of_its_author(
+    assembled, shared
+):
+    """The scans have a black floor, and twelve frames that show it must not outvote the other four."""
+    found = assembled("memorial", times=str(shared("memorial") / LIST), mask="0000FF")
+    author = radiance.read_radiance(shared("memorial") / "memorial.hdr")[::2, ::2]
+    is_exposed = (found.bracket.images > 30) & (found.bracket.images < 225)
+    is_compared = is_exposed.all(axis=-1).any(axis=0) & (found.quality == 0)
+    is_compared &= author.min(axis=-1) > 0
+    E = found.E[is_compared]
+    truth = author[is_compared]
+    off = np.log2(E / truth)
+    off -= np.median(off, axis=0)
+    is_dark = truth.mean(axis=-1) <= np.quantile(truth.mean(axis=-1), 0.1)
+    assert np.quantile(np.abs(off), 0.95) < 0.25
+    assert abs(np.median(off[is_dark, 0] - off[is_dark, 1])) < 0.25
 
 
 def test_true_times_are_not_changed(assembled, shared):
