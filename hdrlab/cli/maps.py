@@ -102,7 +102,7 @@ def tonemap(
         to = KIND_BY_SUFFIX.get(out.suffix.lower(), "picture")
     # bad options are reported before the work starts
     _require_image_suffix(out, to)
-    knobs = dict(common.parse_setting(text) for text in settings)
+    knobs: dict[str, Any] = dict(common.parse_setting(text) for text in settings)
     E = common.read_map(source, clean)
     check_settings("tonemap", find_operator(operator), knobs)
     with elapsed(operator):

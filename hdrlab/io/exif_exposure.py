@@ -92,6 +92,36 @@ def equivalent_seconds(names: Sequence[str], exposures: Sequence[Exposure]) -> l
     ]
 
 
+def fill_missing(
+    names: Sequence[str], exposures: Sequence[Exposure]
+) -> tuple[list[Exposure], list[str]]:
+    """Give photos that state no f-number or no ISO speed the value that all others state, with a note.
+
+    Where the others state different values, or none, nothing is filled.
+
+    Examples
+    --------
+    >>> fill_missing(["a.jpg", "b.jpg"], [Exposure(1, 4, 100), Exposure(2, None, 100)])[0][1]
+    Exposure(seconds=2, f_number=4, iso=100)
+    """
+    filled = list(exposures)
+    notes = []
+    for field, what in ("f_number", "f-number"), ("iso", "ISO speed"):
+        values = [getattr(exposure, field) for exposure in exposures]
+        stated = {value for value in values if value is not None}
+        missing = [j for j, value in enumerate(values) if value is None]
+        if len(stated) != 1 or not missing:
+            continue
+        value = stated.pop()
+        for j in missing:
+            filled[j] = filled[j]._replace(**{field: value})
+        listed = ", ".join(names[j] for j in missing)
+        notes.append(
+            f"{listed}: no {what} in EXIF; hdrlab assumes {value:g}, as in all other photos"
+        )
+    return filled, notes
+
+
 def luminance_of_unit(exposures: Sequence[Exposure]) -> float | None:
     """Return the luminance in cd/m^2 that gets a middle pixel value in one second, or None.
 

@@ -21,9 +21,15 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
-from hdrlab.io.exif_exposure import luminance_of_unit
+from hdrlab.io.exif_exposure import HINT, Exposure, fill_missing, luminance_of_unit
 from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
-from hdrlab.io.times import Times, are_inverse, bracket_times
+from hdrlab.io.times import (
+    Times,
+    are_inverse,
+    bracket_times,
+    read_bare_numbers,
+    times_in_names,
+)
 
 JPEG_OPTIONS = {"quality": 95, "subsampling": 0}
 TIFF_OPTIONS = {"compression": "tiff_deflate"}
@@ -90,9 +96,11 @@ def read_bracket(
     ----------
     paths : the photos, or one folder, from which hdrlab uses the photos that form one bracket; see
         `hdrlab.io.album.select`
-    times : None for the times in EXIF; else seconds of equivalent exposure, in the order of the
-        photos or by file name, or the path of a list (see `hdrlab.io.times.read_times`). Numbers of
-        a list without a unit are seconds or 1/seconds, whichever fits the brightness of the photos
+    times : None for the times in EXIF, or in file names such as 1_250.jpg; without either, all times
+        are 1, and `pipeline.assemble` estimates relative ones. Else seconds of equivalent exposure,
+        in the order of the photos or by file name, or the path of a list (see
+        `hdrlab.io.times.read_times`). Numbers of a list without a unit are seconds or 1/seconds,
+        whichever fits the brightness of the photos
     mask : the color (R, G, B) of pixels to ignore, such as the border of a registered scan
     note : called with each note: which photos were skipped, and what the camera had changed
     warn : called with a sentence on each damaged photo that was left out
@@ -105,7 +113,7 @@ def read_bracket(
     Raises
     ------
     InputError
-        For photos that do not go together, and for times that are missing or not positive.
+        For photos that do not go together, and for times that are not positive.
     FileFormatError
         For files that are damaged or no photos, if fewer than two others remain.
 
@@ -127,10 +135,13 @@ def read_bracket(
     for sentence in (*selection.notes, *more_notes, *_processing_notes(headers)):
         note(sentence)
     names = [header.path.name for header in headers]
-    exposures = [header.exposure for header in headers]
+    exposures, fill_notes = fill_missing(names, [header.exposure for header in headers])
     times = _drop_times_of_damaged(times, paths, selection)
-    seconds, inverse = bracket_times(names, exposures, times)
-    luminance = luminance_of_unit(exposures) if times is None else None
+    times_source, times_notes = _find_source_of_times(names, exposures, times)
+    for sentence in (*(fill_notes if times is None else ()), *times_notes):
+        note(sentence)
+    seconds, inverse = bracket_times(names, exposures, times_source)
+    luminance = luminance_of_unit(exposures) if times_source is None else None
     order = np.argsort(seconds, kind="stable")
     headers = [headers[j] for j in order]
     names = [header.path.name for header in headers]
@@ -199,6 +210,31 @@ def _drop_times_of_damaged(
         return times
     kept = set(selection.paths)
     return [seconds for path, seconds in zip(listed, times, strict=True) if path in kept]
+
+
+def _find_source_of_times(
+    names: list[str], exposures: list[Exposure], times: Times | None
+) -> tuple[Times | None, list[str]]:
+    """Return where the times come from, with a note: given ones, EXIF, file names, or nowhere.
+
+    Without any times, all are 1 second. The pipeline replaces equal times by relative ones.
+    """
+    if isinstance(times, str | Path) and read_bare_numbers(times) is not None:
+        return times, [f"{times} names no photos: its times belong to the photos sorted by name"]
+    if times is not None:
+        return times, []
+    without_time = [
+        name for name, exposure in zip(names, exposures, strict=True) if exposure.seconds is None
+    ]
+    if not without_time:
+        return None, []
+    named = times_in_names(names)
+    if named is not None:
+        return named, ["no exposure times in EXIF; hdrlab reads them from the file names"]
+    return [1.0] * len(names), [
+        f"no exposure time in EXIF of {', '.join(without_time)}; hdrlab estimates all times from the "
+        f"pixels. If you know the times, {HINT}"
+    ]
 
 
 def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False) -> None:

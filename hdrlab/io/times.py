@@ -17,6 +17,10 @@ Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Pat
 
 # A number (0.5 or 0,5), a fraction (1/60), each with or without the unit "s".
 VALUE = re.compile(r"([\d.,]+(?:e[-+]?\d+)?)(?:/([\d.]+))?(s?)", re.IGNORECASE)
+# A file name that is an exposure time: 1_250, 1-250s, 0.004s, 2 sec.
+TIME_NAME = re.compile(r"(?:1[-_](\d+)\s*(?:s|sec)?|(\d+(?:[.,]\d+)?)\s*(?:s|sec))", re.IGNORECASE)
+# Exposures of a bracket differ by a third of a stop or more.
+MIN_EXPOSURE_RATIO = 1.25
 # What a column holds, by its heading; the first pattern that fits decides. A "rate" is a number
 # such as 60, which may mean 60 s or 1/60 s.
 HEADINGS = {
@@ -87,7 +91,19 @@ def bracket_times(
     inverse = None
     if isinstance(times, str | Path):
         source = str(times)
-        times, inverse = read_times(times)
+        bare = read_bare_numbers(times)
+        if bare is None:
+            times, inverse = read_times(times)
+        else:
+            if len(bare) != len(names):
+                raise InputError(
+                    f"{source}: expected {len(names)} exposure times, one per photo, got {len(bare)}"
+                )
+            lines = "\n".join(f"{j} {number}" for j, number in enumerate(bare))
+            times, inverse = _parse_times(source, _split_rows(source, lines))
+            times = {name: times[str(j)] for j, name in enumerate(names)}
+            if inverse is not None:
+                inverse = {name: inverse[str(j)] for j, name in enumerate(names)}
     if isinstance(times, Mapping):
         times = _look_up_times(times, names, source)
     if len(times) != len(names):
@@ -108,6 +124,47 @@ def bracket_times(
     if are_inverse(listed, equivalent_seconds(names, exposures), source):
         return inverted, None
     return listed, None
+
+
+def times_in_names(names: Sequence[str]) -> list[float] | None:
+    """Return the exposure times that file names such as 1_250.jpg or 0.004s.jpg are, or None.
+
+    All names must be times, and no two of them may be close to each other, as the numbers of photos
+    are.
+
+    Examples
+    --------
+    >>> times_in_names(["1_2.jpg", "1_8.jpg"]), times_in_names(["IMG_1.jpg", "IMG_2.jpg"])
+    ([0.5, 0.125], None)
+    """
+    seconds = []
+    for name in names:
+        match = TIME_NAME.fullmatch(Path(name).stem)
+        if not match:
+            return None
+        denominator = positive(match[1])
+        time = positive((match[2] or "").replace(",", "."))
+        if denominator is not None:
+            time = 1 / denominator
+        if time is None:
+            return None
+        seconds.append(time)
+    ascending = np.sort(seconds)
+    is_spaced = np.all(ascending[1:] >= MIN_EXPOSURE_RATIO * ascending[:-1])
+    return seconds if is_spaced else None
+
+
+def read_bare_numbers(path: str | Path) -> list[str] | None:
+    """Return the numbers of a list that has one number or fraction a line and no file names, or None.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is no text.
+    """
+    rows = _read_rows(path)
+    numbers = [cells[0] for _, cells in rows if len(cells) == 1 and VALUE.fullmatch(cells[0])]
+    return numbers if rows and len(numbers) == len(rows) else None
 
 
 def are_inverse(
@@ -172,7 +229,11 @@ def read_times(path: str | Path) -> TimeList:
     >>> read_times(file)
     TimeList(seconds={'night.png': 0.5}, inverse=None)
     """
-    rows = _read_rows(path)
+    return _parse_times(path, _read_rows(path))
+
+
+def _parse_times(path: str | Path, rows: list[tuple[str, list[str]]]) -> TimeList:
+    """Return the times in the rows of a list."""
     heading = _read_heading(rows[0][1]) if rows else None
     if heading:
         rows = rows[1:]
@@ -223,6 +284,11 @@ def _read_rows(path: str | Path) -> list[tuple[str, list[str]]]:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
         raise FileFormatError(f"{path}: a list of exposure times must be a text file") from None
+    return _split_rows(path, text)
+
+
+def _split_rows(path: str | Path, text: str) -> list[tuple[str, list[str]]]:
+    """Return the place and the cells of each line that has some."""
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         if len(line) > MAX_LINE_LENGTH:

@@ -112,7 +112,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
         raise InputError(f"expected photos with at least two different exposures, got {stated}")
     note = describe_relative_times(relative.times)
     if all_equal and times == "correct":
-        note = f"all stated times are the same: {note}"
+        note = f"no different exposure times are stated: {note}"
     return relative, (note,)
 
 

@@ -173,16 +173,11 @@ def test_photos_may_be_named_one_by_one_in_any_order(photographs, tmp_path):
     assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
 
 
-def test_photos_without_times_are_rejected_with_advice(photographs, tmp_path, capsys):
-    code, said, complaint = hdrlab(
-        "assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys
-    )
-    assert code == 2 and said == ""
-    assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1
-    assert (
-        "--times estimate" in complaint and "--stops 2" in complaint and "frame0.png" in complaint
-    )
-    assert not (tmp_path / "x.hdr").exists()
+def test_photos_without_times_get_relative_ones_with_advice(photographs, tmp_path, capsys):
+    code, _, notes = hdrlab("assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert code == 0
+    assert "frame0.png" in notes and "--times FILE" in notes and "--stops 2" in notes
+    assert (tmp_path / "x.hdr").exists()
 
 
 @pytest.mark.papers
@@ -445,7 +440,7 @@ def test_info_states_format_and_size(map_file, photographs, capsys):
 def test_failed_run_keeps_the_old_file(photographs, tmp_path):
     out = tmp_path / "room.hdr"
     out.write_bytes(b"precious")
-    assert hdrlab("assemble", photographs[0], "-o", out) == 2
+    assert hdrlab("assemble", photographs[0], "-o", out, "--times", "missing.csv") == 2
     assert out.read_bytes() == b"precious"
 
 

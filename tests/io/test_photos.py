@@ -280,11 +280,57 @@ def test_error_names_both_frames_that_do_not_match(tmp_path, first, second, says
 
 
 @pytest.mark.parametrize("missing", [None, 0.0])
-def test_error_names_a_photo_without_exposure_time_and_what_to_do(tmp_path, missing):
+def test_a_photo_without_exposure_time_makes_all_times_equal_with_a_note(tmp_path, missing):
     save(tmp_path / "a.jpg", RGB8, seconds=1.0)
     save(tmp_path / "b.jpg", RGB8, seconds=missing)
-    with pytest.raises(ValueError, match="b.jpg.*EXIF.*--times"):
-        read_bracket(tmp_path)
+    notes = []
+    assert read_bracket(tmp_path, note=notes.append).times.tolist() == [1, 1]
+    assert "b.jpg" in notes[0] and "a.jpg" not in notes[0] and "--times" in notes[0]
+
+
+def test_exposure_times_are_read_from_file_names(tmp_path):
+    for name in ("1_250", "1_60", "0.1s"):
+        save(tmp_path / f"{name}.jpg", RGB8)
+    notes = []
+    bracket = read_bracket(tmp_path, note=notes.append)
+    assert bracket.times == pytest.approx([1 / 250, 1 / 60, 0.1])
+    assert len(notes) == 1
+
+
+@pytest.mark.parametrize("names", [("1_1", "1_2", "1_3", "1_4", "1_5"), ("IMG_1", "IMG_250")])
+def test_numbers_of_photos_are_no_exposure_times(tmp_path, names):
+    for name in names:
+        save(tmp_path / f"{name}.jpg", RGB8)
+    notes = []
+    assert np.ptp(read_bracket(tmp_path, note=notes.append).times) == 0
+
+
+def test_a_list_of_bare_numbers_belongs_to_the_photos_sorted_by_name(tmp_path):
+    for name in "abc":
+        save(tmp_path / f"{name}.jpg", RGB8)
+    (tmp_path / "times.txt").write_text("0.5\n1/8\n2\n")
+    notes = []
+    bracket = read_bracket(tmp_path, tmp_path / "times.txt", note=notes.append)
+    assert dict(zip(bracket.names, bracket.times, strict=True)) == {
+        "b.jpg": 1 / 8,
+        "a.jpg": 0.5,
+        "c.jpg": 2,
+    }
+    assert len(notes) == 1
+    (tmp_path / "times.txt").write_text("0.5\n2\n")
+    with pytest.raises(ValueError, match="times.txt.*3 exposure times"):
+        read_bracket(tmp_path, tmp_path / "times.txt")
+
+
+@pytest.mark.parametrize("missing", ["f_number", "iso"])
+def test_what_one_photo_does_not_state_is_taken_from_all_others(tmp_path, missing):
+    stated = {"f_number": 4.0, "iso": 200}
+    for name, seconds in ("a", 1.0), ("b", 2.0), ("c", 4.0):
+        tags = stated | ({missing: None} if name == "b" else {})
+        save(tmp_path / f"{name}.jpg", RGB8, seconds=seconds, **tags)
+    notes = []
+    assert read_bracket(tmp_path, note=notes.append).times.tolist() == [1, 2, 4]
+    assert len(notes) == 1 and "b.jpg" in notes[0]
 
 
 @pytest.mark.parametrize(
@@ -421,11 +467,6 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
         np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid)
         and not bracket.valid.all()
     )
-
-
-def test_error_for_the_crusader_bracket_without_times_says_what_to_do(shared):
-    with pytest.raises(ValueError, match="1.jpeg.*EXIF.*--times"):
-        read_bracket(shared("crusader") / "frames")
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif"])
