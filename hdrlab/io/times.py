@@ -151,7 +151,9 @@ def times_in_names(names: Sequence[str]) -> list[float] | None:
         seconds.append(time)
     ascending = np.sort(seconds)
     is_spaced = np.all(ascending[1:] >= MIN_EXPOSURE_RATIO * ascending[:-1])
-    return seconds if is_spaced else None
+    # 1_1, 1_2, 1_3 number the photos of a first series.
+    is_numbered = len(seconds) > 2 and np.allclose(np.diff(1 / ascending), -1)
+    return seconds if is_spaced and not is_numbered else None
 
 
 def read_bare_numbers(path: str | Path) -> list[str] | None:

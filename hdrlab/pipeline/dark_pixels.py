@@ -12,7 +12,7 @@ same luminance.
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, ArrayLike, Mask, as_mask, as_radiance, as_stack
+from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_mask, as_radiance, as_stack
 from hdrlab.core.colour import luminance
 
 # Up to this signal-to-noise ratio of its brightest channel, a pixel has no color.
@@ -75,13 +75,9 @@ def measure_color_certainty(
         is_dark &= mask[longest]
     if not is_dark.any():
         return None
-    # Imported here, because SciPy's filters take a fifth of a second to import.
-    from scipy.ndimage import uniform_filter
-
     signal = np.zeros(image.shape[:2], np.float32)
     for channel in range(image.shape[2]):
-        mean = uniform_filter(image[..., channel].astype(np.float32), WINDOW_SIDE, mode="nearest")
-        np.maximum(signal, mean, out=signal)
+        np.maximum(signal, _average_window(image[..., channel]), out=signal)
     signal_to_noise = signal / np.float32(noise)
     span = FULL_SIGNAL_TO_NOISE - MIN_SIGNAL_TO_NOISE
     certainty = np.clip((signal_to_noise - MIN_SIGNAL_TO_NOISE) / span, 0, 1)
@@ -91,6 +87,19 @@ def measure_color_certainty(
     if np.all(certainty == 1):
         return None
     return certainty.astype(np.float32)
+
+
+def _average_window(channel: Array) -> F32:
+    """Return the mean over the window around each pixel of (H, W), continued beyond the edges."""
+    height, width = channel.shape
+    padded = np.pad(channel.astype(np.float32), WINDOW_SIDE // 2, mode="edge")
+    columns = np.zeros((height, padded.shape[1]), np.float32)
+    for shift in range(WINDOW_SIDE):
+        columns += padded[shift : shift + height]
+    total = np.zeros((height, width), np.float32)
+    for shift in range(WINDOW_SIDE):
+        total += columns[:, shift : shift + width]
+    return total / np.float32(WINDOW_SIDE**2)
 
 
 def measure_black_fraction(certainty: ArrayLike) -> float:

@@ -319,7 +319,7 @@ def test_a_list_of_bare_numbers_belongs_to_the_photos_sorted_by_name(tmp_path):
     assert len(notes) == 1
     (tmp_path / "times.txt").write_text("0.5\n2\n")
     with pytest.raises(ValueError, match="times.txt.*3 exposure times"):
-        read_bracket(tmp_path, tmp_path / "times.txt")
+        read_bracket(tmp_path, tmp_path / "times.txt", note=notes.append)
 
 
 @pytest.mark.parametrize("missing", ["f_number", "iso"])
