@@ -102,6 +102,8 @@ def tonemap(
         to = KIND_BY_SUFFIX.get(out.suffix.lower(), "picture")
     # bad options are reported before the work starts
     _require_image_suffix(out, to)
+    if to == "ultrahdr":
+        _require_ultrahdr_headroom(headroom)
     knobs: dict[str, Any] = dict(common.parse_setting(text) for text in settings)
     E = common.read_map(source, clean)
     check_settings("tonemap", find_operator(operator), knobs)
@@ -121,6 +123,16 @@ def _require_image_suffix(out: Path, kind: str) -> None:
         photos.require_writable(out)
     else:
         files.require_suffix(out, SUFFIXES_BY_KIND[kind], f"an image for --to {kind}")
+
+
+def _require_ultrahdr_headroom(headroom: float) -> None:
+    """Raise an InputError if a gain map cannot store this headroom."""
+    from hdrlab.io.maps.ultrahdr import MAX_HEADROOM
+
+    if not 1 < headroom <= MAX_HEADROOM:
+        raise InputError(
+            f"--headroom: expected more than 1 and at most {MAX_HEADROOM}, got {headroom}"
+        )
 
 
 def _write_image(

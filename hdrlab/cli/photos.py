@@ -176,6 +176,14 @@ def assemble(
         return
 
     bracket = brackets.read_bracket(photos, times, mask, stops)
+    if meter_reading:
+        height, width = bracket.images.shape[1:3]
+        x, y, _ = meter_reading
+        if x >= width or y >= height:
+            raise InputError(
+                f"--calibrate: pixel {x},{y} is outside of the photos, which have {width} x {height} "
+                "pixels"
+            )
     times_mode = "correct"
     if times == "estimate":
         times_mode = "estimate"

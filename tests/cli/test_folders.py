@@ -99,3 +99,19 @@ def test_info_of_a_folder_names_what_is_missing_and_bad_files_and_goes_on(tmp_pa
     for missing in ("time", "ISO", "f-number", "camera"):
         assert missing in plain
     assert "bad.jpg" in table
+
+
+def test_a_meter_reading_outside_of_the_photos_is_refused(two_brackets, tmp_path, capsys):
+    out = tmp_path / "a.hdr"
+    code, _, errors = run(capsys, "assemble", two_brackets, "-o", out, "--calibrate", "80,5=100")
+    assert code == 2
+    assert "--calibrate" in errors
+    assert not out.exists()
+
+
+def test_a_wrong_headroom_is_refused_before_the_map_is_read(tmp_path, capsys):
+    (tmp_path / "a.hdr").write_bytes(b"no map")
+    words = ("tonemap", tmp_path / "a.hdr", "-o", tmp_path / "a.jpg", "--to", "ultrahdr")
+    code, _, errors = run(capsys, *words, "--headroom", "0.5")
+    assert code == 2
+    assert "headroom" in errors
