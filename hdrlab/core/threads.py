@@ -73,6 +73,9 @@ def map_in_threads(
         return
     tasks: deque[Future[Answer]] = deque()
     pool = ThreadPoolExecutor(THREADS)
+    # Python may collect an abandoned generator anywhere, even while another thread starts. To wait
+    # for threads there could wait forever.
+    waits_for_threads = True
     try:
         for item in items:
             # np.errstate belongs to the context, so each thread gets a copy of it.
@@ -81,5 +84,8 @@ def map_in_threads(
                 yield tasks.popleft().result()
         while tasks:
             yield tasks.popleft().result()
+    except GeneratorExit:
+        waits_for_threads = False
+        raise
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown(wait=waits_for_threads, cancel_futures=True)

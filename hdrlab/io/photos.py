@@ -6,6 +6,7 @@ order. Then each frame is decoded once, straight into its place, several at a ti
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -165,9 +166,9 @@ def read_bracket(
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
-    decoded = map_in_threads(decode_frame, range(len(headers)))
-    for _ in progress([header.path for header in headers]):
-        next(decoded)
+    with closing(map_in_threads(decode_frame, range(len(headers)))) as decoded:
+        for _ in progress([header.path for header in headers]):
+            next(decoded)
     sound = [j for j in range(len(headers)) if j not in errors]
     damaged = [*selection.damaged, *(errors[j] for j in sorted(errors))]
     album.require_enough_sound(damaged, len(sound))

@@ -86,3 +86,21 @@ def test_an_error_in_background_work_is_raised_by_result():
 def test_work_on_a_small_image_runs_in_the_calling_thread():
     task = threads.run_in_background(threading.get_ident, pixels=threads.PIXELS - 1)
     assert task.result() == threading.get_ident()
+
+
+def test_an_abandoned_generator_does_not_wait_for_its_threads(monkeypatch):
+    """Garbage collection may end it while another thread starts, where waiting would never end."""
+    monkeypatch.setattr(threads, "THREADS", 2)
+    may_end = threading.Event()
+
+    def work(item):
+        if item:
+            may_end.wait(60)
+        return item
+
+    results = threads.map_in_threads(work, range(8))
+    assert next(results) == 0
+    results.close()
+    is_waiting = not may_end.is_set()
+    may_end.set()
+    assert is_waiting

@@ -439,6 +439,8 @@ def _parse_primaries(path: str | Path, lines: list[str]) -> tuple[float, ...] | 
         raise FileFormatError(
             f"{path}: expected x and y of red, green, blue and white, got {line[:90]!r}"
         ) from None
+    if not primaries.any():
+        return None  # some programs write zeros for primaries that they do not know
     if np.allclose(primaries, RADIANCE_PRIMARIES, rtol=0, atol=PRIMARIES_TOLERANCE):
         return None
     return tuple(map(float, primaries))
