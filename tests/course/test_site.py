@@ -37,7 +37,7 @@ pytestmark = [
         reason='the site needs pip install ".[site]"',
     ),
 ]
-REFUSED = ("without times", "one photograph", "times the other way round", "two sizes")
+REFUSED = ("one photograph", "times the other way round", "two sizes")
 ADDRESS = "https://example.org/course"
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 PATIENCE = 1800  # seconds: what hangs ends; a machine may be as busy as it likes
@@ -576,7 +576,6 @@ def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_pat
         halved = j % 2 == 0 and what == "two sizes"  # a half of them: fewer would be left out
         write_picture(tmp_path / f"frame{j}.jpg", Z[::2, ::2] if halved else Z)
     said = {
-        "without times": lambda: refusal(read_bracket, tmp_path),
         "one photograph": lambda: refusal(read_bracket, tmp_path / "frame1.jpg"),
         "times the other way round": lambda: refusal(
             pipeline.assemble, read_bracket(tmp_path, stated[::-1])
