@@ -31,7 +31,7 @@ DEVIATION_PER_MAD = 1.4826
 # below this certainty a pixel counts as black in every photo
 MAX_BLACK_CERTAINTY = 0.25
 # fraction of black pixels from which a longer exposure is missing
-MIN_BLACK_FRACTION = 0.02
+MIN_BLACK_FRACTION = 0.05
 
 
 def measure_color_certainty(

@@ -86,7 +86,8 @@ def test_photos_from_different_viewpoints_give_warnings(assembled, options):
     assert found.doubts and np.all(np.isfinite(found.E)) and found.E.any()
 
 
-@pytest.mark.parametrize("folder", ["mertens_house", "crusader/frames"])
-def test_photos_without_times_raise_an_error_that_names_the_options(assembled, folder):
-    with pytest.raises(ValueError, match=r"--times FILE.*--stops 2.*--times estimate"):
-        assembled(folder)
+def test_photos_without_times_become_a_map_with_relative_times_and_a_note(assembled):
+    found = assembled("mertens_house")
+    assert found.fallback == "" and found.E.any()
+    assert np.all(np.diff(found.bracket.times) > 0)
+    assert any("relative exposure times" in note for note in found.notes)
