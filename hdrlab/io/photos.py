@@ -20,7 +20,7 @@ from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import album, files, raw
+from hdrlab.io import album, files, raw, white_level
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.exif_exposure import HINT, Exposure, fill_missing, luminance_of_unit
 from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
@@ -91,7 +91,8 @@ def read_bracket(
     """Read a bracket of photos, with their exposure times.
 
     A damaged photo is left out, if two or more others remain; the field `damaged` of the bracket
-    names it.
+    names it. Where 16-bit photos are clipped at a lower value than 65535, such as 4095, this value
+    becomes 65535, see `hdrlab.io.white_level`.
 
     Parameters
     ----------
@@ -180,6 +181,11 @@ def read_bracket(
         valid = None if valid is None else valid[sound]
         names = [names[j] for j in sound]
         order = order[sound]
+    if not is_raw:
+        white = white_level.find_white_level(images, valid=valid)
+        if white is not None:
+            white_level.scale_to_full_white(images, white)
+            note(white_level.describe_white_level(white))
     if inverse:
         brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
         if are_inverse([seconds[j] for j in order], brightness):
