@@ -82,28 +82,26 @@ def remove_ghosts(
 ) -> Assembly:
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
-    With "reference", the reference is the middle photo.
+    With "reference", the reference is the middle photo. A warning says if most of the image moved.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
     from hdrlab.radiance.deghosting import ghosts
 
     bracket = state.bracket
-    is_auto = mode == "auto"
     result = ghosts.remove_ghosts(
         bracket.images,
         bracket.times,
         state.g,
         pixel_weights,
         fixed=len(bracket.images) // 2 if mode == "reference" else None,
-        most=ghosts.WIDESPREAD if is_auto else np.inf,
         merged=Merged(state.E, state.quality),
         valid=bracket.valid,
         merge=merge,
     )
-    state = replace(state, stage="ghosts")
-    if is_auto and 100 * np.mean(result.labels > 0) >= ghosts.WIDESPREAD:
-        return state
-    state = replace(state, E=result.E, quality=result.quality, moving=result.labels)
+    state = replace(state, stage="ghosts", E=result.E, quality=result.quality, moving=result.labels)
+    percent = 100 * np.mean(result.labels > 0)
+    if percent >= ghosts.WIDESPREAD:
+        state = state.with_doubt(warning_text("widespread", percent=percent))
     return state.with_note(ghosts.note(result, bracket.names))
 
 

@@ -88,7 +88,7 @@ def assemble(
         How to show things that moved. "none" leaves them half transparent. "regions" takes each
         moving region from the photo that exposes it best, "reference" takes all of them from the
         middle photo, see `radiance.deghosting.ghosts`. "auto" is "regions" if much moved, see
-        `diagnostics.motion`, unless the photos contradict each other nearly everywhere.
+        `diagnostics.motion`. If most of the image moved, there is a warning.
     flare : {"none", "glare"}
         "glare" removes veiling glare, the light that the lens scattered, see `radiance.flare`.
     in_place : bool

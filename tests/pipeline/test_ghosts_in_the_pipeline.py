@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from PIL import Image
 
 from hdrlab import pipeline, scenes
-from hdrlab.capture import camera, lens_flare, movers
+from hdrlab.capture import camera, lens_flare, movers, responses
 from hdrlab.cli import main
 from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
@@ -74,10 +74,21 @@ def test_auto_does_not_change_the_map_of_a_still_scene():
     )
 
 
-def test_auto_keeps_a_map_with_widespread_contradictions_and_warns(moving, monkeypatch):
-    monkeypatch.setattr("hdrlab.radiance.deghosting.ghosts.WIDESPREAD", 1)
-    auto, none = (pipeline.assemble(moving, align="none", ghosts=way) for way in ("auto", "none"))
-    assert np.array_equal(auto.E, none.E) and any("--ghosts regions" in one for one in auto.doubts)
+def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
+    wall = np.full((*SHAPE, 3), 0.4, np.float32)
+    ball = movers.ball(SHAPE, (48, 72), 44, [1.5, 1.0, 0.6])
+    taken = movers.shoot(wall, ball, movers.path(3, (0, 36)), [0.2, 0.6, 1.8], rng=1).bracket
+
+    def film(images, times, valid=None):
+        return responses.true_g("film")
+
+    knobs = {"align": "none", "times": "stated", "response": film}
+    auto = pipeline.assemble(taken, **knobs)
+    regions = pipeline.assemble(taken, **knobs, ghosts="regions")
+    assert np.mean(auto.moving > 0) > 0.5
+    assert np.array_equal(auto.E, regions.E)
+    assert any("moved" in doubt for doubt in auto.doubts)
+    assert not any("--ghosts regions" in doubt for doubt in auto.doubts)
 
 
 def test_flare_removal_is_the_last_stage_before_the_comparison():

@@ -10,7 +10,6 @@ from hdrlab.diagnostics import outlying_frames
 from hdrlab.diagnostics.exposure_times import Estimate
 from hdrlab.pipeline import corrections, timing
 from hdrlab.pipeline.assembly import Assembly
-from hdrlab.radiance.deghosting import ghosts
 
 TAKEN = bracket(np.full((5, 20, 20), 9, np.uint8), [1, 2, 3, 4, 5], "abcde")
 STATE = Assembly(
@@ -44,31 +43,6 @@ def test_more_than_one_dropped_frame_is_a_warning(monkeypatch):
     found = corrections.drop_outlying_frames(STATE, has_relative_times=True)
     assert found.bracket.names == ("b", "c", "e")
     assert found.doubts and not found.notes
-
-
-@pytest.mark.parametrize(
-    ("way", "moved", "fixed", "most"),
-    [
-        ("reference", 399, 2, np.inf),
-        ("regions", 399, None, np.inf),
-        ("auto", 199, None, ghosts.WIDESPREAD),
-    ],
-)
-def test_ghosts_reference_uses_the_middle_photo_and_auto_stops_at_widespread_motion(
-    way, moved, fixed, most, monkeypatch
-):
-    def remove(*_, **named):
-        asked.append((named["fixed"], named["most"]))
-        labels = (np.arange(400) < moved).astype(np.int32).reshape(20, 20)
-        return ghosts.Ghosts(STATE.E + 1, STATE.quality, labels, np.array([2]), labels > 0, STATE.E)
-
-    asked = []
-    monkeypatch.setattr(ghosts, "remove_ghosts", remove)
-    found = corrections.remove_ghosts(STATE, way, np.ones(256), None)
-    assert asked == [(fixed, most)] and found.E.all() and found.moving.sum() == moved
-    moved += 1
-    found = corrections.remove_ghosts(STATE, way, np.ones(256), None)
-    assert bool(found.E.any()) == (found.moving is not None) == (way != "auto")
 
 
 @pytest.mark.parametrize(
