@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.capture import camera, responses
-from hdrlab.radiance.merge import METHODS, merge_with_quality
+from hdrlab.radiance.merge import CLIPPING_LEVEL, METHODS, merge_with_quality
 from hdrlab.radiance.uncertainty import inverse_variance_merge, merge_with_deviation, variance
 
 WELL, READ = 8_000, 6.0
@@ -35,6 +35,44 @@ def test_95_percent_of_pixels_in_each_decade_lie_within_1_96_deviations(response
     decade = np.floor(np.log10(LIGHT))
     shares = [inside[(decade == one) & np.isfinite(found.s)].mean() for one in (-3, -2, -1, 0)]
     assert np.allclose(shares, 0.95, atol=0.02), shares
+
+
+def draws_near_clipping(relation, frame):
+    """Return E / s errors z of 20,000 draws of a light by the clip level of a frame, five frames."""
+    g = responses.true_g("linear", 256)
+    whole = np.exp(g[-1])
+    times = 4.0 ** np.arange(5)
+    level = int(CLIPPING_LEVEL * 255) + 1
+    E = relation * np.exp(g[level]) / whole / times[frame]
+    sensor = camera.Camera(response="linear", bits=8, full_well=WELL, read_noise=READ)
+    taken = camera.shoot(np.full((100, 200), E), times, sensor, rng=1)
+    found = merge_with_deviation(taken.images, taken.times, g, WELL / whole, READ)
+    known = np.isfinite(found.s)
+    return (found.E - E * whole)[known] / found.s[known]
+
+
+@pytest.mark.parametrize("relation", [0.96, 0.99, 1.005, 1.02])
+def test_light_at_the_clip_level_of_the_shortest_frame_lies_within_1_96_deviations(relation):
+    z = draws_near_clipping(relation, frame=0)
+    assert z.size > 100
+    assert np.mean(np.abs(z) < 1.96) > 0.94
+
+
+@pytest.mark.parametrize("relation", [0.94, 0.97, 0.98, 0.99, 1.0, 1.01, 1.02])
+@pytest.mark.parametrize("frame", [1, 2])
+def test_the_clip_level_of_a_longer_frame_hardly_biases_the_mean(relation, frame):
+    z = draws_near_clipping(relation, frame)
+    assert z.size == 20_000
+    assert np.mean(np.abs(z) < 1.96) == pytest.approx(0.95, abs=0.035)  # levels are 84 electrons
+    assert abs(z.mean()) < 0.2  # 0.36 if a frame is judged by its own level
+
+
+def test_the_deviation_of_light_in_the_middle_of_the_range_is_that_of_the_variances():
+    g = responses.true_g("linear", 65536)
+    images = np.full((1, 1, 1), 32_768, np.uint16)
+    found = merge_with_deviation(images, [1], g, N=1e4, R=5.0)
+    V = variance(np.array(1.0), np.array(0.0), 1e4, 5.0)
+    assert found.s[0, 0] ** 2 == pytest.approx(float(V), rel=1e-3)
 
 
 @pytest.mark.parametrize("response", ["linear", "gamma", "film"])
