@@ -258,15 +258,19 @@ def _skip_other_formats(paths: list[Path]) -> KeptAndNotes:
 def _skip_other_sizes(paths: list[Path]) -> KeptAndNotes:
     """Keep the photos of one size and kind, if these are more than half of them."""
     kinds: dict[Path, Hashable] = {}
-    notes = []
+    skipped: dict[str, list[Path]] = defaultdict(list)
     for path in paths:
         try:
             header = decode.read_header(path)
         except files.OtherPixels as error:
-            notes.append(f"{error}: skipped")
+            skipped[str(error).removeprefix(f"{path}: ")].append(path)
             continue
         sides = tuple(sorted(header.shape[:2]))
         kinds[path] = (sides, header.shape[2:], header.dtype, header.kind == "RAW")
+    sentences = [f"{_name_group(group)}: {reason}" for reason, group in skipped.items()]
+    if not kinds and len(sentences) == 1:
+        raise files.OtherPixels(sentences[0])
+    notes = [f"{sentence}: skipped" for sentence in sentences]
     if not kinds:
         return [], notes
     most_frequent, count = Counter(kinds.values()).most_common(1)[0]
@@ -281,6 +285,11 @@ def _skip_other_sizes(paths: list[Path]) -> KeptAndNotes:
                 f"{path.name}: skipped, because its size or type differs from the other photos"
             )
     return kept, notes
+
+
+def _name_group(paths: list[Path]) -> str:
+    """Return the first of some paths, and how many more there are."""
+    return str(paths[0]) if len(paths) == 1 else f"{paths[0]} (and {len(paths) - 1} more)"
 
 
 def turn_alike(headers: list[decode.PhotoHeader]) -> tuple[list[decode.PhotoHeader], list[str]]:

@@ -4,7 +4,7 @@ simplejpeg decodes JPEG, because it reports what libjpeg only warns of: imagecod
 the missing parts of a damaged JPEG with gray or with shifted blocks, and say nothing. imagecodecs
 decodes PNG, because it keeps all 16 bits (Pillow cuts RGB to 8) and writes into an array that is
 given, and AVIF of more than 8 bits. Pillow decodes WebP and other AVIF, pillow-heif HEIC, and
-tifffile TIFF.
+tifffile TIFF, see `hdrlab.io.tiff_pages`.
 """
 
 import io
@@ -17,9 +17,9 @@ import numpy as np
 from PIL import Image
 
 from hdrlab.core.arrays import Array
-from hdrlab.core.optional import imagecodecs, pillow_heif, simplejpeg, tifffile
+from hdrlab.core.optional import imagecodecs, pillow_heif, simplejpeg
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import jpegxl
+from hdrlab.io import jpegxl, tiff_pages
 
 # hdrlab's own errors report what is wrong with a file.
 for codec in ("tifffile", "imagecodecs"):
@@ -35,9 +35,6 @@ PNG_ALPHA_FLAG = 4
 AV1_FLAGS_OFFSET = 6
 AV1_HIGH_BITDEPTH_FLAG = 0x40
 AV1_TWELVE_BIT_FLAG = 0x20
-# A tile of a TIFF may be larger than the image, but not without limit.
-MAX_TILE_TO_IMAGE_RATIO = 4
-MIN_TILE_LIMIT_SAMPLES = 2**24
 
 Decoder = Callable[[bytes, Array | None], Array]
 
@@ -188,27 +185,10 @@ def _fill_16_bits(pixels: Array, depth: int) -> Array:
     return pixels | pixels >> depth
 
 
-def decode_tiff(data: bytes, out: Array | None = None) -> Array:
-    """Decode the first page of a TIFF, in the byte order of this machine."""
-    with tifffile.TiffFile(io.BytesIO(data)) as file:
-        page = file.pages.first
-        strips = zip(page.dataoffsets, page.databytecounts, strict=True)
-        data_end = max((offset + size for offset, size in strips), default=0)
-        if data_end > len(data):
-            raise FileFormatError("its pixels go past the end of the file")
-        tile_limit = max(MAX_TILE_TO_IMAGE_RATIO * np.prod(page.shape), MIN_TILE_LIMIT_SAMPLES)
-        if np.prod(page.chunks) > tile_limit:
-            raise FileFormatError("its tiles go far beyond the image")
-        pixels = page.asarray()
-    if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
-        pixels = np.moveaxis(pixels, 0, -1)
-    return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
-
-
 DECODERS: dict[str, Decoder] = {
     "JPEG": decode_jpeg,
     "PNG": decode_png,
-    "TIFF": decode_tiff,
+    "TIFF": tiff_pages.decode_photo,
     "WEBP": decode_by_pillow,
     "AVIF": decode_avif,
     "HEIF": decode_heic,

@@ -11,23 +11,25 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, BinaryIO, Literal
 
 import numpy as np
 from PIL import ExifTags, Image
 
 from hdrlab.core.arrays import Array
-from hdrlab.core.optional import pillow_heif, tifffile
+from hdrlab.core.optional import pillow_heif
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import codecs, jpegxl, profiles, raw
+from hdrlab.io import codecs, jpegxl, profiles, raw, tiff_pages
 from hdrlab.io.exif_camera import read_camera, read_time_taken
 from hdrlab.io.exif_exposure import Exposure, read_exposure
-from hdrlab.io.files import OtherPixels, check_size, require_no_folder
+from hdrlab.io.files import CMYK_REASON, OtherPixels, check_size, require_no_folder
+from hdrlab.io.tiff_pages import PHOTOMETRIC
 
 # What the files of each format begin with.
 MAGIC = {
-    "TIFF": rb"II\*\0|MM\0\*",
+    "TIFF": rb"II[*+]\0|MM\0[*+]",
     "JPEG": rb"\xff\xd8\xff",
     "PNG": rb"\x89PNG\r\n\x1a\n",
     "WEBP": rb"RIFF....WEBP",
@@ -57,8 +59,6 @@ MODE_NAMES = {
     "F": "floating point",
     "I": "32-bit integers",
 }
-# TIFF's names of images with so many channels, without alpha.
-PHOTOMETRIC = {1: "MINISBLACK", 3: "RGB"}
 
 # Words near the beginning of a file with a gain map: Adobe's, those of ISO 21496-1, and Apple's.
 GAIN_MAP_WORDS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
@@ -168,7 +168,7 @@ def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeade
     if path.suffix.lower() in raw.SUFFIXES:
         raw_shape, exposure = raw.read_shape_and_exposure(path)
         with open(path, "rb") as stream:
-            facts = _read_exif(lambda exif: exif.load_from_fp(stream))
+            facts = _read_exif(partial(_load_tiff_exif, stream))
         return PhotoHeader(
             path,
             "RAW",
@@ -315,7 +315,7 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
     is_color = mode.startswith("RGB")
     if kind == "PNG":  # Pillow turns gray of 16 bits with alpha into RGBA
         is_color = bool(head[PNG_COLOR_TYPE_OFFSET] & PNG_COLOR_FLAG)
-    facts = _read_exif(lambda exif: exif.load(info.get("exif") or b""))
+    facts = _read_exif(lambda: _load_exif(info.get("exif")))
     return PhotoHeader(
         path,
         kind,
@@ -340,6 +340,8 @@ def _read_bit_depth(kind: str, head: bytes) -> int:
 
 def _require_readable_mode(path: Path, mode: str, depth: int) -> None:
     """Raise OtherPixels for a mode or a depth that hdrlab does not read."""
+    if mode == "CMYK":
+        raise OtherPixels(f"{path}: {CMYK_REASON}")
     if depth < 8:
         pixels = f"{depth}-bit pixels"
     elif mode not in READ_MODES:
@@ -351,7 +353,7 @@ def _require_readable_mode(path: Path, mode: str, depth: int) -> None:
 
 def _read_jxl_header(path: Path, head: bytes) -> PhotoHeader:
     """Return the header of a JPEG XL, which states its orientation itself, whatever EXIF says."""
-    facts = _read_exif(lambda exif: exif.load(jpegxl.exif(head)))
+    facts = _read_exif(lambda: _load_exif(jpegxl.exif(head)))
     header = jpegxl.read_header(path, head)
     is_pq_or_hlg = header.transfer in (jpegxl.PQ_TRANSFER, jpegxl.HLG_TRANSFER)
     return PhotoHeader(
@@ -369,62 +371,60 @@ def _read_jxl_header(path: Path, head: bytes) -> PhotoHeader:
 
 
 def _read_tiff_header(path: Path) -> PhotoHeader:
-    """Return the header of a TIFF's first page; floating-point pages may have any alpha channels."""
-    open_tiff = tifffile.TiffFile  # outside `try`: it may say what to install
-    try:
-        with open_tiff(path) as file:
-            page = file.pages.first
-            height = int(page.imagelength)
-            width = int(page.imagewidth)
-            slices = int(page.imagedepth)
-            channels = int(page.samplesperpixel)
-            alpha_channels = len(page.extrasamples)
-            photometric = str(getattr(page.photometric, "name", page.photometric))[:40]
-            dtype = np.dtype(page.dtype)
-            icc = page.iccprofile
-            comments = page.description.splitlines()
-    except Exception as error:  # on damaged files tifffile raises exceptions of any type
-        reason = str(error)[:200]
-        raise FileFormatError(
-            f"{path}: expected a photograph, its header is damaged ({reason})"
-        ) from None
-    is_floating = dtype.kind == "f"
-    color_channels = channels
-    if is_floating:
-        color_channels -= alpha_channels
-    elif alpha_channels == 1:
-        color_channels -= 1
-    is_readable_type = is_floating or dtype in (np.dtype("u1"), np.dtype("u2"))
-    if PHOTOMETRIC.get(color_channels) != photometric or not is_readable_type:
-        raise OtherPixels(
-            f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {photometric}"
-        )
-    if slices != 1:
-        raise OtherPixels(f"{path}: expected one image, got a stack of {slices}")
-    with open(path, "rb") as stream:
-        facts = _read_exif(lambda exif: exif.load_from_fp(stream))
+    """Return the header of the photo in a TIFF, which may not be the first page."""
+    page = tiff_pages.read_page_facts(path)
+    facts = _read_tiff_exif(path, page)
     return PhotoHeader(
         path,
         "TIFF",
-        shape=(height, width, 3) if color_channels == 3 else (height, width),
-        dtype=dtype,
+        shape=page.shape,
+        dtype=page.dtype,
         orientation=facts.orientation,
         exposure=facts.exposure,
-        icc=facts.icc(icc),
+        icc=facts.icc(page.icc),
         processing=facts.processing,
-        comments=comments,
+        comments=page.comments,
         camera=facts.camera,
         taken=facts.taken,
     )
 
 
-def _read_exif(load: Callable[[Image.Exif], None]) -> ExifFacts:
-    """Return what hdrlab uses of EXIF; unreadable EXIF states nothing, the photo may still be good."""
+def _read_tiff_exif(path: Path, page: tiff_pages.PageFacts) -> ExifFacts:
+    """Return the EXIF of the photo in a TIFF, or else that of the first page."""
+    with open(path, "rb") as stream:
+        if page.is_big:  # Pillow reads its directories only as those of an image
+            facts = _read_exif(lambda: Image.open(stream, formats=("TIFF",)).getexif())
+        else:
+            facts = _read_exif(partial(_load_tiff_exif, stream))
+            own_facts = _read_exif(partial(_load_tiff_exif, stream, page.directory_offset))
+            if own_facts.exposure.seconds is not None:
+                return own_facts
+    if page.is_first or page.orientation not in range(1, 9):
+        return facts
+    return replace(facts, orientation=page.orientation)
+
+
+def _load_tiff_exif(stream: BinaryIO, directory_offset: int | None = None) -> Image.Exif:
+    """Return the EXIF of a TIFF file, by default that of its first directory."""
+    stream.seek(0)
     exif = Image.Exif()
+    exif.load_from_fp(stream, directory_offset)
+    return exif
+
+
+def _load_exif(block: bytes | None) -> Image.Exif:
+    """Return the EXIF of a block of bytes."""
+    exif = Image.Exif()
+    exif.load(block or b"")
+    return exif
+
+
+def _read_exif(load: Callable[[], Image.Exif]) -> ExifFacts:
+    """Return what hdrlab uses of EXIF; unreadable EXIF states nothing, the photo may still be good."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            load(exif)
+            exif = load()
             orientation = exif.get(ExifTags.Base.Orientation, 1)
             exposure = read_exposure(exif)
             interop_index = exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)

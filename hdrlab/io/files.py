@@ -14,6 +14,12 @@ from hdrlab.errors import FileFormatError, InputError
 # Beyond any camera, and 1.6 GB as float32 RGB.
 MAX_PIXELS = 2**27
 
+# Why a photo for print cannot be a frame of a bracket.
+CMYK_REASON = (
+    "this photo is CMYK, for print, and its values do not tell how much light there was; "
+    "export it as RGB from the original photo"
+)
+
 
 class OtherPixels(InputError):
     """An image that cannot be a frame of a bracket: with a palette, of CMYK, of floats, ..."""

@@ -122,7 +122,7 @@ FILES = {
         (
             "ink.jpg",
             lambda: pillow("JPEG", "CMYK"),
-            "expected gray or RGB of 8 or 16 bits, got CMYK",
+            "CMYK, for print",
             None,
         ),
     ],

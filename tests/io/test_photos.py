@@ -340,13 +340,13 @@ def test_what_one_photo_does_not_state_is_taken_from_all_others(tmp_path, missin
         ("RGBA", "png", "an alpha channel with transparent"),
         ("LA", "png", "an alpha channel with transparent"),
         ("1", "png", "1-bit pixels"),
-        ("CMYK", "jpg", "CMYK"),
-        ("P", "tif", "PALETTE"),
+        ("CMYK", "jpg", "CMYK, for print"),
+        ("P", "tif", "a palette"),
         ("RGBA", "tif", "an alpha channel with transparent"),
-        ("CMYK", "tif", "SEPARATED"),
+        ("CMYK", "tif", "CMYK, for print"),
         ("1", "tif", "bool|1-bit"),
         ("F", "tif", "float32"),
-        ("YCbCr", "tif", "YCBCR"),
+        ("YCbCr", "tif", "YCbCr"),
     ],
 )
 def test_unsupported_pixel_types_are_rejected_by_name(tmp_path, mode, suffix, says):
@@ -355,7 +355,7 @@ def test_unsupported_pixel_types_are_rejected_by_name(tmp_path, mode, suffix, sa
     if mode.endswith("A"):
         image.putalpha(128)
     image.save(path)
-    with pytest.raises(ValueError, match=f"x.{suffix}: .*gray or RGB.*, got.*({says})"):
+    with pytest.raises(ValueError, match=f"x.{suffix}: .*({says})"):
         read_photo(path)
 
 
