@@ -322,7 +322,7 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
 
     Z = to_256(photos.read_photo(photo))
     correction = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
-    photos.write_picture(out, correction.picture)
+    photos.write_picture(out, correction.picture, is_result=True)
     fraction = correction.relevant.mean()
     click.echo(
         f"important region: {correction.by}, {fraction:.0%} of the photo, "

@@ -152,15 +152,16 @@ def _paths(value: object) -> list[Path]:
 def _photos_in(folder: Path) -> list[Path]:
     """Return the photos in a folder: a command that gets the folder reads them. Files have none.
 
-    The pictures that hdrlab wrote there are none, so that a command can be repeated.
+    Pictures that hdrlab wrote there, and radiance maps, are no photos, so that a command can be
+    repeated.
     """
     from hdrlab.io import album
-    from hdrlab.io.own_pictures import is_own_picture
+    from hdrlab.io.own_pictures import is_own_picture, is_radiance_map
 
     if not os.path.isdir(folder):
         return []
     photos = [path for path in folder.iterdir() if path.suffix.lower() in album.SUFFIXES]
-    return [path for path in photos if not is_own_picture(path)]
+    return [path for path in photos if not is_own_picture(path) and not is_radiance_map(path)]
 
 
 def choice_option(

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, raw, splitting
-from hdrlab.io.own_pictures import is_own_picture
+from hdrlab.io.own_pictures import is_own_picture, is_radiance_map
 
 SUFFIXES = raw.SUFFIXES | {
     ".jpg",
@@ -68,10 +68,10 @@ def select(paths: Paths, *, split: bool = True) -> Selection:
     Photos with a damaged header are left out, if two or more others remain. Otherwise, several
     paths are used as they are. From a folder, hdrlab skips
 
-    - pictures that hdrlab wrote,
+    - pictures that hdrlab wrote, and radiance maps,
     - photos whose names say that they are edited copies of others,
     - all but one of the photos that differ by their suffix alone, as a RAW file and a JPEG do,
-    - images with a palette, of CMYK or of floating-point numbers,
+    - images with a palette, or of CMYK,
     - photos of another size or kind than more than half of them, as thumbnails are,
     - all brackets but the first, if the photos are several brackets, see `hdrlab.io.splitting`.
 
@@ -176,12 +176,14 @@ def _require_two(paths: list[Path], notes: Sequence[str] = ()) -> None:
 
 
 def _skip_own_pictures(paths: list[Path]) -> KeptAndNotes:
-    """Skip pictures that hdrlab wrote."""
+    """Skip pictures that hdrlab wrote, and radiance maps, whoever wrote them."""
     kept = []
     notes = []
     for path in paths:
         if is_own_picture(path):
             notes.append(f"{path.name}: skipped, because hdrlab made this picture")
+        elif is_radiance_map(path):
+            notes.append(f"{path.name}: skipped, because it is a radiance map, not a photo")
         else:
             kept.append(path)
     return kept, notes

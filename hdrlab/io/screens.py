@@ -15,6 +15,7 @@ import numpy as np
 from hdrlab.core.arrays import ArrayLike
 from hdrlab.core.optional import imagecodecs
 from hdrlab.io import files
+from hdrlab.io.own_pictures import PNG_HEADER_BYTES, mark_avif, mark_png
 
 # The numbers of ITU-T H.273: primaries [table 2], transfer function [3] and matrix [4].
 COLOR_PRIMARIES = {"bt2020": 9, "p3": 12}
@@ -22,8 +23,6 @@ TRANSFER_PQ = 16
 MATRIX_IDENTITY = 0
 AVIF_MATRIX = {"bt2020": 9, "p3": 6}
 FULL_RANGE = 1
-# The signature of a PNG and its first chunk, IHDR.
-PNG_HEADER_BYTES = 33
 MAX_PNG_CODE = 2**16 - 1
 AVIF_BITS = 10
 MAX_AVIF_CODE = 2**AVIF_BITS - 1
@@ -61,7 +60,7 @@ def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> N
     checksum = zlib.crc32(named_body)
     chunk = struct.pack(">L", len(body)) + named_body + struct.pack(">L", checksum)
     codes = np.rint(MAX_PNG_CODE * np.asarray(v)).astype(np.uint16)
-    data = imagecodecs.png_encode(codes)
+    data = mark_png(imagecodecs.png_encode(codes))
     files.write(path, data[:PNG_HEADER_BYTES] + chunk + data[PNG_HEADER_BYTES:])
 
 
@@ -99,7 +98,7 @@ def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> 
         matrix=AVIF_MATRIX[primaries],
         pixelformat=AVIF_PIXEL_FORMAT_444,
     )
-    files.write(path, data)
+    files.write(path, mark_avif(data))
 
 
 def write_jxl(path: str | Path, E: ArrayLike) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from hdrlab.errors import InputError
 from hdrlab.io import album, decode, splitting
 from hdrlab.io.exif_exposure import Exposure
-from hdrlab.io.own_pictures import is_own_picture
+from hdrlab.io.own_pictures import is_own_picture, is_radiance_map
 from hdrlab.show import plots
 
 HEADINGS = ("file", "time", "ISO", "f-number", "EV", "size", "camera", "missing")
@@ -31,6 +31,9 @@ def describe_folder(folder: Path) -> list[str]:
     for path in album.list_folder(folder):
         if is_own_picture(path):
             problems.append(f"{path.name}: made by hdrlab")
+            continue
+        if is_radiance_map(path):
+            problems.append(f"{path.name}: a radiance map, not a photo")
             continue
         try:
             headers.append(decode.read_header(path))

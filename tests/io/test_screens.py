@@ -177,7 +177,7 @@ def test_pq_encoding_is_noted_by_info_and_in_a_bracket(name, tmp_path, capsys):
     for k in (1, 2):
         (folder / f"{k}{path.suffix}").write_bytes(path.read_bytes())
     said = []
-    read_bracket(folder, [1, 2], note=said.append)
+    read_bracket(sorted(folder.iterdir()), [1, 2], note=said.append)
     (warning,) = said
     assert "HDR screen" in warning
     assert "PQ or HLG" in describe_file(path)["processing"]

@@ -27,6 +27,7 @@ from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radian
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, profiles, web
 from hdrlab.io.codecs import decode_jpeg, jpeg_end
+from hdrlab.io.own_pictures import make_exif
 from hdrlab.io.photos import PICTURES
 
 # What the segments of a JPEG begin with: binary metadata, XMP, and the index.
@@ -203,7 +204,7 @@ def write_picture(
     # The index has the length of the first JPEG, so it is filled in when that is known.
     placeholder = _mpf_index(0, 0, 0)
     segments += _segment(APP2, MPF + placeholder)
-    first_jpeg = _encode_jpeg(picture, encoding, segments)
+    first_jpeg = _encode_jpeg(picture, {**encoding, "exif": make_exif()}, segments)
     index_offset = first_jpeg.index(MPF) + len(MPF)
     index = _mpf_index(len(first_jpeg), len(second_jpeg), index_offset)
     files.write(path, first_jpeg.replace(placeholder, index) + second_jpeg)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from hdrlab.core.picture import Statistics
 from hdrlab.errors import InputError
 from hdrlab.io.files import replacing, require_suffix
+from hdrlab.io.own_pictures import SOFTWARE
 from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
 
@@ -193,7 +194,7 @@ def write_sheet(path: str | Path, sheet: Figure) -> None:
     """
     check_suffix(path)
     alt = require_alt(str(sheet.get_label()))
-    metadata = {"Title": "Contact sheet", "Description": alt}
+    metadata = {"Title": "Contact sheet", "Description": alt, "Software": SOFTWARE}
     with replacing(path) as name:
         sheet.savefig(name, format="png", dpi=PIXELS_PER_INCH, metadata=metadata)
 

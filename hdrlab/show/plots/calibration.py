@@ -18,6 +18,7 @@ from hdrlab.core.arrays import F64, ArrayLike, as_table
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
+from hdrlab.io.own_pictures import SOFTWARE
 from hdrlab.show import pictures, plots
 from hdrlab.show.pages import templates, wording
 
@@ -143,6 +144,8 @@ def write_plot(path: str | Path, figure: Figure) -> None:
     }
     if suffix == ".svg":
         metadata["Date"] = None
+    else:
+        metadata["Software"] = SOFTWARE
     with replacing(path) as name, matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(name, format=suffix[1:], metadata=metadata)
 

@@ -185,7 +185,7 @@ def test_bracket_uses_the_base_picture_with_a_warning(tmp_path):
     for k, name in enumerate("ab"):
         ultrahdr.write_picture(tmp_path / f"{name}.jpg", pipeline.develop(E * 4**k, "curves"), E)
     with pytest.warns(UserWarning, match=r"a\.jpg.* .*gain map: .* tone-mapped locally"):
-        taken = read_bracket(tmp_path, [1, 4])
+        taken = read_bracket([tmp_path / "a.jpg", tmp_path / "b.jpg"], [1, 4])
     assert np.array_equal(taken.images[0], read_photo(tmp_path / "a.jpg"))
 
 
