@@ -166,13 +166,20 @@ pictures.picture(
 # classify the image around it: whatever differs from $g$ by less than $\sigma$ is detail, and the
 # rest is an edge. With $d = |l - g|$, the image is remapped to
 #
-# $$r = \begin{cases} g \pm \sigma\, (d / \sigma)^\alpha & d \le \sigma \\
+# $$r = \begin{cases} g \pm \sigma\, f(d / \sigma) & d \le \sigma \\
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
-# with + where $l$ is above $g$ and - where it is below. $\alpha$ below 1 amplifies details, and
-# $\beta$ is the fraction that remains of an edge's contrast beyond $\sigma$. ($l$ and the number
-# $g$ are natural logarithms. $\sigma$ is `sigma` and $\alpha$ is `alpha`, both above 0; $\beta$ is
-# `beta`.)
+# with + where $l$ is above $g$ and - where it is below. $\beta$ is the fraction that remains of an
+# edge's contrast beyond $\sigma$. For $\alpha \ge 1$, $f(x) = x^\alpha$ makes details weaker. For
+# $\alpha < 1$, this power amplifies details, but its slope at 0 is infinite, so it would amplify
+# noise most of all. Therefore differences up to 0.01, a contrast of 1 %, stay as they are, and a
+# smooth step leads to the power at 0.02:
+#
+# $$f(x) = \tau\, x^\alpha + (1 - \tau)\, x, \qquad \tau = y^2 (2 - y)^2, \qquad
+#   y = \min\Bigl(\max\Bigl(\frac{d}{0.01} - 1,\, 0\Bigr),\, 1\Bigr).$$
+#
+# ($l$ and the number $g$ are natural logarithms, so $d$ is in nats. $\sigma$ is `sigma` and
+# $\alpha$ is `alpha`, both above 0; $\beta$ is `beta`.)
 
 # %% task="remap"
 # Return the remapped r of log luminance lL (H, W), for the reference value g.

@@ -319,6 +319,12 @@ SENTENCES = {
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
         "a ramp of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
+        "Noise of 0.005 nats becomes not quite twice as strong": lambda n: (
+            1.7 < noise_grows(n, 0.005) < 2
+        ),
+        "noise of 0.02 nats still becomes five times as strong": lambda n: (
+            round(noise_grows(n, 0.02)) == 5
+        ),
     },
     "18": {
         "but reduces $Q$ by only three hundredths": lambda n: (
@@ -485,6 +491,13 @@ def bits_without_bands(n, encoding):
         if all(np.less(steps, list(visible_percent.values()))):
             return bits
     return None
+
+
+def noise_grows(n, size):
+    """Return by which factor the remapping of the local Laplacian filter amplifies noise."""
+    noise = np.random.default_rng(1).normal(0, size, 100_000)
+    r = n.local_laplacian.remap(noise, 0.0, sigma=0.92, alpha=0.5, beta=0.0)
+    return r.std() / noise.std()
 
 
 def levels_met(n, time):

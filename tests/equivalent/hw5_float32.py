@@ -51,6 +51,9 @@ def remap(lL, g, *, sigma, alpha, beta):
     d = lL.astype(f32) - f32(g)
     edge = np.abs(d) > sigma
     near = f32(sigma) * (np.abs(d) / f32(sigma)) ** f32(alpha)
+    if alpha < 1:
+        y = np.clip(np.abs(d) / f32(0.01) - f32(1), f32(0), f32(1))
+        near += (f32(1) - y**2 * (f32(2) - y) ** 2) * (np.abs(d) - near)
     far = f32(sigma) + f32(beta) * (np.abs(d) - f32(sigma))
     return f32(g) + np.where(d > 0, 1, -1).astype(f32) * np.where(edge, far, near)
 

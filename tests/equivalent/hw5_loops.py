@@ -71,6 +71,10 @@ def remap(lL, g, *, sigma, alpha, beta):
     for (y, x), value in np.ndenumerate(lL):
         d = abs(float(value) - g)
         far = sigma * (d / sigma) ** alpha if d <= sigma else sigma + beta * (d - sigma)
+        if alpha < 1 and d < 0.02:
+            step = max(d / 0.01 - 1, 0)
+            tau = (step * (2 - step)) ** 2
+            far = tau * far + (1 - tau) * d
         r[y, x] = g + math.copysign(far, value - g)
     return r
 

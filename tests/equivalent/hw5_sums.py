@@ -51,7 +51,12 @@ def guided(I, p=None, *, radius, epsilon):
 def remap(lL, g, *, sigma, alpha, beta):
     d = lL - g
     detail = np.clip(d, -sigma, sigma)
-    return g + np.sign(detail) * np.abs(detail / sigma) ** alpha * sigma + beta * (d - detail)
+    raised = np.sign(detail) * np.abs(detail / sigma) ** alpha * sigma
+    if alpha < 1:
+        y = np.clip(100 * np.abs(d) - 1, 0, 1)
+        tau = y**2 * (2 - y) ** 2
+        raised = tau * raised + (1 - tau) * detail
+    return g + raised + beta * (d - detail)
 
 
 # %% task="pq"

@@ -41,7 +41,7 @@ def test_alpha_1_and_beta_1_do_not_change_the_image(samples):
 
 @given(sigma=st.floats(0.1, 5), alpha=st.floats(0.2, 3), beta=st.floats(0, 1), g=st.floats(-9, 0))
 def test_the_remapping_is_odd_about_g_and_goes_on_where_detail_ends(sigma, alpha, beta, g):
-    d = np.array([0, sigma / 2, sigma, 1.001 * sigma, 3 * sigma])
+    d = np.array([0, sigma / 2, sigma, 1.001 * sigma, 3 * sigma])  # all above noise, or 0
     up, down = (
         local_laplacian.remap(g + s * d, g, sigma=sigma, alpha=alpha, beta=beta) - g
         for s in (1, -1)
@@ -49,6 +49,39 @@ def test_the_remapping_is_odd_about_g_and_goes_on_where_detail_ends(sigma, alpha
     assert np.allclose(up, -down) and up[0] == 0
     assert np.allclose(up[[1, 2, 4]], [sigma / 2**alpha, sigma, sigma + 2 * beta * sigma])
     assert up[3] == pytest.approx(sigma, rel=0.0011)
+
+
+@pytest.mark.parametrize("alpha", [0.25, 0.5, 0.75])
+def test_differences_below_one_percent_stay_as_they_are_and_larger_ones_have_the_power(alpha):
+    noise = np.array([-0.01, -0.004, 0.0, 0.002, 0.01])
+    r = local_laplacian.remap(noise - 3, -3.0, sigma=0.9, alpha=alpha, beta=0.3)
+    assert np.allclose(r + 3, noise)
+    details = np.array([0.02, 0.1, 0.5])
+    r = local_laplacian.remap(details - 3, -3.0, sigma=0.9, alpha=alpha, beta=0.3)
+    assert np.allclose(r + 3, 0.9 * (details / 0.9) ** alpha)
+
+
+def test_the_step_from_noise_to_details_is_smooth_and_rises():
+    d = np.linspace(0, 0.03, 301)
+    r = local_laplacian.remap(d, 0.0, sigma=0.9, alpha=0.5, beta=0.0)
+    assert np.all(np.diff(r) > 0)
+    assert np.abs(np.diff(r)).max() < 0.003
+
+
+def test_noise_of_half_a_percent_is_hardly_amplified():
+    noise = np.random.default_rng(0).normal(0, 0.005, (64, 64))
+    L = np.exp(noise)
+    plain, raised = (
+        np.log(local_laplacian.tonemap(L, alpha=alpha, samples=60)) for alpha in (1.0, 0.5)
+    )
+    assert raised.std() < 4 * plain.std()  # ten times without the guard
+
+
+def test_by_default_the_samples_are_half_a_sigma_apart_for_any_range():
+    L = np.geomspace(1e-6, 1, 64 * 64).reshape(64, 64)
+    fine = local_laplacian.tonemap(L, samples=400)
+    coarse = np.abs(local_laplacian.tonemap(L, samples=16) - fine).max()
+    assert np.abs(local_laplacian.tonemap(L) - fine).max() < coarse / 2
 
 
 def test_each_sample_is_a_step_and_a_later_one_leaves_it_as_it_was():

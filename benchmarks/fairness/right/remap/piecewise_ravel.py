@@ -6,13 +6,23 @@ import numpy as np
 def remap(lL, g, *, sigma, alpha, beta):
     lL = np.asarray(lL, dtype=float)
     x = (lL - g).ravel()
+
+    def detail(t):
+        u = np.abs(t)
+        f = (u / sigma) ** alpha
+        if alpha < 1:
+            y = np.interp(u, [0.01, 0.02], [0, 1])
+            tau = (2 * y - y * y) ** 2
+            f = tau * f + (1 - tau) * u / sigma
+        return np.sign(t) * sigma * f
+
     r = np.piecewise(
         x,
         [x < -sigma, x > sigma],
         [
             lambda t: -sigma + beta * (t + sigma),
             lambda t: sigma + beta * (t - sigma),
-            lambda t: np.sign(t) * sigma * (np.abs(t) / sigma) ** alpha,
+            detail,
         ],
     )
     return r.reshape(lL.shape) + g

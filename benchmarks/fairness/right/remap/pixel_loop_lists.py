@@ -14,7 +14,12 @@ def remap(lL, g, *, sigma, alpha, beta):
         for l, c in zip(row, place):
             d = abs(l - c)
             if d <= sigma:
-                step = sigma * math.pow(d / sigma, alpha)
+                f = math.pow(d / sigma, alpha)
+                if alpha < 1 and d < 0.02:
+                    y = max(0.0, (d - 0.01) / 0.01)
+                    tau = y * y * (2 - y) * (2 - y)
+                    f = tau * f + (1 - tau) * d / sigma
+                step = sigma * f
             else:
                 step = sigma + beta * (d - sigma)
             if l > c:

@@ -9,4 +9,9 @@ def remap(lL, g, *, sigma, alpha, beta):
     d = np.abs(x)
     inside = np.minimum(d, sigma)
     beyond = np.maximum(d - sigma, 0.0)
-    return g + np.sign(x) * (sigma * np.power(inside / sigma, alpha) + beta * beyond)
+    f = np.power(inside / sigma, alpha)
+    if alpha < 1:
+        y = np.minimum(np.maximum(100 * d - 1, 0), 1)
+        tau = y * y * (2 - y) * (2 - y)
+        f = tau * f + (1 - tau) * inside / sigma
+    return g + np.sign(x) * (sigma * f + beta * beyond)

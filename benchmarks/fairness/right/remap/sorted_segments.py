@@ -12,11 +12,17 @@ def remap(lL, g, *, sigma, alpha, beta):
     low = np.searchsorted(s, -sigma, side="left")
     middle = np.searchsorted(s, 0.0, side="left")
     high = np.searchsorted(s, sigma, side="right")
+    small = s[low:high]
+    f = (np.abs(small) / sigma) ** alpha
+    if alpha < 1:
+        y = np.clip(np.abs(small) / 0.01 - 1, 0, 1)
+        tau = y**2 * (y - 2) ** 2
+        f = tau * f + (1 - tau) * np.abs(small) / sigma
     out = np.concatenate(
         [
             -(sigma + beta * (-s[:low] - sigma)),
-            -(sigma ** (1 - alpha)) * (-s[low:middle]) ** alpha,
-            sigma ** (1 - alpha) * s[middle:high] ** alpha,
+            -sigma * f[: middle - low],
+            sigma * f[middle - low :],
             sigma + beta * (s[high:] - sigma),
         ]
     )

@@ -7,10 +7,16 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, same
 
 
+def differences(rng, low, high):
+    """Return differences from g (24, 30), from low to high above it or below it."""
+    return rng.choice([-1.0, 1.0], (24, 30)) * rng.uniform(low, high, (24, 30))
+
+
 def drawn(rng):
-    """Return log luminance, a value g in the middle of its range, and sigma."""
+    """Return log luminance that differs from g by more than noise, the value g, and sigma."""
     g = float(rng.uniform(-4, -2))
-    return (g + rng.uniform(-3, 3, (24, 30))).astype(np.float32), g, float(rng.uniform(0.4, 0.75))
+    lL = g + differences(rng, 0.03, 3)
+    return lL.astype(np.float32), g, float(rng.uniform(0.4, 0.75))
 
 
 @points(4)
@@ -40,10 +46,8 @@ def test_details_are_raised_to_the_power_alpha(subject, rng):
 
     r = g +- sigma (d / sigma)^alpha, with d = |lL - g|.
     """
-    lL, g, sigma = drawn(rng)
-    small = (g + (lL - g) * sigma / 3.01).astype(
-        np.float32
-    )  # scaled so that all differences are below sigma
+    _, g, sigma = drawn(rng)
+    small = (g + differences(rng, 0.03, 0.99 * sigma)).astype(np.float32)
     for alpha in (0.5, 2.0):
         expected = g + np.sign(small - g) * sigma * (np.abs(small - g) / sigma) ** alpha
         came = subject.remap(small, g, sigma=sigma, alpha=alpha, beta=0.0)
@@ -67,6 +71,29 @@ def test_edges_are_scaled_by_beta(subject, rng):
         expected = g + np.sign(edges - g) * (sigma + beta * beyond)
         came = subject.remap(edges, g, sigma=sigma, alpha=1.0, beta=beta)
         same(came, expected, 1e-3, what=f"r of edges, beta = {beta:g}", picture=True)
+
+
+@points(2)
+def test_noise_is_not_amplified(subject, rng):
+    """A power below 1 has an infinite slope at g, so it amplifies noise most of all. What do you do
+    about it?
+
+    For alpha < 1, blend the power with d / sigma itself. The weight tau depends on d in nats: 0 up
+    to 0.01, 1 from 0.02 on. For alpha of 1 or more, do not blend.
+
+    For alpha < 1: r = g +- sigma (tau (d / sigma)^alpha + (1 - tau) d / sigma), with tau = y^2
+    (2 - y)^2 and y = d / 0.01 - 1, between 0 and 1.
+    """
+    _, g, sigma = drawn(rng)
+    lL = (g + differences(rng, 0.0, 0.025)).astype(np.float32)
+    d = np.abs(lL - g)
+    y = np.clip(d / 0.01 - 1, 0, 1)
+    for alpha in (0.5, 2.0):
+        power = (d / sigma) ** alpha
+        tau = y**2 * (2 - y) ** 2 if alpha < 1 else 1.0
+        expected = g + np.sign(lL - g) * sigma * (tau * power + (1 - tau) * d / sigma)
+        came = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=0.0)
+        same(came, expected, 1e-3, what=f"r of noise, alpha = {alpha:g}", picture=True)
 
 
 def test_twice_the_light_only_shifts_r(subject, rng):
