@@ -99,9 +99,10 @@ def calibrate(Z: ArrayLike) -> Transfer:
     Parameters
     ----------
     Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the
-        others of
-        an evenly lit surface. At least three brighter pairs; with ten, up to a full well, that too.
-        Of a sensor with filters, the pixels of one colour.
+        others of an evenly lit surface. At least three brighter pairs; with ten, up to a full well,
+        that too. Of a sensor with filters, the pixels of one colour. One dark pair stands for all
+        exposures. So change the light and keep the time, or keep all times so short that there is
+        no dark current.
 
     Returns
     -------

@@ -14,6 +14,11 @@ S compares the visible structure of scene and picture at five scales, each half 
 before. N does not depend on the scene: it is how common the picture's mean and contrast are among
 3000 photographs. Both use luminance only, so wrong colours do not lower them.
 
+What S cannot see: tau is a threshold in gray levels, 0.9 to 2.9, but x goes up to 2^32 - 1. So in
+the scene nearly every difference counts as visible, even one far below what an eye sees. S
+therefore lowers a picture that leaves a flat dark wall flat, and rewards one that amplifies its
+noise. Compare Q of pictures of one scene, and look at them.
+
 The constants are those of the paper and, where it leaves one open, of its authors' program: the
 range of x, and 1.4 for the square root of 2 in tau.
 """

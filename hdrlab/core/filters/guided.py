@@ -39,14 +39,20 @@ def window_mean(v: F64, radius: int) -> F64:
 def lines(I: F64, p: F64, *, radius: int, epsilon: float) -> Lines:  # noqa: E741
     """Return a = cov(I, p) / (var(I) + eps) and b = mean(p) - a mean(I) of each window [He13 eq. 5, 6].
 
-    It is the least squares of (a I + b - p)^2 + eps a^2, summed over the window [He13 eq. 4].
+    It is the least squares of (a I + b - p)^2 + eps a^2, summed over the window [He13 eq. 4]. The
+    means of the whole picture are subtracted first: the squares of large numbers that differ by
+    little would cancel.
     """
+    offset_I = I.mean()
+    offset_p = p.mean()
+    I = I - offset_I  # noqa: E741
+    p = p - offset_p
     mean_I = window_mean(I, radius)
     mean_p = window_mean(p, radius)
     cov = window_mean(I * p, radius) - mean_I * mean_p
     var = window_mean(I * I, radius) - mean_I**2
-    a = cov / (var + epsilon)
-    return Lines(a, mean_p - a * mean_I)
+    a = cov / (np.maximum(var, 0) + epsilon)
+    return Lines(a, mean_p + offset_p - a * (mean_I + offset_I))
 
 
 def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: float) -> F64:  # noqa: E741
