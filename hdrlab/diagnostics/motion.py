@@ -177,7 +177,7 @@ def sum_blocks(values: Array) -> F32:
     w = values.shape[2] // BLOCK_SIDE
     rows = (
         values[:, : h * BLOCK_SIDE]
-        .reshape(len(values), h, BLOCK_SIDE, -1)
+        .reshape(len(values), h, BLOCK_SIDE, values.shape[2])
         .sum(axis=2, dtype=np.float32)
     )
     return np.asarray(

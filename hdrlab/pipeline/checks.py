@@ -1,5 +1,6 @@
 """Checks of a finished radiance map: the warnings and notes of the last stage."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -8,9 +9,10 @@ import numpy as np
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import Task, run_in_background
-from hdrlab.diagnostics import consistency, contradictions, motion
+from hdrlab.diagnostics import consistency, contradictions, motion, tones
 from hdrlab.diagnostics.contradictions import Contradictions
 from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.tones import PartError
 from hdrlab.pipeline.assembly import Assembly
 
 # stops of spread; brackets with true times stay below 0.2, those of scanned film included
@@ -41,6 +43,7 @@ def check_map(
     found: Contradictions,
     moving_fraction: float,
     band_stops: float,
+    part_errors: Sequence[PartError] = (),
 ) -> Assembly:
     """Return the Assembly with `medians`, and with warnings and notes from what the checks found.
 
@@ -56,6 +59,8 @@ def check_map(
         Fraction of the image in which ghosts are left.
     band_stops : float
         Stops by which the light changes in horizontal bands.
+    part_errors : sequence of PartError
+        Errors in parts of the image, see `diagnostics.tones.measure_part_errors`.
     """
     state = replace(state, stage="compare", medians=medians)
     spread = state.spread
@@ -65,10 +70,17 @@ def check_map(
     if is_worthless(medians) and not state.fallback:
         reason = f"the photos contradict each other by {spread:.2f} stops"
         state = replace(state, fallback=reason)
+    if not state.fallback:
+        dark_text = tones.warn_of_dark_parts(part_errors)
+        state = state.with_doubt(dark_text) if dark_text else state
     text = _describe_problem(state, found, moving_fraction, band_stops)
     if text:
         return state.with_doubt(text)
     names = state.bracket.names
+    if not state.fallback:
+        text = tones.warn_of_parts(part_errors, names)
+        if text:
+            return state.with_doubt(text)
     unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
     if unchecked:
         return state.with_note(

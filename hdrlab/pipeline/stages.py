@@ -15,7 +15,7 @@ import numpy as np
 from hdrlab.core import steps
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import run_in_background
-from hdrlab.diagnostics import consistency, motion
+from hdrlab.diagnostics import consistency, motion, tones
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable, merge_with_quality
@@ -239,8 +239,20 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         partial(consistency.measure_level_exposures, sample, times, sample_map, valid=sample_valid),
         pixels=images[0].size,
     )
+    blocks_task = run_in_background(
+        partial(
+            tones.measure_block_errors,
+            sample,
+            times,
+            response.g,
+            sample_map,
+            valid=sample_valid,
+        ),
+        pixels=images[0].size,
+    )
     measured_motion = motion_task.result()
     medians = medians_task.result()
+    block_errors = blocks_task.result()
     contradictions = contradictions_task.result()
 
     has_motion = measured_motion.fraction > motion.MIN_MOVING_FRACTION
@@ -269,10 +281,17 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state = corrections.remove_glare(state)
         yield state
 
+    moving = None if state.moving is None else state.moving[grid[1:]]
+    part_errors = tones.measure_part_errors(block_errors, moving=moving)
     if state.moving is not None or is_misaligned:
         measured_motion = motion.Motion(fraction=0.0, band_stops=0.0)
     checked = checks.check_map(
-        state, medians, contradictions, measured_motion.fraction, measured_motion.band_stops
+        state,
+        medians,
+        contradictions,
+        measured_motion.fraction,
+        measured_motion.band_stops,
+        part_errors,
     )
     if is_misaligned:
         checked = replace(checked, doubts=state.doubts)
