@@ -1,4 +1,4 @@
-"""`python -m benchmarks [SUBJECT ...] [--rows A,B] [--json FILE]`: measure, print; 1 if a hold is missed."""
+"""`python -m benchmarks [SUBJECT ...] [--rows A,B] [--seed N]`: measure, print; 1 if a hold is missed."""
 
 import argparse
 import json
@@ -50,6 +50,13 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
         type=Path,
         help="read measured curves and maps here, not in ../shared/data; keep photographs for next time",
     )
+    parser.add_argument(
+        "--seed",
+        metavar="N",
+        type=int,
+        default=0,
+        help="draw other brackets in brackets-peers and verdicts-sound; 0 by default",
+    )
     options = parser.parse_args(arguments)
     options.subjects = options.subjects or subjects()
     if unknown := set(options.subjects) - set(subjects()):
@@ -62,14 +69,14 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def run(subject: str, rows: list[Row | Experiment], folder: Path) -> Iterator[Outcome]:
+def run(subject: str, rows: list[Row | Experiment], folder: Path, seed: int) -> Iterator[Outcome]:
     """Measure, print and yield a subject's rows; one that breaks does not stop the others."""
     load = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}"
     print(f"{subject} on {load}; {peers.versions()}\n", flush=True)
     for row in rows:
         results: Mapping[str, Any] | None
         try:
-            results, said = done(subject, row, folder)
+            results, said = done(subject, row, folder, seed)
         except Skipped as reason:
             results, said = {}, f"{row.name}: skipped, {reason}"
         except RuntimeError as error:
@@ -78,10 +85,12 @@ def run(subject: str, rows: list[Row | Experiment], folder: Path) -> Iterator[Ou
         yield row, results
 
 
-def done(subject: str, row: Row | Experiment, folder: Path) -> tuple[Mapping[str, Any], str]:
+def done(
+    subject: str, row: Row | Experiment, folder: Path, seed: int
+) -> tuple[Mapping[str, Any], str]:
     """Return the figures of a row, and its block of the table."""
     if isinstance(row, Experiment):
-        found = findings(row, folder)
+        found = findings(row, folder, seed)
         return found, table.experiment(row, found)
     results, missing = measured(subject, row, folder)
     return results, table.block(row, results, missing)
@@ -106,7 +115,8 @@ def main(arguments: list[str] | None = None) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         try:
             for subject in options.subjects:
-                outcomes.extend(run(subject, chosen(subject, options.rows), folder))
+                rows = chosen(subject, options.rows)
+                outcomes.extend(run(subject, rows, folder, options.seed))
         except KeyboardInterrupt:
             stopped = True
     print(f"{table.summary(outcomes)}; it took {time.perf_counter() - start:.0f} s")

@@ -55,14 +55,16 @@ class Hold(NamedTuple):
 class Experiment(NamedTuple):
     """A published experiment: `run` reads its data from a folder, and returns what it finds, by name.
 
-    `published` has what was published of figures without a hold.
+    `published` has what was published of figures without a hold. A row that draws at random
+    (`has_seed`) gets the seed of the command line: `run(folder, seed=seed)`.
     """
 
     name: str
     title: str
-    run: Callable[[Path], Mapping[str, ArrayLike]]
+    run: Callable[..., Mapping[str, ArrayLike]]
     holds: tuple[Hold, ...]
     published: Mapping[str, str] = MappingProxyType({})
+    has_seed: bool = False
 
 
 def at_most(what: str, *limits: float, published: str = "-") -> Hold:
@@ -91,10 +93,10 @@ def spread(errors: NDArray[np.float64]) -> Numbers:
     return (*np.quantile(errors, (0.5, 0.95)).tolist(), float(errors.max()))
 
 
-def findings(one: Experiment, folder: Path) -> Found:
+def findings(one: Experiment, folder: Path, seed: int = 0) -> Found:
     """Return what an experiment finds; Skipped and Ctrl-C pass, any other failure becomes a RuntimeError."""
     try:
-        found = one.run(folder)
+        found = one.run(folder, seed=seed) if one.has_seed else one.run(folder)
         return {
             what: tuple(np.atleast_1d(value).astype(float).tolist())
             for what, value in found.items()

@@ -1,4 +1,4 @@
-"""Run a command and print its seconds, its peak memory in bytes, and its exit code.
+"""Run a command and print its seconds, peak memory in bytes, processor seconds and exit code.
 
 A small process of its own, because Linux counts what the parent of a command held as the command's
 own.
@@ -23,7 +23,8 @@ def main(cpu: str, source: str, target: str, *command: str) -> None:
         process = subprocess.Popen(command, stdin=stdin, stdout=stdout)
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
-    print(seconds, usage.ru_maxrss * KIB, os.waitstatus_to_exitcode(status))
+    cpu_seconds = usage.ru_utime + usage.ru_stime
+    print(seconds, usage.ru_maxrss * KIB, cpu_seconds, os.waitstatus_to_exitcode(status))
 
 
 if __name__ == "__main__":

@@ -163,10 +163,10 @@ def process(
         str(target),
     ]
     done = subprocess.run([*launch, *command], cwd=ROOT, capture_output=True, text=True)
-    seconds, size, code = (done.stdout.split() or ["0", "0", "1"])[-3:]
+    seconds, size, cpu_seconds, code = (done.stdout.split() or ["0", "0", "0", "1"])[-4:]
     if done.returncode or int(code):
         raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()[-2000:]}")
-    return Usage(float(seconds), int(size) / 1e6)
+    return Usage(float(seconds), int(size) / 1e6, float(cpu_seconds))
 
 
 def _kilobytes(status: Path, field: str) -> int:

@@ -49,12 +49,17 @@ def halide() -> ModuleType:
     return _module("halide", HALIDE)
 
 
-def pfstools(program: str) -> str:
+def pfstools(name: str) -> str:
     """Return the path of one of the pfstools."""
-    found = shutil.which(program)
-    if found is None:
-        raise Missing(f"no {program} on the path (apt install pfstools)")
-    return found
+    return program(name, "apt install pfstools")
+
+
+def program(name: str, installation: str) -> str:
+    """Return the path of a program; where it is missing, say how to install it."""
+    path = shutil.which(name)
+    if path is None:
+        raise Missing(f"no {name} on the path ({installation})")
+    return path
 
 
 def pfs_bracket(bracket: Bracket, folder: Path) -> Path:
@@ -74,7 +79,7 @@ def pfs_run(
     command: list[str], source: Path, one: bool, idle: tuple[str, ...] = ("pfstag",)
 ) -> Run:
     """Return a run of one of the pfstools, less what the idle one takes: to read and write the same alone."""
-    busy, rest = ([pfstools(program), *options] for program, *options in (command, idle))
+    busy, rest = ([pfstools(name), *options] for name, *options in (command, idle))
 
     def run() -> Usage:
         spent = process(busy, one=one, source=source)

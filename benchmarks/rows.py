@@ -5,6 +5,7 @@ it lies the goal.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from math import log
 from pathlib import Path
@@ -16,15 +17,24 @@ NEAR = 1.25  # x the floor: what ratios of one run hold to
 Run = Callable[[], Any]
 
 
-class Usage(NamedTuple):
-    """What a process took; a run that starts processes returns this, and is not timed itself."""
+@dataclass(frozen=True)
+class Usage:
+    """What a process took; a run that starts processes returns this, and is not timed itself.
+
+    `cpu_seconds` is the processor time of the process and of those that it started.
+    """
 
     seconds: float
     megabytes: float
+    cpu_seconds: float = 0.0
 
     def net(self, idle: "Usage") -> "Usage":
         """Return what is left without what an idle process of the same input and output takes."""
-        return Usage(self.seconds - idle.seconds, self.megabytes - idle.megabytes)
+        return Usage(
+            self.seconds - idle.seconds,
+            self.megabytes - idle.megabytes,
+            self.cpu_seconds - idle.cpu_seconds,
+        )
 
 
 class Case(NamedTuple):

@@ -27,7 +27,7 @@ def block(row: Row, results: Results, missing: dict[str, str]) -> str:
 def experiment(row: Experiment, found: Found) -> str:
     """Return the block of an experiment: published, found, what must hold, and whether it does."""
     holds = {hold.what: hold for hold in row.holds}
-    lines = [("", "published", "hdrlab", "hold", "")]
+    lines = [("", "published", "found", "hold", "")]
     for what, numbers in found.items():
         hold = holds.get(what)
         published = hold.published if hold else row.published.get(what, "-")

@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
-from benchmarks import __main__ as command, experiments, measure, peers, table
+from benchmarks import __main__ as command, brackets, experiments, measure, peers, table
 from benchmarks.experiments import Experiment, Skipped, at_least, at_most, near
 from benchmarks.rows import (
     OURS,
@@ -230,6 +230,48 @@ def test_ctrl_c_ends_with_what_is_known_so_far(monkeypatch, capsys):
     assert "1 of 1 holds are met" in said.out and "stopped" in said.err
 
 
+def test_the_seed_reaches_the_rows_that_draw_at_random(monkeypatch, capsys):
+    seeds = []
+
+    def draw(folder, *, seed):
+        seeds.append(seed)
+        return {"x": seed}
+
+    rows = [
+        Experiment("random", "a draw", draw, (at_most("x", 9),), has_seed=True),
+        experiment(lambda: {"x": 0}, at_most("x", 1)),
+    ]
+    monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
+    assert command.main(["papers", "--seed", "7"]) == 0
+    assert seeds == [7]
+
+
+@pytest.fixture
+def simulated(tmp_path, monkeypatch):
+    monkeypatch.setattr(brackets, "SHAPE", (48, 80))
+    rng = np.random.default_rng(0)
+    return brackets.simulate(tmp_path, "street", "srgb", (20_000.0, 5.0), rng)
+
+
+def test_the_unit_and_the_white_balance_of_a_map_are_no_error(simulated):
+    E = simulated.E * np.array([2.0, 3.0, 5.0])
+    errors = brackets.measure_errors(E, simulated)
+    assert max(errors.median, errors.p95, errors.dark, errors.color) < 1e-5
+
+
+def test_a_compressed_map_has_errors_and_a_missing_pixel_counts_as_ten_stops(simulated):
+    compressed = brackets.measure_errors(simulated.E.astype(float) ** 0.8, simulated)
+    assert compressed.dark > compressed.median > 0.05
+    E = simulated.E.astype(float)
+    E[:, :10] = np.nan
+    assert brackets.measure_errors(E, simulated).p95 == brackets.MISSING_STOPS
+
+
+def test_photos_of_a_simulated_bracket_state_their_times(simulated):
+    read = [float(brackets.peer_maps.read_time(str(file))) for file in simulated.files]
+    np.testing.assert_allclose(read, simulated.times, rtol=1e-4)
+
+
 @pytest.mark.parametrize("processes", [1, 2])
 def test_work_along_many_items_keeps_their_order(processes, monkeypatch):
     monkeypatch.setattr(experiments, "PROCESSES", processes)
@@ -301,7 +343,7 @@ def test_the_machine_copies_at_least_a_hundred_megabytes_a_second():
 def test_a_run_of_processes_reports_its_own_time():
     assert measure.clocked(lambda: Usage(1234.5, 1)) == 1234.5
     assert 0.01 <= measure.clocked(lambda: time.sleep(0.01)) < 10
-    assert Usage(3, 100).net(Usage(1, 40)) == (2, 60)
+    assert Usage(3, 100, 5).net(Usage(1, 40, 2)) == Usage(2, 60, 3)
 
 
 @pytest.mark.skipif(

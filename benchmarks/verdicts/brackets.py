@@ -22,17 +22,42 @@ from scipy.ndimage import gaussian_filter
 from benchmarks.experiments import Skipped, measured_curves
 from hdrlab import scenes
 from hdrlab.capture import camera
+from hdrlab.capture.hand_motion import views
+from hdrlab.capture.responses import as_response
 from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.bracket import Bracket, bracket
 
 SHAPE = (344, 516)
 SCENES = (*scenes.PLACES, "room")
-SOUND = ("plain", "noise reduction", "black and white ends", "somebody far away")
+SOUND = (
+    "plain",
+    "noise reduction",
+    "black and white ends",
+    "somebody far away",
+    "by hand",
+    "bright lamps",
+    "dark ground",
+    "by hand, lamps, dark ground",
+)
 # of the photographs' exposure, that the scene's middle is moved by, stops
 OFF_CENTRE = 1.5
+# A sound bracket leaves at most this fraction of the pixels black, below this level, in every photo.
+MAX_BLACK_FRACTION = 0.03
+LOWEST_LEVEL = 10
+MAX_FRAMES = 8
+# Shifts of a hand, pixels each way.
+SHIFT_RADIUS = 8
+# Lamps: their number, their radii in pixels, and their exposure in the shortest photo.
+LAMP_COUNT = 6
+LAMP_RADII = (2, 8)
+LAMP_EXPOSURE = 8.0
+# Dark ground: the fraction of the rows that it covers, and what is left of their light.
+GROUND_FRACTION = 0.3
+GROUND_FACTOR = 1 / 30
 # electrons at ISO 100
 FULL_WELL, READ_NOISE = 40_000.0, 4.0
 Float = NDArray[np.float64]
+Response = Callable[[Array], Array]
 
 
 class Plan(NamedTuple):
@@ -45,6 +70,7 @@ class Plan(NamedTuple):
     quality: int
     sharpness: float
     sound: str
+    offsets: NDArray[np.int64] | None = None
 
     @property
     def frames(self) -> int:
@@ -80,6 +106,28 @@ def radiance(name: str) -> NDArray[np.float32]:
 
 
 @cache
+def darken_ground(name: str) -> NDArray[np.float32]:
+    """Return E of a scene whose lowest rows lie in the dark, behind a soft edge."""
+    rows = np.arange(SHAPE[0])
+    depth = (rows - (1 - GROUND_FRACTION) * SHAPE[0]) / 10
+    factor = GROUND_FACTOR ** np.clip(depth, 0, 1)
+    return (radiance(name) * factor[:, None, None]).astype(np.float32)
+
+
+def add_lamps(E: Array, shortest: float, rng: np.random.Generator) -> Array:
+    """Return E with round lamps that clip in every photo."""
+    lit = E.copy()
+    rows, columns = np.indices(SHAPE)
+    for _ in range(LAMP_COUNT):
+        row = rng.uniform(0, SHAPE[0])
+        column = rng.uniform(0, SHAPE[1])
+        radius = rng.uniform(*LAMP_RADII)
+        is_lamp = np.hypot(rows - row, columns - column) < radius
+        lit[is_lamp] = LAMP_EXPOSURE / shortest
+    return lit
+
+
+@cache
 def curves(folder: Path) -> tuple[Float, Float] | None:
     """Return the exposures and brightnesses of the measured responses, (201, n) each, or None."""
     try:
@@ -88,24 +136,55 @@ def curves(folder: Path) -> tuple[Float, Float] | None:
         return None
 
 
-def plan(folder: Path, i: int, *, sound: str = "plain") -> Plan:
-    """Return the Plan of bracket i."""
-    rng, measured = np.random.default_rng((15, i)), curves(folder)
+def plan(folder: Path, i: int, *, sound: str = "", seed: int = 0) -> Plan:
+    """Return the Plan of bracket i: a sound one of this kind, or one for an ill."""
+    rng = np.random.default_rng((20, seed, SOUND.index(sound), i) if sound else (15, i))
+    measured = curves(folder)
     scene = SCENES[i % len(SCENES)]
     count, stops = int(rng.integers(3, 8)), rng.uniform(1, 2.3)
     if count < 5:
         stops = max(stops, 1.5)
     ends = sound == "black and white ends"
-    middle = 0.1 * 2 ** (rng.choice([-1, 1]) * OFF_CENTRE * (2 if ends else rng.uniform(0, 1)))
+    off_center = rng.choice([-1, 1]) * OFF_CENTRE * (2 if ends else rng.uniform(0, 1))
     k = int(rng.integers(201))
     curve = (measured[0][k], measured[1][k]) if measured else ("film", "srgb", "gamma")[k % 3]
-    times = camera.times_around(radiance(scene), count, stops=stops, middle=middle)
-    return Plan(i, scene, curve, times, int(rng.integers(75, 96)), rng.uniform(0, 1), sound)
+    E = darken_ground(scene) if "dark ground" in sound else radiance(scene)
+    times = camera.times_around(E, count, stops=stops, middle=0.1 * 2**off_center)
+    if sound:
+        times = extend_times(E, times, find_response(curve))
+    quality = int(rng.integers(75, 96))
+    sharpness = rng.uniform(0, 1)
+    offsets = None
+    if "by hand" in sound:
+        offsets = camera.shake(times.size, radius=SHIFT_RADIUS, rng=rng)
+    return Plan(i, scene, curve, times, quality, sharpness, sound, offsets)
+
+
+def find_response(curve: tuple[Float, Float] | str) -> Response:
+    """Return the response that a camera takes: a name, or a function of the exposure."""
+    if isinstance(curve, str):
+        return as_response(curve).f
+    return lambda X: np.interp(X, *curve)
+
+
+def extend_times(E: Array, times: Float, f: Response) -> Float:
+    """Return the times, with longer ones where the photos leave too many pixels black.
+
+    A bracket that leaves more of them is not sound: it deserves the warning that it gets.
+    """
+    factor = times[1] / times[0]
+    brightest = E.max(axis=-1)
+    while times.size < MAX_FRAMES:
+        levels = 255 * f(np.clip(brightest * times[-1], 0, 1))
+        if np.mean(levels < LOWEST_LEVEL) <= MAX_BLACK_FRACTION:
+            break
+        times = np.append(times, factor * times[-1])
+    return times
 
 
 def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
     """Return the photographs of a plan with an ill, or of what moves in it at rest."""
-    response = plan.curve if isinstance(plan.curve, str) else (lambda X: np.interp(X, *plan.curve))
+    response = find_response(plan.curve)
     images = []
     for j, t in enumerate(plan.times):
         k = plan.frames // 2 if at_rest else j
@@ -127,8 +206,12 @@ def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
 
 
 def still(plan: Plan, j: int) -> Array:
-    """Return the light of the scene, in which somebody may walk far away."""
-    E = radiance(plan.scene)
+    """Return the light of the scene in photo j, which only somebody far away and the hand change."""
+    E = darken_ground(plan.scene) if "dark ground" in plan.sound else radiance(plan.scene)
+    if "lamps" in plan.sound:
+        E = add_lamps(E, plan.times[0], np.random.default_rng((19, plan.i)))
+    if plan.offsets is not None:
+        return np.asarray(views(E, plan.offsets)[j])
     if plan.sound != "somebody far away":
         return E
     h, w = SHAPE

@@ -1,0 +1,278 @@
+"""Radiance maps of simulated brackets, by hdrlab and by other programs.
+
+    python -m benchmarks brackets [--seed N]
+
+Each program gets the same JPEG files with their times in EXIF and makes a radiance map with its
+defaults: the four embedded scenes, three responses and two levels of noise, 24 brackets in all. The
+camera stands on a tripod, because not every program aligns photos.
+
+Errors are those of the pixels that some photo shows between LOWEST_LEVEL and HIGHEST_LEVEL in every
+channel, after one factor for each channel was removed. A pixel without a positive value counts as
+MISSING_STOPS.
+
+EV         size of the error of log2 E, stops: median, and 95th percentile
+dark       median size of the error in the darkest twentieth of these pixels, stops
+color      95th percentile of the size of the error of log2 R/G and log2 B/G, stops
+CPU        processor time of the whole command, s
+memory     peak memory of the largest process of the command, MB
+
+The first row of a program has the medians over the brackets, the second row the worst bracket.
+"""
+
+import itertools
+import shlex
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import astuple, dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PIL import ExifTags, Image
+from PIL.TiffImagePlugin import IFDRational
+from tqdm import tqdm
+
+from benchmarks import peer_maps, peers
+from benchmarks.experiments import Experiment, at_most
+from benchmarks.measure import ROOT, process
+from benchmarks.rows import OURS, Usage
+from hdrlab import scenes
+from hdrlab.capture import camera
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.colour import luminance
+from hdrlab.io import radiance
+
+SHAPE = (384, 640)
+SCENES = (*scenes.PLACES, "room")
+RESPONSES = ("film", "srgb", "gamma")
+# Full well and read noise in electrons: a large sensor, and a small one at a high ISO.
+SENSORS = ((20_000.0, 5.0), (3_000.0, 12.0))
+FRAME_COUNT = 5
+STEP_STOPS = 2.0
+JPEG_QUALITY = 95
+FULL_CHROMA = 0  # no subsampling, whose color fringes are the same for every program
+F_NUMBER = 8
+ISO = 100
+LOWEST_LEVEL = 5
+HIGHEST_LEVEL = 250
+DARK_FRACTION = 0.05
+MISSING_STOPS = 10.0
+LUMINANCE_HDR = "Luminance HDR"
+Float = NDArray[np.float64]
+Command = Callable[[list[Path], Path], list[str]]
+
+
+@dataclass(frozen=True)
+class SimulatedBracket:
+    """Photos as files, and the radiance that they show."""
+
+    name: str
+    files: list[Path]
+    times: Float
+    images: NDArray[np.uint8]
+    E: NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class MapErrors:
+    """Errors of a radiance map, stops."""
+
+    median: float
+    p95: float
+    dark: float
+    color: float
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program that makes a radiance map: its command, and the ending of the map's file."""
+
+    command: Command
+    suffix: str
+
+
+def compare(folder: Path, *, seed: int = 0) -> Mapping[str, ArrayLike]:
+    """Return errors, CPU time and memory of each program: medians over the brackets, and worst."""
+    programs, missing = find_programs(folder)
+    for name, reason in missing.items():
+        print(f"  {name}: missing, {reason}", flush=True)
+    figures: dict[str, list[tuple[float, ...]]] = {name: [] for name in programs}
+    places = list(itertools.product(SCENES, RESPONSES, SENSORS))
+    for number, (scene, response, sensor) in enumerate(tqdm(places, leave=False, disable=None)):
+        rng = np.random.default_rng((seed, number))
+        simulated = simulate(folder, scene, response, sensor, rng)
+        for name, program in programs.items():
+            usage, errors = run_program(name, program, simulated, folder)
+            figures[name].append((*astuple(errors), usage.cpu_seconds, usage.megabytes))
+    medians = {name: np.nanmedian(rows, axis=0) for name, rows in figures.items()}
+    found: dict[str, ArrayLike] = {}
+    for name, rows in figures.items():
+        found[name] = medians[name]
+        found[f"{name}, worst"] = np.nanmax(rows, axis=0)
+    rivals = [medians[name] for name in programs if name != OURS]
+    if rivals:
+        found["hdrlab / best of the others"] = medians[OURS] / np.min(rivals, axis=0)
+    return found
+
+
+def simulate(
+    folder: Path,
+    scene: str,
+    response: str,
+    sensor: tuple[float, float],
+    rng: np.random.Generator,
+) -> SimulatedBracket:
+    """Take photos of a scene and write them as JPEG with exposure times."""
+    full_well, read_noise = sensor
+    E = getattr(scenes, scene)(SHAPE)
+    times = camera.times_around(
+        E, FRAME_COUNT, stops=STEP_STOPS, middle=0.1 * 2 ** rng.uniform(-0.5, 0.5)
+    )
+    model = camera.Camera(response=response, full_well=full_well, read_noise=read_noise)
+    taken = camera.shoot(E, times, model, rng=rng)
+    name = f"{scene}-{response}-{full_well:g}"
+    photos = folder / name
+    photos.mkdir(exist_ok=True)
+    files = write_photos(photos, taken)
+    decoded = np.stack([np.asarray(Image.open(file)) for file in files])
+    return SimulatedBracket(name, files, taken.times, decoded, E)
+
+
+def write_photos(folder: Path, taken: Bracket) -> list[Path]:
+    """Write JPEG files with time, f-number and ISO in EXIF."""
+    files = []
+    for number, (image, time) in enumerate(zip(taken.images, taken.times, strict=True)):
+        exif = Image.Exif()
+        fraction = Fraction(float(time)).limit_denominator(10**6)
+        tags = exif.get_ifd(ExifTags.IFD.Exif)
+        tags[ExifTags.Base.ExposureTime] = IFDRational(fraction.numerator, fraction.denominator)
+        tags[ExifTags.Base.FNumber] = IFDRational(F_NUMBER, 1)
+        tags[ExifTags.Base.ISOSpeedRatings] = ISO
+        file = folder / f"photo-{number}.jpg"
+        Image.fromarray(image).save(file, quality=JPEG_QUALITY, subsampling=FULL_CHROMA, exif=exif)
+        files.append(file)
+    return files
+
+
+def find_programs(folder: Path) -> tuple[dict[str, Program], dict[str, str]]:
+    """Return the installed programs, and the reasons why others are missing."""
+    programs = {OURS: Program(hdrlab_command, ".pfm")}
+    makers = {
+        "OpenCV Debevec": lambda: python_peer(peers.opencv(True), peer_maps.OPENCV_DEBEVEC),
+        "OpenCV Robertson": lambda: python_peer(peers.opencv(True), peer_maps.OPENCV_ROBERTSON),
+        peers.COLOUR: lambda: python_peer(peers.colour_hdri(), peer_maps.COLOUR_HDRI),
+        peers.PFS: lambda: pfstools(folder),
+        LUMINANCE_HDR: luminance_hdr,
+    }
+    missing = {}
+    for name, make in makers.items():
+        try:
+            programs[name] = make()
+        except peers.Missing as reason:
+            missing[name] = str(reason)
+    return programs, missing
+
+
+def hdrlab_command(photos: list[Path], target: Path) -> list[str]:
+    """Return `hdrlab assemble` with its defaults."""
+    return [sys.executable, "-m", "hdrlab", "assemble", *map(str, photos), "-o", str(target)]
+
+
+def python_peer(module: object, peer: str) -> Program:
+    """Return a Python package in a process of its own."""
+    script = str(ROOT / "benchmarks" / "peer_maps.py")
+
+    def command(photos: list[Path], target: Path) -> list[str]:
+        return [sys.executable, script, peer, str(target), *map(str, photos)]
+
+    return Program(command, ".npy")
+
+
+def pfstools(folder: Path) -> Program:
+    """Return pfshdrcalibrate, which estimates the response and merges by Robertson's method."""
+    read = peers.pfstools("pfsinhdrgen")
+    merge = peers.pfstools("pfshdrcalibrate")
+    write = peers.pfstools("pfsoutpfm")
+
+    def command(photos: list[Path], target: Path) -> list[str]:
+        listing = folder / "photos.hdrgen"
+        lines = []
+        for photo in photos:
+            time = peer_maps.read_time(str(photo))
+            lines.append(f"{photo} {1 / time:.9g} {F_NUMBER} {ISO} 0\n")
+        listing.write_text("".join(lines), encoding="utf8")
+        pipeline = (
+            f"{read} {shlex.quote(str(listing))} | {merge} | {write} {shlex.quote(str(target))}"
+        )
+        return ["sh", "-c", pipeline]
+
+    return Program(command, ".pfm")
+
+
+def luminance_hdr() -> Program:
+    """Return Luminance HDR with Robertson's method; its default takes the photos for linear."""
+    program = peers.program("luminance-hdr-cli", "apt install luminance-hdr")
+
+    def command(photos: list[Path], target: Path) -> list[str]:
+        environment = ["env", "QT_QPA_PLATFORM=offscreen"]
+        model = ["--hdrModel", "robertsonauto"]
+        return [*environment, program, *model, "--save", str(target), *map(str, photos)]
+
+    return Program(command, ".hdr")
+
+
+def run_program(
+    name: str, program: Program, simulated: SimulatedBracket, folder: Path
+) -> tuple[Usage, MapErrors]:
+    """Run a program on a bracket, and return what it took and the errors of its map."""
+    target = folder / f"map{program.suffix}"
+    target.unlink(missing_ok=True)
+    try:
+        usage = process(program.command(simulated.files, target), one=True)
+        return usage, measure_errors(read_map(target), simulated)
+    except (RuntimeError, OSError, ValueError) as error:
+        print(f"  {name}, {simulated.name}: no map, {str(error)[-300:]}", flush=True)
+        return Usage(np.nan, np.nan, np.nan), MapErrors(*[MISSING_STOPS] * 4)
+
+
+def read_map(path: Path) -> Float:
+    """Return a radiance map, float64."""
+    E = np.load(path) if path.suffix == ".npy" else radiance.read_radiance(path)
+    return np.asarray(E, np.float64)
+
+
+def measure_errors(E: Float, simulated: SimulatedBracket) -> MapErrors:
+    """Return the errors of a map."""
+    if E.shape != simulated.E.shape:
+        raise ValueError(f"the map has the shape {E.shape}, not {simulated.E.shape}")
+    levels = simulated.images
+    is_exposed = (levels >= LOWEST_LEVEL) & (levels <= HIGHEST_LEVEL)
+    is_measured = is_exposed.all(axis=-1).any(axis=0)
+    truth = simulated.E[is_measured].astype(np.float64)
+    found = E[is_measured]
+    is_positive = np.isfinite(found) & (found > 0)
+    errors = np.full(found.shape, np.nan)
+    errors[is_positive] = np.log2(found[is_positive] / truth[is_positive])
+    errors -= np.nanmedian(errors, axis=0)
+    sizes = np.nan_to_num(np.abs(errors), nan=MISSING_STOPS)
+    color_sizes = np.nan_to_num(np.abs(errors[:, [0, 2]] - errors[:, [1]]), nan=MISSING_STOPS)
+    light = luminance(truth)
+    is_dark = light <= np.quantile(light, DARK_FRACTION)
+    return MapErrors(
+        median=float(np.median(sizes)),
+        p95=float(np.quantile(sizes, 0.95)),
+        dark=float(np.median(sizes[is_dark])),
+        color=float(np.quantile(color_sizes, 0.95)),
+    )
+
+
+ROWS = (
+    Experiment(
+        "brackets-peers",
+        "maps of 24 simulated brackets; EV median, EV 95 %, dark, color, CPU s, memory MB",
+        compare,
+        (at_most("hdrlab / best of the others", 1, 1, 1, 1, np.inf, np.inf),),
+        has_seed=True,
+    ),
+)
