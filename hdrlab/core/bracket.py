@@ -31,6 +31,7 @@ class Bracket:
     luminance_of_unit : cd/m^2 of a surface with E = 1 in the radiance map, by the formula of
         exposure meters; None where the photographs do not state time, ISO and f-number
     damaged : sentences that name the photographs that were left out because they are damaged
+    has_relative_times : True where only the ratios of the times are known, not their seconds
     """
 
     images: Array
@@ -40,6 +41,7 @@ class Bracket:
     linear: bool = False
     luminance_of_unit: float | None = None
     damaged: tuple[str, ...] = ()
+    has_relative_times: bool = False
 
     # A Bracket was a named tuple of these five fields up to version 0.2: old code may still use it
     # as one, with a warning. New fields do not become part of the tuple.

@@ -15,7 +15,7 @@ import warnings
 import numpy as np
 
 from hdrlab.core import arrays
-from hdrlab.core.arrays import F32, F64, ArrayLike, Flags, Mask
+from hdrlab.core.arrays import F32, F64, ArrayLike, Flags, Labels, Mask
 from hdrlab.errors import InputError
 
 # away from the noise below and the shoulder above
@@ -78,6 +78,27 @@ def measure_level_exposures(
             medians[j, c] = _median_per_level(levels.take(ascending), lE) + np.log2(times[j])
     medians[..., MAX_LEVEL + 1 :] = np.nan
     return medians
+
+
+def find_measured_levels(medians: F64, n: int = 256) -> Labels:
+    """Return the first and the last pixel value that occurs in each channel, (C, 2), of n values.
+
+    Only values up to MAX_LEVEL of 256 count, in well exposed pixels. A channel without any gets 0
+    and n - 1. A response is not determined outside of these values: below the black floor of a
+    scanner, for example, it is an extrapolation.
+
+    Examples
+    --------
+    >>> medians = np.full((2, 1, 256), np.nan)
+    >>> medians[1, 0, 19:240] = 0
+    >>> find_measured_levels(medians).tolist()
+    [[19, 239]]
+    """
+    occurs: Mask = np.any(np.isfinite(medians), axis=0)
+    first = occurs.argmax(axis=1)
+    last = occurs.shape[1] - 1 - occurs[:, ::-1].argmax(axis=1)
+    scale = (n - 1) / (occurs.shape[1] - 1)
+    return np.rint(np.column_stack([first, last]) * scale).astype(np.int32)
 
 
 def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:

@@ -125,7 +125,24 @@ def test_pixel_values_of_a_linear_camera_double_with_exposure():
     levels = calibration.doublings(LINEAR)
     assert [round(levels[k], 2) for k in (-3, -2, -1, 0)] == [16, 32, 64, 128]
     assert max(levels) == 0 and min(levels) == -3
-    assert np.isclose(calibration.reach(LINEAR), np.log2(25))
+    occurs_everywhere = np.zeros((2, 1, 256))
+    assert np.allclose(calibration.measure_reach(LINEAR, occurs_everywhere).stops, np.log2(25))
+
+
+def test_range_of_a_response_is_stated_and_drawn_over_pixel_values_that_occur():
+    g = np.stack([LINEAR, LINEAR, LINEAR], axis=1)
+    g[:20] -= 20  # levels below the floor of a scanner, where a curve is an extrapolation
+    medians = np.full((2, 3, 256), np.nan)
+    medians[0, :, 25:200] = 0
+    medians[1, 1, 20:220] = 0
+    reach = calibration.measure_reach(g, medians)
+    assert (reach.low, reach.high) == (25, 199)
+    assert np.allclose(reach.stops, np.log2(199 / 25))
+    drawn = calibration.calibration(g, medians, ["1 s", "2 s"])
+    first, last = zip(*(line.get_ydata()[[0, -1]] for line in drawn.axes[0].lines), strict=True)
+    assert first == (25, 20, 25) and last == (199, 219, 199)
+    text = calibration.summary(g, medians, ["a", "b"])
+    assert "25 and 199" in text and min(calibration.doublings(g[:, 0], 25, 199)) == -2
 
 
 def test_flat_end_of_a_curve_has_no_doublings():
@@ -140,5 +157,5 @@ def test_flat_end_of_a_curve_has_no_doublings():
 def test_calibration_figure_works_for_gray_color_and_unknown_pixel_values(channels):
     g = np.broadcast_to(LINEAR.reshape(256, *[1] * len(channels)), (256, *channels))
     medians = np.full((2, (channels or (1,))[0], 256), np.nan)
-    drawn = calibration.calibration(g, medians, [0.1, 1], title="debevec")
+    drawn = calibration.calibration(g, medians, ["0.1 s", "1 s"], title="debevec")
     assert isinstance(drawn, Figure) and len(drawn.axes) == 2 and len(drawn.axes[1].lines) == 3

@@ -107,6 +107,22 @@ def test_report_fetches_nothing_and_runs_no_script(page):
     assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", page.source)
 
 
+def test_report_states_relative_exposures_in_stops_and_never_in_seconds(room, tmp_path):
+    assembly = room[0]
+    relative = replace(assembly.bracket, has_relative_times=True)
+    page = report(tmp_path, replace(assembly, bracket=relative))
+    assert not re.search(r"\d s\b|times, s\b", page.text)
+    assert "relative" in page.text and "+2.5 stops" in page.text
+    assert not any(re.search(r"\d s\b", image["alt"]) for image in page.images)
+    stated = report(tmp_path, assembly)
+    assert re.search(r"\d s\b", stated.text) and "relative times" not in stated.text
+
+
+def test_report_lists_the_details(tmp_path):
+    page = report(tmp_path, flat().with_detail("the fifth photo was the reference"))
+    assert "the fifth photo was the reference" in page.text
+
+
 def test_report_shows_the_uncertainty_of_the_pixels_if_it_was_estimated(room, tmp_path):
     assembly = pipeline.measure_deviation(room[0])
     page = report(tmp_path, assembly)

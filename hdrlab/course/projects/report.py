@@ -157,7 +157,7 @@ def _relative_light(exposure: exif_exposure.Exposure) -> float:
 
 def _curves(path: Path) -> dict[str, Any]:
     """Return the response curve as a figure."""
-    return sections.response(response_files.read_curve(path), None)
+    return sections.response(response_files.read_curve(path), None, None)
 
 
 def _map(path: Path) -> dict[str, Any]:

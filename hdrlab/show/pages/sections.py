@@ -16,7 +16,7 @@ from hdrlab.io.web import Image
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages import wording
-from hdrlab.show.plots import figures
+from hdrlab.show.plots import calibration, figures
 
 MAX_THUMBNAIL_SIDE = 400
 MAX_MAP_SIDE = 1000
@@ -26,15 +26,19 @@ MIN_ERROR_RATIO = 2.0**-10
 
 
 def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
-    """Return a thumbnail, the name, the exposure time and the offset of each photo."""
+    """Return a thumbnail, the name, the exposure and the offset of each photo."""
     frames = []
+    exposures = plots.exposures(photographs)
     for j, image in enumerate(photographs.images):
         name = photographs.names[j]
-        time = plots.seconds(photographs.times[j])
+        time = exposures[j]
         small = to_256(figures.fit(image, MAX_THUMBNAIL_SIDE))
         if photographs.linear:  # a screen needs encoded values
             small = colour.to_8bit(small / np.float32(255))
-        alt = f"Photo {name}, exposed for {time}"
+        if photographs.has_relative_times:
+            alt = f"Photo {name}, relative exposure {time}"
+        else:
+            alt = f"Photo {name}, exposed for {time}"
         frames.append(
             {
                 "name": name,
@@ -46,21 +50,33 @@ def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
     return frames
 
 
-def response(g: F64, truth: metrics.Truth | None) -> dict[str, Any]:
-    """Return the plot of the response, with the true one if it is known, and its range in stops."""
+def relative_times(photographs: Bracket) -> str:
+    """Return the times of a bracket as multiples of the shortest."""
+    ratios = photographs.times / photographs.times.min()
+    return ", ".join(f"{ratio:.4g}" for ratio in ratios)
+
+
+def response(g: F64, medians: F64 | None, truth: metrics.Truth | None) -> dict[str, Any]:
+    """Return the plot of the response, with the true one if it is known, and its range in stops.
+
+    The curve is drawn, and its range stated, over the pixel values that occur; over all of them if
+    `medians` is None, because the photos are not known.
+    """
+    curves = g.reshape(len(g), -1)
+    levels = None if medians is None else calibration.find_drawn_levels(g, medians)
     ax = plots.axes(4.6, 3.4)
     if truth is not None:
         plots.response(truth.g, label="true", ax=ax)
-    plots.response(g, label="" if truth is None else "estimated", ax=ax)
-    curves = g.reshape(len(g), -1)
-    low = curves[round(metrics.LOW_LEVEL / 255 * (len(g) - 1))]
-    high = curves[round(metrics.HIGH_LEVEL / 255 * (len(g) - 1))]
-    reach = ", ".join(f"{stops:.1f}" for stops in (high - low) / np.log(2))
-    alt = (
-        "Response, pixel value over ln exposure: "
-        f"from pixel value {metrics.LOW_LEVEL} to {metrics.HIGH_LEVEL} it rises over {reach} stops"
-    )
-    return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}
+    plots.response(g, label="" if truth is None else "estimated", levels=levels, ax=ax)
+    reach = calibration.measure_reach(g, medians)
+    alt = f"Response, pixel value over ln exposure: it rises over {reach}"
+    return {
+        "plot": figures.plot(ax, alt),
+        "low": reach.low,
+        "high": reach.high,
+        "stops": ", ".join(f"{stops:.1f}" for stops in reach.stops),
+        "is_color": curves.shape[1] == 3,
+    }
 
 
 def radiance(E: Array) -> dict[str, Any]:
@@ -141,12 +157,13 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     counts = is_compared.any(axis=1).sum(axis=1).tolist()
     deviations = consistency.measure_deviations(medians)
     rows = []
+    exposures = plots.exposures(photographs)
     for j, deviation in enumerate(deviations):
         is_known = bool(np.isfinite(deviation))
         rows.append(
             {
                 "name": photographs.names[j],
-                "time": plots.seconds(photographs.times[j]),
+                "time": exposures[j],
                 "levels": counts[j],
                 "is_known": is_known,
                 "stops": deviation if is_known else 0.0,

@@ -142,17 +142,56 @@ def seconds(time: float) -> str:
     return f"1/{round(1 / time)} s"
 
 
-def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | None = None) -> Axes:
-    """Draw response curves, pixel value over ln exposure, with a line per channel."""
+def exposures(bracket: Bracket) -> list[str]:
+    """Return the exposure of each photo: seconds, or stops from the shortest if only ratios are known.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from hdrlab.core.bracket import bracket
+    >>> taken = bracket(np.zeros((2, 1, 1), np.uint8), [0.1, 0.4])
+    >>> exposures(taken), exposures(replace(taken, has_relative_times=True))
+    (['1/10 s', '0.4 s'], ['+0.0 stops', '+2.0 stops'])
+    """
+    if not bracket.has_relative_times:
+        return [seconds(time) for time in bracket.times]
+    stops = np.log2(bracket.times / bracket.times.min())
+    return [f"+{value:.1f} stops" for value in stops]
+
+
+def response(
+    g: ArrayLike,
+    *,
+    label: str = "",
+    span: Ends = None,
+    levels: ArrayLike | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw response curves, pixel value over ln exposure, with a line per channel.
+
+    With `levels` (C, 2), each channel's curve is drawn from the first to the last of its two pixel
+    values only, such as those of `diagnostics.consistency.find_measured_levels`.
+    """
     curves = np.asarray(g, dtype=np.float64)
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise InputError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
     channels = CHANNELS if curves.ndim == 2 else GRAY_CHANNEL
     columns = curves.reshape(len(curves), -1).T
-    levels = np.arange(len(curves))
-    for (name, color, style), curve in zip(channels, columns, strict=True):
-        ax.plot(curve, levels, style, color=color, linewidth=1.8, label=f"{label} {name}".strip())
+    pixel_values = np.arange(len(curves))
+    ends = np.full((len(columns), 2), [0, len(curves) - 1])
+    if levels is not None:
+        ends[:] = levels
+    for (name, color, style), curve, (low, high) in zip(channels, columns, ends, strict=True):
+        drawn = slice(low, high + 1)
+        ax.plot(
+            curve[drawn],
+            pixel_values[drawn],
+            style,
+            color=color,
+            linewidth=1.8,
+            label=f"{label} {name}".strip(),
+        )
     if label or curves.ndim == 2:
         with_legend(ax, "upper left")
     return ax
@@ -200,7 +239,7 @@ def system(A: ArrayLike) -> Axes:
 
 
 def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
-    """Draw the photos in rows, each with its exposure time and, if given, its offset (dy, dx)."""
+    """Draw the photos in rows, each with its exposure and, if given, its offset (dy, dx)."""
     count = len(bracket.images)
     h, w = bracket.images.shape[1:3]
     rows = -(-count // columns)
@@ -208,7 +247,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
     title = 0.25 if offsets is None else 0.4
     height = width * h / w + title
     figure = Figure(figsize=(columns * width, rows * height), dpi=100)
-    for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
+    for j, (image, exposure) in enumerate(zip(bracket.images, exposures(bracket), strict=True)):
         row, column = divmod(j, columns)
         place = (
             column / columns,
@@ -219,7 +258,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
         ax = figure.add_axes(place)
         step = max(1, w // 350)
         ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
-        title_text = seconds(time)
+        title_text = exposure
         if offsets is not None:
             dy, dx = np.asarray(offsets)[j]
             title_text += f"\ndy {dy:+d}, dx {dx:+d} px"
