@@ -55,11 +55,18 @@ def saved_curve(path: Path) -> "Callable[..., F64]":
 
 
 def read_bracket(
-    photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None
+    photos: tuple[Path, ...],
+    times: str,
+    mask: str | None,
+    stops: float | None,
+    *,
+    note: Callable[[str], object],
+    detail: Callable[[str], object],
 ) -> "Bracket":
     """Read the photos of a bracket, with exposure times from --times or --stops.
 
-    If no times are known and --times estimate asks for none, all times are 1.
+    If no times are known and --times estimate asks for none, all times are 1. `note` is called with
+    each sentence that users must know, `detail` with each other one.
     """
     from hdrlab import pipeline
     from hdrlab.io import album, photos as photo_files
@@ -68,9 +75,10 @@ def read_bracket(
     selection = album.select(photos)
     bracket = photo_files.read_bracket(
         photos,
-        _find_times(selection.paths, times, stops),
+        _find_times(selection.paths, times, stops, detail),
         mask=color,
-        note=lambda note: common.echo_notes([note]),
+        note=note,
+        detail=detail,
         warn=lambda warning: None,  # the assembly repeats the warnings, see Bracket.damaged
         progress=lambda paths: common.progress(paths, "reading"),
     )
@@ -79,7 +87,9 @@ def read_bracket(
     return bracket
 
 
-def _find_times(paths: list[Path], times: str, stops: float | None) -> Path | list[float] | None:
+def _find_times(
+    paths: list[Path], times: str, stops: float | None, detail: Callable[[str], object]
+) -> Path | list[float] | None:
     """Return a list of times, or the file that has one, or None if the photos' EXIF has them."""
     from hdrlab.io.decode import read_header
 
@@ -92,7 +102,7 @@ def _find_times(paths: list[Path], times: str, stops: float | None) -> Path | li
         return None
     list_file = _find_list(paths)
     if list_file is not None:
-        common.echo_notes([f"the exposure times are those of {list_file}"])
+        detail(f"the exposure times are those of {list_file}")
         return list_file
     return unknown_times if times == "estimate" else None
 

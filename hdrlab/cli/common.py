@@ -220,6 +220,12 @@ def echo_notes(notes: Iterable[object]) -> None:
         click.echo(f"note: {note}", err=True)
 
 
+def echo_details(details: Iterable[object]) -> None:
+    """Print each detail on standard error, after the word "detail"."""
+    for detail in details:
+        click.echo(f"detail: {detail}", err=True)
+
+
 def echo_warnings(warnings: Iterable[object]) -> None:
     """Print each warning on standard error, after the word "warning"."""
     for warning in warnings:
@@ -307,11 +313,11 @@ def describe_map(E: "F32") -> str:
     return f"{width} x {height}, {content}"
 
 
-def describe_agreement(spread: float) -> str:
-    """Return in words how far the frames of a map agree; NaN stops stand for "not measured"."""
+def describe_agreement(spread: float, count: int) -> str:
+    """Return in words how far `count` photos of a map agree; NaN stops stand for "not measured"."""
     if spread != spread:
-        return "no agreement of the frames could be measured"
-    return f"frames agree to {spread:.3f} stops"
+        return "hdrlab could not measure how far the photos agree"
+    return f"the {count} photos agree to {spread:.3f} stops"
 
 
 def parse_color(text: str | None) -> tuple[int, int, int] | None:

@@ -1,6 +1,7 @@
 """The commands that start from photos: `assemble` and `calibrate`."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -105,6 +106,9 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     is_flag=True,
     help="Assemble each bracket of a folder. The name of its first photo is added to each output.",
 )
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Show how hdrlab made the map, and all warnings."
+)
 @click.pass_context
 def assemble(
     ctx: click.Context,
@@ -129,6 +133,7 @@ def assemble(
     uncertainty: Path | None,
     strict: bool,
     all_brackets: bool,
+    verbose: bool,
 ) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
@@ -154,13 +159,12 @@ def assemble(
     night stays dark.
 
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
-    file repeat them.
+    file repeat them. If nothing is wrong, hdrlab prints one line that begins with OK.
     """
     from hdrlab import pipeline
     from hdrlab.io import photos as photo_files, radiance
     from hdrlab.io.files import require_folder_name, require_suffix
     from hdrlab.io.maps import layers
-    from hdrlab.show.pages import wording
 
     # bad options are reported before the work starts
     if stops and times not in brackets.TIMES_KEYWORDS:
@@ -175,7 +179,10 @@ def assemble(
         _assemble_each(ctx, photos)
         return
 
-    bracket = brackets.read_bracket(photos, times, mask, stops)
+    remarks = _Remarks(verbose)
+    bracket = brackets.read_bracket(
+        photos, times, mask, stops, note=remarks.note, detail=remarks.detail
+    )
     if meter_reading:
         height, width = bracket.images.shape[1:3]
         x, y, _ = meter_reading
@@ -211,8 +218,12 @@ def assemble(
         assembly = pipeline.calibrate(assembly, *meter_reading)
     if assembly.fallback and (picture or report):
         assembly = assembly.with_note(f"{FUSION_NOTE}, because {assembly.fallback}")
-    common.echo_notes(assembly.notes)
-    common.echo_warnings(_shorten(assembly.doubts))
+    for note in assembly.notes:
+        remarks.note(note)
+    for detail in assembly.details:
+        remarks.detail(detail)
+    assembly = replace(assembly, notes=tuple(remarks.notes), details=tuple(remarks.details))
+    common.echo_warnings(assembly.doubts if verbose else _shorten(assembly.doubts))
 
     comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
     if meter_reading:
@@ -225,10 +236,9 @@ def assemble(
         if uncertainty and assembly.s is not None:
             both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
             layers.write_layers(uncertainty, both, comments=comments)
-            click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
         if developed and picture:
             photo_files.write_picture(picture, developed.picture, is_result=True)
-            click.echo(f"{picture}: {developed.settings}")
+            remarks.detail(f"{picture}: {developed.settings}")
         if developed and report:
             from hdrlab.show.pages.report import write_report
 
@@ -244,8 +254,14 @@ def assemble(
             }
             write_report(report, assembly, developed.picture, recipe=recipe)
         writing.result()
-    agreement = common.describe_agreement(assembly.spread)
-    click.echo(f"{out}: {description.result()}, {agreement}")
+    outputs = [f"{out} ({description.result()})"]
+    if picture:
+        outputs.append(_describe_picture(picture, assembly, tonemap))
+    if uncertainty:
+        outputs.append(_describe_uncertainty(uncertainty, assembly))
+    if report:
+        outputs.append(str(report / "report.html"))
+    click.echo(_summarize(assembly, outputs))
     if strict and assembly.doubts:
         ctx.exit(EXIT_DOUBTFUL_MAP)
 
@@ -323,13 +339,64 @@ def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
     return pictures.Developed(np.rint(255 * fused).astype(np.uint8), FUSION_NOTE)
 
 
+class _Remarks:
+    """The notes and details on a bracket. Each is printed when it comes, details if `verbose`."""
+
+    def __init__(self, verbose: bool) -> None:
+        self.verbose = verbose
+        self.notes: list[str] = []
+        self.details: list[str] = []
+
+    def note(self, text: str) -> None:
+        """Print a note, and keep it for the report."""
+        common.echo_notes([text])
+        self.notes.append(text)
+
+    def detail(self, text: str) -> None:
+        """Keep a detail for the report, and print it if details are shown."""
+        if self.verbose:
+            common.echo_details([text])
+        self.details.append(text)
+
+
+def _summarize(assembly: "Assembly", outputs: list[str]) -> str:
+    """Return the last line of `assemble`: OK or the number of warnings, and what was written."""
+    count = len(assembly.doubts)
+    verdict = "OK" if count == 0 else f"{count} {'warning' if count == 1 else 'warnings'}"
+    agreement = common.describe_agreement(assembly.spread, len(assembly.bracket.times))
+    return f"{verdict}: {', '.join(outputs)}; {agreement}"
+
+
+def _describe_picture(picture: Path, assembly: "Assembly", tonemap: str) -> str:
+    """Return the name of the tone-mapped image, and that it was kept dark if the scene was dark."""
+    from hdrlab.pipeline.photograph import BRIGHT_SCENE_EV, measure_scene_ev
+    from hdrlab.pipeline.pictures import AUTO
+
+    unit = assembly.bracket.luminance_of_unit
+    if unit is None or assembly.fallback or tonemap != AUTO:
+        return str(picture)
+    scene_ev = measure_scene_ev(assembly.E, unit)
+    if scene_ev >= BRIGHT_SCENE_EV:
+        return str(picture)
+    return f"{picture} (kept dark, because the scene had EV {scene_ev:.0f})"
+
+
+def _describe_uncertainty(path: Path, assembly: "Assembly") -> str:
+    """Return the name of the file with the standard deviation, and how large this is."""
+    from hdrlab.show.pages import wording
+
+    if assembly.s is None:
+        return str(path)
+    return f"{path} ({wording.certainty(assembly.E, assembly.s)})"
+
+
 def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
     """Return at most MAX_DOUBT_LINES doubts. The last line counts those that are left out."""
     if len(doubts) <= MAX_DOUBT_LINES:
         return doubts
     shown = doubts[: MAX_DOUBT_LINES - 1]
     hidden = len(doubts) - len(shown)
-    return *shown, f"{hidden} more warnings; pass --report FOLDER to see all of them"
+    return *shown, f"{hidden} more warnings; pass --verbose to see all of them"
 
 
 @click.command(cls=common.Command)
@@ -379,6 +446,7 @@ def calibrate(
     from hdrlab import pipeline
     from hdrlab.io import response_files
     from hdrlab.pipeline import recovery
+    from hdrlab.show import plots
     from hdrlab.show.plots import calibration
 
     # bad options are reported before the work starts
@@ -387,7 +455,10 @@ def calibrate(
     if plot:
         calibration.check_suffix(plot)
 
-    bracket = brackets.read_bracket(photos, times, mask, None)
+    remarks = _Remarks(verbose=True)
+    bracket = brackets.read_bracket(
+        photos, times, mask, None, note=remarks.note, detail=remarks.note
+    )
     last_stage = "align"
     times_mode = "stated"
     if estimate_times or times == "estimate":
@@ -395,7 +466,7 @@ def calibrate(
         times_mode = "estimate"
     steps = pipeline.assemble_steps(bracket, align=align, response=response, times=times_mode)
     aligned = next(state for state in steps if state.stage == last_stage)
-    common.echo_notes([*aligned.notes, *aligned.doubts])
+    common.echo_notes([*aligned.notes, *aligned.details, *aligned.doubts])
 
     # this method keeps only a plausible response
     recover = recovery.find_validated_method(response)
@@ -404,13 +475,13 @@ def calibrate(
         aligned.bracket, align="none", response=lambda *_, **__: g, times="stated"
     )
     common.echo_warnings(assembly.doubts)
-    seconds = assembly.bracket.times
-    click.echo(f"{response}, from {len(seconds)} photos")
+    click.echo(f"{response}, from {len(assembly.bracket.times)} photos")
     click.echo(calibration.summary(assembly.g, assembly.medians, assembly.bracket.names))
     for path in out:
         response_files.write_curve(path, assembly.g)
         click.echo(path)
     if plot:
-        figure = calibration.calibration(assembly.g, assembly.medians, seconds, title=response)
+        exposures = plots.exposures(assembly.bracket)
+        figure = calibration.calibration(assembly.g, assembly.medians, exposures, title=response)
         calibration.write_plot(plot, figure)
         click.echo(plot)

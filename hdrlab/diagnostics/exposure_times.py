@@ -216,6 +216,11 @@ def note(found: Estimate, names: Sequence[str]) -> str:
     )
 
 
+def exceeds_rounding(found: Estimate) -> bool:
+    """Return whether an accepted estimate is farther from the stated times than their rounding."""
+    return found.accepted and float(np.abs(found.stops).max()) > MAX_ROUNDING_STOPS
+
+
 def doubts(found: Estimate) -> tuple[str, ...]:
     """Return warnings about estimated times: one sentence, or none."""
     if not found.accepted:

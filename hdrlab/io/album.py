@@ -55,11 +55,14 @@ class Selection:
         A sentence on each group of photos that was skipped.
     damaged
         The error of each photo that was left out because its header is damaged.
+    details
+        A sentence on each picture that was skipped because hdrlab made it.
     """
 
     paths: list[Path]
     notes: list[str]
     damaged: list[FileFormatError]
+    details: tuple[str, ...] = ()
 
 
 def select(paths: Paths, *, split: bool = True) -> Selection:
@@ -105,22 +108,24 @@ def select_brackets(paths: Paths) -> tuple[list[list[Path]], Selection]:
     is_folder = isinstance(paths, str | Path) or len(paths) == 1
     if not is_folder:
         return [selected], Selection(selected, [], damaged)
+    selected, skipped = _skip_own_pictures(selected)
+    details = tuple(skipped)
     notes: list[str] = []
-    for skip in (_skip_own_pictures, _skip_edited_copies, _skip_other_formats, _skip_other_sizes):
+    for skip in (_skip_edited_copies, _skip_other_formats, _skip_other_sizes):
         selected, more_notes = skip(selected)
         notes += more_notes
-    _require_two(selected, [*notes, *map(str, damaged)])
+    _require_two(selected, [*details, *notes, *map(str, damaged)])
     groups = splitting.split_into_brackets([decode.read_header(path) for path in selected])
     brackets = [
         sorted(header.path for header in group) for group in groups if len(group) >= MIN_PHOTOS
     ]
     if not brackets or len(groups) == 1:
-        return [selected], Selection(selected, notes, damaged)
+        return [selected], Selection(selected, notes, damaged, details)
     for group in groups:
         if len(group) < MIN_PHOTOS:
             notes.append(f"{group[0].path.name}: skipped, because it belongs to no bracket")
     used = [path for bracket in brackets for path in bracket]
-    return brackets, Selection(used, notes, damaged)
+    return brackets, Selection(used, notes, damaged, details)
 
 
 def _describe_brackets(brackets: list[list[Path]]) -> str:

@@ -86,6 +86,7 @@ def read_bracket(
     mask: tuple[int, int, int] | None = None,
     note: Callable[[str], object] = warnings.warn,
     warn: Callable[[str], object] = warnings.warn,
+    detail: Callable[[str], object] | None = None,
     progress: Callable[[Sequence[Path]], Iterable[Path]] = iter,
 ) -> Bracket:
     """Read a bracket of photos, with their exposure times.
@@ -106,6 +107,8 @@ def read_bracket(
     mask : the color (R, G, B) of pixels to ignore, such as the border of a registered scan
     note : called with each note: which photos were skipped, and what the camera had changed
     warn : called with a sentence on each damaged photo that was left out
+    detail : called with a sentence on each picture that was skipped because hdrlab made it, and
+        on missing times, which `pipeline.assemble` reports, too; without it, `note` gets the latter
     progress : wraps the paths while they are decoded, such as tqdm
 
     Returns
@@ -134,6 +137,9 @@ def read_bracket(
         selection = album.select(paths, split=False)
     headers, more_notes = album.turn_alike([read_header(path) for path in selection.paths])
     _check_alike(headers)
+    if detail is not None:
+        for sentence in selection.details:
+            detail(sentence)
     for sentence in (*selection.notes, *more_notes, *_processing_notes(headers)):
         note(sentence)
     names = [header.path.name for header in headers]
@@ -142,6 +148,8 @@ def read_bracket(
     times_source, times_notes = _find_source_of_times(names, exposures, times)
     for sentence in (*(fill_notes if times is None else ()), *times_notes):
         note(sentence)
+    if times is None and times_source is not None and not times_notes:
+        (detail or note)(_describe_missing_times(names, exposures))
     seconds, inverse = bracket_times(names, exposures, times_source)
     luminance = luminance_of_unit(exposures) if times_source is None else None
     order = np.argsort(seconds, kind="stable")
@@ -230,18 +238,23 @@ def _find_source_of_times(
         return times, [f"{times} names no photos: its times belong to the photos sorted by name"]
     if times is not None:
         return times, []
-    without_time = [
-        name for name, exposure in zip(names, exposures, strict=True) if exposure.seconds is None
-    ]
-    if not without_time:
+    if all(exposure.seconds is not None for exposure in exposures):
         return None, []
     named = times_in_names(names)
     if named is not None:
         return named, ["no exposure times in EXIF; hdrlab reads them from the file names"]
-    return [1.0] * len(names), [
+    return [1.0] * len(names), []
+
+
+def _describe_missing_times(names: list[str], exposures: list[Exposure]) -> str:
+    """Return a note on the photos without a time, and what to do."""
+    without_time = [
+        name for name, exposure in zip(names, exposures, strict=True) if exposure.seconds is None
+    ]
+    return (
         f"no exposure time in EXIF of {', '.join(without_time)}; hdrlab estimates all times from the "
         f"pixels. If you know the times, {HINT}"
-    ]
+    )
 
 
 def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False) -> None:

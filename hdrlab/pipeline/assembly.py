@@ -38,7 +38,9 @@ class Assembly:
     medians : (P, C, 256)
         log2 exposure of each pixel value in each photo, see `diagnostics.consistency`.
     notes : tuple of str
-        Remarks on the map, as sentences.
+        What users must know about the map although nothing is wrong, as sentences.
+    details : tuple of str
+        How hdrlab made the map, as sentences. `assemble --verbose` and the report show them.
     doubts : tuple of str
         Warnings, as sentences; an empty tuple means that no problem was found.
     moving : (h, w) int32 or None
@@ -62,6 +64,7 @@ class Assembly:
     quality: NDArray[np.uint8] = None  # type: ignore[assignment]
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
+    details: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
@@ -78,6 +81,10 @@ class Assembly:
     def with_note(self, note: str) -> "Assembly":
         """Return a copy with one more note."""
         return replace(self, notes=(*self.notes, note))
+
+    def with_detail(self, detail: str) -> "Assembly":
+        """Return a copy with one more detail."""
+        return replace(self, details=(*self.details, detail))
 
     def with_doubt(self, doubt: str) -> "Assembly":
         """Return a copy with one more warning."""

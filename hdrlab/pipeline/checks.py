@@ -83,7 +83,7 @@ def check_map(
             return state.with_doubt(text)
     unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
     if unchecked:
-        return state.with_note(
+        return state.with_detail(
             f"the pixels could not confirm the exposure times of {', '.join(unchecked)}"
         )
     return state

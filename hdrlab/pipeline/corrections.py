@@ -102,7 +102,8 @@ def remove_ghosts(
     percent = 100 * np.mean(result.labels > 0)
     if percent >= ghosts.WIDESPREAD:
         state = state.with_doubt(warning_text("widespread", percent=percent))
-    return state.with_note(ghosts.note(result, bracket.names))
+    text = ghosts.note(result, bracket.names)
+    return state.with_note(text) if len(result.references) else state.with_detail(text)
 
 
 def remove_glare(state: Assembly) -> Assembly:

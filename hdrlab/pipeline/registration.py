@@ -56,7 +56,7 @@ def align_bracket(
         bracket=aligned,
         offsets=np.rint(shifts).astype(np.int64)[:, ::-1],
         homographies=homographies,
-        notes=found.notes + notes,
+        details=found.notes + notes,
         doubts=doubts,
     )
 

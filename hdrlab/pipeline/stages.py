@@ -191,11 +191,17 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     choice = recovery.choose_response(options.response, state.bracket)
     has_true_times = choice.spread <= timing.MAX_CONSISTENT_STOPS
     if options.times == "estimate" or (options.times == "correct" and not has_true_times):
-        refined = timing.refine_times(state, options.response, choice.spread)
+        is_requested = options.times == "estimate" and not has_relative_times
+        refined = timing.refine_times(
+            state,
+            options.response,
+            choice.spread,
+            is_requested=is_requested,
+            has_stated_times=not has_relative_times,
+        )
         is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
         # Notes on times that stay are news only to those who asked for an estimate.
-        is_reported = options.times == "estimate" and not has_relative_times
-        if is_changed or is_reported:
+        if is_changed or is_requested:
             state = refined
     if options.times != "stated":
         state = replace(state, stage="times")
@@ -215,7 +221,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state,
         stage="response",
         g=response.g,
-        notes=(*state.notes, *choice.notes),
+        details=(*state.details, *choice.notes),
         doubts=(*state.doubts, *response.doubts),
         fallback=response.fallback,
     )

@@ -64,7 +64,15 @@ def space_by_stops(bracket: Bracket, stops: arrays.ArrayLike) -> Bracket:
     steps = np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
     times = np.empty(len(images))
     times[mtb.by_brightness(images)] = 2 ** np.cumsum([0, *steps])
-    return make_bracket(images, times, bracket.names, valid=bracket.valid, linear=bracket.linear)
+    spaced = make_bracket(
+        images,
+        times,
+        bracket.names,
+        valid=bracket.valid,
+        linear=bracket.linear,
+        damaged=bracket.damaged,
+    )
+    return replace(spaced, has_relative_times=True)
 
 
 def estimate_relative_times(bracket: Bracket) -> Bracket:
@@ -138,12 +146,20 @@ class CorrectedTimes:
     spread: float
 
 
-def refine_times(state: Assembly, response: Method, stated_spread: float) -> Assembly:
-    """Return the Assembly with times from the pixels, if held-out pixels confirm them, and a note.
+def refine_times(
+    state: Assembly,
+    response: Method,
+    stated_spread: float,
+    *,
+    is_requested: bool = False,
+    has_stated_times: bool = True,
+) -> Assembly:
+    """Return the Assembly with times from the pixels, if held-out pixels confirm them.
 
-    Where the stated times make a worthless map, and corrections do not help, relative times replace
-    them, with a warning. `stated_spread` is the spread that the stated times leave in held-out
-    pixels.
+    Corrections that are larger than the rounding of stated times are a note. Smaller ones are a
+    detail, unless the user requested an estimate, and so are corrections of estimates. Where the
+    stated times make a worthless map, and corrections do not help, relative times replace them,
+    with a warning. `stated_spread` is the spread that the stated times leave in held-out pixels.
     """
     corrected = correct_times(state.bracket, response, stated_spread)
     doubts = exposure_times.doubts(corrected.estimate)
@@ -153,16 +169,20 @@ def refine_times(state: Assembly, response: Method, stated_spread: float) -> Ass
         relative = correct_times(replace(rising.bracket, times=relative_times), response)
         if relative.spread < MIN_WORTHLESS_STOPS / 2:
             # relative times do not tell how bright the scene was
-            state = replace(rising, bracket=replace(rising.bracket, luminance_of_unit=None))
+            unscaled = replace(rising.bracket, luminance_of_unit=None, has_relative_times=True)
+            state = replace(rising, bracket=unscaled)
             corrected = relative
+            has_stated_times = False
             doubts = (_describe_replaced_times(stated_spread, relative_times),)
     estimate = corrected.estimate
     state = replace(
         state,
         bracket=replace(state.bracket, times=estimate.times),
-        notes=(*state.notes, exposure_times.note(estimate, state.bracket.names)),
         doubts=(*state.doubts, *doubts),
     )
+    text = exposure_times.note(estimate, state.bracket.names)
+    is_news = has_stated_times and exposure_times.exceeds_rounding(estimate)
+    state = state.with_note(text) if is_requested or is_news else state.with_detail(text)
     return select_photos(state, np.argsort(estimate.times, kind="stable"))
 
 

@@ -225,7 +225,7 @@ def test_the_assembly_holds_the_homographies_and_a_note_on_the_method(turned):
     found = next(pipeline.assemble_steps(taken, align="auto"))
     relative = np.linalg.inv(truth[1]) @ truth
     assert warp.corner_distance(found.homographies, relative, taken.images.shape[1:3]).max() < 0.5
-    assert found.offsets.dtype == np.int64 and 'aligned by "cerman"' in found.notes[0]
+    assert found.offsets.dtype == np.int64 and 'aligned by "cerman"' in found.details[0]
     still = next(pipeline.assemble_steps(taken, align="mtb"))
     assert np.array_equal(still.homographies, warp.as_homographies(mtb.align(taken.images)))
 

@@ -72,7 +72,7 @@ def test_no_command_overwrites_its_input(name, here, capsys):
 
 @pytest.mark.parametrize("picture", ["c.png", "c.jpg", "c.tif"])
 def test_command_can_be_repeated_with_its_outputs_among_the_photos(picture, here, capsys):
-    command = f"assemble photos --stops 2 -o photos/room.hdr --picture photos/{picture}"
+    command = f"assemble photos -v --stops 2 -o photos/room.hdr --picture photos/{picture}"
     maps = []
     for _ in range(2):
         with pytest.raises(SystemExit) as stop:
@@ -80,7 +80,7 @@ def test_command_can_be_repeated_with_its_outputs_among_the_photos(picture, here
         assert not stop.value.code
         maps.append((here / "photos/room.hdr").read_bytes())
     assert maps[0] == maps[1]
-    assert picture in capsys.readouterr().err  # a note says that the picture is no photo
+    assert picture in capsys.readouterr().err  # a detail says that the picture is no photo
 
 
 def test_require_other_finds_two_names_of_one_file(tmp_path):

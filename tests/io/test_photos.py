@@ -474,8 +474,8 @@ def test_a_result_is_skipped_among_photos_and_has_the_pixels_of_any_picture(tmp_
     for name, level in ("a", 50), ("b", 200):
         write_picture(tmp_path / f"{name}{suffix}", np.full((20, 30, 3), level, np.uint8))
     write_picture(tmp_path / f"c{suffix}", np.full((20, 30, 3), 90, np.uint8), is_result=True)
-    notes = []
-    bracket = read_bracket(tmp_path, [1, 4], note=notes.append)
+    details = []
+    bracket = read_bracket(tmp_path, [1, 4], detail=details.append)
     assert bracket.names == (f"a{suffix}", f"b{suffix}")
-    assert f"c{suffix}" in notes[0]
+    assert f"c{suffix}" in details[0]
     assert np.abs(read_photo(tmp_path / f"c{suffix}").astype(int) - 90).max() <= 1

@@ -55,7 +55,7 @@ def test_a_gray_wall_in_three_photos_stays_gray(three):
     found = pipeline.assemble(three, align="none", times="stated")
     assert part(separate) > 2 and part(found.g) < 1.001
     assert error(found.g) < min(0.2, error(separate))
-    assert any("response: one curve by" in note for note in found.notes)
+    assert any("response: one curve by" in detail for detail in found.details)
 
 
 def test_channels_with_different_responses_get_a_curve_each():

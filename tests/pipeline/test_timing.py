@@ -59,6 +59,7 @@ def test_relative_times_have_the_right_order_and_roughly_the_right_steps(room, r
     shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
     estimated = estimate_relative_times(replace(shuffled, luminance_of_unit=0.5))
     steps = np.diff(np.log2(estimated.times))
+    assert estimated.has_relative_times and not taken.has_relative_times
     assert estimated.luminance_of_unit is None  # relative times do not tell how bright it was
     assert np.all((steps > 1) & (steps < 3.2))
 
@@ -74,8 +75,14 @@ def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
     found = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
     assert "relative" in found.notes[0] and "--stops" in found.notes[0]
     assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
+    assert found.bracket.has_relative_times
     with pytest.raises(ValueError, match="at least two different exposures"):
         pipeline.assemble(replace(taken, times=np.full(5, 0.01)), times="stated")
+
+
+def test_warnings_of_damaged_photos_survive_an_estimate_of_the_times(taken):
+    damaged = replace(taken, times=np.full(5, 0.01), damaged=("b.jpg is damaged; it was left out",))
+    assert complete_times(damaged, "correct")[0].damaged == damaged.damaged
 
 
 def test_a_burst_of_one_exposure_raises_an_error(room):
@@ -96,7 +103,7 @@ def test_true_times_are_not_changed_and_give_no_note(taken):
     found = pipeline.assemble(taken)
     assert found.bracket.times.tobytes() == taken.times.tobytes()
     assert not found.doubts and not found.fallback
-    assert all(note.startswith("response: ") for note in found.notes)  # none about times
+    assert found.notes == ()
 
 
 def test_rough_times_are_corrected_unless_times_is_stated():
