@@ -24,11 +24,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
+from hdrlab.diagnostics.overview import make_overview
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
-# pixels of a photo, on an even grid, that are compared
+# pixels of the overview that is compared
 MAX_PIXELS = 180_000
-# side of a block, in pixels of that grid
+# side of a block, in pixels of the overview
 BLOCK_SIDE = 4
 # mean weight, relative to the highest, with which a photo measures a block
 MIN_BLOCK_WEIGHT = 0.2
@@ -104,13 +105,11 @@ def measure_motion(
     stack, times_s, w, curves, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
     mask = as_mask(valid, stack)
     channel_count = curves.shape[1]
-    step = max(1, int(np.sqrt(stack[0].size / channel_count / MAX_PIXELS)))
-    grid = np.s_[:, ::step, ::step]
-    sample = stack[grid]
-    Z = np.moveaxis(sample.reshape(*sample.shape[:3], -1), -1, 0).copy()
+    small = make_overview(stack, curves, top=top, valid=mask, max_pixels=MAX_PIXELS)
+    Z = np.moveaxis(small.images.reshape(*small.images.shape[:3], -1), -1, 0).copy()
     is_seen = (Z < top).all(axis=0)
-    if mask is not None:
-        is_seen = is_seen & mask[grid]
+    if small.valid is not None:
+        is_seen = is_seen & small.valid
     relative_weights = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
     R, W = _sum_residuals(Z, curves, times_s, relative_weights, np.asarray(is_seen))
     rows = measure_bands(R.sum(axis=2), W.sum(axis=2), channel_count * R.shape[2])

@@ -85,18 +85,17 @@ def remove_ghosts(
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
+    from hdrlab.pipeline import deghosting
     from hdrlab.radiance.deghosting import ghosts
 
     bracket = state.bracket
-    result = ghosts.remove_ghosts(
-        bracket.images,
-        bracket.times,
+    result = deghosting.remove_ghosts(
+        bracket,
         state.g,
         pixel_weights,
-        fixed=len(bracket.images) // 2 if mode == "reference" else None,
         merged=Merged(state.E, state.quality),
-        valid=bracket.valid,
         merge=merge,
+        fixed=len(bracket.images) // 2 if mode == "reference" else None,
     )
     state = replace(state, stage="ghosts", E=result.E, quality=result.quality, moving=result.labels)
     percent = 100 * np.mean(result.labels > 0)

@@ -10,6 +10,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, lens_flare, movers, responses
 from hdrlab.cli import main
+from hdrlab.core.bracket import bracket
 from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
 from hdrlab.show.pages import report
@@ -78,17 +79,96 @@ def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
     wall = np.full((*SHAPE, 3), 0.4, np.float32)
     ball = movers.ball(SHAPE, (48, 72), 44, [1.5, 1.0, 0.6])
     taken = movers.shoot(wall, ball, movers.path(3, (0, 36)), [0.2, 0.6, 1.8], rng=1).bracket
-
-    def film(images, times, valid=None):
-        return responses.true_g("film")
-
-    knobs = {"align": "none", "times": "stated", "response": film}
-    auto = pipeline.assemble(taken, **knobs)
-    regions = pipeline.assemble(taken, **knobs, ghosts="regions")
+    auto = pipeline.assemble(taken, **KNOBS)
+    regions = pipeline.assemble(taken, **KNOBS, ghosts="regions")
     assert np.mean(auto.moving > 0) > 0.5
     assert np.array_equal(auto.E, regions.E)
     assert any("moved" in doubt for doubt in auto.doubts)
     assert not any("--ghosts regions" in doubt for doubt in auto.doubts)
+
+
+def film(images, times, valid=None):
+    return responses.true_g("film")
+
+
+def draw_hall(shape):
+    """Return a dark hall with four equal lamps, whose light falls on the wall."""
+    y, x = np.indices(shape) / shape[0]
+    light = 0.05 + 0.03 * np.sin(9 * x) * np.cos(7 * y)
+    for k in range(4):
+        distance = np.hypot(y - 0.25, x - (k + 0.5) * shape[1] / shape[0] / 4)
+        light += 25 * (distance < 0.06) + 0.3 * np.exp(-distance / 0.08)
+    return (light[..., None] * [1, 0.75, 0.4]).astype(np.float32)
+
+
+def take_hall(shape, at, figure):
+    """Photograph the hall with the faults of cameras: noise, vignetting, and rounded times."""
+    hall = draw_hall(shape)
+    times = 0.014 * 4.0 ** np.arange(5)
+    fall_off = [0.95, 1.0, 1.04, 0.98, 1.02]
+    y, x = np.indices(shape) / np.array(shape)[:, None, None] - 0.5
+    images = []
+    for j, time in enumerate(times):
+        moment = hall if figure is None else movers.compose_moment(hall, figure, at[j])[0]
+        seen = moment * (1 + (fall_off[j] - 1) * 2 * (x**2 + y**2))[..., None]
+        model = camera.Camera(response="film", full_well=30_000, read_noise=6)
+        images.append(camera.shoot(np.float32(seen), [time * fall_off[j]], model, rng=j).images[0])
+    return bracket(np.stack(images), times)
+
+
+KNOBS = {"align": "none", "times": "stated", "response": film}
+
+
+def test_nothing_moves_in_an_empty_hall_with_lamps():
+    shape = (180, 270)
+    taken = take_hall(shape, None, None)
+    cleaned = pipeline.assemble(taken, **KNOBS, ghosts="regions")
+    plain = pipeline.assemble(taken, **KNOBS, ghosts="none")
+    assert not cleaned.moving.any()
+    assert np.array_equal(cleaned.E, plain.E)
+
+
+def test_removing_ghosts_does_not_change_lamps_that_all_photos_show():
+    shape = (180, 270)
+    figure = movers.ball(shape, (120, 135), 55, np.array([0.5, 0.3, 0.2]), stripes=0)
+    taken = take_hall(shape, movers.path(5, (0, 30)), figure)
+    cleaned = pipeline.assemble(taken, **KNOBS)
+    plain = pipeline.assemble(taken, **KNOBS, ghosts="none")
+    y, x = np.indices(shape) / shape[0]
+    near = [np.hypot(y - 0.25, x - (k + 0.5) * shape[1] / shape[0] / 4) < 0.045 for k in range(4)]
+    lamps = near[0] | near[3]
+    assert cleaned.moving.any()
+    assert np.allclose(cleaned.E[lamps], plain.E[lamps], rtol=0.02)
+
+
+def test_ghosts_in_a_large_and_a_small_bracket_are_found_in_the_same_places():
+    shape = (540, 810)
+    figure = movers.ball(shape, (330, 405), 130, [0.9, 0.25, 0.2])
+    taken = take_hall(shape, movers.path(5, (0, 90)), figure)
+    blocks = taken.images.reshape(5, 180, 3, 270, 3, 3)
+    smaller = replace(taken, images=blocks.mean(axis=(2, 4)).round().astype(np.uint8))
+    large = pipeline.assemble(taken, **KNOBS)
+    small = pipeline.assemble(smaller, **KNOBS)
+    enlarged = np.repeat(np.repeat(small.moving > 0, 3, axis=0), 3, axis=1)
+    assert np.mean(enlarged ^ (large.moving > 0)) < 0.3 * np.mean(enlarged)
+    assert len(small.doubts) == len(large.doubts)
+
+
+def test_a_figure_before_a_bright_wall_gets_no_color_of_clipped_pixel_values():
+    shape = (120, 180)
+    y, x = np.indices(shape)
+    wall = np.exp(1.5 * np.sin(x / 30) + np.cos(y / 17))[..., None] * np.float32([1.6, 0.8, 0.2])
+    figure = movers.ball(shape, (60, 90), 26, [0.8, 0.8, 0.8], stripes=0)
+    times = [0.03, 0.12, 0.5, 2.0]
+    taken = movers.shoot(wall, figure, movers.path(4, (0, 30)), times, rng=3)
+    cleaned = pipeline.assemble(taken.bracket, **KNOBS)
+    assert cleaned.moving.any()
+    known = cleaned.quality == 0
+    assert known[cleaned.moving > 0].mean() > 0.99
+    ratio = np.log2(cleaned.E[None] / np.concatenate([taken.moments, wall[None]]))
+    ratio -= np.median(ratio[-1], axis=(0, 1))
+    hue = np.abs(ratio - ratio.mean(axis=-1, keepdims=True)).max(axis=-1).min(axis=0)
+    assert np.mean(hue[known] > 0.3) < 0.01
 
 
 def test_flare_removal_is_the_last_stage_before_the_comparison():

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from hdrlab.core import weights
+from hdrlab.core import steps, weights
 from hdrlab.core.arrays import (
     F32,
     ArrayLike,
@@ -112,6 +112,15 @@ def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> 
     return ~reference.find_consistent(frame, plain, tau=2 * reference.TAU)
 
 
+def find_still(taken: Calibrated, box: regions.Box, E: F32) -> Mask:
+    """Return where all photographs are consistent with the map E (h, w, C) of a box.
+
+    There, removing ghosts would change what has none.
+    """
+    contradictions = [find_contradictions(taken, box, j, E) for j in range(len(taken.images))]
+    return ~np.any(contradictions, axis=0)
+
+
 def region_steps(
     taken: Calibrated, E: F32, moved: Mask, margin: int, *, choose: Callable[[Labels], Indices]
 ) -> Iterator[Regions]:
@@ -153,7 +162,6 @@ def remove_ghosts(
     *,
     fixed: int | None = None,
     alone: bool = False,
-    most: float = np.inf,
     merged: Merged | None = None,
     valid: ArrayLike | None = None,
     merge: Callable[..., Merged] = merge_with_quality,
@@ -168,7 +176,6 @@ def remove_ghosts(
     w : (n,), weights; the hat by default
     fixed : number of the reference frame of every region; by default each has its own best exposure
     alone : use only the reference frame in a region, as in the plain method
-    most : per cent of the pixels; if the regions contain this many, the plain map is returned
     merged : the plain map of `merge`, if it is known; by default it is computed
     valid : (P, H, W) bool, optional, False where a photograph shows nothing of the scene
     merge : `merge_with_quality`, of `radiance.merge` or of `fast.merge`
@@ -220,16 +227,15 @@ def remove_ghosts(
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
 
     used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
-    for labels, references in region_steps(taken, plain, moved, margin, choose=choose):
-        # growing would only make the regions larger
-        if 100 * np.mean(labels > 0) >= most:
-            return Ghosts(E, quality, labels, references, used, score)
+    labels, references = steps.last(region_steps(taken, plain, moved, margin, choose=choose))
     alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
         wide = regions.pad_box(box, 2 * reference.BOX_SIDE, labels.shape)
         y, x = wide
         inside = labels[wide] == r + 1
         frames = select_frames(taken, wide, int(references[r]), alone=alone)
+        if not alone:
+            frames |= used[:, y, x] & find_still(taken, wide, plain[wide])
         still = merge(stack[:, y, x], times, g, w, valid=frames)
         E[wide][inside] = regions.blend(E[wide], still.E, alpha[wide])[inside]
         quality[wide][inside] = still.quality[inside]
