@@ -60,9 +60,9 @@ def evaluate(m: F64, a: F64) -> F64:
 def quadratic_form(blends: Sequence[Blend], degree: int) -> F64:
     """Return Q of E = a^T Q a: sum_j V^T (1 - P) V, V_ik = m_ij^k, P the projection on lines in I."""
     Q = np.zeros((degree + 1, degree + 1))
-    for blend in blends:
-        V = blend.M[:, None] ** np.arange(degree + 1)
-        lines = np.linalg.qr(np.column_stack([blend.I, np.ones(len(V))]))[0]
+    for I, M in blends:  # noqa: E741, the paper's letter
+        V = M[:, None] ** np.arange(degree + 1)
+        lines = np.linalg.qr(np.column_stack([I, np.ones(len(V))]))[0]
         residual = V - lines @ (lines.T @ V)
         Q += residual.T @ residual
     return Q

@@ -22,7 +22,8 @@ from hdrlab.core.arrays import F64, Array, ArrayLike
 # A and C fitted by least squares: f is within 4 levels of the sRGB curve from level 20 to 200
 A = 1.79
 C = 0.192
-TARGET = 128.0  # level
+# mean level after the correction
+TARGET = 128.0
 # stops; a photograph that needs more shows nothing
 DELTA_LIMIT = 8.0
 _LEVEL_TOLERANCE = 0.5
