@@ -106,6 +106,8 @@ def main(arguments: list[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     if arguments[:1] == ["fuzz"]:  # it has options of its own
         return int(import_module("benchmarks.fuzz").main(arguments[1:]))
+    if arguments[:1] == ["pictures"]:  # it writes pictures, for people to look at
+        return int(import_module("benchmarks.pictures").main(arguments[1:]))
     options = parse(arguments)
     start = time.perf_counter()
     outcomes: list[Outcome] = []

@@ -96,6 +96,7 @@ def tonemap(
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
+    from hdrlab.io import radiance
     from hdrlab.pipeline.pictures import find_operator
 
     if to == "picture":
@@ -109,7 +110,12 @@ def tonemap(
     check_settings("tonemap", find_operator(operator), knobs)
     with elapsed(operator):
         developed = pipeline.develop_and_describe(
-            E, operator, saturation=saturation, way=way, **knobs
+            E,
+            operator,
+            saturation=saturation,
+            way=way,
+            luminance_of_unit=radiance.read_luminance_of_unit(source),
+            **knobs,
         )
         _write_image(out, to, developed.picture, E, headroom=headroom, primaries=primaries)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {developed.settings}")
@@ -199,13 +205,16 @@ def compare(
     hdrlab first reduces the map to --size pixels along its longer side. Times and quality indices
     are for that size. `hdrlab tonemap --help` explains --way.
     """
+    from hdrlab.io import radiance
     from hdrlab.show.pages import contact, sheet
     from hdrlab.show.plots import figures
 
     sheet.check_suffix(out)
     names = operators.replace(" ", "").split(",") if operators else common.OPERATORS
     E = figures.fit(common.read_map(source, clean), size)
-    entries = common.one_by_one(contact.entry_steps(E, names, way=way), names)
+    unit = radiance.read_luminance_of_unit(source)
+    steps = contact.entry_steps(E, names, way=way, luminance_of_unit=unit)
+    entries = common.one_by_one(steps, names)
     description = common.describe_map(E)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {description}"))
     click.echo(f"{out}: {len(names)} operators, {description}")
@@ -229,7 +238,8 @@ def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
 
     radiance.require_writable(target, half=half)
     E = common.read_map(source, clean)
-    radiance.write_radiance(target, E, half=half)
+    unit = radiance.read_luminance_of_unit(source)
+    radiance.write_radiance(target, E, half=half, luminance_of_unit=unit)
     click.echo(f"{target}: {common.describe_map(E)}")
 
 

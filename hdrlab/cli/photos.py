@@ -226,16 +226,18 @@ def assemble(
     common.echo_warnings(assembly.doubts if verbose else _shorten(assembly.doubts))
 
     comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
-    if meter_reading:
-        comments.insert(0, "unit: cd/m^2")
+    unit = assembly.bracket.luminance_of_unit
     # the map is written while the image is made, and also if making the image fails
     with ThreadPoolExecutor(1) as executor:
-        writing = executor.submit(radiance.write_radiance, out, assembly.E, comments=comments)
+        writing = executor.submit(
+            radiance.write_radiance, out, assembly.E, comments=comments, luminance_of_unit=unit
+        )
         description = executor.submit(common.describe_map, assembly.E)
         developed = _develop(assembly, tonemap) if picture or report else None
         if uncertainty and assembly.s is not None:
             both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
-            layers.write_layers(uncertainty, both, comments=comments)
+            unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
+            layers.write_layers(uncertainty, both, comments=[*unit_comments, *comments])
         if developed and picture:
             photo_files.write_picture(picture, developed.picture, is_result=True)
             remarks.detail(f"{picture}: {developed.settings}")
@@ -378,7 +380,7 @@ def _describe_picture(picture: Path, assembly: "Assembly", tonemap: str) -> str:
     scene_ev = measure_scene_ev(assembly.E, unit)
     if scene_ev >= BRIGHT_SCENE_EV:
         return str(picture)
-    return f"{picture} (kept dark, because the scene had EV {scene_ev:.0f})"
+    return f"{picture} (kept dark, because the scene had EV {scene_ev:z.0f})"
 
 
 def _describe_uncertainty(path: Path, assembly: "Assembly") -> str:

@@ -5,6 +5,8 @@ is read, too.
 """
 
 import dataclasses
+import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +15,7 @@ import numpy as np
 
 from hdrlab.core import arrays, gamut
 from hdrlab.errors import FileFormatError, InputError
+from hdrlab.io import decode
 from hdrlab.io.files import require_no_folder, require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
@@ -27,6 +30,8 @@ SUFFIXES: dict[str, ModuleType] = {
 }
 # Below this determinant of their x, y and z, three colors are no primaries: sRGB's have 0.2.
 MIN_PRIMARIES_DETERMINANT = 1e-3
+# The sentence in the header of a map that states its unit; without a number, it is 1 cd/m^2.
+UNIT_SENTENCE = re.compile(r"unit: (?:(\d[-+.\de]{0,30}) )?cd/m\^2")
 # Ultra HDR files need a picture as well as a radiance map, so `write_radiance` cannot write them.
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
@@ -131,8 +136,57 @@ def _require_primaries(path: str | Path, primaries: tuple[float, ...]) -> None:
         )
 
 
+def read_luminance_of_unit(path: str | Path) -> float | None:
+    """Return the cd/m^2 of a white surface with E = 1, as a radiance map states it, or None.
+
+    OpenEXR has the attribute `whiteLuminance`. In the comments of the other formats, hdrlab writes
+    a sentence such as "unit: 12.5 cd/m^2". PFM has no place for it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "night.hdr"
+    >>> write_radiance(path, [[0.5, 1.0]], luminance_of_unit=0.25)
+    >>> read_luminance_of_unit(path)
+    0.25
+    """
+    form = format_of(path, READ)
+    comments: Sequence[str] = ()
+    if form is exr:
+        attributes = exr.read_header(path).attributes
+        stated = attributes.get("whiteLuminance")
+        if isinstance(stated, int | float) and 0 < stated < math.inf:
+            return float(stated)
+        comments = str(attributes.get("comments", "")).splitlines()
+    elif form is rgbe:
+        comments = [line.removeprefix("# ") for line in rgbe.read_header(path).lines]
+    elif form is tiff:
+        comments = decode.read_header(path, samples="floating").comments
+    for comment in comments:
+        match = UNIT_SENTENCE.fullmatch(comment)
+        if match:
+            return _parse_unit(match[1])
+    return None
+
+
+def _parse_unit(text: str | None) -> float | None:
+    """Return the number of a sentence on the unit, 1 without one, and None if it is not valid."""
+    if text is None:
+        return 1.0
+    try:
+        unit = float(text)
+    except ValueError:
+        return None
+    return unit if 0 < unit < math.inf else None
+
+
 def write_radiance(
-    path: str | Path, E: arrays.ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
+    path: str | Path,
+    E: arrays.ArrayLike,
+    *,
+    half: bool = False,
+    comments: Sequence[str] = (),
+    luminance_of_unit: float | None = None,
 ) -> None:
     """Write a radiance map, in the format that the file's suffix names, completely or not at all.
 
@@ -143,6 +197,7 @@ def write_radiance(
     half : True for 16-bit floats, in .exr only
     comments : sentences for the header of the file; they are dropped for .pfm, whose header has no
         place for them
+    luminance_of_unit : cd/m^2 of a white surface with E = 1, if it is known; it is dropped for .pfm
 
     Raises
     ------
@@ -158,12 +213,21 @@ def write_radiance(
     [[0.0010000000474974513, 1000000.0]]
     """
     form = require_writable(path, half=half)
+    if luminance_of_unit is not None:
+        comments = [describe_unit(luminance_of_unit), *comments]
     if form is pfm:
         pfm.write(path, E)
     elif form is exr:
-        exr.write(path, E, half=half, comments=comments)
+        exr.write(path, E, half=half, comments=comments, white_luminance=luminance_of_unit)
     else:
         form.write(path, E, comments=comments)
+
+
+def describe_unit(luminance_of_unit: float) -> str:
+    """Return the sentence that states the unit of a map, which `read_luminance_of_unit` finds."""
+    if luminance_of_unit == 1:
+        return "unit: cd/m^2"
+    return f"unit: {luminance_of_unit:.6g} cd/m^2"
 
 
 def require_writable(path: str | Path, *, half: bool = False) -> ModuleType:

@@ -100,7 +100,7 @@ def develop_and_describe(
     described = settings | {"saturation": float(saturation)}
     parts = [name, *(_describe_setting(knob, value) for knob, value in described.items())]
     if operator is photograph and luminance_of_unit is not None:
-        parts.append(f"for a scene of EV {measure_scene_ev(E, luminance_of_unit):.0f}")
+        parts.append(f"for a scene of EV {measure_scene_ev(E, luminance_of_unit):z.0f}")
     return Developed(picture, ", ".join(parts))
 
 

@@ -9,6 +9,8 @@ import sys
 import cv2
 import numpy as np
 import pytest
+from PIL import Image, TiffImagePlugin
+from PIL.ExifTags import Base
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
@@ -602,6 +604,41 @@ def test_lab_saves_widget_state_and_disables_news(tmp_path, monkeypatch):
 def test_agreement_that_cannot_be_measured_is_not_stated_in_stops():
     assert "0.012 stops" in describe_agreement(0.0123, 3)
     assert not re.search(r"\d|nan|stops", describe_agreement(float("nan"), 3))
+
+
+@pytest.mark.parametrize("suffix", [".exr", ".hdr", ".tif"])
+def test_tonemap_keeps_a_night_dark_that_its_map_states(tmp_path, suffix):
+    night, day, converted = (tmp_path / f"{name}{suffix}" for name in ("night", "day", "converted"))
+    E = scenes.room((96, 144))
+    radiance.write_radiance(night, E, luminance_of_unit=1e-4)
+    radiance.write_radiance(day, E)
+    assert hdrlab("convert", night, converted) == 0
+    pictures_of_maps = []
+    for source in (night, converted, day):
+        assert hdrlab("tonemap", source, "-o", tmp_path / "x.png") == 0
+        pictures_of_maps.append(read_photo(tmp_path / "x.png").astype(int))
+    assert np.abs(pictures_of_maps[0] - pictures_of_maps[1]).max() <= 2
+    assert pictures_of_maps[0].mean() < pictures_of_maps[2].mean() - 10
+
+
+def test_assemble_and_tonemap_make_the_same_picture_of_a_night(tmp_path, capsys):
+    scene = scenes.room((96, 144))
+    taken = camera.shoot(scene, camera.times_around(scene, 4), rng=1)
+    for j, image in enumerate(taken.images):
+        exif = Image.Exif()
+        seconds = TiffImagePlugin.IFDRational(4 ** (j + 1), 8)
+        exif[Base.ExifOffset] = {
+            Base.ExposureTime: seconds,
+            Base.FNumber: 4,
+            Base.ISOSpeedRatings: 100,
+        }
+        Image.fromarray(image).save(tmp_path / f"{j}.jpg", exif=exif, quality=98)
+    photos = sorted(tmp_path.glob("*.jpg"))
+    out, first, second = tmp_path / "x.exr", tmp_path / "1.png", tmp_path / "2.png"
+    code, said, _ = hdrlab("assemble", *photos, "-o", out, "--picture", first, capsys=capsys)
+    assert code == 0 and "kept dark" in said
+    assert hdrlab("tonemap", out, "-o", second) == 0
+    assert np.array_equal(read_photo(first), read_photo(second))
 
 
 def test_calibrate_scales_the_map_by_one_meter_reading(photographs, tmp_path, capsys):

@@ -5,7 +5,12 @@ import pytest
 
 from hdrlab.io.maps import exr, pfm
 from hdrlab.io.photos import write_picture
-from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
+from hdrlab.io.radiance import (
+    SUFFIXES,
+    read_luminance_of_unit,
+    read_radiance,
+    write_radiance,
+)
 from hdrlab.show.describe import describe_file
 
 E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(
@@ -21,6 +26,34 @@ def test_every_format_survives_a_round_trip(tmp_path, suffix):
     assert read.dtype == np.float32 and np.array_equal(
         read if read.ndim == 2 else read[..., 1], gray
     )
+
+
+@pytest.mark.parametrize("suffix", set(SUFFIXES) - {".pfm"})
+@pytest.mark.parametrize("unit", [0.012345, 1.0, 3e7])
+def test_luminance_of_a_unit_survives_a_round_trip(tmp_path, suffix, unit):
+    path = tmp_path / f"x{suffix}"
+    write_radiance(path, E, comments=["doubt: a cloud came"], luminance_of_unit=unit)
+    assert read_luminance_of_unit(path) == pytest.approx(unit, rel=1e-5)
+    assert "doubt: a cloud came" in str(describe_file(path))
+    write_radiance(path, E, comments=["a cloud came"])
+    assert read_luminance_of_unit(path) is None
+
+
+def test_pfm_has_no_place_for_the_luminance_of_a_unit(tmp_path):
+    write_radiance(tmp_path / "x.pfm", E, luminance_of_unit=2.0)
+    assert read_luminance_of_unit(tmp_path / "x.pfm") is None
+    assert np.array_equal(read_radiance(tmp_path / "x.pfm"), E)
+
+
+def test_openexr_states_it_by_the_standard_attribute(tmp_path):
+    write_radiance(tmp_path / "x.exr", E, luminance_of_unit=2.5)
+    assert exr.read_header(tmp_path / "x.exr").attributes["whiteLuminance"] == 2.5
+
+
+@pytest.mark.parametrize("stated", ["0 cd/m^2", "-3 cd/m^2", "1e999 cd/m^2", "1-1 cd/m^2", "nits"])
+def test_a_unit_that_is_no_positive_number_is_ignored(tmp_path, stated):
+    write_radiance(tmp_path / "x.hdr", E, comments=[f"unit: {stated}"])
+    assert read_luminance_of_unit(tmp_path / "x.hdr") is None
 
 
 def test_suffixes_may_be_uppercase(tmp_path):

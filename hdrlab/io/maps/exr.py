@@ -204,7 +204,12 @@ def read_dtypes(path: str | Path) -> tuple[str, ...]:
 
 
 def write(
-    path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
+    path: str | Path,
+    E: ArrayLike,
+    *,
+    half: bool = False,
+    comments: Sequence[str] = (),
+    white_luminance: float | None = None,
 ) -> None:
     """Write radiance as an OpenEXR file of float32, without loss, whole or not at all.
 
@@ -214,6 +219,7 @@ def write(
     E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as Y
     half : True for 16-bit floats: half the size, 3 digits, up to 65504
     comments : sentences for the header's attribute `comments`
+    white_luminance : cd/m^2 of white with the value 1, for the standard attribute `whiteLuminance`
 
     Raises
     ------
@@ -237,6 +243,8 @@ def write(
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     if comments:
         header["comments"] = "\n".join(comments)
+    if white_luminance is not None:
+        header["whiteLuminance"] = float(white_luminance)
     save_parts(path, header, {"RGB" if E.ndim == 3 else "Y": pixels})
 
 

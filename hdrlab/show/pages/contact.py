@@ -22,7 +22,11 @@ from hdrlab.tonemap import quality
 
 
 def entry_steps(
-    E: ArrayLike, operators: Sequence[str] | Mapping[str, Method] | None = None, *, way: str = "hue"
+    E: ArrayLike,
+    operators: Sequence[str] | Mapping[str, Method] | None = None,
+    *,
+    way: str = "hue",
+    luminance_of_unit: float | None = None,
 ) -> Iterator[Entry]:
     """Yield the contact sheet's entry of each operator: its picture, time, TMQI and statistics.
 
@@ -36,6 +40,8 @@ def entry_steps(
         `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio"}
         How colors that a display cannot show are rendered: see `core.colour.render`.
+    luminance_of_unit : float, optional
+        cd/m^2 of a surface with E = 1. With it, "photograph" keeps a night dark.
 
     Raises
     ------
@@ -60,7 +66,9 @@ def entry_steps(
     functions = _find_operators(operators)
     for name, tonemap in functions.items():
         start = perf_counter()
-        settings, saturation = pipeline.resolve_settings(tonemap, E)
+        settings, saturation = pipeline.resolve_settings(
+            tonemap, E, luminance_of_unit=luminance_of_unit
+        )
         Ld = tonemap(L, **settings)
         seconds = perf_counter() - start
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)
