@@ -30,13 +30,14 @@ warning says that the pixels do not show which is true.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_stack, to_256
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, to_256
 from hdrlab.diagnostics import flat_patches, motion, response_steps
 from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.frame_choice import choose_spread_frames
 
 # side of a part of the image, in patches
 PATCHES_PER_TILE_SIDE = 12
@@ -44,6 +45,8 @@ PATCHES_PER_TILE_SIDE = 12
 MIN_PATCHES_PER_TILE = 10
 # Where a pair has fewer flat patches, all patches are used, and only large differences count.
 MIN_FLAT_PATCHES = 50
+# photos, spread over the exposure times, that are compared
+MAX_COMPARED_PHOTOS = 64
 # pixels of a photo, on an even grid, that are used to measure the cost
 MAX_PIXELS = 30_000
 # stops; prior of a time's error. It is wide, for the question is what is wrong and not what is
@@ -140,7 +143,7 @@ def find_contradictions(
     Contradictions
         Of the longest run of photos that patches or histograms connect, if these are three or more.
         With three photos any one may be wrong: then the middle one is named, or an end by twice as
-        much.
+        much. Of more than MAX_COMPARED_PHOTOS photos, so many are compared; the others are unknown.
 
     Examples
     --------
@@ -152,7 +155,15 @@ def find_contradictions(
     (2,)
     """
     stack = as_stack(images)
-    B = np.log(response_steps.as_ascending_times(times, len(stack)))
+    seconds = response_steps.as_ascending_times(times, len(stack))
+    chosen = choose_spread_frames(seconds, MAX_COMPARED_PHOTOS)
+    if len(chosen) < len(stack):
+        mask = as_mask(valid, stack)
+        found = find_contradictions(
+            stack[chosen], seconds[chosen], valid=None if mask is None else mask[chosen]
+        )
+        return _expand(found, chosen, len(stack))
+    B = np.log(seconds)
     patches = flat_patches.find_flat_patches(stack, valid=valid)
     H = flat_patches.count_pairs(patches.Z, patches.best)
     has_few = ~response_steps.find_informative(H)
@@ -196,6 +207,28 @@ def find_contradictions(
         corners=corners,
         cost=measure_cost(stack, stops),
         tints=tints,
+    )
+
+
+def _expand(found: Contradictions, chosen: Indices, count: int) -> Contradictions:
+    """Return what is known of some photos of a bracket as fields for all `count` photos."""
+    stops = np.full(count, np.nan)
+    stops[chosen] = found.stops
+    tints = np.zeros(count)
+    tints[chosen] = found.tints
+
+    def expand_pairs(values: F64) -> F64:
+        expanded = np.full(count - 1, np.nan)
+        expanded[chosen[:-1]] = values
+        return expanded
+
+    return replace(
+        found,
+        stops=stops,
+        tints=tints,
+        regions=expand_pairs(found.regions),
+        significance=expand_pairs(found.significance),
+        corners=expand_pairs(found.corners),
     )
 
 

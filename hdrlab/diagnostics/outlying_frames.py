@@ -25,6 +25,10 @@ MAX_AGREEING_STOPS = 0.1
 # At least so many photos remain, and this fraction of them.
 MIN_KEPT_PHOTOS = 3
 MIN_KEPT_FRACTION = 2 / 3
+# In a larger bracket, only so many photos are tried each time: those with the largest errors.
+MAX_TRIED_PHOTOS = 8
+# In an even larger one, a wrong photo hardly changes the map, and is not searched.
+MAX_SEARCHED_PHOTOS = 64
 # Darker levels do not show whether photos contradict each other.
 MIN_SURE_LEVEL = 16
 # patches that contradict another photo, as a fraction of the image
@@ -49,8 +53,9 @@ def find_outlying_frames(
     Returns
     -------
     outliers : tuple of int
-        Empty if more than a third of the photos would be left out. Photos that contradict no two
-        others over a large area are never among them.
+        Empty if more than a third of the photos would be left out, and for more than
+        MAX_SEARCHED_PHOTOS photos. Photos that contradict no two others over a large area are never
+        among them.
     rivals : tuple of int
         Photos that could be left out in place of the last one: the others agree as well.
 
@@ -67,29 +72,47 @@ def find_outlying_frames(
     """
     stack = as_stack(images)
     B = np.log(response_steps.as_ascending_times(times, len(stack)))
+    if len(stack) > MAX_SEARCHED_PHOTOS:
+        return (), ()
     patches = flat_patches.find_flat_patches(stack, valid=valid)
     kept = list(range(len(B)))
     rivals: tuple[int, ...] = ()
-    error = measure_misfit(patches, B)
+    pair_errors = measure_pair_errors(patches, B)
+    error = float(pair_errors.max(initial=0))
     if error <= MIN_CONTRARY_STOPS:
         return (), ()
     min_kept = max(MIN_KEPT_PHOTOS, np.ceil(MIN_KEPT_FRACTION * len(B)))
     while error > MAX_AGREEING_STOPS and len(kept) > min_kept:
-        remaining = [[k for k in kept if k != j] for j in kept]
-        errors = [measure_misfit(patches.of(frames), B[frames]) for frames in remaining]
-        best = int(np.argmin(errors))
+        tried = [kept[place] for place in _choose_suspects(pair_errors)]
+        remaining = [[k for k in kept if k != j] for j in tried]
+        errors_without = [
+            measure_pair_errors(patches.of(frames), B[frames]) for frames in remaining
+        ]
+        max_errors = [float(errors.max(initial=0)) for errors in errors_without]
+        best = int(np.argmin(max_errors))
         rivals = tuple(
             j
-            for j, other_error in zip(kept, errors, strict=True)
-            if other_error <= MAX_AGREEING_STOPS and j != kept[best]
+            for j, other_error in zip(tried, max_errors, strict=True)
+            if other_error <= MAX_AGREEING_STOPS and j != tried[best]
         )
-        error = errors[best]
+        error = max_errors[best]
+        pair_errors = errors_without[best]
         kept = remaining[best]
     if error > MAX_AGREEING_STOPS:
         return (), ()
     outliers = [j for j in range(len(B)) if j not in kept]
     wrong = tuple(j for j in outliers if contradicts_others(patches, B, j, kept))
     return wrong, rivals if wrong else ()
+
+
+def _choose_suspects(pair_errors: F64) -> list[int]:
+    """Return the photos with the largest errors to their neighbors, ascending: one of them is wrong.
+
+    Without a photo of another pair, the pair with the largest error would stay.
+    """
+    photo_errors = np.maximum(np.append(pair_errors, 0), np.append(0, pair_errors))
+    by_error = np.argsort(-photo_errors, kind="stable")
+    return sorted(by_error[:MAX_TRIED_PHOTOS].tolist())
 
 
 def contradicts_others(
@@ -187,11 +210,14 @@ def find_highlights_of(images: ArrayLike, frame: int, *, valid: ArrayLike | None
     return is_highlight
 
 
-def measure_misfit(patches: flat_patches.FlatPatches, B: F64) -> float:
-    """Return the largest error of ln times B between neighbors in a typical patch, in stops."""
+def measure_pair_errors(patches: flat_patches.FlatPatches, B: F64) -> F64:
+    """Return the errors of ln times B between neighbors in a typical patch, in stops, (P - 1,).
+
+    An error is 0 where the patches of a pair measure nothing.
+    """
     all_patches = np.ones(patches.Z.shape[2:], bool)
     H = flat_patches.count_pairs(patches.Z, all_patches)
     fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))
     biases = response_steps.measure_biases(H, B, fit, sizes=True)
     is_informative = response_steps.find_informative(H)
-    return float(np.nanmax(biases[is_informative], initial=0))
+    return np.where(is_informative, np.nan_to_num(biases).max(axis=1), 0)

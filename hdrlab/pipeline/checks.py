@@ -21,6 +21,8 @@ MAX_EXPLAINED_SPREAD = 0.25
 MIN_WORTHLESS_STOPS = 0.5
 # stops by which a photo must deviate to be named in a warning
 MIN_NAMED_DEVIATION = 0.1
+# photos that a note names
+MAX_NAMED_PHOTOS = 10
 
 
 def start_finding_contradictions(bracket: Bracket) -> Task[Contradictions]:
@@ -84,9 +86,17 @@ def check_map(
     unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
     if unchecked:
         return state.with_detail(
-            f"the pixels could not confirm the exposure times of {', '.join(unchecked)}"
+            f"the pixels could not confirm the exposure times of {_list_names(unchecked)}"
         )
     return state
+
+
+def _list_names(names: Sequence[str]) -> str:
+    """Return the names of photos, or of many the first ones and the number of the others."""
+    if len(names) <= MAX_NAMED_PHOTOS:
+        return ", ".join(names)
+    listed = ", ".join(names[:MAX_NAMED_PHOTOS])
+    return f"{listed} and {len(names) - MAX_NAMED_PHOTOS} more"
 
 
 def _describe_problem(

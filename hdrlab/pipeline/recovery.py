@@ -23,6 +23,7 @@ from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency, plausibility
 from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.frame_choice import choose_spread_frames
 from hdrlab.errors import CalibrationError, InputError
 from hdrlab.fast import debevec, merge, robertson
 from hdrlab.pipeline import catalogue
@@ -33,6 +34,8 @@ Recover = Callable[..., F64]
 
 # pixels of a photo, on an even grid, that are used to compare methods
 MAX_PIXELS = 2**16
+# photos, spread over the exposure times, from which a response is recovered
+MAX_FITTED_PHOTOS = 32
 # stripes of rows in a photo; every other one is held out
 STRIPE_COUNT = 20
 # How much more spread a simpler method may leave: relative to the best, and in stops.
@@ -165,6 +168,23 @@ def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
     return take_rows(rows[~is_held_out]), take_rows(rows[is_held_out])
 
 
+def thin_photos(bracket: Bracket) -> Bracket:
+    """Return a bracket with at most MAX_FITTED_PHOTOS of its photos, spread over the exposure times.
+
+    More photos hardly change the response, and each of them is compared with each.
+    """
+    chosen = choose_spread_frames(bracket.times, MAX_FITTED_PHOTOS)
+    if len(chosen) == len(bracket.times):
+        return bracket
+    return replace(
+        bracket,
+        images=bracket.images[chosen],
+        times=bracket.times[chosen],
+        names=tuple(bracket.names[j] for j in chosen),
+        valid=None if bracket.valid is None else bracket.valid[chosen],
+    )
+
+
 def find_widest_gap(Z: ArrayLike) -> int:
     """Return the most consecutive pixel values that no sample of Z (N, P) shows in two photos.
 
@@ -215,6 +235,7 @@ def choose_response(response: Method, bracket: Bracket) -> ResponseChoice:
     method can be compared, it is used all the same.
     """
     fit, held_out = split_stripes(bracket)
+    fit = thin_photos(fit)
     if response != "auto" or bracket.linear:
         method = find_validated_method("linear" if response == "auto" else response)
         return ResponseChoice(method=method, spread=measure_spread(method, fit, held_out))
@@ -262,6 +283,8 @@ def find_response(response: Method, choice: ResponseChoice, bracket: Bracket) ->
     CalibrationError
         If no pixel is well exposed in two photos.
     """
+    if not callable(response):
+        bracket = thin_photos(bracket)
     images = bracket.images
     times = bracket.times
     valid = bracket.valid

@@ -175,17 +175,18 @@ def _merge_from_method(method: str) -> str:
 
 
 def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
-    bracket, time_notes = timing.complete_times(bracket, options.times)
-    has_relative_times = bool(time_notes)
+    completed = timing.complete_times(bracket, options.times)
+    bracket = completed.bracket
+    has_relative_times = completed.are_relative
     state = registration.align_bracket(
         bracket, options.align, options.response, in_place=options.in_place
     )
-    state = replace(state, notes=(*time_notes, *state.notes))
+    state = replace(state, notes=(*completed.notes, *state.notes))
     yield state
 
     # Misaligned photos contradict each other, so contradictions are no news from here on.
     is_misaligned = bool(state.doubts)
-    state = replace(state, doubts=(*bracket.damaged, *state.doubts))
+    state = replace(state, doubts=(*bracket.damaged, *completed.doubts, *state.doubts))
     checked_bracket = state.bracket
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
     choice = recovery.choose_response(options.response, state.bracket)

@@ -28,6 +28,8 @@ TYPICAL_STEEPNESS = 1.4
 MIN_SPAN_STOPS = 0.3
 # stops of spread in held-out pixels that true times leave at most
 MAX_CONSISTENT_STOPS = 0.01
+# photos whose times are refined; of more, each matters little, and the work grows with their square
+MAX_REFINED_PHOTOS = 64
 # pixels of a photo, on an even grid
 MAX_PIXELS = 400_000
 
@@ -89,10 +91,20 @@ def estimate_relative_times(bracket: Bracket) -> Bracket:
     return space_by_stops(bracket, np.maximum(np.log2(ratios), 0))
 
 
-def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ...]]:
-    """Return the bracket with usable times, and a note if they are relative.
+@dataclass(frozen=True, kw_only=True)
+class CompletedTimes:
+    """A bracket with usable times, whether they are relative, and notes and warnings about them."""
 
-    `times` is the option of `assemble`.
+    bracket: Bracket
+    are_relative: bool = False
+    notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+
+
+def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
+    """Return the bracket with usable times, and a note or a warning if they are relative.
+
+    Relative times are a warning where nobody asked for them. `times` is the option of `assemble`.
 
     Raises
     ------
@@ -106,7 +118,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
     if not all_equal:
         falling = _find_falling(bracket)
         if not len(falling):
-            return bracket, ()
+            return CompletedTimes(bracket=bracket)
         if times != "estimate":
             j = int(falling[0])
             pair = f"{names[j]} ({seconds[j]:.4g} s) and {names[j + 1]} ({seconds[j + 1]:.4g} s)"
@@ -118,10 +130,11 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
             f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True)
         )
         raise InputError(f"expected photos with at least two different exposures, got {stated}")
-    note = describe_relative_times(relative.times)
-    if all_equal and times == "correct":
-        note = f"no different exposure times are stated: {note}"
-    return relative, (note,)
+    sentence = describe_relative_times(relative.times)
+    if times == "estimate":
+        return CompletedTimes(bracket=relative, are_relative=True, notes=(sentence,))
+    doubt = warning_text("no_times", relative=sentence)
+    return CompletedTimes(bracket=relative, are_relative=True, doubts=(doubt,))
 
 
 def _find_falling(bracket: Bracket) -> arrays.Indices:
@@ -207,6 +220,15 @@ def correct_times(
 
     images = bracket.images
     times = bracket.times
+    if len(times) > MAX_REFINED_PHOTOS:
+        estimate = Estimate(
+            times=times,
+            stops=np.zeros(len(times)),
+            accepted=False,
+            reason=f"hdrlab refines the times of at most {MAX_REFINED_PHOTOS} photos",
+        )
+        spread = measure_spread(times) if stated_spread is None else stated_spread
+        return CorrectedTimes(estimate=estimate, spread=spread)
     is_linear = response == "linear" or (response == "auto" and bracket.linear)
     g = recovery.find_method("linear")(images, times) if is_linear else None
     estimate = exposure_times.estimate_times(

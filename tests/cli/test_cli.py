@@ -179,6 +179,7 @@ def test_photos_without_times_get_relative_ones_with_advice(photographs, tmp_pat
     code, _, notes = hdrlab("assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys)
     assert code == 0
     assert "--times FILE" in notes and "--stops" in notes
+    assert any(line.startswith("warning: ") and "relative" in line for line in notes.splitlines())
     assert (tmp_path / "x.hdr").exists()
 
 

@@ -30,12 +30,12 @@ class Patches:
 def test_at_most_a_third_of_the_frames_is_left_out_and_only_if_the_others_then_agree(
     count, misfits, found, monkeypatch
 ):
-    def misfit(patches, B):
+    def pair_errors(patches, B):
         gone = set(range(count)) - {round(t) - 1 for t in np.exp(B)}
-        return misfits.get("".join(map(str, sorted(gone))), 2)
+        return np.full(len(B) - 1, misfits.get("".join(map(str, sorted(gone))), 2))
 
     monkeypatch.setattr(flat_patches, "find_flat_patches", lambda *_, **__: Patches())
-    monkeypatch.setattr(outlying_frames, "measure_misfit", misfit)
+    monkeypatch.setattr(outlying_frames, "measure_pair_errors", pair_errors)
     monkeypatch.setattr(outlying_frames, "contradicts_others", lambda *_: True)
     images = np.zeros((count, 2, 2), np.uint8)
     assert outlying_frames.find_outlying_frames(images, np.arange(1, count + 1)) == found

@@ -86,8 +86,8 @@ def test_photos_from_different_viewpoints_give_warnings(assembled, options):
     assert found.doubts and np.all(np.isfinite(found.E)) and found.E.any()
 
 
-def test_photos_without_times_become_a_map_with_relative_times_and_a_note(assembled):
+def test_photos_without_times_become_a_map_with_relative_times_and_a_warning(assembled):
     found = assembled("mertens_house")
     assert found.fallback == "" and found.E.any()
     assert np.all(np.diff(found.bracket.times) > 0)
-    assert any("relative exposure times" in note for note in found.notes)
+    assert any("relative exposure times" in doubt for doubt in found.doubts)

@@ -71,9 +71,10 @@ def test_relative_times_of_a_linear_camera_are_right(room):
     assert np.allclose(steps, 2, atol=0.1)
 
 
-def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
+def test_equal_times_of_different_photographs_are_estimated_with_a_warning(taken):
     found = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
-    assert "relative" in found.notes[0] and "--stops" in found.notes[0]
+    assert "relative" in found.doubts[0]
+    assert "--stops" in found.doubts[0]
     assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
     assert found.bracket.has_relative_times
     with pytest.raises(ValueError, match="at least two different exposures"):
@@ -82,7 +83,7 @@ def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
 
 def test_warnings_of_damaged_photos_survive_an_estimate_of_the_times(taken):
     damaged = replace(taken, times=np.full(5, 0.01), damaged=("b.jpg is damaged; it was left out",))
-    assert complete_times(damaged, "correct")[0].damaged == damaged.damaged
+    assert complete_times(damaged, "correct").bracket.damaged == damaged.damaged
 
 
 def test_a_burst_of_one_exposure_raises_an_error(room):
@@ -95,8 +96,10 @@ def test_times_in_the_wrong_order_raise_an_error_unless_they_are_estimated(taken
     reversed_ = bracket(taken.images, taken.times[::-1])
     with pytest.raises(ValueError, match="frame 5 .* and frame 4 .*darker photo.*--times estimate"):
         complete_times(reversed_, "correct")
-    found, (note,) = complete_times(reversed_, "estimate")
-    assert np.array_equal(found.images, taken.images) and "relative" in note
+    found = complete_times(reversed_, "estimate")
+    assert np.array_equal(found.bracket.images, taken.images)
+    assert "relative" in found.notes[0]
+    assert not found.doubts
 
 
 def test_true_times_are_not_changed_and_give_no_note(taken):
