@@ -34,7 +34,7 @@ from PIL.TiffImagePlugin import IFDRational
 from tqdm import tqdm
 
 from benchmarks import peer_maps, peers
-from benchmarks.experiments import Experiment, at_most
+from benchmarks.experiments import Experiment, at_most, one_thread
 from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Usage
 from hdrlab import scenes
@@ -229,7 +229,8 @@ def run_program(
     target = folder / f"map{program.suffix}"
     target.unlink(missing_ok=True)
     try:
-        usage = process(program.command(simulated.files, target), one=True)
+        with one_thread():
+            usage = process(program.command(simulated.files, target), one=False)
         return usage, measure_errors(read_map(target), simulated)
     except (RuntimeError, OSError, ValueError) as error:
         print(f"  {name}, {simulated.name}: no map, {str(error)[-300:]}", flush=True)

@@ -307,6 +307,12 @@ SENTENCES = {
             )
             == 1
         ),
+        "the guided detail falls by 0.05 decades in all, and the bilateral one by 0.3": lambda n: (
+            detail_falls(n, 3) == (0.05, 0.31)
+        ),
+        "three times as wide, both fall by 0.05 to 0.06": lambda n: (
+            detail_falls(n, 10) == (0.06, 0.05)
+        ),
     },
     "17": {
         "It must flatten them most to reduce the range, so its edges are soft": lambda n: (
@@ -398,7 +404,14 @@ SENTENCES = {
             1 + np.argmin(np.abs(n.short["mean of short photos"] - n.short["one coded photo"])) == 9
         ),
         "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
-        "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
+        "the loss is a factor of two, 0.3 decades": lambda n: (
+            round(-np.log10(np.sqrt(np.mean(n.e**2))), 1) == 0.3
+            and 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.45
+        ),
+        "In weak light three quarters of the wave turn into the coarse one, and a fifth remains": (
+            lambda n: waves_left(n, 112) == [0.76, 0.21]
+        ),
+        "one percent shifts its end by half a pixel": lambda n: round(0.01 * len(n.CODE), 1) == 0.5,
     },
     "22": {
         "have lost all sixteen digits, and the SVD still has about nine": lambda n: (
@@ -432,9 +445,13 @@ SENTENCES = {
         "Ratios of 12 and 17 are large": lambda n: (
             (n.shares[:-1] / n.shares[1:]).round().tolist() == [12, 17]
         ),
-        "the brightest sensor keeps 92 %, an eighth of a stop less than all": lambda n: (
+        "the brightest sensor keeps 92 % of the light, an eighth of a stop less than all": lambda n: (
             round(-8 * np.log2(n.shares[0])) == 1
         ),
+        "so the range would be only 0.8 stops larger": lambda n: (
+            round(np.log2(len(n.shares)) / 2, 1) == 0.8
+        ),
+        "it is 7.7 stops larger": lambda n: round(np.log2(n.shares[0] / n.shares[2]), 1) == 7.7,
     },
     "24": {
         "`ghosts` is about as good here": lambda n: (
@@ -498,6 +515,27 @@ def noise_grows(n, size):
     noise = np.random.default_rng(1).normal(0, size, 100_000)
     r = n.local_laplacian.remap(noise, 0.0, sigma=0.92, alpha=0.5, beta=0.0)
     return r.std() / noise.std()
+
+
+def detail_falls(n, width):
+    """Return by how many decades the details of both filters fall along a rising edge."""
+    row = 2 / (1 + np.exp(-(n.x - 100) / width)) + 0.002 * n.x
+    image = np.repeat(row[None], 41, axis=0)
+    guided = n.guided.guided(image, radius=16, epsilon=0.04)
+    bilateral = n.bilateral.bilateral(np.float32(image), sigma_s=8, sigma_r=0.4).mean
+    falls = []
+    for base in (guided, bilateral):
+        steps = np.diff((image - base)[20])[17:-17]
+        falls.append(round(float(-np.minimum(steps, 0).sum()), 2))
+    return tuple(falls)
+
+
+def waves_left(n, waves):
+    """Return which fractions of fine waves in weak light turn into coarse ones, and remain."""
+    seen = n.wave(waves, 0.3)[1]
+    strength = np.abs(np.fft.rfft(seen)) / (len(seen) / 4)
+    places = [round((128 - waves) * len(seen) / 256), round(waves * len(seen) / 256)]
+    return strength[places].round(2).tolist()
 
 
 def levels_met(n, time):

@@ -12,8 +12,8 @@ E^     reconstruction  (G w Z / e) / (G w), G a Gaussian: a mean of the neighbou
 
 One photograph covers the range of a bracket, at the cost of sharpness: only pixels with dark
 filters measure strong light, and only those with clear filters weak light. The range grows by
-log10(max e / min e) decades at the bright end. It loses a quarter of a decade at the dark end, where
-only every fourth pixel measures.
+log10(max e / min e) decades at the bright end. It loses 0.3 decades, a factor of 2, at the dark
+end, where only every fourth pixel measures. Periods below four pixels alias in any light.
 """
 
 import numpy as np
