@@ -59,6 +59,12 @@ NIGHT_KEY_FRACTION = 0.08 / 0.18
 # largest display luminance that becomes black at night, and the fraction of the pixels
 NIGHT_MAX_BLACK = 0.02
 NIGHT_BLACK_FRACTION = 0.05
+# largest mean pixel value of a picture at night, and of one of the last bright scene, of 255
+NIGHT_MAX_MEAN = 78.0
+BRIGHT_MAX_MEAN = 135.0
+# factor of the key from one trial to the next while the mean is too large, and number of trials
+KEY_STEP = 0.92
+MAX_KEY_STEPS = 20
 # contrast of the picture relative to that of x
 CONTRAST = 1.25
 # fraction of the pixels that become white
@@ -131,7 +137,8 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
     """Choose the settings of `photograph`, and the saturation, for a radiance map E (H, W[, 3]).
 
     `scene_ev` is the result of `measure_scene_ev`; None if it is unknown. It keeps a night dark:
-    between EV 8 and EV 0, the key falls to four ninths, and more pixels become black.
+    between EV 8 and EV 0, the key falls to four ninths, more pixels become black, and the mean
+    pixel value is limited, which lowers the key further where a bright sky covers half of the image.
 
     share
         The fraction of the light's contrast that remains, 1 where it spans at most DISPLAY_DECADES.
@@ -167,17 +174,52 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
     # Without an absolute luminance, the histogram decides.
     excess = min(0.0, skew - DARK_SKEW) if scene_ev is None else 0.0
     key = MIDDLE_KEY * 2 ** (skew + 2 * excess) * NIGHT_KEY_FRACTION**darkness
-    Lm = scale(x, levels.mean, key)
-    white = max(1.0, float(np.quantile(Lm, 1 - WHITE_FRACTION)))
-    max_black = MAX_BLACK + darkness * (NIGHT_MAX_BLACK - MAX_BLACK)
-    black_fraction = BLACK_FRACTION + darkness * (NIGHT_BLACK_FRACTION - BLACK_FRACTION)
-    black = min(max_black, float(np.quantile(display(Lm, Lm, white), black_fraction)))
+    tones = _choose_tones(x, levels.mean, key, darkness)
+    if darkness > 0:
+        max_mean = BRIGHT_MAX_MEAN * (NIGHT_MAX_MEAN / BRIGHT_MAX_MEAN) ** darkness
+        for _ in range(MAX_KEY_STEPS):
+            if tones.mean_pixel_value <= max_mean:
+                break
+            tones = _choose_tones(x, levels.mean, KEY_STEP * tones.key, darkness)
     saturation = 1.0
     if E.ndim == 3 and L.any():
         colors = E[L > 0]
         purity = 1 - colors.min(axis=-1) / colors.max(axis=-1)
         saturation = 1.25 - 0.3 * float(np.median(purity))
-    return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
+    return {
+        "share": share,
+        "key": tones.key,
+        "white": tones.white,
+        "black": tones.black,
+        "saturation": saturation,
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Tones:
+    """Key, white and black of a picture, and the mean pixel value that they give, of 255."""
+
+    key: float
+    white: float
+    black: float
+    mean_pixel_value: float
+
+
+def _choose_tones(x: F32, mean: float, key: float, darkness: float) -> _Tones:
+    """Return white and black for a key, and the mean pixel value of the picture."""
+    Lm = scale(x, mean, key)
+    white = max(1.0, float(np.quantile(Lm, 1 - WHITE_FRACTION)))
+    Ld = display(Lm, Lm, white)
+    max_black = MAX_BLACK + darkness * (NIGHT_MAX_BLACK - MAX_BLACK)
+    black_fraction = BLACK_FRACTION + darkness * (NIGHT_BLACK_FRACTION - BLACK_FRACTION)
+    black = min(max_black, float(np.quantile(Ld, black_fraction)))
+    encoded = colour.encode_srgb(np.clip((Ld - black) / (1 - black), 0, 1))
+    return _Tones(
+        key=key,
+        white=white,
+        black=black,
+        mean_pixel_value=255 * float(np.mean(encoded, dtype=np.float64)),
+    )
 
 
 def _measure_darkness(scene_ev: float) -> float:

@@ -208,3 +208,13 @@ def test_a_key_that_is_asked_for_is_kept_at_night():
 def test_a_black_map_has_an_exposure_value_below_every_night():
     assert measure_scene_ev(np.zeros((4, 4), np.float32), 1.0) == -np.inf
     assert not develop(np.zeros((4, 4), np.float32), luminance_of_unit=1.0).any()
+
+
+def test_a_night_stays_dark_where_a_bright_sky_covers_half_of_the_image():
+    rng = np.random.default_rng(3)
+    E = rng.lognormal(0, 0.3, (90, 120)).astype(np.float32)
+    E[:45] *= 20
+    night = develop(E, luminance_of_unit=with_scene_ev(E, 0))
+    assert statistics(night).mean < 85
+    sky = night[:45]
+    assert np.mean(sky >= 250) < 0.05 and sky.mean() > night[45:].mean() + 30
