@@ -79,6 +79,9 @@ class Validation:
         The reason not to trust H; "" if there is none.
     apart : bool
         Whether the photos are clearly not aligned, wherever H puts them.
+    confirmed : bool, optional
+        Whether the light of the photos confirms `step`; None if that was not checked, or if too few
+        pixels are well exposed in both photos.
     """
 
     moving: int
@@ -92,6 +95,7 @@ class Validation:
     informative: bool
     failure: str
     apart: bool = False
+    confirmed: bool | None = None
 
     @property
     def reliable(self) -> bool:
@@ -100,8 +104,8 @@ class Validation:
 
     @property
     def known(self) -> bool:
-        """Whether H is clearly better than what lies around it."""
-        return self.confidence >= MIN_CONFIDENCE
+        """Whether H is clearly better than what lies around it, or confirmed by light."""
+        return bool(self.confirmed) or self.confidence >= MIN_CONFIDENCE
 
     @property
     def step(self) -> F64:

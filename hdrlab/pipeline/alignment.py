@@ -1,12 +1,14 @@
 """Align a bracket pair by pair, and validate each result.
 
-"mtb" shifts by whole pixels. So does "auto", and for the pairs that no shift aligns it tries more:
-rotation, then a homography, in an overview of half a megapixel. It accepts the result if the light
-of the two photos then agrees clearly better than after the shift.
+"mtb" shifts by whole pixels. So does "auto", but it checks each pair by light: where the photos are
+still displaced by more than MAX_DISPLACEMENT pixels, it shifts by fractions of pixels and rotates, see
+`pipeline.rigid_motion`. Where that does not align a pair either, it tries "cerman", and then
+"homography". A pair that stays unconfirmed is reported.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise, starmap
 from typing import Any
 
@@ -21,7 +23,7 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.diagnostics import registration as validation
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.fast.mtb import Photograph
-from hdrlab.pipeline import catalogue
+from hdrlab.pipeline import catalogue, rigid_motion
 
 METHODS = ("auto", *catalogue.names("align"))
 # The methods that compare light, from the simplest to the most general.
@@ -29,6 +31,8 @@ SEARCHES: dict[str, Callable[[list[F32]], Iterator[Any]]] = {
     "cerman": cerman.search,
     "homography": homography.search,
 }
+# The methods that "auto" may need, from the most general to the simplest.
+MOST_GENERAL_FIRST = ("homography", "cerman", "rotation", "mtb")
 # Levels of an image pyramid: more than any image has, so the range of the search grows with the
 # image.
 PYRAMID_LEVELS = 16
@@ -36,6 +40,11 @@ PYRAMID_LEVELS = 16
 OTHER_PERCENTILES = (0.83, 0.17)
 # Results with these percentiles need a higher confidence.
 MIN_OTHER_CONFIDENCE = 0.9
+# Whole pixels are good enough if 95 % of the image is displaced by no more than this.
+MAX_DISPLACEMENT = 0.3
+# A first, quick step that is no longer than this needs no closer look; it falls short of the
+# displacement by up to a half.
+MAX_QUICK_DISPLACEMENT = 0.1
 
 # A response, or a function that finds it when light is compared.
 Curve = ArrayLike | Callable[[], F64 | None] | None
@@ -101,33 +110,51 @@ def register(
     make_pyramid = pyramid_maker(images, times, g)
     if method in SEARCHES:
         pairs = tuple(register_by_light(images, make_pyramid, method))
+    elif method == "auto":
+        results = list(starmap(partial(align_pair, make_pyramid), photograph_pairs(images)))
+        pairs = tuple(result.validation for result in results)
+        used = {result.method for result in results}
+        method = next((name for name in MOST_GENERAL_FIRST if name in used), "none")
     else:
         pairs = tuple(starmap(best_percentile, photograph_pairs(images)))
-    if method == "auto":
-        pairs, method = _improve_pairs(images, pairs, make_pyramid)
     order = [pairs[0].moving, *(pair.fixed for pair in pairs)] if pairs else [0]
     homographies = warp.chain_homographies(order, [pair.step for pair in pairs])
     return Registration(homographies=homographies, pairs=pairs, method=method)
 
 
-def _improve_pairs(
-    images: Array, pairs: tuple[Validation, ...], make_pyramid: MakePyramid
-) -> tuple[tuple[Validation, ...], str]:
-    """Return the pairs, improved where needed, and the most general method that one of them needed."""
-    methods = ["mtb" if np.any(pair.step != np.eye(3)) else "none" for pair in pairs]
-    # A hand that rotates the camera once does so in every pair, so all of them are tried.
-    if any(pair.apart for pair in pairs):
-        photos = photograph_pairs(images)
-        improved = [
-            improve(pair, method, B, A, make_pyramid)
-            for pair, method, (_, B, _, A) in zip(pairs, methods, photos, strict=True)
-        ]
-        pairs = tuple(pair for pair, _ in improved)
-        methods = [method for _, method in improved]
-    for method in ("homography", "cerman", "mtb"):
-        if method in methods:
-            return pairs, method
-    return pairs, "none"
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PairResult:
+    """The Validation of a pair, and the simplest method that aligns it."""
+
+    validation: Validation
+    method: str
+
+
+def align_pair(
+    make_pyramid: MakePyramid, moving: int, B: Photograph, fixed: int, A: Photograph
+) -> PairResult:
+    """Return the PairResult of two photos: shifted by whole pixels if that is enough."""
+    first = best_percentile(moving, B, fixed, A)
+    method = "mtb" if np.any(first.step != np.eye(3)) else "none"
+    shifted = PairResult(validation=first, method=method)
+    level = rigid_motion.quick_level(A.Y)
+    quick = rigid_motion.check(B.Y, A.Y, first.step, level, smoothed=False)
+    if quick.is_confirmed and quick.displacement <= MAX_QUICK_DISPLACEMENT:
+        return PairResult(validation=confirm(first, first.step), method=method)
+    return improve(shifted, B, A, make_pyramid)
+
+
+def confirm(first: Validation, H: F64) -> Validation:
+    """Return the Validation of a pair for which light confirms the homography H."""
+    return replace(
+        first,
+        H=H,
+        offset=(float(H[1, 2]), float(H[0, 2])),
+        degrees=float(np.rad2deg(np.arctan2(H[1, 0], H[0, 0]))),
+        failure="",
+        apart=False,
+        confirmed=True,
+    )
 
 
 def photograph_pairs(
@@ -156,26 +183,54 @@ def register_by_light(
 
 
 def improve(
-    best: Validation, best_method: str, B: Photograph, A: Photograph, make_pyramid: MakePyramid
-) -> tuple[Validation, str]:
-    """Return the Validation of a pair by the simplest method that aligns it, and the method's name."""
+    shifted: PairResult, B: Photograph, A: Photograph, make_pyramid: MakePyramid
+) -> PairResult:
+    """Return the PairResult of the simplest method that aligns a pair, confirmed by light or not."""
+    first = shifted.validation
+    level = rigid_motion.finest_level(B.Y, A.Y)
+    if level is None:
+        return shifted
+    # Noise would favor any fraction of a pixel, because interpolation averages it.
+    is_noisy = rigid_motion.is_reduced(A.Y, level)
+    if is_noisy and rigid_motion.check(B.Y, A.Y, first.step, level).is_confirmed:
+        return PairResult(validation=confirm(first, first.step), method=shifted.method)
+    found = rigid_motion.refine(B.Y, A.Y, first.step, level)
+    if not found.is_confirmed or found.displacement > MAX_QUICK_DISPLACEMENT:
+        found = rigid_motion.search(B.Y, A.Y, [first.step, np.eye(3)], level)
+    H = found.motion
+    rest = rigid_motion.displacement(H @ np.linalg.inv(first.step), A.Y[0].shape)
+    if found.is_confirmed and rest <= MAX_DISPLACEMENT:
+        return PairResult(validation=confirm(first, first.step), method=shifted.method)
+
+    in_place = rigid_motion.check(B.Y, A.Y, np.eye(3), level)
+    if not found.is_confirmed and not (found.is_usable or in_place.is_usable):
+        return shifted  # nearly black or white photos, in which there is nothing to search for
+    X = rigid_motion.common_light(B.Y, A.Y, H, level)
+    comparison = validation.compare_light(first.moving, first.fixed, X, 2**level)
+    if found.is_confirmed:
+        gains = comparison.lower(comparison.differences(H), comparison.differences(first.step))
+        if gains[-1]:
+            return PairResult(validation=confirm(first, H), method="rotation")
+        if rigid_motion.check(B.Y, A.Y, first.step, level).is_confirmed:
+            return PairResult(validation=confirm(first, first.step), method=shifted.method)
+    best = shifted
+    best_differences = comparison.differences(first.step)
     scale = 2**A.overview
-    pyramid = make_pyramid(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
-    comparison = validation.compare_light(best.moving, best.fixed, pyramid[0], scale)
-    best_differences = comparison.differences(best.step)
-    for method, search in SEARCHES.items():
-        H = homography.enlarge(steps.last(search(pyramid)).H, scale)
-        found = validation.validate(comparison, H)
-        differences = comparison.differences(found.H)
-        overlaps = max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
-        is_lower = comparison.lower(differences, best_differences)[-1]
-        if found.known and overlaps and is_lower:
-            best = found
-            best_method = method
+    pyramid = make_pyramid(first.moving, first.fixed, B.Y[A.overview], A.Y[A.overview])
+    for method in ("rotation", *SEARCHES):
+        if method != "rotation":
+            H = homography.enlarge(steps.last(SEARCHES[method](pyramid)).H, scale)
+        other = validation.validate(comparison, H)
+        differences = comparison.differences(other.H)
+        overlaps = max(map(abs, other.offset)) < min(B.Y[0].shape) / 2
+        if other.known and overlaps and comparison.lower(differences, best_differences)[-1]:
+            best = PairResult(validation=other, method=method)
             best_differences = differences
-        if not best.apart:
-            break
-    return best, best_method
+        if rigid_motion.check(B.Y, A.Y, best.validation.step, level).is_confirmed:
+            return PairResult(
+                validation=confirm(best.validation, best.validation.step), method=best.method
+            )
+    return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
 
 
 def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:

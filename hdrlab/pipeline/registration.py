@@ -78,6 +78,10 @@ def describe_pairs(
             advice=advice,
         )
         return (doubt,), ()
+    unconfirmed = [pair for pair in pairs if pair.confirmed is False]
+    if unconfirmed:
+        names_of_pairs = _name_pairs(unconfirmed, names)
+        return (warning_text("unconfirmed", pair=names_of_pairs, advice=advice),), ()
     unknown = [pair for pair in pairs if not pair.known]
     something_moved = any(np.any(pair.step != np.eye(3)) for pair in pairs)
     if unknown and something_moved:
@@ -115,7 +119,9 @@ def estimate_alignment(
         return Alignment(transforms=offsets, pairs=found.pairs)
     notes: tuple[str, ...] = ()
     if align == "auto":
-        notes = (f'aligned by "{found.method}", because no shift aligns the photos',)
+        notes = (
+            f'aligned by "{found.method}", because no shift by whole pixels aligns the photos',
+        )
     return Alignment(transforms=found.homographies, pairs=found.pairs, notes=notes)
 
 

@@ -66,8 +66,8 @@ def assemble(
         A method of `align`, "auto", "none", or your own `align(images)`, which returns offsets
         (P, 2) in whole pixels or homographies (P, 3, 3). "mtb" shifts by whole pixels and does not
         change pixel values. "cerman" also rotates, and "homography" also corrects scale and tilt;
-        both resample the photos. "auto" is "mtb", and "cerman" or "homography" for the photos that
-        no shift can align; see `pipeline.alignment`.
+        both resample the photos. "auto" is "mtb", and it rotates or tilts the photos that no shift
+        can align; see `pipeline.alignment`.
     response : str or function
         A method of `response`, "auto" (linear for a linear bracket, else see `pipeline.recovery`),
         or your own `recover(images, times, *, valid) -> g`.
@@ -199,6 +199,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
             choice.spread,
             is_requested=is_requested,
             has_stated_times=not has_relative_times,
+            is_aligned=not is_misaligned or options.times == "estimate",
         )
         is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
         # Notes on times that stay are news only to those who asked for an estimate.
@@ -262,7 +263,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     block_errors = blocks_task.result()
     contradictions = contradictions_task.result()
 
-    has_motion = measured_motion.fraction > motion.MIN_MOVING_FRACTION
+    has_motion = not is_misaligned and measured_motion.fraction > motion.MIN_MOVING_FRACTION
     removes_ghosts = options.ghosts in ("regions", "reference") or (
         options.ghosts == "auto" and has_motion
     )

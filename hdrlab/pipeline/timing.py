@@ -166,6 +166,7 @@ def refine_times(
     *,
     is_requested: bool = False,
     has_stated_times: bool = True,
+    is_aligned: bool = True,
 ) -> Assembly:
     """Return the Assembly with times from the pixels, if held-out pixels confirm them.
 
@@ -173,9 +174,11 @@ def refine_times(
     detail, unless the user requested an estimate, and so are corrections of estimates. Where the
     stated times make a worthless map, and corrections do not help, relative times replace them,
     with a warning. `stated_spread` is the spread that the stated times leave in held-out pixels.
+    Photos that are not aligned do not correct any times.
     """
     corrected = correct_times(state.bracket, response, stated_spread)
     doubts = exposure_times.doubts(corrected.estimate)
+    relative: CorrectedTimes | None = None
     if corrected.spread > MIN_WORTHLESS_STOPS:
         rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
         relative_times = estimate_relative_times(state.bracket).times
@@ -187,6 +190,8 @@ def refine_times(
             corrected = relative
             has_stated_times = False
             doubts = (_describe_replaced_times(stated_spread, relative_times),)
+    if not is_aligned and corrected is not relative:
+        return state
     estimate = corrected.estimate
     state = replace(
         state,

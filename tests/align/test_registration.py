@@ -87,7 +87,7 @@ def test_photos_without_feature_points_are_not_moved_and_reported():
     [
         ([[0, 0], [0, 0]], {"none"}),
         ([[5, -7], [0, 0]], {"mtb"}),
-        ([warp.turn(SHAPE, 2.5, (3.5, 1.2)), np.eye(3)], {"cerman"}),
+        ([warp.turn(SHAPE, 2.5, (3.5, 1.2)), np.eye(3)], {"rotation"}),
     ],
 )
 def test_auto_chooses_the_simplest_method_that_aligns(room, moves, ways):
@@ -225,7 +225,7 @@ def test_the_assembly_holds_the_homographies_and_a_note_on_the_method(turned):
     found = next(pipeline.assemble_steps(taken, align="auto"))
     relative = np.linalg.inv(truth[1]) @ truth
     assert warp.corner_distance(found.homographies, relative, taken.images.shape[1:3]).max() < 0.5
-    assert found.offsets.dtype == np.int64 and 'aligned by "cerman"' in found.details[0]
+    assert found.offsets.dtype == np.int64 and 'aligned by "rotation"' in found.details[0]
     still = next(pipeline.assemble_steps(taken, align="mtb"))
     assert np.array_equal(still.homographies, warp.as_homographies(mtb.align(taken.images)))
 

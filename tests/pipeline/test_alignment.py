@@ -9,7 +9,7 @@ from brackets import MARGIN, H, W, bracket as shoot, photograph, radiance
 from skimage.data import astronaut, coffee
 
 from hdrlab import pipeline, scenes
-from hdrlab.capture import camera
+from hdrlab.capture import camera, hand_motion
 from hdrlab.core.bracket import bracket
 from hdrlab.core.filters import warp
 from hdrlab.pipeline import alignment
@@ -149,28 +149,64 @@ def test_another_percentile_is_used_if_the_median_fails_and_it_is_confident_and_
     assert by_percentile(monkeypatch, median=lost, high={"offset": (0, 3)}) == 83
 
 
-def improved(monkeypatch, side, **searches):
-    """Return what is found of a pair that moved by (24, 40) pixels, its light measured on the left alone."""
-    texture = np.random.default_rng(2).uniform(1, 2, (12, 14)).repeat(4, axis=0).repeat(4, axis=1)
-    X = np.stack([texture[:40, :50], texture[3:43, 5:55]]).astype(np.float32)
-    X[0, :, 25:] = np.nan
-    for name, found in searches.items():
-        states = [] if found is None else [SimpleNamespace(H=found)]
-        monkeypatch.setitem(alignment.SEARCHES, name, lambda pyramid, states=states: iter(states))
-    photograph = SimpleNamespace(
-        overview=3, Y=[np.zeros((side, 400)), np.zeros((side // 2, 200)), 0, 0]
-    )
-    best = replace(alignment.validation.uninformative(0, 1), apart=True)
-    return alignment.improve(best, "mtb", photograph, photograph, lambda *_: [X])
+# 640 x 384 pixels, of which the hand's shifts cost some
+LARGE = (400, 656)
 
 
-@pytest.mark.quick
-def test_the_simplest_method_that_aligns_is_chosen_unless_it_leaves_little_overlap(
-    monkeypatch,
-):
-    true, still = warp.as_homographies([(3, 5), (0, 0)])
-    found, name = improved(monkeypatch, 100, cerman=true, homography=None)
-    assert name == "cerman" and found.offset == pytest.approx((24, 40)) and not found.apart
-    assert improved(monkeypatch, 100, cerman=still, homography=true)[1] == "homography"
-    assert improved(monkeypatch, 100, cerman=still, homography=still)[1] == "mtb"
-    assert improved(monkeypatch, 80, cerman=true, homography=true)[1] == "mtb"
+def taken_by_hand(scene, degrees, seed=0):
+    """Return a bracket of four photos that turn by up to so many degrees, and the true homographies."""
+    rng = np.random.default_rng(seed)
+    E = getattr(scenes, scene)(LARGE)
+    moves = [
+        warp.turn(E.shape, degrees * sign, rng.uniform(-8, 8, 2)) for sign in (1, -0.8, 0, 0.9)
+    ]
+    moves[2] = np.eye(3)
+    taken = camera.shoot(E, camera.times_around(E, 4, stops=1.5), offsets=moves, rng=rng)
+    return taken, hand_motion.frame_homographies(moves, E.shape)
+
+
+def misregistration(found, truth, shape):
+    """Return the distance in pixels that 95 % of the image does not exceed, for the worst photo."""
+    y, x = np.mgrid[0 : shape[0] : 20, 0 : shape[1] : 20]
+    points = np.stack([x.ravel(), y.ravel()], axis=-1)
+    off = warp.apply(found, points) - warp.apply(np.linalg.inv(truth[2]) @ truth, points)
+    return np.quantile(np.hypot(off[..., 0], off[..., 1]), 0.95, axis=1).max()
+
+
+@pytest.mark.parametrize("degrees", [0.1, 0.3, 2])
+@pytest.mark.parametrize("scene", ["chapel", "street"])
+def test_auto_finds_small_and_large_rotations_to_a_fraction_of_a_pixel(scene, degrees):
+    taken, truth = taken_by_hand(scene, degrees)
+    found = register(taken.images)
+    assert misregistration(found.homographies, truth, taken.images.shape[1:3]) < 0.4
+    assert all(pair.confirmed for pair in found.pairs)
+
+
+def test_auto_does_not_resample_photos_from_a_tripod():
+    room = scenes.room(LARGE)
+    taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
+    found = register(taken.images)
+    assert found.method == "none" and all(pair.confirmed for pair in found.pairs)
+
+
+def test_well_exposed_photos_that_do_not_fit_are_reported_and_change_no_times():
+    shots = [
+        shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]())
+        for j in range(3)
+    ]
+    mixed = bracket(np.concatenate(shots), [1, 4, 16])
+    found = pipeline.assemble(mixed, align="auto", response="linear")
+    assert found.doubts and "align" in found.doubts[0]
+    assert np.array_equal(found.bracket.times, mixed.times)
+    assert found.moving is None
+
+
+def test_a_bright_disc_that_drifts_on_a_black_ground_is_aligned_by_its_outline():
+    y, x = np.mgrid[0:120, 0:160]
+    photos = []
+    for number, time in enumerate([1, 8, 64]):
+        disc = np.hypot(y - 70 + 5 * number, x - 50 - 12 * number) < 16
+        light = time * np.where(disc, 0.2, 1e-5)
+        photos.append((255 * np.clip(light, 0, 1) ** 0.45).astype(np.uint8))
+    found = register(np.stack(photos)).homographies
+    assert np.abs(found[:, :2, 2] - [[12, -5], [0, 0], [-12, 5]]).max() < 0.3
