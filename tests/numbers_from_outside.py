@@ -1,0 +1,28 @@
+"""Numbers in the answers of notebooks that no cell computes, by page, each with where it comes from."""
+
+PAPERS_PROGRAM = "the entry of level 128 in the program of Debevec and Malik, counted from 1"
+
+NUMBERS = {
+    "04": {
+        "129": PAPERS_PROGRAM,
+        "50": "the samples that Debevec and Malik used",
+    },
+    "07": {"4.018": "the estimate of a ratio of 4 that the paper reports"},
+    "08": {"2.8": "percent, the paper's example of a motion that is not linear"},
+    "09": {"254": "second differences of 256 levels"},
+    "13": {
+        "76": "decades between the exponents 1 and 255 of RGBE",
+        "146": "an example of a mantissa",
+        "23": "bits of the mantissa of IEEE 754 single precision",
+    },
+    "14": {
+        "2.5": "percent of the sum, in the paper and in the program `pcond`",
+        "1.6": "percent of the image's width, read off the figures of the paper",
+        "50": "half of the ratio 1 : 100, see 50.5",
+    },
+    "22": {
+        "129": PAPERS_PROGRAM,
+        "50": "an example of a number of samples",
+        "50 000": "an example of a number of samples",
+    },
+}

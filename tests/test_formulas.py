@@ -1,0 +1,102 @@
+"""The formulas and numbers of a notebook's page: each symbol is explained, each equation has its number.
+
+A page is what its cells of text say. Its table is that of the first cell. A *display* is a formula
+between two $$. What a reader is told in a folded answer must be something that the page computes.
+"""
+
+import re
+
+import numbers_from_outside
+import pytest
+from test_notebooks import NOTEBOOKS, cells_of
+from test_sentences import SENTENCES
+
+# how LaTeX writes the letters that stand for a quantity, or for an operator
+LOWER_GREEK = (
+    r"alpha|beta|gamma|delta|epsilon|varepsilon|eta|theta|kappa|lambda|mu|nu|xi|rho|sigma|tau|phi|"
+    r"varphi|chi|psi|omega"
+)
+GREEK = re.compile(rf"(?:{LOWER_GREEK}|Phi|Psi|Omega|Delta|Gamma|Sigma|Lambda|nabla|ell)")
+# indices, places in an image, the base of natural logarithms and a differential
+COMMON_SYMBOLS = set("ijkxyed")
+DISPLAY = re.compile(r"\$\$(.*?)\$\$", re.DOTALL)
+INLINE = re.compile(r"\$([^$]+)\$")
+WORDS = re.compile(
+    r"\\(?:text|mathrm|operatorname\*?|begin|end|tag)\{[^{}]*\}(?:\{[lcr|]+\})?", re.DOTALL
+)
+SUBSCRIPT = re.compile(r"_(?:\{[^{}]*\}|\\[A-Za-z]+|\w)")
+REFERENCE = re.compile(r"\b(?:[Ee]quations?|[Ee]qs?\.)\s+\(?(\d+)\)?")
+# an equation of a paper: a link or a citation stands right before it
+CITED_REFERENCE = re.compile(r"(?:\]\([^)]*\),\s+|\[\w+\s+)(?:equations?|eqs?\.)\s+\(?\d+\)?")
+FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
+CODE_OR_LINK = re.compile(r"`[^`]*`|\]\([^)]*\)|<[^>]*>")
+# a number of two digits or more, with a decimal point or without
+NUMBER = re.compile(r"(?<![\w.])(?:\d+\.\d+|\d{2,}(?: \d{3})*)(?![\w.]\d|\w)")
+YEAR = re.compile(r"(?:19|20)\d\d")
+
+pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+
+def symbols(formula):
+    """Return the letters of a formula, without subscripts and words: {"E", "sigma"}."""
+    text = SUBSCRIPT.sub(" ", WORDS.sub(" ", formula))
+    letters = {name for name in re.findall(r"\\([A-Za-z]+)", text) if GREEK.fullmatch(name)}
+    return letters | set(re.findall(r"[A-Za-z]", re.sub(r"\\[A-Za-z]+", " ", text)))
+
+
+def explained_in(text):
+    """Return the symbols that a text names between single dollars, or with words inside a formula."""
+    inline = INLINE.findall(DISPLAY.sub(" ", text))
+    in_words = re.findall(r"([A-Za-z])\s*\\text\{ (?:a|the) ", text)
+    return set(in_words).union(*map(symbols, inline))
+
+
+def table_rows(text):
+    """Return the rows of the table of symbols, each a list of its cells."""
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    return rows[2:]
+
+
+def texts_of(path):
+    return [cell.source for cell in cells_of(path, "markdown")]
+
+
+def test_each_symbol_of_a_display_is_in_the_table_or_explained_beside_it(path):
+    texts = texts_of(path)
+    in_table = explained_in("\n".join(line for line in texts[0].splitlines() if line[:1] == "|"))
+    for text in texts:
+        known = in_table | explained_in(text) | COMMON_SYMBOLS
+        for formula in DISPLAY.findall(text):
+            assert symbols(formula) - known == set(), formula
+
+
+def test_the_table_has_a_row_only_once_for_each_symbol_and_says_what_it_is(path):
+    rows = table_rows(texts_of(path)[0])
+    names = [name.partition("=")[0].strip() for row in rows for name in INLINE.findall(row[0])]
+    assert sorted(names) == sorted(set(names))
+    assert [row for row in rows if len(row) < 2 or len(row[1].strip()) < 3] == []
+
+
+def test_an_equation_that_the_text_refers_to_has_its_number_on_the_page(path):
+    text = "\n".join(texts_of(path))
+    numbered = set(re.findall(r"\\tag\{(\d+)\}", text))
+    referred = set(REFERENCE.findall(CITED_REFERENCE.sub(" ", " ".join(text.split()))))
+    assert referred <= numbered
+    assert numbered == {str(k + 1) for k in range(len(numbered))}
+
+
+def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(path):
+    """It stands in the page's code or before the fold, in the table of sentences, or has a source."""
+    number = path.stem[:2]
+    code = "\n".join(cell.source for cell in cells_of(path, "code"))
+    text = "\n".join(texts_of(path))
+    open_text = FOLD.sub(" ", text)
+    known = set(NUMBER.findall(" ".join([code.replace("_", " "), open_text])))
+    known |= set(NUMBER.findall(" ".join(SENTENCES.get(number, {}))))
+    known |= set(numbers_from_outside.NUMBERS.get(number, {}))
+    known |= {page.stem[:2] for page in NOTEBOOKS}
+    said = set()
+    for fold in FOLD.findall(text):
+        prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", fold)))
+        said |= {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)}
+    assert said - known == set()
