@@ -6,7 +6,8 @@
 # The tasks cover methods that no other homework contains: the scales of the color channels, a
 # power-law response from repeated comparison, registration by correlation, adding light along a
 # simulated response, veiling glare, assorted pixels, coded exposure, the space of response curves,
-# joining blends of light, and the clipped histogram of the Detail Brush. You write the core of
+# joining blends of light, the clipped histogram of the Detail Brush, contrast, focus and skin as
+# measures of what matters in a photo, and the circle without vignetting. You write the core of
 # each.
 #
 # {choice}
@@ -559,6 +560,132 @@ pictures.picture(
     ),
     alt="A histogram with high bins, and the clipped one, whose low bins are raised",
 )
+
+# %% [markdown] about="contrast"
+# ## 17 · The contrast of a block ({points})
+#
+# Which parts of a photo matter for its exposure? Battiato and others (2008, section 1.3.1) divide
+# it into blocks, and measure contrast and focus of each. For the contrast, $I[i]$ is the number of
+# pixels with the value $i$ in the block, for $i = 0 \ldots 255$. Single peaks are irrelevant, so
+# the histogram is smoothed (equation 1.3):
+#
+# $$\tilde I[i] = \frac{I[i - 2] + I[i - 1] + I[i] + I[i + 1] + I[i + 2]}{5}, \qquad i = 0 \ldots 255,$$
+#
+# where $I$ is 0 below 0 and above 255. The contrast is the mean distance from the mean (equations
+# 1.4 and 1.5):
+#
+# $$M = \frac{\sum_i i\; \tilde I[i]}{\sum_i \tilde I[i]}, \qquad
+#   D = \frac{\sum_i |i - M|\; \tilde I[i]}{\sum_i \tilde I[i]}.$$
+#
+# *Example*: all pixels of a block are 100. $\tilde I$ is the same at 98, 99, 100, 101 and 102, so
+# $M = 100$ and $D = (2 + 1 + 0 + 1 + 2)/5 = 1.2$.
+#
+# (`block` is (h, w), of type float, and contains whole numbers from 0 to 255. Return the number
+# $D$.)
+
+# %% task="contrast"
+# Return D, the mean distance of the smoothed histogram of a block from its mean.
+
+# %% [markdown] about="focus"
+# ## 18 · The focus of a block ({points})
+#
+# The Laplacian of a pixel is the sum of its four neighbors (above, below, left, right), minus four
+# times the pixel. At the edge of the block, the pixel itself stands in for a neighbor that is
+# missing. The focus (equation 1.6 of the same paper) is the mean of the absolute Laplacian over
+# all pixels of the block, where absolute values of at most `noise` count as 0: they may be noise.
+#
+# *Example*: a block of 5 × 5 pixels is 0, except for the middle pixel, which is 100. The absolute
+# Laplacian is 400 there, and 100 at its four neighbors. With `noise` = 20, the focus is 800/25 =
+# 32; with `noise` = 150, it is 400/25 = 16.
+#
+# (`block` is (h, w), of type float, from 0 to 255; `noise` is a number of at least 0. Return a
+# number.)
+
+# %% task="focus"
+# Return F, the mean of the absolute Laplacian of a block, where values of at most `noise` count as 0.
+
+# %% about="contrast focus"
+gray = np.rint(255 * np.clip(L / np.quantile(L, 0.95), 0, 1) ** (1 / 2.2))
+blocks = [np.hsplit(row, 8) for row in np.vsplit(gray, 6)]
+measured = {"contrast": contrast, "focus": focus}
+for name, measure in measured.items():
+    print(f"{name} of 6 x 8 blocks:")
+    print(np.array([[measure(block) for block in row] for row in blocks]).round().astype(int))
+
+# %% [markdown] about="find_by_locus"
+# ## 19 · Skin by its color ({points})
+#
+# If there are faces in a photo, they decide its exposure. From a candle to the sky, skin has
+# colors in a narrow region, the *skin locus* (Soriano and others, 2003). With
+#
+# $$r = \frac{R}{R + G + B}, \qquad g = \frac{G}{R + G + B},$$
+#
+# which do not depend on brightness, a pixel is skin if all of these hold:
+#
+# - $g < -1.3767\, r^2 + 1.0743\, r + 0.1452$,
+# - $g > -0.776\, r^2 + 0.5601\, r + 0.1766$,
+# - $(r - \frac{1}{3})^2 + (g - \frac{1}{3})^2 > 0.0004$, so it is not white or gray,
+# - $r > g$.
+#
+# A black pixel, $R + G + B = 0$, is not skin.
+#
+# *Example*: (224, 172, 105) has $r = 0.447$ and $g = 0.343$; the limits for $g$ are 0.272 and
+# 0.350, and all conditions hold. (60, 90, 200) has $r < g$: no skin.
+#
+# (`Z` contains pixel values from 0 to 255, of type float, (N, 3) or (H, W, 3). Return a mask (N,)
+# or (H, W), of bool, or 0 and 1. No check tests a color that lies on a limit.)
+
+# %% task="find_by_locus"
+# Return a mask of the pixels between the two parabolas of the skin locus, except for white.
+
+# %% about="find_by_locus"
+colors = np.array(
+    [[224.0, 172, 105], [115, 82, 68], [194, 150, 130], [60, 90, 200], [120, 120, 120]]
+)
+print(
+    "light skin, dark skin, skin of a color chart, blue, gray:",
+    np.asarray(find_by_locus(colors)).tolist(),
+)
+
+# %% [markdown] about="circle"
+# ## 20 · The circle without vignetting ({points})
+#
+# A lens darkens the corners of an image, more so at a wide aperture. If two photos have different
+# apertures, this is no difference of exposure. [Mitsunaga and Nayar (1999, section
+# 6.2)](https://doi.org/10.1109/CVPR.1999.786966) use only pixels inside the circle in which the
+# photos agree. `A` and `B` (H, W) are two aligned photos, uint8. The middle of the image is at row
+# $(H - 1)/2$ and column $(W - 1)/2$, and $r$ is the distance of a pixel from it. The farthest
+# pixel has the distance $r_\text{max}$.
+#
+# - Use only pixels with values from 5 to 249 in both photos.
+# - From the pixels with $r < r_\text{max} / 4$, learn which value of $B$ belongs to each value of
+#   $A$: the mean of $B$ over all of them that have this value in $A$. Interpolate for values that
+#   do not occur. Leave out all pixels whose $A$ is below the smallest or above the largest value
+#   there.
+# - Divide the image from $r_\text{max} / 4$ to $r_\text{max}$ into `rings` rings of equal width. A
+#   ring *differs* if the median of $B$ minus the predicted value over its pixels is above
+#   `tolerance`, or below $-$`tolerance`. A ring without usable pixels does not differ.
+# - The circle ends at the inner radius of the first ring that differs together with the next one.
+#   A single ring may be an object that moved. If there are no such rings, return $r_\text{max}$.
+#
+# The checks accept an error of two rings.
+#
+# *Example*: $r_\text{max} = 100$ and `rings` = 3: the rings begin at 25, 50 and 75. If the first
+# one does not differ and the other two do, the result is 50.
+#
+# (Return a number, in pixels.)
+
+# %% task="circle"
+# Return the radius, in pixels, of the circle in which the photos A and B have no vignetting.
+
+# %% about="circle"
+y, x = np.indices(L.shape)
+distance = np.hypot(y - 59.5, x - 79.5)
+darkening = np.clip(1.2 - distance / 250, 0, 1)
+steady = np.clip(0.3 * L / np.quantile(L, 0.8), 0.01, 0.6)
+small = np.rint(255 * steady ** (1 / 2.2)).astype(np.uint8)
+wide = np.rint(255 * (1.5 * steady * darkening) ** (1 / 2.2)).astype(np.uint8)
+print(f"the lens darkens beyond 50 pixels; the photos agree up to {circle(small, wide):.0f} pixels")
 
 # %% [markdown]
 # ## All checks

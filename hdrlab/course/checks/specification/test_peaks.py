@@ -11,7 +11,7 @@ def drawn(rng):
     c = rng.normal(0, 1, SHAPE)
     for height in (9, 8, 7):
         y, x = rng.integers(8, 28), rng.integers(8, 42)
-        c[y - 1 : y + 2, x - 1 : x + 2] += height + rng.uniform(0, 0.5)
+        c[y - 1 : y + 2, x - 1 : x + 2] = height + rng.uniform(0, 0.8, (3, 3))
     return c
 
 
