@@ -20,7 +20,7 @@ from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io import album, files, raw, white_level
+from hdrlab.io import album, damaged_bands, files, raw, white_level
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
 from hdrlab.io.exif_exposure import HINT, Exposure, fill_missing, luminance_of_unit
 from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
@@ -178,6 +178,13 @@ def read_bracket(
     with closing(map_in_threads(decode_frame, range(len(headers)))) as decoded:
         for _ in progress([header.path for header in headers]):
             next(decoded)
+    if not errors:
+        for band in damaged_bands.find_damaged_bands(images, valid=valid):
+            path = headers[band.frame].path
+            errors[band.frame] = FileFormatError(
+                f"{path}: its rows {band.start} to {band.stop - 1} have one color, unlike those of "
+                "the other photos, so the file is damaged"
+            )
     sound = [j for j in range(len(headers)) if j not in errors]
     damaged = [*selection.damaged, *(errors[j] for j in sorted(errors))]
     album.require_enough_sound(damaged, len(sound))

@@ -1,0 +1,76 @@
+"""A photo with missing rows is left out; sound photos with constant rows are not."""
+
+import numpy as np
+import pytest
+import tifffile
+
+from hdrlab.io.damaged_bands import find_damaged_bands
+from hdrlab.io.photos import read_bracket
+
+TIMES = np.array([1 / 64, 1 / 16, 1 / 4, 1.0])
+
+
+def make_scene():
+    """Return light (120, 160, 3) that gets darker from top to bottom, with texture."""
+    rng = np.random.default_rng(5)
+    texture = np.exp(rng.normal(0, 0.7, (30, 40, 3))).repeat(4, axis=0).repeat(4, axis=1)
+    return texture * np.geomspace(4, 0.2, 120)[:, None, None]
+
+
+def shoot(light, times=TIMES):
+    exposures = np.clip(light * np.reshape(times, (-1, 1, 1, 1)), 0, 1)
+    return np.rint(255 * exposures ** (1 / 2.2)).astype(np.uint8)
+
+
+@pytest.mark.parametrize("value", [0, 128, 255])
+@pytest.mark.parametrize("frame", range(4))
+def test_missing_rows_are_found_in_the_photo_that_lacks_them(frame, value):
+    images = shoot(make_scene())
+    images[frame, 70:] = value
+    found = find_damaged_bands(images)
+    assert all(band.frame == frame for band in found)
+    if (frame, value) not in ((0, 0), (3, 255)):  # there, dark or bright rows may be true
+        assert [(band.start, band.stop) for band in found] == [(70, 120)]
+
+
+def test_missing_rows_are_found_with_wrong_times():
+    images = shoot(make_scene())[[2, 0, 3, 1]]
+    images[1, 20:50] = 128
+    assert [band.frame for band in find_damaged_bands(images)] == [1]
+
+
+@pytest.mark.parametrize("times", [TIMES, TIMES * 16, TIMES / 16])
+def test_sound_photos_are_not_suspected(times):
+    scene = make_scene()
+    sky = scene.copy()
+    sky[:60] = 50.0
+    letterbox = scene.copy()
+    letterbox[:20] = 0
+    letterbox[-20:] = 0
+    night = scene.copy()
+    night[60:] = 1e-6
+    for light in (scene, sky, letterbox, night, 1 / (scene + 1e-3)):
+        assert find_damaged_bands(shoot(light, times)) == []
+
+
+def test_sound_photos_of_a_camera_or_a_thing_that_moves_are_not_suspected():
+    scene = make_scene()
+    scene[:50] = 50.0
+    moved = np.stack([shoot(np.roll(scene, 3 * j, axis=1), TIMES[j])[0] for j in range(4)])
+    assert find_damaged_bands(moved) == []
+    images = shoot(scene)
+    images[2, 60:, 30:100] = 200
+    assert find_damaged_bands(images) == []
+
+
+def test_photo_with_missing_rows_is_left_out_with_a_warning(tmp_path):
+    for j, image in enumerate(shoot(make_scene())):
+        tifffile.imwrite(tmp_path / f"{j}.tif", image, photometric="rgb")
+    data = (tmp_path / "1.tif").read_bytes()
+    (tmp_path / "1.tif").write_bytes(data[: len(data) // 2] + bytes(len(data) - len(data) // 2))
+    warnings = []
+    bracket = read_bracket(tmp_path, list(TIMES), note=lambda text: None, warn=warnings.append)
+    assert bracket.names == ("0.tif", "2.tif", "3.tif")
+    assert len(warnings) == 1
+    assert "1.tif" in warnings[0]
+    assert bracket.damaged == tuple(warnings)
