@@ -130,10 +130,12 @@ PEERS = (
     "align_image_stack",
     "scikit-image",
 )  # each in a row of its own, as one may be missing
+BRACKET_PEERS = ("mtb", "cerman", "alignmtb", "ecc", "align_image_stack")
 WITHOUT_HOLD = {
     "align": {
         "align-arch",
         *(f"align-{kind}-{peer}" for kind in ("shift", "turned") for peer in PEERS),
+        *(f"align-brackets-{name}" for name in BRACKET_PEERS),
     },
     "mutation": {"lessons", "grader"},  # survivors are hints, and their share is no target
     "ghosts": {"ghosts-alone"},  # the slide's own way, printed beside ours

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import peers
-from benchmarks.align import cases, real, who
+from benchmarks.align import brackets, cases, real, who
 from benchmarks.experiments import Experiment, Skipped, along, at_least
 from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.filters import warp
@@ -122,4 +122,5 @@ ROWS = (
         for name in ("mtb", "cerman, response known")
     ),
     *real.ROWS,
+    *brackets.ROWS,
 )

@@ -1,0 +1,200 @@
+"""Whole brackets from a hand that turns the camera, where the truth is known: hdrlab and its peers.
+
+A bracket has four photographs of about 640 x 384 pixels, 1 to 2.2 stops apart, shifted by up to 10
+pixels each way. The camera turns by up to 0, 0.1, 0.3, 0.7, 1.5 and 2 degrees. With a rotation,
+shifts are fractions of pixels; without one they are whole pixels.
+
+misregistration  pixels    distance from the truth that 95 % of the pixels do not exceed, of the
+                           worst pair of neighbours
+silent           count     brackets that are off by more than 1 pixel without a warning
+CPU              seconds   of registration and, in hdrlab, resampling
+"""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks import peers
+from benchmarks.align import who
+from benchmarks.experiments import Experiment, Skipped, at_least, at_most
+from hdrlab import scenes
+from hdrlab.align.mtb import by_brightness
+from hdrlab.capture import camera, hand_motion
+from hdrlab.core.arrays import F64, ArrayLike
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.filters import warp
+from hdrlab.pipeline import registration
+
+PLACES = ("chapel", "street", "workshop", "room")
+DEGREES = (0.0, 0.1, 0.3, 0.7, 1.5, 2.0)
+SHAPE = (410, 670)
+PHOTOS = 4
+RADIUS_PIXELS = 10
+FULL_WELL_ELECTRONS = 20_000.0
+READ_NOISE_ELECTRONS = 5.0
+GOOD_PIXELS = 0.3
+WRONG_PIXELS = 1.0
+GRID_POINTS = 24
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HandheldBracket:
+    """A bracket, by how many degrees its camera turned, and its true homographies (P, 3, 3)."""
+
+    degrees: float
+    taken: Bracket
+    truth: F64
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """The homographies (P, 3, 3) that a program found, and whether it warned."""
+
+    homographies: F64
+    has_warning: bool
+
+
+Program = Callable[[Bracket], Answer]
+
+
+def shoot_bracket(place: str, degrees: float) -> HandheldBracket:
+    """Return a bracket of a place; the same one in every run."""
+    rng = np.random.default_rng((PLACES.index(place), round(10 * degrees)))
+    E = getattr(scenes, place)(SHAPE)
+    moves = []
+    for _ in range(PHOTOS):
+        offset = rng.uniform(-RADIUS_PIXELS, RADIUS_PIXELS, 2)
+        angle = degrees * rng.uniform(0.7, 1) * rng.choice([-1, 1])
+        moves.append(warp.turn(E.shape, angle, offset if degrees else np.rint(offset)))
+    moves[PHOTOS // 2] = np.eye(3)
+    times = camera.times_around(E, PHOTOS, stops=rng.uniform(1, 2.2))
+    settings = camera.Camera(
+        full_well=FULL_WELL_ELECTRONS, read_noise=READ_NOISE_ELECTRONS, response="film"
+    )
+    taken = camera.shoot(E, times, settings, offsets=np.array(moves), rng=rng)
+    truth = hand_motion.frame_homographies(np.array(moves), E.shape)
+    return HandheldBracket(degrees=degrees, taken=taken, truth=truth)
+
+
+def misregistration(bracket: HandheldBracket, found: F64) -> float:
+    """Return the misregistration of the worst pair, in pixels."""
+    height, width = bracket.taken.images.shape[1:3]
+    y, x = np.mgrid[0 : height - 1 : GRID_POINTS * 1j, 0 : width - 1 : GRID_POINTS * 1j]
+    points = np.stack([x.ravel(), y.ravel()], axis=-1)
+    errors = []
+    for moving, fixed in pairwise(by_brightness(bracket.taken.images)):
+        own = np.linalg.inv(found[fixed]) @ found[moving]
+        true = np.linalg.inv(bracket.truth[fixed]) @ bracket.truth[moving]
+        off = warp.apply(own, points) - warp.apply(true, points)
+        errors.append(np.quantile(np.hypot(off[:, 0], off[:, 1]), 0.95))
+    return float(max(errors))
+
+
+def align_with_hdrlab(taken: Bracket, *, method: str) -> Answer:
+    """Align a bracket with a method of hdrlab, as `assemble` does."""
+    state = registration.align_bracket(taken, method)
+    return Answer(homographies=state.homographies, has_warning=bool(state.doubts))
+
+
+def align_pairs(taken: Bracket, *, way: who.Way) -> Answer:
+    """Align the neighbours in brightness with a program for pairs."""
+    order = by_brightness(taken.images)
+    answers = [way(taken.images[[a, b]], taken.times[[a, b]]) for a, b in pairwise(order)]
+    homographies = warp.chain_homographies(order, [H for H, _ in answers])
+    return Answer(homographies=homographies, has_warning=any(doubted for _, doubted in answers))
+
+
+def align_by_ecc(images: ArrayLike, _: F64) -> who.Answer:
+    """Align a pair by OpenCV's enhanced correlation coefficient, with rotation and shift."""
+    cv2 = peers.opencv(True)
+    dark, bright = np.ascontiguousarray(np.asarray(images)[..., 1])
+    try:
+        _, back = cv2.findTransformECC(
+            bright, dark, np.eye(2, 3, dtype=np.float32), cv2.MOTION_EUCLIDEAN
+        )
+    except cv2.error:
+        return np.eye(3), True  # it says that it did not converge
+    return np.linalg.inv(np.vstack([back, [0, 0, 1]])), False
+
+
+PROGRAMS: dict[str, Program] = {
+    "auto": partial(align_with_hdrlab, method="auto"),
+    "mtb": partial(align_with_hdrlab, method="mtb"),
+    "cerman": partial(align_with_hdrlab, method="cerman"),
+    "OpenCV AlignMTB": partial(align_pairs, way=who.by_opencv),
+    "OpenCV ECC": partial(align_pairs, way=align_by_ecc),
+    who.HUGIN: partial(align_pairs, way=who.by_hugin),
+}
+
+
+def measure_cpu_seconds() -> float:
+    """Return the CPU time of this process and of the programs that it has run."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+WITHIN = f"% of brackets within {GOOD_PIXELS} pixels"
+SILENT = f"brackets off by more than {WRONG_PIXELS:g} pixel without a warning"
+ERRORS = "misregistration: median, 95 %, worst, pixels"
+CPU = "CPU of a bracket: median, worst, s"
+STILL_CPU = "CPU where nothing turned / that of mtb"
+
+
+def measure_brackets(
+    _: Path, *, name: str, degrees: tuple[float, ...] = DEGREES
+) -> Mapping[str, ArrayLike]:
+    """Return how well a program aligns the brackets."""
+    errors = []
+    silent = 0
+    seconds = []
+    still_seconds = 0.0
+    still_mtb_seconds = 0.0
+    for angle in degrees:
+        for place in PLACES:
+            bracket = shoot_bracket(place, angle)
+            start = measure_cpu_seconds()
+            try:
+                answer = PROGRAMS[name](bracket.taken)
+            except peers.Missing as reason:
+                raise Skipped(str(reason)) from None
+            seconds.append(measure_cpu_seconds() - start)
+            errors.append(misregistration(bracket, answer.homographies))
+            silent += errors[-1] > WRONG_PIXELS and not answer.has_warning
+            if not angle:
+                start = measure_cpu_seconds()
+                PROGRAMS["mtb"](bracket.taken)
+                still_mtb_seconds += measure_cpu_seconds() - start
+                still_seconds += seconds[-1]
+    return {
+        WITHIN: 100 * np.mean(np.array(errors) <= GOOD_PIXELS),
+        SILENT: silent,
+        ERRORS: [*np.quantile(errors, [0.5, 0.95]), max(errors)],
+        CPU: [np.median(seconds), max(seconds)],
+        STILL_CPU: still_seconds / max(still_mtb_seconds, 1e-3) if 0 in degrees else np.nan,
+    }
+
+
+TITLE = f"{len(PLACES) * len(DEGREES)} brackets from a hand that turns by 0 to 2 degrees"
+GOALS = (at_least(WITHIN, 95), at_most(SILENT, 0), at_most(STILL_CPU, 1.5))
+ROWS = (
+    *(
+        Experiment(
+            f"align-brackets-{name.split()[-1].lower()}",
+            f"{TITLE}; {name}",
+            partial(measure_brackets, name=name),
+            GOALS if name == "auto" else (),
+        )
+        for name in PROGRAMS
+    ),
+    Experiment(
+        "align-brackets-third-of-a-degree",
+        "4 brackets from a hand that turns by 0.3 degrees; auto",
+        partial(measure_brackets, name="auto", degrees=(0.3,)),
+        (at_least(WITHIN, 95), at_most(SILENT, 0)),
+    ),
+)
