@@ -109,11 +109,11 @@ def _find_constant_band(sample: Array, frame: int, others: Sequence[int]) -> tup
     is_continued = np.all(photo[1:, 0] == photo[:-1, 0], axis=1) & is_constant[1:]
     starts = np.flatnonzero(is_constant & ~np.append(False, is_continued & is_constant[:-1]))
     bands = []
-    for start in starts:
+    for start in starts.tolist():
         stop = start + 1
         while stop < len(photo) and is_constant[stop] and is_continued[stop - 1]:
             stop += 1
-        bands.append((int(start), int(stop)))
+        bands.append((start, stop))
     start, stop = max(bands, key=lambda band: band[1] - band[0])
     if not _has_band_size(start, stop, len(photo)):
         return None

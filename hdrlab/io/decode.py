@@ -25,7 +25,6 @@ from hdrlab.io import codecs, jpegxl, profiles, raw, tiff_pages
 from hdrlab.io.exif_camera import read_camera, read_time_taken
 from hdrlab.io.exif_exposure import Exposure, read_exposure
 from hdrlab.io.files import CMYK_REASON, OtherPixels, check_size, require_no_folder
-from hdrlab.io.tiff_pages import PHOTOMETRIC
 
 # What the files of each format begin with.
 MAGIC = {
@@ -279,7 +278,7 @@ def _require_samples(header: PhotoHeader, samples: Samples) -> None:
         return
     wanted = "floating-point samples" if samples == "floating" else "8 or 16 bits"
     channels = header.shape[2] if len(header.shape) == 3 else 1
-    pixels = f"{channels} x {header.dtype}, {PHOTOMETRIC[channels]}"
+    pixels = f"{channels} x {header.dtype}, {tiff_pages.PHOTOMETRIC[channels]}"
     raise OtherPixels(f"{header.path}: expected gray or RGB of {wanted}, got {pixels}")
 
 
@@ -399,7 +398,7 @@ def _read_tiff_exif(path: Path, page: tiff_pages.PageFacts) -> ExifFacts:
             own_facts = _read_exif(partial(_load_tiff_exif, stream, page.directory_offset))
             if own_facts.exposure.seconds is not None:
                 return own_facts
-    if page.is_first or page.orientation not in range(1, 9):
+    if page.is_first or page.orientation is None or not 1 <= page.orientation <= 8:
         return facts
     return replace(facts, orientation=page.orientation)
 

@@ -92,7 +92,7 @@ def _measure_pile(samples: Array, white: int) -> Pile:
         return Pile(is_clear=False, brightness=brightness)
     width = max(1, round(NEIGHBORHOOD * white))
     near_count = np.count_nonzero(samples >= white - width) - count
-    is_clear = count > MIN_PILE_RATIO * near_count / width
+    is_clear = bool(count > MIN_PILE_RATIO * near_count / width)
     return Pile(is_clear=is_clear, brightness=brightness)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from hdrlab.core import arrays, optional
 from hdrlab.errors import FileFormatError
-from hdrlab.io import decode, files, profiles
+from hdrlab.io import decode, files, profiles, tiff_pages
 
 
 def read(path: str | Path) -> arrays.F32:
@@ -103,7 +103,7 @@ def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()
     E = arrays.as_radiance(E)
     description = "\n".join(comments).encode() or None
     channels = E.shape[2] if E.ndim == 3 else 1
-    photometric = decode.PHOTOMETRIC[channels].lower()
+    photometric = tiff_pages.PHOTOMETRIC[channels].lower()
     with files.replacing(path) as name:
         optional.tifffile.imwrite(
             name, E, photometric=photometric, metadata=None, description=description
