@@ -229,7 +229,9 @@ def explained(folder: Path) -> Mapping[str, ArrayLike]:
     for name in BRACKETS:
         suffixes = (".jpg", ".jpeg", ".png")
         files = tuple(sorted(one for one in real(folder, name).iterdir() if one.suffix in suffixes))
-        taken = read_bracket(files, "exif", "0000FF" if name == "memorial" else None, None)
+        taken = read_bracket(
+            files, "exif", "0000FF" if name == "memorial" else None, None, note=print, detail=print
+        )
         found[f"chi2, {name}"], found[f"chance, {name}"] = chi_square(taken)
     return found
 

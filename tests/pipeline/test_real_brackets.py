@@ -20,7 +20,7 @@ def assembled(shared):
 
     def assemble(folder, times="exif", mask=None, stops=None):
         top, _, rest = folder.partition("/")
-        taken = read_bracket((shared(top) / rest,), times, mask, stops)
+        taken = read_bracket((shared(top) / rest,), times, mask, stops, note=print, detail=print)
         every = max(1, round(max(taken.images.shape[1:3]) / SIDE))
         valid = taken.valid if taken.valid is None else taken.valid[:, ::every, ::every]
         images = np.ascontiguousarray(taken.images[:, ::every, ::every])
@@ -70,7 +70,9 @@ def test_the_dark_wood_of_the_church_is_as_dark_and_as_red_as_in_the_map_of_its_
 
 
 def test_true_times_are_not_changed(assembled, shared):
-    stated = read_bracket((shared("frobisher"),), "exif", None, None).times
+    stated = read_bracket(
+        (shared("frobisher"),), "exif", None, None, note=print, detail=print
+    ).times
     assert assembled("frobisher").bracket.times.tobytes() == stated.tobytes()
 
 
