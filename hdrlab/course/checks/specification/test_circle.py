@@ -30,7 +30,7 @@ def photos(light, falloff, ratio=1.3):
     return A.astype(np.uint8), B.astype(np.uint8)
 
 
-def same_radius(subject, A, B, radius, what="the radius", **knobs):
+def same_radius(subject, A, B, *, radius, what="the radius", **knobs):
     same(subject.circle(A, B, **knobs), radius, TOLERANCE, what=f"{what}, in pixels")
 
 
@@ -47,7 +47,7 @@ def test_the_circle_ends_where_the_second_photo_gets_darker(subject, rng):
     for part in (rng.uniform(0.4, 0.55), rng.uniform(0.65, 0.8)):
         light, r = scene(rng)
         A, B = photos(light, np.where(r < part * OUTER, 1, 0.85))
-        same_radius(subject, A, B, part * OUTER)
+        same_radius(subject, A, B, radius=part * OUTER)
 
 
 @points(3)
@@ -59,7 +59,7 @@ def test_without_vignetting_the_circle_contains_the_image(subject, rng):
     Return the distance from the middle to the farthest pixel.
     """
     light, _ = scene(rng)
-    same_radius(subject, *photos(light, 1.0), OUTER, what="the radius without vignetting")
+    same_radius(subject, *photos(light, 1.0), radius=OUTER, what="the radius without vignetting")
 
 
 @points(3)
@@ -76,7 +76,7 @@ def test_clipped_pixels_do_not_count(subject, rng):
     is_lamp = (r > 0.3 * OUTER) & (rng.random(SHAPE) < 0.65)
     A[is_lamp] = rng.integers(120, 200, SHAPE)[is_lamp]
     B[is_lamp] = 255
-    same_radius(subject, A, B, part * OUTER, what="the radius with clipped pixels")
+    same_radius(subject, A, B, radius=part * OUTER, what="the radius with clipped pixels")
 
 
 @points(2)
@@ -89,7 +89,9 @@ def test_a_small_difference_is_tolerated(subject, rng):
     """
     light, r = scene(rng)
     A, B = photos(light, np.where(r < 0.6 * OUTER, 1, 0.95))
-    same_radius(subject, A, B, OUTER, what="the radius for a tolerance of 12", tolerance=12.0)
+    same_radius(
+        subject, A, B, radius=OUTER, what="the radius for a tolerance of 12", tolerance=12.0
+    )
     came = subject.circle(A, B)
     same(came, 0.6 * OUTER, TOLERANCE, what="the radius for the default tolerance")
 
@@ -108,4 +110,4 @@ def test_a_single_ring_does_not_end_the_circle(subject, rng):
     k = int(rng.integers(10, 25))
     has_moved = (r >= edges[k] + 0.02) & (r < edges[k + 1] - 0.02)
     B[has_moved] -= 12
-    same_radius(subject, A, B, OUTER, what="the radius with a change in one ring")
+    same_radius(subject, A, B, radius=OUTER, what="the radius with a change in one ring")

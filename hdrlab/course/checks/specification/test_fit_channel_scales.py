@@ -12,7 +12,7 @@ def drawn(rng):
     return M * rng.uniform(0.4, 2.5, 3), M
 
 
-def distorted(radiance, M, rng):
+def distorted(radiance, M, *, rng):
     """Return I and M of a camera that keeps chromaticity only nearly.
 
     A fifth of the pixels is dark and lacks red, and another fifth is bright and has too much blue.
@@ -27,7 +27,7 @@ def distorted(radiance, M, rng):
     return radiance, M
 
 
-def same_scales(subject, radiance, M, what="k"):
+def same_scales(subject, radiance, M, *, what="k"):
     """Compare k with the library's, to half a percent."""
     k = scales.fit_channel_scales(radiance, M)
     came = finite(subject.fit_channel_scales(radiance, M), (3,), what=what).astype(float)
@@ -57,7 +57,7 @@ def test_the_scales_minimize_the_distance_of_the_directions(subject, rng):
     scipy.optimize.least_squares or scipy.optimize.minimize. Search for ln k, so that k stays positive.
     """
     for _ in range(2):
-        same_scales(subject, *distorted(*drawn(rng), rng), what="k of a camera with errors")
+        same_scales(subject, *distorted(*drawn(rng), rng=rng), what="k of a camera with errors")
 
 
 @points(4)
@@ -68,7 +68,7 @@ def test_a_pixel_counts_whatever_its_brightness_is(subject, rng):
 
     Divide each row of M, and each row of k I, by its length.
     """
-    radiance, M = distorted(*drawn(rng), rng)
+    radiance, M = distorted(*drawn(rng), rng=rng)
     M = M * np.where(np.arange(len(M)) % 2, 1.0, 0.1)[:, None]
     same_scales(subject, radiance, M, what="k with some pixels ten times darker")
 
@@ -81,7 +81,7 @@ def test_another_unit_of_a_channel_changes_its_scale_alone(subject, rng):
 
     The result may depend on the radiance only through k I.
     """
-    radiance, M = distorted(*drawn(rng), rng)
+    radiance, M = distorted(*drawn(rng), rng=rng)
     before = finite(subject.fit_channel_scales(radiance, M), (3,), what="k").astype(float)
     after = finite(subject.fit_channel_scales(radiance / [3, 1, 1], M), (3,), what="k").astype(
         float

@@ -13,7 +13,7 @@ def drawn(rng, rows=None):
     return rng.standard_normal((m, K)), 3 * rng.standard_normal(m), np.geomspace(2, 0.15, K)
 
 
-def same_coefficients(subject, A, b, sd, what="c"):
+def same_coefficients(subject, A, b, sd, *, what="c"):
     c = space.solve_map(A, b, sd)
     same(subject.solve_map(A, b, sd), c, 1e-4 * np.abs(c).max(), what=what, kind="values")
 

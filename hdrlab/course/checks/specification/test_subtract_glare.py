@@ -15,7 +15,7 @@ def drawn(rng, channels=()):
     return ((1 - share) * E + share * G).astype(np.float32), G.astype(np.float32), share
 
 
-def same_map(subject, F, G, share, what="E"):
+def same_map(subject, F, G, share, *, what="E"):
     E = flare.subtract_glare(F, G, share)
     same(subject.subtract_glare(F, G, share), E, 1e-4 * E.max(), what=what, picture=True)
 
