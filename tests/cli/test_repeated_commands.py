@@ -125,4 +125,4 @@ def test_floating_point_tiff_of_another_program_is_a_map_and_no_photo(folder):
     assert is_radiance_map(folder / "light.tif")
     selection = album.select(folder)
     assert "light" not in [path.stem for path in selection.paths]
-    assert any("light.tif" in note and "map" in note for note in selection.notes)
+    assert any("light.tif" in text and "map" in text for text in selection.details)
