@@ -5,7 +5,8 @@ w    weights        (P, H, W, C), of pixel values that are neither clipped nor b
 r    residuals      x - (sum_j w x) / (sum_j w)
 R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so that noise averages out, less
                     the photo's median: where a photo is off as a whole, its time or the response is
-                    wrong
+                    wrong. The median of a photo and the mean of a block are subtracted in turns
+                    (median polish), because not every photo measures every block
 d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
 b    of a row       (P, h), sum w r / sum w over a row of blocks, less the photo's best cubic in y
 
@@ -35,6 +36,8 @@ BLOCK_SIDE = 4
 MIN_BLOCK_WEIGHT = 0.2
 # ln E by which the photos of a still scene may differ in a block: 0.2 stops
 MAX_STILL_DEVIATION = 0.2 * np.log(2)
+# turns of subtracting the photos' medians and the blocks' means
+POLISH_TURNS = 10
 # If two photos measure a smaller fraction of the blocks, nothing is known.
 MIN_MEASURED_FRACTION = 0.1
 # Fraction of the measured blocks. In a still scene up to 0.012 deviate; in film that is scanned
@@ -140,10 +143,13 @@ def _measure_moving_fraction(R: F32, W: F32, min_weight: float) -> float:
     """Return the fraction of the blocks that moved; R and W are overwritten."""
     W[W < min_weight] = 0
     R /= np.maximum(W, 1e-9)
-    for block_residuals, block_weights in zip(R, W, strict=True):
-        if block_weights.any():
-            block_residuals -= np.median(block_residuals[block_weights > 0])
-    deviation = np.sqrt((W * R**2).sum(axis=0) / np.maximum(W.sum(axis=0), 1e-9))
+    weight_sums = np.maximum(W.sum(axis=0), 1e-9)
+    for _ in range(POLISH_TURNS):
+        R -= (W * R).sum(axis=0) / weight_sums
+        for block_residuals, block_weights in zip(R, W, strict=True):
+            if block_weights.any():
+                block_residuals -= np.median(block_residuals[block_weights > 0])
+    deviation = np.sqrt((W * R**2).sum(axis=0) / weight_sums)
     is_measured = (W > 0).sum(axis=0) > 1
     if not np.mean(is_measured) > MIN_MEASURED_FRACTION:
         return 0.0
