@@ -232,7 +232,7 @@ def improve(
             )
     if first.reliable and first.confidence > MIN_OTHER_CONFIDENCE:
         return shifted  # the bitmaps are certain, and light shows nothing that fits
-    return PairResult(validation=replace(first, confirmed=False), method=shifted.method)
+    return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
 
 
 def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:
