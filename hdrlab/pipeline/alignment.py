@@ -42,6 +42,9 @@ OTHER_PERCENTILES = (0.83, 0.17)
 MIN_OTHER_CONFIDENCE = 0.9
 # Whole pixels are good enough if 95 % of the image is displaced by no more than this.
 MAX_DISPLACEMENT = 0.3
+# Pixels by which light may shift the middle of the image against what bitmaps are certain of. A
+# rotation that they overlook hardly moves the middle.
+MAX_MIDDLE_SHIFT = 3
 # A first, quick step that is no longer than this needs no closer look; it falls short of the
 # displacement by up to a half.
 MAX_QUICK_DISPLACEMENT = 0.1
@@ -201,6 +204,9 @@ def improve(
     rest = rigid_motion.displacement(H @ np.linalg.inv(first.step), A.Y[0].shape)
     if found.is_confirmed and rest <= MAX_DISPLACEMENT:
         return PairResult(validation=confirm(first, first.step), method=shifted.method)
+    is_certain = first.reliable and first.confidence > MIN_OTHER_CONFIDENCE
+    if is_certain and _measure_middle_shift(H, first.step, A.Y[0].shape) > MAX_MIDDLE_SHIFT:
+        return shifted
 
     in_place = rigid_motion.check(B.Y, A.Y, np.eye(3), level)
     if not found.is_confirmed and not (found.is_usable or in_place.is_usable):
@@ -230,9 +236,15 @@ def improve(
             return PairResult(
                 validation=confirm(best.validation, best.validation.step), method=best.method
             )
-    if first.reliable and first.confidence > MIN_OTHER_CONFIDENCE:
+    if is_certain:
         return shifted  # the bitmaps are certain, and light shows nothing that fits
     return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
+
+
+def _measure_middle_shift(H: F64, other: F64, shape: tuple[int, ...]) -> float:
+    """Return the distance in pixels between the places to which two homographies bring the middle."""
+    middle = np.array([[shape[1] / 2, shape[0] / 2]])
+    return float(np.linalg.norm(warp.apply(H, middle) - warp.apply(other, middle)))
 
 
 def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:

@@ -8,6 +8,7 @@ import pytest
 from hdrlab import pipeline
 from hdrlab.cli.brackets import read_bracket
 from hdrlab.io import radiance
+from hdrlab.pipeline.alignment import register
 
 pytestmark = pytest.mark.papers
 
@@ -67,6 +68,12 @@ def test_the_dark_wood_of_the_church_is_as_dark_and_as_red_as_in_the_map_of_its_
     is_dark = truth.mean(axis=-1) <= np.quantile(truth.mean(axis=-1), 0.1)
     assert np.quantile(np.abs(off), 0.95) < 0.25
     assert abs(np.median(off[is_dark, 0] - off[is_dark, 1])) < 0.25
+
+
+def test_scans_that_fit_already_stay_in_place_at_full_size(shared):
+    taken = read_bracket((shared("memorial"),), "exif", "0000FF", None, note=print, detail=print)
+    found = register(taken.images)
+    assert np.array_equal(found.homographies, np.broadcast_to(np.eye(3), (16, 3, 3)))
 
 
 def test_true_times_are_not_changed(assembled, shared):
