@@ -106,7 +106,7 @@ def test_shoot_takes_a_bracket_around_the_metered_time_and_assembles_it(lens, tm
     assert held.mean() > 0.5 and np.percentile(abs(off - np.median(off)), 95) < 0.2
     said = capsys.readouterr()
     assert (
-        "room.hdr: 96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
+        "room.hdr (96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
     )
 
 

@@ -105,7 +105,7 @@ REAL = [
 def test_the_median_deviation_of_real_maps_is_within_known_bounds(
     folder, mask, least, most, shared
 ):
-    taken = read_bracket((shared(folder),), "exif", mask, None)
+    taken = read_bracket((shared(folder),), "exif", mask, None, note=print, detail=print)
     found = pipeline.measure_deviation(pipeline.assemble(taken))
     known = wording.deviation(found.E, found.s)
     assert least < np.median(known[np.isfinite(known)]) < most
