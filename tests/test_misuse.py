@@ -81,10 +81,7 @@ def verbs():
                     for one in known
                     if one.default is one.empty and one.kind < one.VAR_KEYWORD
                 ]
-                raises = (
-                    "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
-                    or place == "radiance.merge.merge"
-                )
+                raises = "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
                 if raises and {*needed[:1]} <= FIRST and needed and place not in ELSEWHERE:
                     found[place] = verb, needed
     return found
@@ -223,12 +220,7 @@ ANSWERED = {
 }
 # a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette;
 # the commands run `fast`, or come through `core.bracket`, which do not
-LESSONS = (
-    "align.cerman.align",
-    "align.homography.align",
-    "align.mtb.align",
-    "radiance.merge.merge",
-)
+LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align")
 LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
 HIDDEN = ("masked", "masked frames", "Pillow's places in a palette")
 ANSWERED |= {

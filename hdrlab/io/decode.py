@@ -418,6 +418,14 @@ def _load_exif(block: bytes | None) -> Image.Exif:
     return exif
 
 
+def _read_interop_index(exif: Image.Exif) -> object:
+    """Return the tag that says whether a photo is in Adobe RGB, None without it."""
+    try:
+        return exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)
+    except KeyError:  # of a Pillow before 13, if EXIF has no part on interoperability
+        return None
+
+
 def _read_exif(load: Callable[[], Image.Exif]) -> ExifFacts:
     """Return what hdrlab uses of EXIF; unreadable EXIF states nothing, the photo may still be good."""
     try:
@@ -426,7 +434,7 @@ def _read_exif(load: Callable[[], Image.Exif]) -> ExifFacts:
             exif = load()
             orientation = exif.get(ExifTags.Base.Orientation, 1)
             exposure = read_exposure(exif)
-            interop_index = exif.get_ifd(ExifTags.IFD.Interop).get(INTEROP_INDEX_TAG)
+            interop_index = _read_interop_index(exif)
             rendering = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered)
             camera = read_camera(exif)
             taken = read_time_taken(exif)

@@ -475,6 +475,23 @@ def test_invalid_images_raise_an_error(verb, images, times):
         verb(images, times, FILM)
 
 
+@pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
+@pytest.mark.parametrize(
+    "w", [np.full(256, np.nan), np.zeros(256), -np.ones(256), np.full(256, np.inf), [1.0]]
+)
+def test_weights_that_cannot_weigh_raise_an_error_instead_of_a_black_map(verb, w):
+    with pytest.raises(InputError, match="expected"):
+        verb(np.full((2, 4, 5), 90, np.uint8), [1, 2], FILM, w)
+
+
+@pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
+def test_masked_levels_raise_an_error_instead_of_being_merged(verb):
+    images = np.ma.array(np.full((2, 4, 5), 90, np.uint8), mask=False)
+    images[0, 1, 2] = np.ma.masked
+    with pytest.raises(InputError, match="masked"):
+        verb(images, [1, 2], FILM)
+
+
 def test_expendable_photos_give_the_same_map():
     """The pipeline lets the fast merge give the frames' memory back as it reads them."""
     rng = np.random.default_rng(3)
