@@ -81,7 +81,10 @@ def verbs():
                     for one in known
                     if one.default is one.empty and one.kind < one.VAR_KEYWORD
                 ]
-                raises = "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
+                raises = (
+                    "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
+                    or place == "radiance.merge.merge"
+                )
                 if raises and {*needed[:1]} <= FIRST and needed and place not in ELSEWHERE:
                     found[place] = verb, needed
     return found
@@ -220,7 +223,12 @@ ANSWERED = {
 }
 # a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette;
 # the commands run `fast`, or come through `core.bracket`, which do not
-LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align")
+LESSONS = (
+    "align.cerman.align",
+    "align.homography.align",
+    "align.mtb.align",
+    "radiance.merge.merge",
+)
 LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
 HIDDEN = ("masked", "masked frames", "Pillow's places in a palette")
 ANSWERED |= {
@@ -229,6 +237,7 @@ ANSWERED |= {
     for name in ("images", "times", "g")
     if (lesson, name) != ("response.robertson.recover", "images")
 }
+ANSWERED["radiance.merge.merge", "images"] -= {"masked"}
 # photographs of four pixels a row, and of no pixels: nothing moves
 ANSWERED["align.mtb.align", "images"] |= {"one photograph of Pillow in CMYK", "no columns"}
 # any arrays can be moved, and light be of any shape

@@ -114,13 +114,8 @@ def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
     """Return the radiance map, ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
 
-    Where no frame measures a pixel, E comes from the tightest bounds. Images are (P, H, W[, 3]) uint8
-    or uint16, in any order; w is the hat by default.
-
-    Raises
-    ------
-    ValueError
-        For arrays that do not fit together, masked levels, or weights that are not numbers from 0 on.
+    Where no frame measures a pixel, E comes from the tightest bounds. Images are (P, H, W[, 3]), in
+    any order; w is the hat by default.
 
     Examples
     --------
@@ -129,10 +124,37 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     >>> bool(np.allclose(E, [[40 / 128, 90 / 128]]))
     True
     """
-    images, t, w, g, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
+    if np.ma.is_masked(images):
+        raise InputError("some levels are masked; pass the mask to merge_with_quality as `valid`")
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    if (
+        images.dtype.kind != "u"
+        or images.ndim < 3
+        or images.shape[3:] not in ((), (3,))
+        or not images.size
+    ):
+        raise InputError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
+    if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
+        raise InputError(f"expected {len(images)} positive times in seconds, got {t}")
+    n = np.iinfo(images.dtype).max + 1
     Z = images.reshape(*images.shape[:3], -1)
     B = np.log(t)
     c = np.arange(Z.shape[-1])
+    top = int(CLIPPING_LEVEL * (n - 1)) + 1
+    if (
+        g.shape not in ((n,), (n, 1), (n, c.size))
+        or not np.all(np.abs(g) < 80)
+        or not np.all(g[-1] > g[0])
+    ):
+        raise InputError(
+            f"expected g ({n},) or ({n}, {len(c)}) that rises, -80 to 80, got {g.shape}"
+        )
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    w = hat(n) if w is None else np.asarray(w, np.float64)
+    if w.shape != (n,) or not np.all((w >= 0) & (w < np.inf)) or not w.any():
+        raise InputError(f"expected weights ({n},), not negative and not all 0, got {w.shape}")
     W = weigh(Z, w, top)
     total = W.sum(axis=0)
     lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
