@@ -137,8 +137,10 @@ def test_every_page_fits_the_screen_and_names_its_parts(served, page, axe, width
 def test_on_a_telephone_a_finger_finds_every_control(served, page):
     page.set_viewport_size({"width": 400, "height": 800})
     enter(page, served, "ann4")
+    # The page's script hides this button when it has come; only then do the controls stay as they are.
+    page.locator("#save").wait_for(state="hidden")
     targets = page.locator(".acts label > span, .bar button:visible")
-    boxes = [targets.nth(k).bounding_box() for k in range(targets.count())]
+    boxes = [target.bounding_box() for target in targets.all()]
     assert len(boxes) > 15 and all(box["height"] >= 44 and box["width"] >= 44 for box in boxes)
     page.locator(".vote").first.tap()
     page.get_by_text("1 of 2 votes saved at").wait_for()
