@@ -109,7 +109,7 @@ def test_a_damaged_file_is_read_or_refused_in_a_clear_sentence(name, tmp_path, m
     path = tmp_path / f"fuzzed{reader.suffix}"
     for data in seeds:
         path.write_bytes(data)
-        assert worker.outcome(reader, path) == (worker.READ, "")
+        assert worker.outcome(reader, path)[0] == worker.READ
     for number in range(FILES):
         path.write_bytes(mutations.mutated(seeds, mutations.generator(fuzz.SEED, name, number)))
         kind, said = worker.outcome(reader, path)
@@ -123,12 +123,12 @@ def test_the_command_prints_a_table_keeps_what_it_finds_and_ends_with_1(
     findings, code, tmp_path, monkeypatch, capsys
 ):
     def fuzzed(reader, numbers, *, seed, seconds):
-        return fuzz.Tally(reader.name, 1000, 600, 400 - len(findings), findings, 2.0)
+        return fuzz.Tally(reader.name, 1000, 600, 400 - len(findings), findings, 2.0, 7)
 
     monkeypatch.setattr(fuzz, "fuzz", fuzzed)
     assert command.main(["fuzz", "--reader", "rgbe", "--keep", str(tmp_path)]) == code
     said = capsys.readouterr().out
-    assert ["rgbe", "1,000", "600", str(400 - code), str(code), "500"] in [
+    assert ["rgbe", "1,000", "600", "7", str(400 - code), str(code), "500"] in [
         one.split() for one in said.splitlines()
     ]
     assert f"1,000 files, {code} findings" in said and ("KeyError" in said) is bool(code)

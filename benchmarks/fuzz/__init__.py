@@ -6,7 +6,9 @@ Files that the project has written itself are mutated (`mutations`) and read in 
 and 5 s of a processor a file (`worker`). A file may be read, or be refused by a ValueError of less
 than 2,000 characters that names it. Whatever else happens is a finding: another exception, a crash,
 a hang, words of a C library on stderr, a file left behind, something global changed. It is made
-small (`minimise`) and kept, to become a test. File k of a reader is the same whenever the seed is.
+small (`minimise`) and kept, to become a test. A file that is read as other pixels than those of any
+sound file is counted, too ("other"): nobody said that it is damaged. File k of a reader is the same
+whenever the seed is.
 """
 
 import argparse
@@ -28,9 +30,7 @@ from benchmarks.fuzz.worker import CLEAN, READ
 SEED = 21
 # files of a reader where no time is told
 FILES = 1000
-HEADER = (
-    f"{'reader':<16}{'files':>9}{'results':>9}{'clean errors':>14}{'findings':>10}{'files/s':>9}"
-)
+HEADER = f"{'reader':<16}{'files':>9}{'results':>9}{'other':>8}{'clean errors':>14}{'findings':>10}{'files/s':>9}"
 
 
 class Finding(NamedTuple):
@@ -42,7 +42,10 @@ class Finding(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What became of a reader's files; of findings that look alike, the first."""
+    """What became of a reader's files; of findings that look alike, the first.
+
+    `other_pixels` counts the results whose pixels are those of no sound file.
+    """
 
     reader: str
     files: int
@@ -50,11 +53,13 @@ class Tally(NamedTuple):
     refused: int
     findings: tuple[Finding, ...]
     seconds: float
+    other_pixels: int = 0
 
     @property
     def line(self) -> str:
         """The reader's line of the table."""
-        numbers = f"{self.files:>9,}{self.read:>9,}{self.refused:>14,}{len(self.findings):>10}"
+        numbers = f"{self.files:>9,}{self.read:>9,}{self.other_pixels:>8,}"
+        numbers += f"{self.refused:>14,}{len(self.findings):>10}"
         return f"{self.reader:<16}{numbers}{self.files / max(self.seconds, 1e-9):>9.0f}"
 
 
@@ -66,19 +71,29 @@ def fuzz(
     found: dict[str, Finding] = {}
     with tempfile.TemporaryDirectory(prefix="hdrlab-fuzz-") as scratch, Process(reader) as process:
         seeds = reader.seeds(Path(scratch))
+        sound_checksums = {process.judge(data).said for data in seeds}
+        other_pixels = 0
         for number in numbers:
             if time.perf_counter() - start > seconds:
                 break
             data = mutations.mutated(seeds, mutations.generator(seed, reader.name, number))
             kind, said = process.judge(data)
             counts[kind] += 1
+            if kind == READ and said not in sound_checksums:
+                other_pixels += 1
             if kind not in (READ, CLEAN) and kind not in found:
                 found[kind] = Finding(
                     number, f"{kind}: {said}", minimised(data, process.alike(kind))
                 )
     taken = time.perf_counter() - start
     return Tally(
-        reader.name, counts.total(), counts[READ], counts[CLEAN], tuple(found.values()), taken
+        reader.name,
+        counts.total(),
+        counts[READ],
+        counts[CLEAN],
+        tuple(found.values()),
+        taken,
+        other_pixels,
     )
 
 
@@ -103,6 +118,7 @@ def row(name: str) -> Experiment:
         except Missing as reason:
             raise Skipped(str(reason)) from None
         counts = {"files": tally.files, "results": tally.read, "clean errors": tally.refused}
+        counts["other pixels"] = tally.other_pixels
         figures = counts | {"findings": len(tally.findings), "files/s": tally.files / tally.seconds}
         return {what: (float(value),) for what, value in figures.items()}
 

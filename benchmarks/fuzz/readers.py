@@ -74,36 +74,37 @@ class Reader(NamedTuple):
         return [file.read_bytes() for file in files if file.stat().st_size <= LARGEST]
 
 
-def read_map(path: Path) -> None:
-    """Read a radiance map as it is, and cleaned, and what its header says."""
+def read_map(path: Path) -> object:
+    """Read a radiance map as it is, and cleaned, and what its header says; return it as it is."""
     _each(lambda: describe_file(path), lambda: radiance.read_radiance(path))
     E = radiance.read_radiance(path, clean=True)
     if not (np.isfinite(E).all() and E.min() >= 0):
         raise ArithmeticError("cleaned, and no radiance")
+    return radiance.read_radiance(path)
 
 
-def read_exr(path: Path) -> None:
+def read_exr(path: Path) -> object:
     """Read an OpenEXR file as a map, and all its layers."""
     _each(lambda: layers.read_layers(path), lambda: exr.read_dtypes(path))
-    read_map(path)
+    return read_map(path)
 
 
-def read_photo(path: Path) -> None:
+def read_photo(path: Path) -> object:
     """Read a photograph: what its header says, its pixels, and what is left of it for the class."""
     _each(lambda: describe_file(path), lambda: metadata.strip_metadata(path))
-    photos.read_photo(path)
+    return photos.read_photo(path)
 
 
-def read_other(path: Path) -> None:
+def read_other(path: Path) -> object:
     """Read a photo of a telephone, and remove its metadata."""
     _each(lambda: describe_file(path), lambda: metadata.strip_metadata(path))
-    photos.read_photo(path)
+    return photos.read_photo(path)
 
 
-def read_jxl(path: Path) -> None:
+def read_jxl(path: Path) -> object:
     """Read a JPEG XL as what it says that it is, a map or a photograph."""
     light = describe_file(path)["values"].startswith("float")
-    (radiance.read_radiance if light else photos.read_photo)(path)
+    return (radiance.read_radiance if light else photos.read_photo)(path)
 
 
 def read_exif(path: Path) -> None:

@@ -15,6 +15,7 @@ import sys
 import threading
 import traceback
 import warnings
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -78,7 +79,7 @@ def judged(reader: Reader, path: Path, printed: Callable[[], str]) -> tuple[str,
 def outcome(reader: Reader, path: Path) -> tuple[str, str]:
     """Return what reading it ends in."""
     try:
-        reader.read(path)
+        answer = reader.read(path)
     except reader.errors as error:
         said = str(error)
         if isinstance(error, UnicodeError):
@@ -92,7 +93,14 @@ def outcome(reader: Reader, path: Path) -> tuple[str, str]:
         return CLEAN, said
     except BaseException as error:  # whatever it is, it is a finding
         return f"{type(error).__name__} at {where(error)}", str(error)[:LONGEST]
-    return READ, ""
+    return READ, checksum(answer)
+
+
+def checksum(answer: object) -> str:
+    """Return a checksum of pixels, which tells them from others; nothing for other answers."""
+    if not isinstance(answer, np.ndarray):
+        return ""
+    return f"{answer.shape} {answer.dtype} {zlib.crc32(np.ascontiguousarray(answer)):08x}"
 
 
 def where(error: BaseException) -> str:
