@@ -30,7 +30,10 @@ from benchmarks.fuzz.worker import CLEAN, READ
 SEED = 21
 # files of a reader where no time is told
 FILES = 1000
-HEADER = f"{'reader':<16}{'files':>9}{'results':>9}{'other':>8}{'clean errors':>14}{'findings':>10}{'files/s':>9}"
+HEADER = (
+    f"{'reader':<16}{'files':>9}{'results':>9}{'other':>8}"
+    f"{'clean errors':>14}{'findings':>10}{'files/s':>9}"
+)
 
 
 class Finding(NamedTuple):
