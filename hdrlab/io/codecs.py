@@ -162,7 +162,8 @@ def avif_depth(data: bytes) -> int:
 def decode_heic(data: bytes, out: Array | None = None) -> Array:
     """Decode the first image of a HEIC."""
     image = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False)
-    pixels = np.asarray(image)
+    # A copy: before pillow-heif 1.6, the pixels are only valid as long as `image` exists.
+    pixels = np.array(image)
     if pixels.dtype == np.uint8:
         return pixels
     return _fill_16_bits(pixels, image.info["bit_depth"])

@@ -16,8 +16,10 @@ from pathlib import Path
 from typing import Any, BinaryIO, Literal
 
 import numpy as np
+import PIL
 from PIL import ExifTags, Image
 
+from hdrlab.core import optional
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif
 from hdrlab.errors import FileFormatError, InputError
@@ -173,7 +175,7 @@ def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeade
             "RAW",
             raw_shape,
             np.dtype(np.uint16),
-            exposure=exposure,
+            exposure=exposure if any(exposure) else facts.exposure,
             camera=facts.camera,
             taken=facts.taken,
         )
@@ -295,6 +297,8 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
     """Return the header of a format that Pillow opens."""
     if kind == "HEIF":
         pillow_heif.register_heif_opener()
+    if kind == "AVIF":
+        _require_avif(path)
     try:
         with warnings.catch_warnings():
             # Pillow warns of large sizes, which check_size judges, and of odd EXIF.
@@ -327,6 +331,20 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
         camera=facts.camera,
         taken=facts.taken,
     )
+
+
+def _require_avif(path: Path) -> None:
+    """Raise MissingPackageError if Pillow itself does not read AVIF.
+
+    pillow-heif before 1.0 registers a reader of its own, which turns images by EXIF.
+    """
+    Image.init()
+    if "AVIF" not in Image.OPEN or not hasattr(PIL, "AvifImagePlugin"):
+        raise optional.MissingPackageError(
+            f"{path}: AVIF needs Pillow 11.3 or later, this is {PIL.__version__}; "
+            "run pip install --upgrade pillow",
+            name="PIL",
+        )
 
 
 def _read_bit_depth(kind: str, head: bytes) -> int:

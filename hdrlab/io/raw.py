@@ -50,13 +50,20 @@ def read_shape_and_exposure(path: str | Path) -> tuple[tuple[int, int, int], Exp
         width = file.sizes.iwidth
         if file.sizes.flip in QUARTER_TURNS:
             height, width = width, height
-        exposure = Exposure(
-            seconds=_positive_or_none(file.other.shutter_speed),
-            f_number=_positive_or_none(file.other.aperture),
-            iso=_positive_or_none(file.other.iso_speed),
-        )
+        exposure = _read_exposure(file)
     check_size(path, height, width, height * width // BEST_COMPRESSION_RATIO)
     return (height, width, 3), exposure
+
+
+def _read_exposure(file: Any) -> Exposure:
+    """Return the exposure that LibRaw found. rawpy before 0.27 does not pass it on."""
+    if not hasattr(file, "other"):
+        return Exposure()
+    return Exposure(
+        seconds=_positive_or_none(file.other.shutter_speed),
+        f_number=_positive_or_none(file.other.aperture),
+        iso=_positive_or_none(file.other.iso_speed),
+    )
 
 
 def _positive_or_none(value: float) -> float | None:

@@ -6,12 +6,14 @@ nclx. A program that does not know them shows the code values as they are, gray 
 XL files store linear light instead of code values.
 """
 
+import inspect
 import struct
 import zlib
 from pathlib import Path
 
 import numpy as np
 
+from hdrlab.core import optional
 from hdrlab.core.arrays import ArrayLike
 from hdrlab.core.optional import imagecodecs
 from hdrlab.io import files
@@ -87,6 +89,7 @@ def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> 
     True
     """
     files.require_suffix(path, (".avif",), "a picture of this kind")
+    _require_colors_of_avif()
     codes = np.rint(MAX_AVIF_CODE * np.asarray(v)).astype(np.uint16)
     data = imagecodecs.avif_encode(
         codes,
@@ -99,6 +102,16 @@ def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> 
         pixelformat=AVIF_PIXEL_FORMAT_444,
     )
     files.write(path, mark_avif(data))
+
+
+def _require_colors_of_avif() -> None:
+    """Raise MissingPackageError if imagecodecs cannot state the primaries of an AVIF."""
+    if "primaries" not in inspect.signature(imagecodecs.avif_encode).parameters:
+        raise optional.MissingPackageError(
+            "writing AVIF needs imagecodecs 2025.11.11 or later, "
+            f"this is {imagecodecs.__version__}; run pip install --upgrade imagecodecs",
+            name="imagecodecs",
+        )
 
 
 def write_jxl(path: str | Path, E: ArrayLike) -> None:

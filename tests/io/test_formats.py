@@ -12,6 +12,7 @@ import imagecodecs
 import numpy as np
 import pytest
 import tifffile
+from abilities import require_avif, require_colors_of_avif, require_gains_of_channels
 from PIL import Image
 
 import hdrlab
@@ -34,6 +35,8 @@ NO_MAP = r": expected a radiance file \(\.hdr, .*\), got \."
 
 
 def pillow(form, mode="RGB", image=RGB, **knobs):
+    if form == "AVIF":
+        require_avif()
     Image.fromarray(image).convert(mode).save(file := io.BytesIO(), form, **knobs)
     return file.getvalue()
 
@@ -56,6 +59,7 @@ def heic(mode="RGB", image=RGB):
 
 
 def avif(bits):
+    require_avif()
     codes = RGB.astype(np.uint16) << (bits - 8)
     return imagecodecs.avif_encode(
         codes if bits > 8 else RGB, bitspersample=bits, pixelformat="444"
@@ -294,6 +298,10 @@ def test_table_of_formats_lists_what_can_be_written():
     [pytest.param(*one, id=f"{row[:8]}-{one[0]}") for row, many in WRITTEN.items() for one in many],
 )
 def test_other_programs_can_read_written_files(name, options, decode, tmp_path):
+    if name.endswith(".avif"):
+        require_colors_of_avif()
+    if options == ["--to", "ultrahdr"]:
+        require_gains_of_channels()
     if options is None:
         radiance.write_radiance(tmp_path / name, E)
     else:

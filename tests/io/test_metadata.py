@@ -11,6 +11,7 @@ import imagecodecs
 import numpy as np
 import pytest
 import tifffile
+from abilities import require_avif
 from hypothesis import given, strategies as st
 from PIL import Image, ImageCms
 from PIL.PngImagePlugin import PngInfo
@@ -54,6 +55,8 @@ def exif_block():
 
 
 def save(kind, **options):
+    if kind == "AVIF":
+        require_avif()
     file = io.BytesIO()
     Image.fromarray(RGB).save(file, kind, exif=exif(), **options)
     return file.getvalue()

@@ -7,6 +7,7 @@ import struct
 import imagecodecs
 import numpy as np
 import pytest
+from abilities import require_gains_of_channels
 from PIL import Image
 
 from hdrlab import pipeline, scenes
@@ -37,6 +38,7 @@ def truth(picture, E, path, headroom=HEADROOM):
 
 
 def seen_by_libultrahdr(path):
+    require_gains_of_channels()
     return np.maximum(imagecodecs.ultrahdr_decode(path.read_bytes())[..., :3].astype(np.float32), 0)
 
 
@@ -425,6 +427,7 @@ def test_saturated_patches_of_libultrahdr_are_read_as_it_reads_them(name, tmp_pa
 
     Within 2 % of the brightest channel of each patch, which is half a level of its JPEGs.
     """
+    require_gains_of_channels()
     row = np.repeat(PATCHES, PATCH_PIXELS, axis=0)
     light = np.ones((PATCH_PIXELS, len(row), 4), np.float16)
     light[..., :3] = row
