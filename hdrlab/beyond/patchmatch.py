@@ -109,7 +109,7 @@ def random_places(at: Indices, radius: int, count: int, rng: np.random.Generator
     """Return places at random within `radius` of the field's, in any source [Barnes09 sec. 3.2, search]."""
     moves = rng.integers(-radius, radius, (*at.shape[:2], 2), endpoint=True)
     source = at[..., :1] if count == 1 else rng.integers(0, count, (*at.shape[:2], 1))
-    return np.concatenate([source, at[..., 1:] + moves], axis=-1)
+    return np.concatenate([source, at[..., 1:] + moves], axis=-1).astype(np.intp)
 
 
 def search_steps(

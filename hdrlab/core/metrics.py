@@ -124,5 +124,8 @@ def offset_errors(found: ArrayLike, truth: ArrayLike) -> NDArray[np.int64]:
             f"expected offsets (P, 2) twice, got {arrays.describe(found)} and {arrays.describe(truth)}"
         )
     apart = found - truth
-    common = [np.bincount(axis - axis.min()).argmax() + axis.min() for axis in apart.T]
+    common = []
+    for axis in apart.T:
+        steps = (axis - axis.min()).astype(np.intp)
+        common.append(np.bincount(steps).argmax() + axis.min())
     return apart - np.array(common)

@@ -2,7 +2,8 @@
 
 hdrlab takes the text of the cells that were run, extracts the function with the helpers that it
 needs, and calls it in a process of its own. Nothing in the kernel changes. This is the practice
-tier: it contains mistakes, not attacks, and its points are no grade yet.
+tier: it contains mistakes, not attacks, and its points are no grade yet. In a browser, where there
+are no processes, the function runs in the kernel (the in-process tier).
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,11 +13,12 @@ from pathlib import Path
 from hdrlab.course import plan as plans
 from hdrlab.course.grading import grader, results
 from hdrlab.course.reports import feedback
+from hdrlab.course.sandbox import in_process
 from hdrlab.course.source_code import closure, names
 from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
-PRACTICE = plans.GradingOptions(tier="practice")
+PRACTICE = plans.GradingOptions(tier=in_process.TIER if in_process.IS_BROWSER else "practice")
 
 # the latest result of each task in this kernel, for the bar of the homework
 _latest: dict[str, results.Result] = {}

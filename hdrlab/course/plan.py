@@ -115,7 +115,7 @@ class GradingOptions:
 
     Attributes
     ----------
-    tier : "strict", "container" or "practice"
+    tier : "strict", "container", "practice" or "in-process"
     student, secret : the inputs of the checks are drawn from both; without a student, they are the
         public inputs
     hidden : folder with the instructor's hidden checks, test_<task>.py

@@ -47,7 +47,7 @@ def update(Z: Indices, t: F64, E: F64, n: int = 256) -> F64:
     It is a plain mean, because weights would bias it.
     """
     known = ~np.isnan(E)
-    levels = Z[known].ravel()
+    levels = Z[known].ravel().astype(np.intp)
     X = E[known, None] * t
     total = np.bincount(levels, X.ravel(), n)
     count = np.bincount(levels, minlength=n)

@@ -10,6 +10,7 @@ import base64
 import inspect
 import json
 import re
+import warnings
 from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
@@ -21,15 +22,17 @@ import pytest
 
 from hdrlab.core.arrays import describe
 from hdrlab.course import plan
-from hdrlab.course.checks import compare, misconceptions
+from hdrlab.course.checks import compare, inprocess, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox import in_process, tiers
 from hdrlab.course.sandbox.inside import system
 from hdrlab.course.sandbox.session import Unavailable
 
 # calls of a task that are kept to recognize a mistake
 MAX_REMEMBERED_CALLS = 20
 MAX_MESSAGE_CHARACTERS = 1500
+# why a check has no answer, where the student's code was never called or has no time left
+NOT_TRIED_AGAIN = ("missing", "late", "killed")
 # of what a function printed
 MAX_PRINTED_CHARACTERS = 4000
 # values of an image that is drawn
@@ -79,7 +82,9 @@ class GradingPlugin:
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox, which gets ready while pytest collects the checks."""
-        if not system.die_with_parent(self.job["grader"]):  # if it is killed, this is to end, too
+        has_process = self.job["tier"] != in_process.TIER
+        # if the grader is killed, this process is to end, too
+        if has_process and not system.die_with_parent(self.job["grader"]):
             pytest.exit("the grader has ended")
         sandbox = tiers.choose(self.job["tier"])
         subject = Subject(self.job["sources"], sandbox, self.job["timeout"], self.job["modules"])
@@ -99,7 +104,11 @@ class GradingPlugin:
     @pytest.fixture
     def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
         """Return the random generator of this student's inputs to this task."""
-        return np.random.default_rng(int(self.job["seeds"].get(task_of(request.node), 0)))
+        return self._random_generator(task_of(request.node))
+
+    def _random_generator(self, task: str) -> np.random.Generator:
+        """Return the random generator of this student's inputs to a task, at its start."""
+        return np.random.default_rng(int(self.job["seeds"].get(task, 0)))
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Write a line for every check before the first one runs."""
@@ -136,14 +145,49 @@ class GradingPlugin:
         if raised is None:
             notes = "\n".join(dict.fromkeys(compare.notes))[:MAX_MESSAGE_CHARACTERS]
             return self._write(ended=_id(item), outcome="holds", message=notes, said=said)
+        kind = raised.kind if isinstance(raised, NoAnswer) else ""
+        problem = "" if kind in NOT_TRIED_AGAIN else self._problem_of_check(item)
+        if problem:
+            return self._write(ended=_id(item), outcome="broken", message=problem, said=said)
         if not self._is_hidden(item):
             self.failed.add(task_of(item))
-        kind = raised.kind if isinstance(raised, NoAnswer) else ""
         if kind == "late":
             self.late.add(task_of(item))
         told = {"outcome": "no answer" if kind else "fails", "kind": kind}
         differs = _differs(raised) if self.job["draw"] else None
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
+
+    def _problem_of_check(self, item: pytest.Item) -> str:
+        """Return what is wrong with a check itself, or "" if the solution passes it.
+
+        The check runs once more, with the solution in place of the student's function and the same
+        inputs. If it does not hold then, its failure says nothing about the student.
+        """
+        if not isinstance(item, pytest.Function):
+            return ""
+        names = inspect.signature(item.obj).parameters
+        arguments = {name: item.funcargs.get(name) for name in names}
+        if not isinstance(arguments.get("subject"), Subject):
+            return ""
+        notes = list(compare.notes)
+        try:
+            tasks = [plan.Task(*values) for values in self.job["tasks"]]
+            functions = {task.id: plan.function(task) for task in tasks}
+            arguments["subject"] = inprocess.Subject(functions)
+            if "rng" in arguments:
+                arguments["rng"] = self._random_generator(task_of(item))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                item.obj(**arguments)
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"[:MAX_MESSAGE_CHARACTERS]
+            return (
+                "This check is broken: it does not hold for the solution either, so it costs no "
+                f"points. Please report it to your instructor. ({reason})"
+            )
+        finally:
+            compare.notes[:] = notes
+        return ""
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write a line for each task whose answers show a known mistake."""

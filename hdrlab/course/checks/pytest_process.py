@@ -1,8 +1,11 @@
 """Run the specification by pytest in a process of its own, and read the results as they come.
 
 The student's code never runs in this process: the checks call it in a sandbox (see subject.py).
+`run_pytest_here` does the same without a process, for the in-process tier.
 """
 
+import contextlib
+import io
 import json
 import os
 import subprocess
@@ -17,9 +20,12 @@ from hdrlab.course.sandbox.subprocess_runner import import_path
 from hdrlab.errors import InputError
 
 POLL_SECONDS = 0.02
+INTERRUPTED_EXIT_CODE = 2
 # pytest's exit codes if all checks hold, and if some do not
 COMPLETED_EXIT_CODES = (0, 1)
 MAX_ERROR_LINES = 4
+# with it, pytest loads no plugin that is installed beside it
+NO_PLUGINS_VARIABLE = "PYTEST_DISABLE_PLUGIN_AUTOLOAD"
 # variables that could change a score, or run other code in the process
 REMOVED_VARIABLES = ("PYTEST_ADDOPTS", "PYTEST_PLUGINS", "PYTHONSTARTUP", "PYTHONINSPECT")
 
@@ -70,9 +76,58 @@ def run_pytest(
         return
     if exit_code < 0:
         raise InputError(f"the checks were ended from outside, by signal {-exit_code}")
-    output_lines = output_path.read_text(errors="replace").strip().splitlines()
-    last_lines = " / ".join(output_lines[-MAX_ERROR_LINES:])
-    raise InputError(f"the checks could not be run: {last_lines}")
+    raise _run_error(output_path.read_text(errors="replace"))
+
+
+def run_pytest_here(folder: Path, job: Path, files: Sequence[Path]) -> Iterator[dict[str, Any]]:
+    """Run checks in this process, and yield the lines that the plugin wrote, after the last check.
+
+    The parameters and errors are those of `run_pytest`.
+    """
+    import pytest  # slow to import, and needed only where checks run
+
+    empty_folder = folder / "empty"
+    empty_folder.mkdir()
+    options = _options(job, empty_folder, files)
+    # pytest would take the place of the file descriptors, which is impossible in a browser
+    options += ["--capture=no", "-p", "no:faulthandler"]
+    output = io.StringIO()
+    with (
+        _restored_process_state(),
+        contextlib.redirect_stdout(output),
+        contextlib.redirect_stderr(output),
+    ):
+        exit_code = pytest.main(options)
+    if exit_code == INTERRUPTED_EXIT_CODE:
+        raise KeyboardInterrupt
+    if exit_code not in COMPLETED_EXIT_CODES:
+        raise _run_error(output.getvalue())
+    for line in (folder / "lines").read_text(encoding="utf8").splitlines():
+        yield json.loads(line)
+
+
+@contextlib.contextmanager
+def _restored_process_state() -> Iterator[None]:
+    """Set the environment for checks in this process; restore it and the import path afterwards."""
+    search_path = list(sys.path)
+    variables = {name: os.environ.get(name) for name in (*REMOVED_VARIABLES, NO_PLUGINS_VARIABLE)}
+    for name in REMOVED_VARIABLES:
+        os.environ.pop(name, None)
+    os.environ[NO_PLUGINS_VARIABLE] = "1"
+    try:
+        yield
+    finally:
+        sys.path[:] = search_path
+        for name, value in variables.items():
+            os.environ.pop(name, None)
+            if value is not None:
+                os.environ[name] = value
+
+
+def _run_error(output: str) -> InputError:
+    """Return the error for checks that pytest could not run, with the end of what it printed."""
+    last_lines = " / ".join(output.strip().splitlines()[-MAX_ERROR_LINES:])
+    return InputError(f"the checks could not be run: {last_lines}")
 
 
 def _read_lines(
@@ -95,18 +150,23 @@ def _read_lines(
 
 
 def _command(job: Path, empty_folder: Path, files: Sequence[Path]) -> list[str]:
-    """Return the pytest command, which uses no configuration, plugin or conftest of this machine."""
-    command = [sys.executable, "-P", "-m", "pytest", "-q", "-q"]
-    command += ["--noconftest", "--import-mode=importlib", "--tb=native"]
-    command += [f"--rootdir={empty_folder}", f"--confcutdir={empty_folder}"]
+    """Return the command that runs pytest on the checks."""
+    return [sys.executable, "-P", "-m", "pytest", *_options(job, empty_folder, files)]
+
+
+def _options(job: Path, empty_folder: Path, files: Sequence[Path]) -> list[str]:
+    """Return pytest's arguments, with which it uses no configuration, plugin or conftest of this machine."""
+    options = ["-q", "-q"]
+    options += ["--noconftest", "--import-mode=importlib", "--tb=native"]
+    options += [f"--rootdir={empty_folder}", f"--confcutdir={empty_folder}"]
     # an empty configuration file
-    command += ["-c", os.devnull]
-    command += ["-p", "no:cacheprovider"]
-    command += ["-p", "hdrlab.course.checks.plugin"]
-    command += ["-W", "ignore"]
-    command += ["-o", f"pythonpath={SPECIFICATION}"]
-    command += [f"--job={job}"]
-    return [*command, *[str(file) for file in files]]
+    options += ["-c", os.devnull]
+    options += ["-p", "no:cacheprovider"]
+    options += ["-p", "hdrlab.course.checks.plugin"]
+    options += ["-W", "ignore"]
+    options += ["-o", f"pythonpath={SPECIFICATION}"]
+    options += [f"--job={job}"]
+    return [*options, *[str(file) for file in files]]
 
 
 def _environment(folder: Path) -> dict[str, str]:
@@ -114,7 +174,7 @@ def _environment(folder: Path) -> dict[str, str]:
     environment = {
         name: value for name, value in os.environ.items() if name not in REMOVED_VARIABLES
     }
-    environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    environment[NO_PLUGINS_VARIABLE] = "1"
     environment["PYTHONDONTWRITEBYTECODE"] = "1"
     environment["OPENBLAS_NUM_THREADS"] = "1"
     environment["PYTHONPATH"] = import_path()

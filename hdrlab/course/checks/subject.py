@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, NoReturn, Self
 from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
 from hdrlab.course.plan import CALL_TIMEOUT_SECONDS
+from hdrlab.course.sandbox import in_process
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.session import Sandbox, SandboxSession
 
@@ -38,6 +39,11 @@ MAX_ERROR_CHARACTERS = 2000
 # sandbox can send it: no tier for credit lets a function send signals.
 SIGKILL = 9
 CALL_NUMBER_BITS = 60
+
+
+# a sandbox of a process, or its stand-in where there is none
+Session = SandboxSession | in_process.InProcessSession
+Link = socket.socket | in_process.Link
 
 
 class NoAnswer(AssertionError):
@@ -126,13 +132,16 @@ class Subject:
         self._modules = modules
         self._check_seconds_left = CHECK_TIMEOUT_FACTOR * timeout
         self._submission_seconds_left = SUBMISSION_TIMEOUT_FACTOR * timeout
-        self._session: SandboxSession | None = None
-        self._link: socket.socket | None = None
+        self._session: Session | None = None
+        self._link: Link | None = None
         self._kept_answer_bytes = 0
         self.calls: list[Call] = []
         self.printed = ""
 
     def __enter__(self) -> Self:
+        if isinstance(self._sandbox, in_process.InProcessSandbox):
+            self._session = in_process.InProcessSession(self._sandbox, self._modules)
+            return self
         self._session = SandboxSession(
             self._sandbox,
             self._modules,
@@ -223,9 +232,7 @@ class Subject:
         self.printed += sanitize.sanitize_text(answer.printed, room)
         return answer
 
-    def _send_and_receive(
-        self, link: socket.socket, order: dict[str, Any], started: float
-    ) -> Answer:
+    def _send_and_receive(self, link: Link, order: dict[str, Any], started: float) -> Answer:
         """Send an order over a link, and return the answer that comes before the time is used up."""
         patience = min(self._timeout, self._check_seconds_left, self._submission_seconds_left)
         if patience <= 0:
@@ -259,7 +266,7 @@ class Subject:
             return f"the {limit:g} s for one check are used up"
         return ""
 
-    def _raise_silence(self, task: str, error: Exception, session: SandboxSession) -> NoReturn:
+    def _raise_silence(self, task: str, error: Exception, session: Session) -> NoReturn:
         """Raise the NoAnswer of a call whose process is late, is gone, or sent an invalid answer."""
         if isinstance(error, TimeoutError):
             used_up = self._used_up_time()
@@ -294,7 +301,7 @@ def _count_bytes(answer: Any) -> int:
     return getattr(answer, "nbytes", 0)
 
 
-def _has_unread_data(link: socket.socket) -> bool:
+def _has_unread_data(link: Link) -> bool:
     """Return whether data arrived on a link; if so, this takes a byte of it."""
     link.setblocking(False)
     try:

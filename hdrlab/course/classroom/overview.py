@@ -32,7 +32,8 @@ class ClassStatistics:
     Attributes
     ----------
     points : of each team's work
-    outcomes : of each check, by its task and promise: how often it holds, fails, or has no answer
+    outcomes : of each check, by its task and promise: how often it holds, fails, has no
+        answer, or is broken itself
     misconceptions : how often each misconception was found, by task and sentence
     refused : by team, why no function of a submission could be checked
     """

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import practice, tiers
+from hdrlab.course.sandbox import in_process, practice, tiers
 from hdrlab.course.sandbox.session import Unavailable
 
 # a sandbox that does not start may have been killed by something else
@@ -50,14 +50,14 @@ class TierReport:
 
 
 def examine_tiers() -> list[TierReport]:
-    """Try each tier on this machine, the strictest first.
+    """Try each tier that grades submissions on this machine, the strictest first.
 
     Examples
     --------
     >>> [report.tier for report in examine_tiers()]
     ['strict', 'container', 'practice']
     """
-    return [examine(tier) for tier in tiers.TIERS]
+    return [examine(tier) for tier in tiers.TIERS if tier != in_process.TIER]
 
 
 def examine(tier: str) -> TierReport:

@@ -24,11 +24,11 @@ from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
 from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION
-from hdrlab.course.checks.pytest_process import run_pytest
+from hdrlab.course.checks.pytest_process import run_pytest, run_pytest_here
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Drawing, Result
 from hdrlab.course.plan import GradingOptions, Homework, Task
-from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox import in_process, tiers
 from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.sanitize import sanitize_text
 from hdrlab.course.submissions import reader
@@ -121,7 +121,11 @@ def iter_events(
         files = _apply_variants(files_of(homework, options.hidden), homework, folder)
         yield {"specification": specification(files)}
         job = _write_job(folder, code, homework, options, **more)
-        for event in run_pytest(folder, job, files, timeout=ALL_CHECKS_TIMEOUT_SECONDS):
+        if options.tier == in_process.TIER:
+            lines = run_pytest_here(folder, job, files)
+        else:
+            lines = run_pytest(folder, job, files, timeout=ALL_CHECKS_TIMEOUT_SECONDS)
+        for event in lines:
             if "unavailable" in event:
                 raise Unavailable(event["unavailable"])
             yield event

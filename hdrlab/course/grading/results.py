@@ -46,7 +46,7 @@ PUBLIC_CHECK_FIELDS = (
 # fields that results of early versions of hdrlab do not have
 EARLY_RESULT = {"at_most": None}
 EARLY_CHECK = {"kind": "", "follows": ""}
-Outcome = Literal["holds", "fails", "no answer"]
+Outcome = Literal["holds", "fails", "no answer", "broken"]
 
 
 class Drawing(NamedTuple):
@@ -68,7 +68,7 @@ class Check:
     promise : what the check tests, in words
     points, max_points : earned, and possible
     outcome : "holds", "fails", or "no answer" if the function raised an error, took too long or is
-        missing
+        missing; "broken" if the check itself broke, which costs no points
     message : why it does not hold, in words
     hints : from vague to clear
     drawing : images of the expected array, the returned array and their difference
@@ -141,6 +141,11 @@ class Result:
     @property
     def why_practice(self) -> str:
         """Why the score is not for credit, in a sentence, or ""."""
+        if self.tier == "in-process":
+            return (
+                "Your submission ran in the same program as the checks, "
+                "so this score is not for credit."
+            )
         if self.tier not in TIERS_FOR_CREDIT:
             return "Your submission ran without a sandbox, so this score is not for credit."
         if not self.seed:

@@ -1,5 +1,6 @@
 """One mistake costs once: a task's points among its promises, and the failures that follow from another.
 
+broken   a check that does not hold for the solution either: it costs nothing
 root     the failure that the others of its task follow from: the first where a well-known mistake is named,
          the promise that another one `needs`, or the first call that was too late, or ended in the
          same words
@@ -16,6 +17,9 @@ from fractions import Fraction
 from math import floor
 
 from hdrlab.course.grading.results import Check
+
+# outcomes that cost no points
+COSTLESS_OUTCOMES = ("holds", "broken")
 
 
 def split_points(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction]:
@@ -56,7 +60,9 @@ def attribute_failures(
     once : whether that mistake costs at most half of the points
     """
     failures = {
-        check.name: check for check in checks if check.outcome != "holds" and not check.hidden
+        check.name: check
+        for check in checks
+        if check.outcome not in COSTLESS_OUTCOMES and not check.hidden
     }
     max_loss = None
     if once:
@@ -65,7 +71,7 @@ def attribute_failures(
     for check in checks:
         missing = None if once else failures.get(needs.get(check.name, ""))
         lost = Fraction()
-        if check.outcome != "holds" or missing:
+        if check.outcome not in COSTLESS_OUTCOMES or missing:
             lost = check.max_points
         if max_loss is not None:
             lost = min(lost, max_loss)

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course.grading import results
+from hdrlab.course.grading import results, scoring
 from hdrlab.course.reports import feedback
 from hdrlab.course.students import csv_tables
 from hdrlab.io.files import write
@@ -48,7 +48,7 @@ def _gradescope_test(result: results.Result, check: results.Check) -> dict[str, 
         "name": f"{check.task}: {check.promise}",
         "score": score,
         "max_score": max_score,
-        "status": "passed" if check.outcome == "holds" else "failed",
+        "status": "passed" if check.outcome in scoring.COSTLESS_OUTCOMES else "failed",
         "output": message,
         "output_format": "text",
         "visibility": "after_published" if check.hidden else "visible",

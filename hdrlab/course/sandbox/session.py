@@ -70,7 +70,7 @@ class Sandbox:
 
     Attributes
     ----------
-    tier : "strict", "container" or "practice"
+    tier : "strict", "container", "practice" or "in-process"
     credit : whether scores from this tier may count
     launch : starts the supervisor; its argument is the supervisor's end of the control socket
     seccomp_program : the system call filter for the checks, or b""

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from hdrlab.course import materials
-from hdrlab.course.sandbox import subprocess_runner
+from hdrlab.course.sandbox import in_process, subprocess_runner
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.source_code import closure, names
 from hdrlab.course.submissions.archives import unpack
@@ -88,8 +88,14 @@ def read(
     ------
     InputError
         If something outside kills that process again and again, so that nothing is known about the
-        submission.
+        submission, and in a browser, where there are no processes.
     """
+    if in_process.IS_BROWSER:
+        raise InputError(
+            "grading a file needs processes, which a page in a browser does not have; "
+            'here, run the cells and call check("gsolve"), or grade the file with hdrlab '
+            "on a computer"
+        )
     cpu_seconds = READING_CPU_SECONDS
     if path.suffix.lower() in ARCHIVE_SUFFIXES:
         cpu_seconds += UNPACKING_CPU_SECONDS

@@ -11,7 +11,8 @@ HAT = weights.hat()
 
 def drawn(rng, N=300, P=4):
     """Return Z (N, P), t (P,) and an increasing f^-1 (256,)."""
-    return rng.integers(0, 256, (N, P)), rng.uniform(0.1, 2, P), np.sort(rng.uniform(0.01, 2, 256))
+    Z = rng.integers(0, 256, (N, P)).astype(np.intp)
+    return Z, rng.uniform(0.1, 2, P), np.sort(rng.uniform(0.01, 2, 256))
 
 
 def test_every_sample_has_an_irradiance(subject, rng):

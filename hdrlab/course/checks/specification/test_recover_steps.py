@@ -74,7 +74,7 @@ def test_an_iteration_is_a_weighted_mean_followed_by_a_plain_one(subject, rng):
 
     Do not use weights in the update: all its pixels have the same pixel value.
     """
-    Z = rng.integers(15, 250, (900, 4))
+    Z = rng.integers(15, 250, (900, 4)).astype(np.intp)
     t = rng.uniform(0.2, 1, 4)
     line = np.arange(256) / 128
     shown = slice(15, 249)

@@ -8,7 +8,7 @@ from hdrlab.response import robertson
 
 def drawn(rng, N=4000, P=4):
     """Return Z (N, P), t (P,) and E (N,), with pixels at all levels."""
-    Z = rng.integers(0, 256, (N, P))
+    Z = rng.integers(0, 256, (N, P)).astype(np.intp)
     return Z, rng.uniform(0.1, 2, P), rng.uniform(0.2, 3, N)
 
 

@@ -15,12 +15,11 @@ where hdrlab is not: it needs the standard library and numpy alone.
 
 import json
 import math
-import socket
 import struct
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -55,6 +54,19 @@ HEADER_FIELDS = {"kind", "call", "value", "arrays"}
 LABEL_FIELDS = {"name", "dtype", "shape", "bytes"}
 MAX_NAME_CHARACTERS = 80
 MIN_SOCKET_TIMEOUT_SECONDS = 1e-3
+
+
+class Connection(Protocol):
+    """What this module needs of a socket."""
+
+    def sendall(self, data: Any, /) -> None:
+        """Send all bytes."""
+
+    def recv_into(self, buffer: Any, /) -> int:
+        """Receive bytes into a buffer, and return how many; 0 at the end."""
+
+    def settimeout(self, seconds: float | None, /) -> None:
+        """Set for how long `recv_into` may wait."""
 
 
 class ProtocolError(ValueError):
@@ -172,7 +184,7 @@ def _make_label(index: int, array: np.ndarray | bytes) -> dict[str, Any]:
     return {"name": str(index), "dtype": dtype, "shape": shape, "bytes": byte_count}
 
 
-def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None:
+def send(to: Connection, kind: str, value: Any = None, call: int = 0) -> None:
     """Send a frame.
 
     Parameters
@@ -212,7 +224,7 @@ def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None
             to.sendall(raw)
 
 
-def receive(source: socket.socket, deadline: float | None = None) -> tuple[str, int, Any]:
+def receive(source: Connection, deadline: float | None = None) -> tuple[str, int, Any]:
     """Receive a frame, and return its kind, its call number and its value.
 
     Parameters
@@ -251,7 +263,7 @@ def receive(source: socket.socket, deadline: float | None = None) -> tuple[str, 
 
 
 def _receive_bytes(
-    source: socket.socket, size: int, deadline: float | None, is_start_of_frame: bool = False
+    source: Connection, size: int, deadline: float | None, is_start_of_frame: bool = False
 ) -> bytearray:
     """Return the next `size` bytes."""
     data = bytearray(size)

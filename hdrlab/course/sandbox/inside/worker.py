@@ -23,6 +23,7 @@ MAX_PRINTED_CHARACTERS = 2**16
 MAX_MESSAGE_CHARACTERS = 2000
 MAX_CLASS_NAME_CHARACTERS = 80
 MAX_LINE_CHARACTERS = 200
+FORBIDDEN_MESSAGE = "a function that is checked cannot {}"
 MISSING_MODULE_HINT = "numpy, scipy and Python's own modules are here"
 
 WRITING_FLAGS = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
@@ -93,12 +94,26 @@ def forbid_actions(event: str, arguments: tuple[Any, ...]) -> None:
             return
     if arguments[:1] == (os.devnull,):
         return
-    raise PermissionError(f"a function that is checked cannot {FORBIDDEN_ACTIONS[event]}")
+    raise PermissionError(FORBIDDEN_MESSAGE.format(FORBIDDEN_ACTIONS[event]))
 
 
-def run_source(source: str, name: str) -> dict[str, Any]:
-    """Run a submission's source as a module of this name, and return what it defines."""
+def run_source(
+    source: str, name: str, own_builtins: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """Run a submission's source as a module of this name, and return what it defines.
+
+    Parameters
+    ----------
+    source : str
+        The text of the module.
+    name : str
+        Its name.
+    own_builtins : dict, optional
+        What it has in place of Python's built-in functions.
+    """
     module = types.ModuleType(name)
+    if own_builtins is not None:
+        module.__dict__["__builtins__"] = own_builtins
     # a dataclass looks its module up here
     sys.modules[name] = module
     file = f"<{name}>"

@@ -9,7 +9,6 @@ file.
 """
 
 import errno
-import lzma
 import os
 import struct
 import tarfile
@@ -41,7 +40,6 @@ READER_ERRORS = (
     struct.error,
     tarfile.TarError,
     zipfile.BadZipFile,
-    lzma.LZMAError,
     zlib.error,
 )
 MAX_REASON_CHARACTERS = 80
@@ -110,7 +108,7 @@ def unpack(archive: str | Path, target: str | Path, limits: ArchiveLimits = LIMI
                 files = tarball.unpack(archive, folder, limits)
         except ArchiveRejected:
             raise
-        except READER_ERRORS as error:
+        except _reader_errors() as error:
             if _is_fault_of_system(error):
                 raise
             reason = sanitize_line(str(error) or type(error).__name__, MAX_REASON_CHARACTERS)
@@ -119,6 +117,15 @@ def unpack(archive: str | Path, target: str | Path, limits: ArchiveLimits = LIMI
             ) from None
         os.rename(folder, target)
     return files
+
+
+def _reader_errors() -> tuple[type[BaseException], ...]:
+    """Return READER_ERRORS, and the error of lzma if this Python has it."""
+    try:
+        import lzma
+    except ImportError:
+        return READER_ERRORS
+    return (*READER_ERRORS, lzma.LZMAError)
 
 
 def _is_fault_of_system(error: BaseException) -> bool:
