@@ -22,7 +22,13 @@ class InputError(HdrlabError, ValueError):
 
 
 class FileFormatError(InputError):
-    """A file that is damaged, or in a format that hdrlab does not read."""
+    """A file that is damaged, or in a format that hdrlab does not read.
+
+    Its message is one line, also where a codec's message, which it quotes, has several.
+    """
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(" ".join(message.split()))
 
 
 class CalibrationError(InputError):

@@ -92,7 +92,7 @@ def run(arguments: Sequence[str] | None = None) -> None:
     """
     if arguments is None:
         # called from Python, the caller's signal handlers stay
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        _stop_like_ctrl_c()
     _limit_threads_and_memory()
     _replace_unprintable_characters()
     settings = Settings()
@@ -106,6 +106,16 @@ def run(arguments: Sequence[str] | None = None) -> None:
             traceback.print_exc()
         click.echo(f"hdrlab: {visible(message)}", err=True)
     sys.exit(exit_code)
+
+
+def _stop_like_ctrl_c() -> None:
+    """Let SIGTERM and the end of the terminal stop the command as Ctrl-C does.
+
+    A command that was started with nohup goes on without its terminal.
+    """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, signal.default_int_handler)
 
 
 def _is_bug(error: Exception) -> bool:

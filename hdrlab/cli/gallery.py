@@ -102,6 +102,15 @@ def _echo_note(text: str) -> None:
     common.echo_notes([sanitize_line(text, MAX_NOTE_LENGTH)])
 
 
+def _require_no_gallery_file(folder: Path, out: Path) -> None:
+    """Raise an InputError if an output would replace a file of the gallery itself."""
+    target = out.resolve()
+    home = folder.resolve()
+    is_database = target.parent == home and target.name.startswith(store.DATABASE)
+    if is_database or target.parent == home / store.PICTURES:
+        raise InputError(f"{out}: writing would overwrite the gallery itself; pass another name")
+
+
 @gallery.command()
 @folder_argument
 @click.option(
@@ -149,7 +158,8 @@ def links(
     emails = {}
     if roster:
         emails = {student.id: student.email for student in rosters.read(roster).students}
-    with closing(store.connect(folder)) as db:
+    _require_no_gallery_file(folder, out)
+    with closing(store.connect(folder)) as db, store.transaction(db):
         if renew:
             students = list(renew)
         elif all_anew:
@@ -158,7 +168,8 @@ def links(
             query = "SELECT id FROM voters WHERE link IS NULL ORDER BY id"
             students = [row[0] for row in db.execute(query)]
         rows = tokens.links(db, address, students, emails)
-    csv_tables.write_csv(out, tokens.LINK_COLUMNS, rows, private=True)
+        # before the transaction ends: until the new links are safe, the older ones stay valid
+        csv_tables.write_csv(out, tokens.LINK_COLUMNS, rows, private=True)
     click.echo(
         f"{out}: {len(rows)} personal links; send each link only to its student, "
         "because anybody who has it can vote with it"
@@ -219,6 +230,7 @@ def results(*, folder: Path, out: Path) -> None:
     """
     from hdrlab.course.gallery import ballots
 
+    _require_no_gallery_file(folder, out)
     with closing(store.connect(folder)) as db:
         settings = store.settings(db)
         if settings.is_open(time.time()):

@@ -3,6 +3,7 @@
 import errno
 import os
 import secrets
+import shutil
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import combinations, product
@@ -13,6 +14,8 @@ from hdrlab.errors import FileFormatError, InputError
 
 # Beyond any camera, and 1.6 GB as float32 RGB.
 MAX_PIXELS = 2**27
+# A disk with less room counts as full: what was being written did not fit.
+FULL_DISK_BYTES = 64 * 2**10
 
 # Why a photo for print cannot be a frame of a bracket.
 CMYK_REASON = (
@@ -55,10 +58,36 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
         yield temporary
         os.replace(temporary, path)
     except BaseException as error:  # Ctrl-C as well
+        # Some codecs raise a RuntimeError where the disk is full.
+        is_of_disk = isinstance(error, OSError | RuntimeError)
+        is_full = is_of_disk and is_disk_full(path.parent)
         temporary.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):
-            error.filename = str(path)
+        if is_full:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path)) from None
+        if isinstance(error, OSError):
+            raise _name_file(error, path, temporary) from None
         raise
+
+
+def is_disk_full(folder: Path) -> bool:
+    """Return whether the disk of a folder has hardly any room left."""
+    try:
+        return shutil.disk_usage(folder).free < FULL_DISK_BYTES
+    except OSError:  # the folder is gone
+        return False
+
+
+def _name_file(error: OSError, path: Path, temporary: Path) -> OSError:
+    """Return an error of writing that names the file of the user, and says why it failed.
+
+    NumPy's error for a short write has no number: "817920 requested and 383940 written".
+    """
+    if error.errno is None:
+        reason = f"it could not be written completely ({error})"
+        return OSError(errno.EIO, reason, str(path))
+    if error.filename in (None, str(temporary)):
+        error.filename = str(path)
+    return error
 
 
 def write(path: str | Path, content: str | bytes, *, private: bool = False) -> Path:

@@ -69,8 +69,15 @@ def prepare(path: str | Path) -> Prepared:
 
 def keep(folder: Path, id: str, prepared: Prepared) -> None:
     """Write the files of an artifact into the gallery's folder of pictures."""
-    for size, data in prepared.files.items():
-        write(place(folder, id, size), data).chmod(FILE_MODE)
+    paths = [place(folder, id, size) for size in prepared.files]
+    new = [path for path in paths if not path.exists()]
+    try:
+        for size, data in prepared.files.items():
+            write(place(folder, id, size), data).chmod(FILE_MODE)
+    except BaseException:  # Ctrl-C as well
+        for path in new:
+            path.unlink(missing_ok=True)
+        raise
 
 
 def place(folder: Path, id: str, size: str) -> Path:

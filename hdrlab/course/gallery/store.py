@@ -7,15 +7,18 @@ once it is on the disk: WAL with full synchronization. A replaced artifact keeps
 not count.
 """
 
+import errno
+import os
+import secrets
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from secrets import token_bytes
 
 from hdrlab.errors import InputError
+from hdrlab.io import files
 
 DATABASE = "gallery.sqlite"
 PICTURES = "pictures"
@@ -24,6 +27,15 @@ SCHEMA_VERSION = 2
 SECRET_BYTES = 32
 # seconds to wait while another process writes
 LOCK_TIMEOUT_SECONDS = 10
+# what SQLite's errors mean, by their primary code
+ERRNO_OF_CODE = {
+    sqlite3.SQLITE_FULL: errno.ENOSPC,
+    sqlite3.SQLITE_READONLY: errno.EACCES,
+    sqlite3.SQLITE_PERM: errno.EACCES,
+    sqlite3.SQLITE_CANTOPEN: errno.EACCES,
+    sqlite3.SQLITE_IOERR: errno.EIO,
+}
+PRIMARY_CODE_MASK = 0xFF
 # readable by the owner only
 DATABASE_MODE = 0o600
 PRAGMAS = ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF")
@@ -73,7 +85,7 @@ class Voter:
 
 
 def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None:
-    """Make a gallery in a folder that has none.
+    """Make a gallery in a folder that has none, completely or not at all.
 
     Parameters
     ----------
@@ -99,13 +111,68 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
         raise InputError(f"expected at least 1 vote on a ballot, got {marks}")
     if database.exists():
         raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
-    (folder / PICTURES).mkdir(parents=True, exist_ok=True)
-    database.touch(mode=DATABASE_MODE)
-    with closing(_open(database)) as db:
-        schema = SCHEMA_FILE.read_text(encoding="utf8")
-        db.executescript(f"BEGIN; {schema} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;")
-        row = (title, closes.isoformat(), marks, token_bytes(SECRET_BYTES))
+    row = (title, closes.isoformat(), marks, secrets.token_bytes(SECRET_BYTES))
+    with _new_folders(folder / PICTURES):
+        temporary = folder / f".hdrlab-{secrets.token_hex(6)}.sqlite"
+        try:
+            temporary.touch(mode=DATABASE_MODE)
+            _write_tables(temporary, row)
+            _move_new(temporary, database)
+        finally:
+            for path in folder.glob(f"{temporary.name}*"):  # SQLite's journal, too
+                path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _new_folders(folder: Path) -> Iterator[None]:
+    """Make a folder and its parents; if the block fails, remove those that were made."""
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException:  # Ctrl-C as well
+        for path in missing:
+            with suppress(OSError):
+                path.rmdir()
+        raise
+
+
+def _write_tables(path: Path, row: tuple[str, str, int, bytes]) -> None:
+    """Write the tables of a new gallery, with its settings, into an empty file."""
+    schema = SCHEMA_FILE.read_text(encoding="utf8")
+    with _disk_errors(path), closing(sqlite3.connect(path, isolation_level=None)) as db:
+        db.executescript(f"BEGIN; {schema} PRAGMA user_version = {SCHEMA_VERSION};")
         db.execute("INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", row)
+        db.execute("COMMIT")
+
+
+def _move_new(temporary: Path, database: Path) -> None:
+    """Give a file its name, unless another process has made a file of this name meanwhile."""
+    try:
+        os.link(temporary, database)
+    except FileExistsError:
+        raise FileExistsError(
+            f"{database.parent}: expected a folder without a gallery, there is one"
+        ) from None
+    except OSError:  # a file system without hard links
+        os.replace(temporary, database)
+
+
+@contextmanager
+def _disk_errors(path: Path) -> Iterator[None]:
+    """Turn SQLite's errors of the disk and of its locks into an OSError or an InputError."""
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        code = getattr(error, "sqlite_errorcode", 0) & PRIMARY_CODE_MASK
+        if code == sqlite3.SQLITE_BUSY:
+            raise InputError(
+                f"{path}: another process is writing to this gallery; try again"
+            ) from None
+        if code not in ERRNO_OF_CODE:
+            raise
+        number = errno.ENOSPC if files.is_disk_full(path.parent) else ERRNO_OF_CODE[code]
+        raise OSError(number, os.strerror(number), str(path)) from None
 
 
 def connect(folder: str | Path) -> sqlite3.Connection:
@@ -123,8 +190,9 @@ def connect(folder: str | Path) -> sqlite3.Connection:
             f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one"
         )
     try:
-        db = _open(path)
-        (version,) = db.execute("PRAGMA user_version").fetchone()
+        with _disk_errors(path):
+            db = _open(path)
+            (version,) = db.execute("PRAGMA user_version").fetchone()
     except sqlite3.DatabaseError as error:
         raise InputError(
             f"{path}: expected a gallery's database, it cannot be read: {error}"
@@ -157,8 +225,17 @@ def writing(folder: str | Path) -> Iterator[sqlite3.Connection]:
 
 @contextmanager
 def transaction(db: sqlite3.Connection) -> Iterator[None]:
-    """Commit everything that the block writes, or nothing if it raises."""
-    with db:
+    """Commit everything that the block writes, or nothing if it raises.
+
+    Raises
+    ------
+    OSError
+        If the disk is full or refuses to write.
+    InputError
+        If another process writes for longer than `LOCK_TIMEOUT_SECONDS`.
+    """
+    (_, _, path) = db.execute("PRAGMA database_list").fetchone()
+    with _disk_errors(Path(path)), db:
         db.execute("BEGIN IMMEDIATE")
         yield
 

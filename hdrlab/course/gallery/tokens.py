@@ -166,10 +166,17 @@ def spent_by(db: sqlite3.Connection, text: str) -> str | None:
 def links(
     db: sqlite3.Connection, address: str, ids: Sequence[str], emails: dict[str, str]
 ) -> list[LinkRow]:
-    """Make new personal links for these voters, and return a row for each; their older links end."""
+    """Make new personal links for these voters, and return a row for each; their older links end.
+
+    Parameters
+    ----------
+    db : connection to the database, within a transaction: commit it when the rows are safe
+    address : where voters reach the gallery
+    ids : the voters
+    emails : their addresses, as far as they are known
+    """
     name_of_id = {voter.id: voter.name for voter in store.voters(db)}
-    with store.transaction(db):
-        token_of_id = {id: new_link(db, id) for id in ids}
+    token_of_id = {id: new_link(db, id) for id in ids}
     base = address.rstrip("/")
     return [
         (id, name_of_id[id], emails.get(id, ""), f"{base}/enter/{token}")

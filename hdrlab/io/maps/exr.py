@@ -254,7 +254,7 @@ def save_parts(path: str | Path, *content: Any) -> None:
         try:
             file.write(str(name))
         except RuntimeError as error:
-            raise OSError(errno.EIO, f"{error} (the disk may be full)", str(path)) from None
+            raise OSError(errno.EIO, " ".join(str(error).split()), str(path)) from None
 
 
 def read_parts(

@@ -1,0 +1,231 @@
+"""A command whose disk is full, read-only or gone changes nothing, says why, and can be run again.
+
+The disk is a small file system in memory, which root may mount; elsewhere these tests are skipped.
+"""
+
+import csv
+import sqlite3
+import subprocess
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hdrlab import cli
+from hdrlab.course.gallery import store, tokens
+from hdrlab.io import photos, radiance
+
+DISK_BYTES = 4 * 2**20
+# what is left on a full disk
+ROOM_BYTES = (0, 20_000)
+CLOSES = "2099-01-01T00:00+00:00"
+ADDRESS = "https://vote.example.edu"
+LINKS = f"gallery links DISK/g -o DISK/links.csv --address {ADDRESS}"
+# by name, the commands that come before the disk fails, and the one that meets the failure
+COMMANDS = {
+    "convert to .hdr": ([], "convert map.exr DISK/a.hdr"),
+    "convert to .exr": ([], "convert map.exr DISK/a.exr"),
+    "convert to .pfm": ([], "convert map.exr DISK/a.pfm"),
+    "convert to .tif": ([], "convert map.exr DISK/a.tif"),
+    "tonemap to .png": ([], "tonemap map.exr -o DISK/a.png"),
+    "tonemap to .jpg": ([], "tonemap map.exr -o DISK/a.jpg"),
+    "tonemap to .tif": ([], "tonemap map.exr -o DISK/a.tif"),
+    "tonemap to .jxl": ([], "tonemap map.exr -o DISK/a.jxl"),
+    "tonemap to Ultra HDR": ([], "tonemap map.exr -o DISK/a.jpg --to ultrahdr"),
+    "correct": ([], "correct team1.png -o DISK/a.png"),
+    "gallery init": ([], f"gallery init DISK/g --closes {CLOSES}"),
+    "gallery add": (
+        [f"gallery init DISK/g --closes {CLOSES}"],
+        "gallery add DISK/g --roster roster.csv team1.png team2.png",
+    ),
+    "gallery links": (
+        [
+            f"gallery init DISK/g --closes {CLOSES}",
+            "gallery add DISK/g --roster roster.csv team1.png",
+        ],
+        LINKS,
+    ),
+    "gallery links --all-anew": (
+        [
+            f"gallery init DISK/g --closes {CLOSES}",
+            "gallery add DISK/g --roster roster.csv team1.png",
+            LINKS,
+        ],
+        f"{LINKS} --all-anew",
+    ),
+    "gallery results": (
+        [
+            f"gallery init DISK/g --closes {CLOSES}",
+            "gallery add DISK/g --roster roster.csv team1.png",
+            "gallery close DISK/g",
+        ],
+        "gallery results DISK/g -o DISK/results.csv",
+    ),
+    "gallery close": (
+        [f"gallery init DISK/g --closes {CLOSES}"],
+        "gallery close DISK/g",
+    ),
+}
+IMAGES = [name for name in COMMANDS if not name.startswith("gallery")]
+
+
+def mount(folder, options):
+    """Mount a file system in memory, or change the options of one."""
+    words = ["mount", "-t", "tmpfs", "-o", options, "hdrlab-test", str(folder)]
+    return subprocess.run(words, capture_output=True).returncode == 0
+
+
+@pytest.fixture
+def disk(tmp_path, monkeypatch):
+    """A small disk of its own, in a folder with what the commands read."""
+    folder = tmp_path / "DISK"
+    folder.mkdir()
+    try:
+        is_mounted = mount(folder, f"size={DISK_BYTES}")
+    except FileNotFoundError:
+        is_mounted = False
+    if not is_mounted:
+        pytest.skip("only root can mount a small disk")
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(1)
+    radiance.write_radiance("map.exr", rng.uniform(0.01, 5, (150, 200, 3)))
+    for team in ("team1", "team2"):
+        photos.write_picture(f"{team}.png", rng.integers(0, 256, (90, 120, 3), np.uint8))
+    Path("roster.csv").write_text("student,name,team\nann,Ann,team1\nben,Ben,team2\n")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def run(command):
+    """Run a command, and return its exit code."""
+    with pytest.raises(SystemExit) as stop:
+        cli.run(command.split())
+    return stop.value.code or 0
+
+
+def contents(folder):
+    """Return what is in all files, without the ballast and SQLite's working files."""
+    paths = [path for path in folder.rglob("*") if path.is_file() and path.name != "ballast"]
+    return {
+        str(path.relative_to(folder)): rows(path) if path.suffix == ".sqlite" else path.read_bytes()
+        for path in paths
+        if not path.name.endswith(("-wal", "-shm"))
+    }
+
+
+def rows(path):
+    """Return all rows of a database: SQLite moves pages between its files as it likes."""
+    with closing(sqlite3.connect(path)) as db:
+        return list(db.iterdump())
+
+
+def fill(disk, room):
+    """Fill the disk up to a number of bytes."""
+    free = subprocess.run(
+        ["stat", "-f", "-c", "%a %S", str(disk)], capture_output=True, check=True, text=True
+    )
+    blocks, block_bytes = map(int, free.stdout.split())
+    (disk / "ballast").write_bytes(bytes(max(0, blocks * block_bytes - room)))
+
+
+def is_link_valid(disk, link):
+    """Return whether the gallery knows a personal link."""
+    with closing(store.connect(disk / "g")) as db:
+        return tokens.whose(db, link.rpartition("/")[2], "link") is not None
+
+
+@pytest.mark.parametrize("room", ROOM_BYTES)
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_full_disk_is_named_and_the_command_can_be_run_again(name, room, disk, capsys):
+    before, command = COMMANDS[name]
+    for word in before:
+        assert run(word) == 0
+    old = contents(disk)
+    capsys.readouterr()
+    fill(disk, room)
+    code = run(command)
+    error = capsys.readouterr().err
+    if code == 0:  # there was room enough
+        assert room > 0
+        return
+    assert code == 2
+    assert "No space left on device" in error.splitlines()[-1]
+    assert error.count("\n") == 1, error
+    (disk / "ballast").unlink()
+    # `gallery add` adds one artifact after the other: those that it added stay
+    assert contents(disk) == old or name == "gallery add"
+    assert run(command) == 0
+    assert not [path for path in disk.rglob("*") if path.name.startswith(".hdrlab-")]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_read_only_disk_is_named_and_the_command_can_be_run_again(name, disk, capsys):
+    before, command = COMMANDS[name]
+    for word in before:
+        assert run(word) == 0
+    old = contents(disk)
+    capsys.readouterr()
+    assert mount(disk, "remount,ro")
+    try:
+        code = run(command)
+    finally:
+        assert mount(disk, f"remount,rw,size={DISK_BYTES}")
+    error = capsys.readouterr().err
+    assert code == 2
+    assert error.count("\n") == 1, error
+    assert "Traceback" not in error
+    assert contents(disk) == old
+    assert run(command) == 0
+
+
+@pytest.mark.parametrize("name", IMAGES)
+def test_an_image_that_was_written_after_a_failure_has_the_bytes_of_an_undisturbed_one(name, disk):
+    command = COMMANDS[name][1]
+    assert run(command) == 0
+    undisturbed = contents(disk)
+    for path in disk.iterdir():
+        path.unlink()
+    fill(disk, 0)
+    assert run(command) == 2
+    (disk / "ballast").unlink()
+    assert run(command) == 0
+    assert contents(disk) == undisturbed
+
+
+@pytest.mark.parametrize("fault", ["missing folder", "full disk"])
+def test_personal_links_stay_valid_until_new_ones_are_written(fault, disk):
+    for word in [*COMMANDS["gallery links --all-anew"][0]]:
+        assert run(word) == 0
+    with open(disk / "links.csv", newline="", encoding="utf-8-sig") as file:
+        links = [row["link"] for row in csv.DictReader(file)]
+    assert len(links) == 2
+    out = "missing/links.csv" if fault == "missing folder" else "DISK/new.csv"
+    if fault == "full disk":
+        fill(disk, 0)
+    command = f"gallery links DISK/g -o {out} --address {ADDRESS} --all-anew"
+    assert run(command) == 2
+    (disk / "ballast").unlink(missing_ok=True)
+    assert all(is_link_valid(disk, link) for link in links)
+
+
+def test_first_links_that_could_not_be_written_are_written_by_the_next_run(disk):
+    for word in COMMANDS["gallery links"][0]:
+        assert run(word) == 0
+    fill(disk, 0)
+    assert run(LINKS) == 2
+    (disk / "ballast").unlink()
+    assert run(LINKS) == 0
+    with open(disk / "links.csv", newline="", encoding="utf-8-sig") as file:
+        assert [row["student"] for row in csv.DictReader(file)] == ["ann", "ben"]
+
+
+@pytest.mark.parametrize("out", ["g/gallery.sqlite", "g/gallery.sqlite-wal", "g/pictures/x.csv"])
+def test_links_never_overwrite_the_gallery(out, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(f"gallery init g --closes {CLOSES}") == 0
+    before = (tmp_path / "g/gallery.sqlite").read_bytes()
+    assert run(f"gallery links g -o {out} --address {ADDRESS}") == 2
+    assert (tmp_path / "g/gallery.sqlite").read_bytes() == before
