@@ -291,6 +291,12 @@ SENTENCES = {
         "and the scene has eighteen": lambda n: (
             round(float(np.log2(n.true_L.max() / n.true_L.min()))) == 18
         ),
+        "Twelve of the sixteen scans show only the floor there": lambda n: (
+            np.sum([np.median(image[n.is_dark]) < 20 for image in n.scans.images]) == 12
+        ),
+        "make the dark more than a stop too bright": lambda n: (
+            n.in_the_dark["log"] > 1 and abs(n.in_the_dark["shot"]) < 0.1
+        ),
         "The photos agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
         "and six stops below the windows": lambda n: (
             round(n.scenes.decades(n.real.E) / np.log10(2)) == 6

@@ -20,6 +20,8 @@ from hdrlab.errors import InputError
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
+# away from clipping, and from levels that are mostly noise
+WIDE_LEVELS = slice(10, 251)
 # about this number of pixels of a frame is used, on an even grid
 MAX_PIXELS = 400_000
 # a pixel with a channel above this level is clipped, and not a measurement
@@ -163,6 +165,26 @@ def measure_spread(medians: F64) -> float:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         return float(np.nanmedian(np.nanstd(_keep_shared(medians), axis=0)[..., LEVELS]))
+
+
+def measure_rms_spread(medians: F64) -> float:
+    """Return the root mean square of the spread over levels and channels, in stops.
+
+    `measure_spread` hides a response that is wrong for some levels or in one channel, because it
+    is a median. This one also looks at darker and brighter levels. NaN if no level occurs in two
+    frames.
+
+    Examples
+    --------
+    >>> medians = np.zeros((2, 3, 256))
+    >>> medians[1, 2] = 2  # the frames contradict each other in blue
+    >>> measure_spread(medians), round(measure_rms_spread(medians), 3)
+    (0.0, 0.577)
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        variances = np.nanvar(_keep_shared(medians), axis=0)[..., WIDE_LEVELS]
+        return float(np.sqrt(np.nanmean(variances)))
 
 
 def _keep_shared(medians: F64) -> F64:

@@ -72,14 +72,14 @@ def check_map(
     if is_worthless(medians) and not state.fallback:
         reason = f"the photos contradict each other by {spread:.2f} stops"
         state = replace(state, fallback=reason)
-    if not state.fallback:
-        dark_text = tones.warn_of_dark_parts(part_errors)
-        state = state.with_doubt(dark_text) if dark_text else state
+    dark_text = "" if state.fallback else tones.warn_of_dark_parts(part_errors)
+    if dark_text:
+        state = state.with_doubt(dark_text)
     text = _describe_problem(state, found, moving_fraction, band_stops)
     if text:
         return state.with_doubt(text)
     names = state.bracket.names
-    if not state.fallback:
+    if not state.fallback and not dark_text:
         text = tones.warn_of_parts(part_errors, names)
         if text:
             return state.with_doubt(text)

@@ -1,12 +1,13 @@
 """The response of a bracket: by a method of `response`, by your own function, or by "auto".
 
-With "auto", held-out pixels choose the method. Of two methods that explain them about equally well,
-the simpler one wins. A gray surface has the same value in all channels, and so it should have the
-same radiance. Three curves that are recovered separately disagree where few photos constrain them,
-and then a gray wall gets colored patches. One curve for all channels cannot do that. Digital
-cameras usually have one curve; scanned film has three. So one curve is chosen if it explains
-held-out pixels nearly as well as three do, by the mean of `consistency.measure_spread` over the
-channels.
+With "auto", held-out pixels choose whether the channels share a curve, or may depart from one.
+A gray surface has the same value in all channels, and so it should have the same radiance. Three
+curves that are recovered separately disagree where few photos constrain them, and then a gray wall
+gets colored patches. One curve for all channels cannot do that. Digital cameras usually have one
+curve; scanned film has three. With `tied_curves`, the channels depart from a shared curve as far as
+their pixels say. One curve wins if it explains held-out pixels as well in all tones and channels.
+Debevec's curves, which need no prior, are for cameras that no prior knows: they win if they explain
+held-out pixels much better.
 
 A map needs some response. If a method finds none, or one that no camera has, the response that a
 prior makes most likely takes its place, with a warning: that of `response.space`.
@@ -26,7 +27,7 @@ from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
 from hdrlab.errors import CalibrationError, InputError
 from hdrlab.fast import debevec, merge, robertson
-from hdrlab.pipeline import catalogue
+from hdrlab.pipeline import catalogue, tied_curves
 from hdrlab.pipeline.assembly import Method
 from hdrlab.response import self_calibration, space
 
@@ -38,9 +39,10 @@ MAX_PIXELS = 2**16
 MAX_FITTED_PHOTOS = 32
 # stripes of rows in a photo; every other one is held out
 STRIPE_COUNT = 20
-# How much more spread a simpler method may leave: relative to the best, and in stops.
-MAX_RELATIVE_LOSS = 0.05
-MAX_LOSS_STOPS = 0.003
+# How much more RMS spread a method that ties the channels more may leave, relative to the best.
+MAX_RELATIVE_LOSS = 0.005
+# How much less RMS spread a method without a prior must leave, relative to the others.
+MIN_RELATIVE_GAIN = 0.3
 # consecutive pixel values that smoothness alone may connect
 MAX_GAP = 20
 # samples that show which pixel values two photos share
@@ -71,9 +73,26 @@ class Candidate:
 
     name: str
     method: Recover
-    has_curve_per_channel: bool
+    # Whether the curves that cameras have, see `response.space`, guide the method.
+    has_prior: bool
     # Whether smoothness alone connects pixel values that no two photos share.
     needs_shared_values: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldOutSpread:
+    """The spread that a response leaves in held-out pixels, in stops; infinite without a response.
+
+    Attributes
+    ----------
+    typical : float
+        Mean over the channels of `consistency.measure_spread`.
+    rms : float
+        See `consistency.measure_rms_spread`: it shows what a median hides.
+    """
+
+    typical: float
+    rms: float
 
 
 def find_method(response: Method) -> Recover:
@@ -124,30 +143,24 @@ EXTENDED: dict[str, Recover] = {
     "mitsunaga": self_calibration.find_response,
 }
 
-# Three curves come first, because their spread is the one to compare with.
+# from tied channels to free ones
 CANDIDATES = (
-    Candidate(
-        name="a curve for each channel by debevec",
-        method=debevec.recover,
-        has_curve_per_channel=True,
-        needs_shared_values=True,
-    ),
-    Candidate(
-        name="a curve for each channel by space",
-        method=space.recover,
-        has_curve_per_channel=True,
-        needs_shared_values=False,
-    ),
     Candidate(
         name="one curve by space",
         method=share_curve(space.recover),
-        has_curve_per_channel=False,
+        has_prior=True,
         needs_shared_values=False,
     ),
     Candidate(
-        name="one curve by debevec",
-        method=share_curve(debevec.recover),
-        has_curve_per_channel=False,
+        name="curves that are tied to each other",
+        method=partial(tied_curves.recover, departure=0.5),
+        has_prior=True,
+        needs_shared_values=False,
+    ),
+    Candidate(
+        name="a curve for each channel by debevec",
+        method=debevec.recover,
+        has_prior=False,
         needs_shared_values=True,
     ),
 )
@@ -205,16 +218,12 @@ def find_widest_gap(Z: ArrayLike) -> int:
     return int(np.diff(connected).max(initial=1))
 
 
-def measure_spread(method: Recover, fit: Bracket, held_out: Bracket) -> float:
-    """Return the spread in stops that a method's response leaves in held-out pixels.
-
-    It is infinite if the method finds no response. It is the mean over the channels, because the
-    median over all pixel values would hide a curve that one channel contradicts.
-    """
+def measure_spread(method: Recover, fit: Bracket, held_out: Bracket) -> HeldOutSpread:
+    """Return the spread in stops that a method's response leaves in held-out pixels."""
     try:
         g = method(fit.images, fit.times, valid=fit.valid)
     except InputError:
-        return np.inf
+        return HeldOutSpread(typical=np.inf, rms=np.inf)
     E = merge.merge_with_quality(
         held_out.images, held_out.times, g, weights.gaussian(len(g)), valid=held_out.valid
     ).E
@@ -225,7 +234,9 @@ def measure_spread(method: Recover, fit: Bracket, held_out: Bracket) -> float:
         consistency.measure_spread(medians[:, channel : channel + 1])
         for channel in range(medians.shape[1])
     ]
-    return float(np.nan_to_num(np.mean(spreads), nan=np.inf))
+    typical = float(np.nan_to_num(np.mean(spreads), nan=np.inf))
+    rms = float(np.nan_to_num(consistency.measure_rms_spread(medians), nan=np.inf))
+    return HeldOutSpread(typical=typical, rms=rms)
 
 
 def choose_response(response: Method, bracket: Bracket) -> ResponseChoice:
@@ -238,32 +249,54 @@ def choose_response(response: Method, bracket: Bracket) -> ResponseChoice:
     fit = thin_photos(fit)
     if response != "auto" or bracket.linear:
         method = find_validated_method("linear" if response == "auto" else response)
-        return ResponseChoice(method=method, spread=measure_spread(method, fit, held_out))
-    has_gap = _has_wide_gap(fit)
-    best: Candidate | None = None
-    max_spread = np.inf
-    spreads: dict[str, float] = {}
-    for candidate in CANDIDATES:
-        if has_gap and candidate.needs_shared_values:
-            continue
-        if candidate.has_curve_per_channel and best is not None:
-            continue
-        method = partial(_recover_validated, candidate.method)
         spread = measure_spread(method, fit, held_out)
-        spreads[candidate.name] = spread
-        if np.isinf(spread) or spread > max_spread:
-            continue
-        best = candidate
-        max_spread = (1 + MAX_RELATIVE_LOSS) * spread + MAX_LOSS_STOPS
-        if not candidate.has_curve_per_channel:
-            break
+        return ResponseChoice(method=method, spread=spread.typical)
+    has_gap = _has_wide_gap(fit)
+    spreads: dict[str, HeldOutSpread] = {}
+    for candidate in _list_candidates(bracket):
+        if not (has_gap and candidate.needs_shared_values):
+            method = partial(_recover_validated, candidate.method)
+            spreads[candidate.name] = measure_spread(method, fit, held_out)
+    best = _find_best(spreads)
     if best is None:
         return ResponseChoice(method=find_validated_method("debevec"), spread=np.inf)
-    compared = ", ".join(f"{name} {spread:.3f}" for name, spread in spreads.items())
-    note = f"response: {best.name}, chosen by the spread in held-out pixels, in stops: {compared}"
-    return ResponseChoice(
-        method=partial(_recover_validated, best.method), spread=spreads[best.name], notes=(note,)
+    compared = ", ".join(f"{name} {spread.rms:.3f}" for name, spread in spreads.items())
+    note = (
+        f"response: {best.name}, chosen by the RMS spread in held-out pixels, in stops: {compared}"
     )
+    return ResponseChoice(
+        method=partial(_recover_validated, best.method),
+        spread=spreads[best.name].typical,
+        notes=(note,),
+    )
+
+
+def _list_candidates(bracket: Bracket) -> tuple[Candidate, ...]:
+    """Return the candidates for a bracket; gray photos have no channels to tie."""
+    if bracket.images.ndim == 4:
+        return CANDIDATES
+    return (CANDIDATES[0], CANDIDATES[-1])
+
+
+def _find_best(spreads: dict[str, HeldOutSpread]) -> Candidate | None:
+    """Return the candidate to use, or None if none has a finite spread."""
+    compared = [
+        candidate
+        for candidate in CANDIDATES
+        if candidate.name in spreads and np.isfinite(spreads[candidate.name].typical)
+    ]
+    if not compared:
+        return None
+    with_prior = [candidate for candidate in compared if candidate.has_prior]
+    without_prior = [candidate for candidate in compared if not candidate.has_prior]
+    if not with_prior:
+        return without_prior[0]
+    max_rms = (1 + MAX_RELATIVE_LOSS) * min(spreads[candidate.name].rms for candidate in with_prior)
+    best = next(candidate for candidate in with_prior if spreads[candidate.name].rms <= max_rms)
+    for candidate in without_prior:
+        if spreads[candidate.name].rms < (1 - MIN_RELATIVE_GAIN) * spreads[best.name].rms:
+            best = candidate
+    return best
 
 
 def _has_wide_gap(bracket: Bracket) -> bool:

@@ -52,6 +52,13 @@ def test_the_spread_grows_with_the_error_of_a_time(bracket):
     assert np.all(np.diff(spreads) > 0.01) and spreads[-1] > 0.2
 
 
+def test_a_channel_that_the_spread_hides_shows_in_the_rms_spread():
+    medians = np.zeros((4, 3, 256))
+    medians[2, 2] = 1  # one photo is a stop off in blue
+    assert consistency.measure_spread(medians) == 0
+    assert consistency.measure_rms_spread(medians) == pytest.approx(0.25)  # 0.433 / sqrt(3)
+
+
 @pytest.mark.parametrize("frame", range(5))
 @pytest.mark.parametrize("stops", [-0.7, 0.7])
 def test_a_wrong_exposure_time_shows_as_a_deviation_of_its_frame_and_at_most_its_neighbours(

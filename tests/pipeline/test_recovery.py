@@ -67,35 +67,3 @@ def test_validation_does_not_change_the_response(taken):
 def test_values_that_only_one_photo_shows_do_not_close_a_gap():
     assert recovery.find_widest_gap([[100, 200], [101, 201], [20, 255]]) == 99
     assert recovery.find_widest_gap([[100, 200], [101, 201], [150, 255], [150, 0]]) == 99
-
-
-ASKED = ("three by debevec", "three by space", "one by space", "one by debevec")
-ENOUGH = 1.05 * 0.1 + 0.003
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize(
-    ("spreads", "gap", "name"),
-    [
-        ((0.1, 0, ENOUGH, 0), 20, "one by space"),
-        ((0.1, 0, ENOUGH + 1e-6, ENOUGH), 20, "one by debevec"),
-        ((0.1, 0, ENOUGH + 1e-6, ENOUGH + 1e-6), 20, "three by debevec"),
-        ((0, 0.1, ENOUGH + 1e-6, 0), 21, "three by space"),
-        ((0, 0.1, ENOUGH, 0), 21, "one by space"),
-        ((np.inf, 0.1, 0.2, 0.2), 20, "three by space"),
-    ],
-)
-def test_auto_chooses_one_curve_if_its_spread_is_nearly_as_small(
-    spreads, gap, name, taken, monkeypatch
-):
-    candidates = [
-        replace(candidate, method=label)
-        for candidate, label in zip(recovery.CANDIDATES, ASKED, strict=True)
-    ]
-    monkeypatch.setattr(recovery, "CANDIDATES", candidates)
-    monkeypatch.setattr(recovery, "find_widest_gap", lambda Z: gap)
-    monkeypatch.setattr(
-        recovery, "measure_spread", lambda one, *_: spreads[ASKED.index(one.args[0])]
-    )
-    found = recovery.choose_response("auto", taken)
-    assert found.method.args == (name,) and found.spread == spreads[ASKED.index(name)]

@@ -1,4 +1,4 @@
-"""The default response: one curve where held-out pixels allow it, and none that photographs leave open."""
+"""The default response ties the channels as far as held-out pixels allow it."""
 
 import io
 from dataclasses import replace
@@ -11,8 +11,12 @@ from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.bracket import bracket
+from hdrlab.core.weights import gaussian
+from hdrlab.errors import InputError
 from hdrlab.fast import debevec
-from hdrlab.pipeline import recovery
+from hdrlab.fast.merge import merge_with_quality
+from hdrlab.pipeline import recovery, tied_curves
+from hdrlab.response import space
 
 LEVELS = slice(10, 251)
 
@@ -58,30 +62,81 @@ def test_a_gray_wall_in_three_photos_stays_gray(three):
     assert any("response: one curve by" in detail for detail in found.details)
 
 
-def test_channels_with_different_responses_get_a_curve_each():
-    E = scenes.room((180, 270))
+def s_curve(strength):
+    """Return a gamma with an S-curve of this strength."""
+
+    def brightness(X):
+        M = X ** (1 / 2.2)
+        return M + strength * (M**2 * (3 - 2 * M) - M)
+
+    return brightness
+
+
+def shoot_channels(E, channel_responses, *, full_well=20_000):
+    """Return five photos of E in which each channel has its own response."""
     times = camera.times_around(E, 5)
-    taken = [
-        camera.shoot(E[..., c], times, camera.Camera(response=f))
-        for c, f in enumerate(["film", "srgb", "gamma"])
+    channels = []
+    for c, response in enumerate(channel_responses):
+        sensor = camera.Camera(response=response, full_well=full_well, read_noise=8)
+        channels.append(camera.shoot(E[..., c], times, sensor, rng=c).images)
+    return bracket(np.stack(channels, axis=-1), times)
+
+
+def measure_map_error(E, taken, g):
+    """Return the median error of the map in stops, with the best unit for each channel."""
+    merged = merge_with_quality(taken.images, taken.times, g, gaussian(), method="shot")
+    is_measured = merged.quality == 0
+    off = np.log2(merged.E[is_measured] / E[is_measured])
+    return np.median(np.abs(off - np.median(off, axis=0)))
+
+
+@pytest.mark.parametrize("scene", [scenes.room, scenes.street])
+@pytest.mark.parametrize(
+    "channel_responses",
+    [
+        (s_curve(0.5), s_curve(0.5), s_curve(0.5)),
+        (s_curve(0.45), s_curve(0.5), s_curve(0.58)),
+        ("film", s_curve(0.5), lambda X: X**0.3),
+        ("srgb", "srgb", lambda X: X**0.3),
+    ],
+    ids=["equal", "slightly different", "very different", "one different"],
+)
+def test_the_map_is_as_exact_as_with_the_better_of_one_curve_and_three(scene, channel_responses):
+    E = scene((128, 192))
+    taken = shoot_channels(E, channel_responses)
+    alternatives = []
+    for recover in (space.recover, debevec.recover):
+        for method in (recover, recovery.share_curve(recover)):
+            g = method(taken.images, taken.times)
+            alternatives.append(measure_map_error(E, taken, g))
+    choice = recovery.choose_response("auto", taken)
+    found = choice.method(taken.images, taken.times, valid=None)
+    assert measure_map_error(E, taken, found) <= min(alternatives) + 0.003
+
+
+def test_channels_stay_together_if_ties_are_close_and_part_if_they_are_loose():
+    E = scenes.room((128, 192))
+    taken = shoot_channels(E, (s_curve(0.3), s_curve(0.5), s_curve(0.7)))
+    departures = [
+        part(tied_curves.recover(taken.images, taken.times, departure=departure))
+        for departure in (1e-4, 0.03, 0.3)
     ]
-    mixed = bracket(np.stack([one.images for one in taken], axis=-1), times)
-    found = recovery.choose_response("auto", mixed)
-    assert "a curve for each channel" in found.notes[0].partition(",")[0]
-    g = found.method(mixed.images, mixed.times, valid=None)
-    assert np.array_equal(g, debevec.recover(mixed.images, mixed.times))
+    assert departures[0] < 1.02
+    assert departures[0] < departures[1] < departures[2]
 
 
-def test_one_channel_with_a_different_response_is_enough_for_three_curves():
-    E = scenes.room((180, 270))
-    times = camera.times_around(E, 5)
-    film = ["srgb", "srgb", lambda X: X**0.3]
-    taken = [camera.shoot(E[..., c], times, camera.Camera(response=f)) for c, f in enumerate(film)]
-    mixed = bracket(np.stack([one.images for one in taken], axis=-1), times)
-    assert (
-        "a curve for each channel"
-        in recovery.choose_response("auto", mixed).notes[0].partition(",")[0]
-    )
+def test_without_ties_each_channel_gets_its_own_curve():
+    E = scenes.room((128, 192))
+    taken = shoot_channels(E, ("film", "srgb", "gamma"))
+    tied = tied_curves.recover(taken.images, taken.times, departure=100)
+    separate = space.recover(taken.images, taken.times)
+    assert np.abs(tied - separate)[20:240].max() < 0.05
+
+
+@pytest.mark.parametrize("departure", [0, -1, np.inf])
+def test_a_departure_that_is_not_positive_raises_an_error(three, departure):
+    with pytest.raises(InputError, match="departure"):
+        tied_curves.recover(three.images, three.times, departure=departure)
 
 
 def test_debevec_is_no_candidate_where_no_two_photos_share_the_middle_values():
