@@ -16,6 +16,11 @@ tiles of the image.
 The best photo collected the most light, so the map must agree with it, whatever the weights are. If
 it agrees, the best photo may still be wrong: then the next shorter photo contradicts it. The means
 over blocks keep noise from deciding which blocks are the darkest.
+
+Beside clipped pixels, two photos of the same light differ. JPEG and sharpening carry light from a
+bright pixel to its neighbors, but only as much as the pixel value shows: less in the photo that
+clips it. In a chapel with bright panes this came to 0.7 stops, and to 0.04 elsewhere. So a block
+counts only if the longest photo that shows it clips no pixel of it or of the blocks around it.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -23,6 +28,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from scipy import ndimage
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Indices, Mask, as_mask, as_radiance
 from hdrlab.core.bracket import short_to_long
@@ -37,6 +43,8 @@ MIN_LEVEL = 16
 MIN_SHORTER_LEVEL = 30
 # fraction of the blocks that are the darkest ones, and that are the brightest ones
 TONE_FRACTION = 0.05
+# blocks along each side of the square in which the best photo of the middle one must clip nothing
+UNCLIPPED_SQUARE_SIDE = 3
 # tiles along each side of the image
 TILES_PER_SIDE = 4
 # blocks of a part, as a fraction of those that are compared, without which it has no median
@@ -136,6 +144,7 @@ def measure_block_errors(
     Z = stack.reshape(*stack.shape[:3], -1)
     E_channels = radiance.reshape(Z.shape[1:])
     best, second = _find_best_photos(Z, times_s, top, as_mask(valid, stack))
+    is_far = _find_blocks_far_from_clipping(best, short_to_long(Z, times_s))[..., None]
     exposures = np.exp(curves).astype(np.float32)
     level_unit = 1 if stack.dtype == np.uint8 else 257
 
@@ -153,8 +162,8 @@ def measure_block_errors(
         log_E = np.log2(mean_E)
         contradictions = np.log2(_mean_of_blocks(shorter_X, is_shared))
         contradictions -= np.log2(_mean_of_blocks(X, is_shared))
-    errors = np.where(has_signal, log_E - log_X, np.nan)
-    contradictions[~(has_signal & is_shown)] = np.nan
+    errors = np.where(has_signal & is_far, log_E - log_X, np.nan)
+    contradictions[~(has_signal & is_far & is_shown)] = np.nan
     height, width = errors.shape[:2]
     corners = best[: height * BLOCK_SIDE : BLOCK_SIDE, : width * BLOCK_SIDE : BLOCK_SIDE]
     return BlockErrors(
@@ -181,6 +190,26 @@ def _find_best_photos(
         second = np.where(is_unclipped, best, second)
         best = np.where(is_unclipped, j, best)
     return best, second
+
+
+def _find_blocks_far_from_clipping(best: Indices, order: Sequence[int] | Indices) -> Mask:
+    """Return whether no pixel around a block (h, w) is clipped in a photo that measures the block.
+
+    Parameters
+    ----------
+    best : (H, W) int
+        The longest photo that does not clip a pixel, or -1.
+    order : (P,) int
+        The photos from short to long.
+    """
+    ranks = np.full(len(order) + 1, -1)  # the last one is that of -1
+    ranks[np.asarray(order)] = np.arange(len(order))
+    height = best.shape[0] // BLOCK_SIDE
+    width = best.shape[1] // BLOCK_SIDE
+    best_ranks = ranks[best[: height * BLOCK_SIDE, : width * BLOCK_SIDE]]
+    blocks = best_ranks.reshape(height, BLOCK_SIDE, width, BLOCK_SIDE)
+    around = ndimage.minimum_filter(blocks.min(axis=(1, 3)), UNCLIPPED_SQUARE_SIDE)
+    return around >= blocks.max(axis=(1, 3))
 
 
 def _take_photos(Z: Array, times: Array, exposures: F32, photos: Indices) -> tuple[F32, Array]:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
@@ -125,6 +126,21 @@ def test_masked_and_clipped_pixels_of_a_photo_do_not_count():
     valid[1, :40] = False
     parts = measure_parts(images, [1, 2], np.full((80, 80), 1.005), valid=valid)
     assert max(abs(part.stops) for part in parts) < 0.02
+
+
+def test_what_sharpening_does_beside_clipped_pixels_is_no_error():
+    """It takes more from the neighbors of a bright pane in a photo that does not clip the pane."""
+    X = np.full((120, 160), 20.0)
+    for column in range(4, 160, 12):
+        X[:, column : column + 3] = 4000
+    X[80:] = 20
+    images = []
+    for time in (0.05, 2.5):
+        soft = np.minimum(time * X, 255)
+        images.append(np.clip(soft + 0.5 * (soft - gaussian_filter(soft, 1)), 0, 255))
+    parts = measure_parts(np.round(images), [0.05, 2.5], X / 100)
+    assert parts
+    assert max(abs(part.stops) for part in parts) < 0.1
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (1, 1), (80, 80)])
