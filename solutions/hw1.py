@@ -41,8 +41,9 @@ use_plan("hw1")
 # ## 2 · The same exposure with other settings ({points})
 #
 # You close the aperture to get more of the scene in focus. How long must the shutter now stay open
-# to give the same exposure as before? Exposure is proportional to $T$, to $S$ and to the area of
-# the aperture, which is proportional to $1/F^2$:
+# to give the same exposure as before? The pixel values of a photo depend on the product of $T$,
+# $S$ and the area of the aperture, which is proportional to $1/F^2$. With $F'$ and $S'$ for the
+# new settings, and $T'$ for the new time,
 #
 # $$T' = T \left(\frac{F'}{F}\right)^2 \frac{S}{S'}.$$
 
@@ -52,14 +53,15 @@ use_plan("hw1")
 # %% [markdown] about="count"
 # ## 3 · How many photos? ({points})
 #
-# One photo covers $R$ stops (`usable`). Neighboring photos must share $O$ stops (`overlap`, less
-# than $R$), so that the response curve can be estimated. The first photo covers $R$ stops of the
-# scene, and each further photo adds $R - O$:
+# A scene has $D$ stops (`scene`), and one photo covers $U$ stops (`usable`). Neighboring photos
+# must share $O$ stops (`overlap`, less than $U$), so that the response curve can be estimated. The
+# first photo covers $U$ stops of the scene, and each further photo adds $U - O$. So the number $n$
+# of photos is
 #
-# $$n = 1 + \left\lceil \frac{\text{scene} - R}{R - O} \right\rceil, \qquad\text{and at least } 1.$$
+# $$n = 1 + \left\lceil \frac{D - U}{U - O} \right\rceil, \qquad\text{and at least } 1.$$
 
 # %% task="count"
-# Return n = 1 + ceil((scene - R) / (R - O)), all in stops, and at least 1.
+# Return n = 1 + ceil((D - U) / (U - O)), all in stops, and at least 1.
 
 # %% [markdown]
 # ## The photos

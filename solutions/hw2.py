@@ -68,7 +68,7 @@ pictures.picture(
 # ## 2 · Debevec and Malik: one system of equations ({points})
 #
 # The camera makes $Z_{ij} = f(E_i t_j)$, so $g(Z_{ij}) = \ln E_i + B_j$. This equation is linear in
-# all $n$ values of $g$ and all $N$ values of $\ln E_i$. Minimize
+# all $n$ values of $g$ and all $N$ values of $\ln E_i$. With $z$ for a pixel value, minimize
 #
 # $$\sum_{i,j} \bigl\{ w(Z_{ij})\,[\,g(Z_{ij}) - \ln E_i - B_j\,] \bigr\}^2
 #   + \sum_{z=1}^{n-2} \bigl\{\lambda\, w(z)\,[\,g(z-1) - 2 g(z) + g(z+1)\,] \bigr\}^2.$$
@@ -157,7 +157,7 @@ pictures.picture(
 # known, so the method improves the curve and the times in turn. For photos with adjacent exposure
 # times and the ratio $R_q = t_q / t_{q+1} < 1$,
 #
-# $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
+# $$\mathcal E = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #
 # is a least-squares problem in the $c_k$. Then set each $R_q$ to the sum of $f^{-1}$ over photo
 # $q$, divided by the sum over photo $q + 1$. (The paper takes the mean of quotients, to which dark

@@ -49,8 +49,8 @@ pictures.picture(
 # ## 1 · The radiance map ({points})
 #
 # Each photo $j$ gives an estimate for a pixel: $\ln E = g(Z_j) - \ln t_j$. The estimates differ a
-# little, and some are clipped. So take the mean, weighted by how much you trust the pixel values
-# [Debevec97 eq. 6]:
+# little, and some are clipped. So take the mean, in which the weight $w$ of a pixel value says how
+# much you trust it [Debevec97 eq. 6]:
 #
 # $$\ln E = \frac{\sum_j w(Z_j)\,[\,g(Z_j) - \ln t_j\,]}{\sum_j w(Z_j)}.$$
 #
@@ -74,7 +74,7 @@ pictures.radiance(E, alt="The radiance map of the room in false color")
 #
 # The sun is clipped in all photos, so there is nothing to average. But a clipped pixel is not
 # unknown: its exposure was *at least* that of the first clipped value, `top`. The exposure of a
-# dark pixel, of value 0, was at most that of value 1:
+# dark pixel, of value 0, was at most that of value 1. With the response $g$ and $B_j = \ln t_j$,
 #
 # $$\ln E \ge g(\mathrm{top}) - B_j \quad\text{(clipped in } j), \qquad
 #   \ln E \le g(1) - B_j \quad\text{(dark in } j).$$
@@ -123,8 +123,8 @@ print(f"unchanged when read again: {np.array_equal(from_bytes(data), np.float32(
 # %% [markdown] about="to_pixels"
 # ## 5 · Encode RGBE: three mantissas and one exponent ({points})
 #
-# Radiance RGBE stores a pixel in four bytes. The three channels share the exponent of the brightest
-# channel:
+# Radiance RGBE stores a pixel in four bytes: a mantissa $m$ for the radiance $E$ of each channel,
+# and one exponent $e$, which the three channels share. It is that of the brightest channel:
 #
 # $$m = \lfloor 256\, E\, 2^{128 - e} \rfloor, \qquad
 #   e \text{ such that the largest } m \text{ lies in } 128 \ldots 255.$$

@@ -48,9 +48,9 @@ pictures.radiance(room, alt="The radiance of the room in false color")
 #
 # $$\bar L = \exp\Bigl(\frac 1 N \sum \ln(\delta + L)\Bigr).$$
 #
-# A small $\delta$ keeps the logarithm of black pixels finite. `delta` is given in medians of $L$,
-# so that the unit of $L$ cancels: $\delta$ is `delta` times the median of all pixels that are not
-# black. Return a number.
+# The sum is over all $N$ pixels. A small $\delta$ keeps the logarithm of black pixels finite.
+# `delta` is given in medians of $L$, so that the unit of $L$ cancels: $\delta$ is `delta` times
+# the median of all pixels that are not black. Return a number.
 
 # %% task="log_average"
 # Return Lav = exp(mean(log(delta + L))), delta in medians of L.
@@ -58,13 +58,13 @@ pictures.radiance(room, alt="The radiance of the room in false color")
 # %% [markdown] about="display"
 # ## 2 · Reinhard: the curve ({points})
 #
-# With $L_m = a L / \bar L$, each pixel is divided by the luminance that the eye has adapted to.
-# Everything brighter than `white` becomes white:
+# With $L_m = a L / \bar L$, each pixel is divided by 1 plus the luminance that the eye has adapted
+# to:
 #
 # $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + \text{adaptation}}, \qquad\text{at most } 1.$$
 #
-# If the adaptation is $L_m$ itself, this is the global operator. `white` may be infinite; then the
-# bracket equals 1.
+# If the adaptation is $L_m$ itself, this is the global operator, and everything brighter than
+# $L_{white}$ (`white`) becomes white. `white` may be infinite; then the bracket equals 1.
 
 # %% task="display"
 # Return Ld = Lm (1 + Lm / white^2) / (1 + adaptation), clipped at 1.
@@ -89,7 +89,7 @@ pictures.picture(
 #
 # A neighborhood is even while $|V| < \varepsilon$ (`threshold`) at this width *and at all smaller
 # ones*. The adaptation of a pixel is $V_1$ at the largest width that is still even, or at the
-# smallest width if none is. $a$ is `key`. Nine blurred images give eight states. Yield for each
+# smallest width if none is. $a$ is `key`, and $\phi$ is `phi`. Nine blurred images give eight states. Yield for each
 # width: the width $s$, $V_1$, $V$, the mask of neighborhoods that are still even, and the
 # adaptation so far. (Some programs use the index of the loop instead of $s$. That is wrong.)
 
@@ -102,7 +102,9 @@ pictures.picture(
 # Illumination varies over decades, but slowly. The reflectance of surfaces varies little, but
 # quickly. A *bilateral filter* of $\log_{10} L$ smooths the image but keeps the edges of the
 # illumination: that is the `base` layer. The rest is the `detail` layer, $\log_{10} L - $ `base`.
-# (Battiato and others, 2008, print the opposite sign.)
+# (Battiato and others, 2008, print the opposite sign.) With pixels $p$ and $q$, and a Gaussian $G$
+# of their distance and one of the difference of their $l$, whose standard deviations are
+# $\sigma_s$ pixels and $\sigma_r$ decades,
 #
 # $$\text{base}(p) = \frac{\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)\; l(q)}
 #   {\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)}, \qquad l = \log_{10} L.$$
@@ -160,7 +162,7 @@ pictures.picture(
 # Equalizing the histogram $h$ of ln luminance gives each luminance a fraction of the display range
 # that is proportional to its number of pixels. That exaggerates the contrast of areas that fill the
 # image. A ceiling keeps every slope at or below 1. With $T = \sum h$, bins of width $\Delta b$
-# (`db`) and a display of range $D$,
+# (`db`) and a display of range $D$, both in nats,
 #
 # $$h(b) \le \frac{T\, \Delta b}{D}.$$
 #
@@ -197,7 +199,8 @@ pictures.picture(
 # A large contrast has steep gradients at some level of the pyramid of $l = \ln L$. Level $k$ has
 # half the size of level $k - 1$ (blur, then take every second pixel; round sides up), as long as
 # neither side falls below 32. Gradients are central differences over $2^{k+1}$ pixels of the image,
-# with mirrored edges. A gradient of $\alpha$ times the mean gradient of its level stays unchanged:
+# with mirrored edges. A gradient of $\alpha$ times the mean gradient of its level stays unchanged,
+# and a larger one is reduced, the more so the smaller $\beta$ is:
 #
 # $$\varphi_k = \Bigl(\frac{|\nabla l_k|}{\alpha\, \overline{|\nabla l_k|}}\Bigr)^{\beta - 1}, \qquad
 #   \Phi_d = \varphi_d, \qquad \Phi_k = \mathrm{enlarged}(\Phi_{k+1})\, \varphi_k.$$
@@ -229,7 +232,7 @@ pictures.picture(
 # No image has exactly the attenuated gradients. The closest one solves the *Poisson equation*
 # $\nabla^2 u = \operatorname{div} G$, with nothing flowing through the edges. In the cosine
 # transform, the Laplacian is a multiplication: compute `scipy.fft.dctn(divG, type=2)`, divide the
-# coefficient $(i, j)$ by
+# coefficient $(i, j)$ of an image with $H$ rows and $W$ columns by
 #
 # $$2\cos\frac{\pi i}{H} - 2 + 2\cos\frac{\pi j}{W} - 2,$$
 #

@@ -22,11 +22,10 @@
 # | $l$ | $\ln$ luminance, `lL` | (H, W) |
 # | $I$, $p$, $q$ | guide, image, and smoothed image | (H, W) |
 # | $F_D$ | luminance that a display shows, cd/m² | any |
-# | $G$, $g$ | gain in stops; gain map | (H, W, 3) |
-# | $S$, $V$ | signal in pixel values, and variance in squared pixel values, of pairs of photos | (M,) |
+# | $G$ | gain in stops | (H, W, 3) |
 # | $h_A$, $h_B$; $T$ | histograms of two photos; the value in $B$ for each value of $A$ | (n,) |
-# | $g$, $w$ | logarithm of the exposure of each pixel value, and its weight | (n,) |
-# | $F$, $W$ | a photo from 0 to 1, its channels as planes; its weight | (3, H, W); (H, W) |
+#
+# A task may use other letters, or one of these for something else, and then it says so.
 #
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what differs.
 # Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be imported when
@@ -129,8 +128,8 @@ pictures.radiance(s / E, alt="s / E in false color: it is largest in the shadows
 #
 # [He, Sun and Tang (2010, 2013)](https://doi.org/10.1109/TPAMI.2012.213) smooth an image $p$ and
 # keep the edges of a guide $I$, which is often the same image. In each square window with sides of
-# $2 \cdot$ `radius` $+\, 1$ pixels, $p$ is approximated by a linear function of $I$, with a penalty
-# on its slope:
+# $2 \cdot$ `radius` $+\, 1$ pixels, $p$ is approximated by a linear function of $I$, $a I + b$,
+# with a penalty on its slope $a$:
 #
 # $$a = \frac{\operatorname{cov}(I, p)}{\operatorname{var}(I) + \epsilon}, \qquad
 #   b = \operatorname{mean}(p) - a \operatorname{mean}(I).$$
@@ -164,16 +163,16 @@ pictures.picture(
 # [Paris, Hasinoff and Kautz (2011)](https://doi.org/10.1145/1964921.1964963) need no base layer.
 # For each coefficient of a Laplacian pyramid, they take the luminance $g$ at its position and
 # classify the image around it: whatever differs from $g$ by less than $\sigma$ is detail, and the
-# rest is an edge. With $d = |l - g|$, the image is remapped to
+# rest is an edge. With $d = |l - g|$, the image is remapped to $r$,
 #
 # $$r = \begin{cases} g \pm \sigma\, f(d / \sigma) & d \le \sigma \\
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
 # with + where $l$ is above $g$ and - where it is below. $\beta$ is the fraction that remains of an
-# edge's contrast beyond $\sigma$. For $\alpha \ge 1$, $f(x) = x^\alpha$ makes details weaker. For
-# $\alpha < 1$, this power amplifies details, but its slope at 0 is infinite, so it would amplify
+# edge's contrast beyond $\sigma$. For $\alpha \ge 1$, $f(x) = x^\alpha$: the larger $\alpha$, the
+# weaker the details, and 1 leaves them as they are. For $\alpha < 1$, this power amplifies details, but its slope at 0 is infinite, so it would amplify
 # noise most of all. Therefore differences up to 0.01, a contrast of 1 %, stay as they are, and a
-# smooth step leads to the power at 0.02:
+# smooth step $\tau$ leads to the power at 0.02:
 #
 # $$f(x) = \tau\, x^\alpha + (1 - \tau)\, x, \qquad \tau = y^2 (2 - y)^2, \qquad
 #   y = \min\Bigl(\max\Bigl(\frac{d}{0.01} - 1,\, 0\Bigr),\, 1\Bigr).$$
@@ -199,7 +198,8 @@ pictures.picture(
 #
 # Gamma coding was made for displays of 100 cd/m². The *perceptual quantizer* (PQ) of SMPTE ST 2084
 # ([ITU-R BT.2100](https://www.itu.int/rec/R-REC-BT.2100)) has a code for every luminance $F_D$ up
-# to 10,000 cd/m². Its steps are about as large as the smallest difference that the eye can see:
+# to 10,000 cd/m². With 12 bits, each of its steps is just too small for the eye to see. With $Y$ for
+# the fraction of 10,000 cd/m², and five constants $m_1$, $m_2$, $c_1$, $c_2$ and $c_3$,
 #
 # $$v = \Bigl(\frac{c_1 + c_2\, Y^{m_1}}{1 + c_3\, Y^{m_1}}\Bigr)^{m_2}, \qquad Y = \frac{F_D}{10{,}000},$$
 #
@@ -263,7 +263,7 @@ pictures.picture(
 #
 # $$(\text{sdr} + k_\text{sdr})\; 2^{W G} - k_\text{hdr}.$$
 #
-# ($W$ is a number. `low`, `high` and `gamma` are numbers, or one for each channel, (3,). The result
+# ($W$ is a number. `low`, `high` and $\gamma$ = `gamma` are numbers, or one for each channel, (3,). The result
 # has the shape of `sdr`.)
 
 # %% task="apply_gain"

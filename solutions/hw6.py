@@ -168,7 +168,7 @@ print(
 #   \text{blur}(v)$. Blur with `scipy.ndimage.gaussian_filter(..., 4)` and its default settings.
 # - Then set the discarded pixels to 0. This gives $a$ from `X[0]` and $b$ from `X[1]`.
 # - For every shift $s = (d_y, d_x)$ for which the photos overlap, compute the sum over the
-#   overlap,
+#   pixels $p$ of the overlap,
 #
 # $$c(s) = \sum_p a(p + s)\; b(p).$$
 #
@@ -246,8 +246,8 @@ print("shifts (down, right) of the three highest peaks:", np.asarray(peaks(c, 3)
 # %% [markdown] about="table"
 # ## 7 · A look-up table that adds light ({points})
 #
-# To add $\Delta$ = `delta` stops of light, every pixel moves along the same curve (equation 1.11
-# of the same paper):
+# To add $\Delta$ = `delta` stops of light, every pixel moves along the same curve $f$ (equation
+# 1.11 of the same paper):
 #
 # $$Y' = f\bigl(f^{-1}(Y) + \Delta\bigr).$$
 #
@@ -342,8 +342,9 @@ pictures.radiance(np.hstack([veiled, clear]), alt="The room with and without vei
 # $$w = \frac{e^2}{\dfrac{X}{N} + \Bigl(\dfrac{R}{N}\Bigr)^2 + \dfrac{1}{12 \cdot 255^2}},$$
 #
 #   with $N$ = `full_well` and $R$ = `read_noise`, both in electrons. $N$ may be infinite (its
-#   default); then the first two terms of the sum are 0. - The radiance is a weighted mean of the
-#   pixels nearby, $E = \dfrac{\text{blur}(w X / e)} {\text{blur}(w)}$, with
+#   default); then the first two terms of the sum are 0.
+# - The radiance is a weighted mean of the pixels nearby,
+#   $E = \dfrac{\text{blur}(w X / e)}{\text{blur}(w)}$, with
 #   `scipy.ndimage.gaussian_filter(..., sigma)` and its default settings.
 #
 # If `c` (H, W) is given, a pixel also has a color: `c` is 0, 1 or 2 for red, green or blue. Then
@@ -372,7 +373,8 @@ pictures.radiance(
 # An object moves while the shutter is open. [Raskar, Agrawal and Tumblin
 # (2006)](https://doi.org/10.1145/1179352.1141957) let the shutter flutter: it opens and closes in
 # a code `h` (m,) of 0 (closed) and 1 (open). The exposure has $m$ equal parts, the *chops*, and in
-# each chop the object moves one pixel down the first axis. So the photo of the object `x` (n,) is
+# each chop the object moves one pixel down the first axis. So the photo of the object `x` (n,), of
+# $n$ pixels, is
 #
 # $$y_i = \frac{1}{m} \sum_{k = 0}^{m - 1} h_k\, x_{i - k}, \qquad i = 0 \ldots n + m - 2,$$
 #
@@ -423,7 +425,7 @@ pictures.picture(
 # The responses of real cameras are alike. [Grossberg and Nayar
 # (2003)](https://doi.org/10.1109/CVPR.2003.1211522) describe them by a few numbers. `curves` (C,
 # n) contains $C$ measured responses at $n$ places each. The singular value decomposition of their
-# deviations from the mean,
+# deviations from the mean into $U$, $S$ and $V$,
 #
 # $$\text{curves} - \text{mean} = U\, S\, V^\top,$$
 #
@@ -497,7 +499,7 @@ pictures.picture(
 # relative steps $I_{ij}$, the camera measures the brightnesses $M_{ij}$ (Wilburn, Xu and
 # Matsushita, 2008). The exposure itself is $s_j I_{ij} + r_j$, with an unknown scale and offset
 # for each blend $j$. The inverse response is a polynomial, $g(M) = \sum_{k = 0}^{d} a_k M^k$. The
-# error is (equation 5, with the index of $s$ corrected)
+# error is (equation 5 of the paper, with the index of $s$ corrected)
 #
 # $$E = \sum_j \sum_i \bigl(s_j I_{ij} + r_j - g(M_{ij})\bigr)^2.$$
 #

@@ -1,4 +1,7 @@
-"""Numbers in the answers of notebooks that no cell computes, by page, each with where it comes from."""
+"""Numbers in the answers of notebooks that no cell computes, by page, each with where it comes from.
+
+A number of one digit stands with its unit.
+"""
 
 PAPERS_PROGRAM = "the entry of level 128 in the program of Debevec and Malik, counted from 1"
 
@@ -7,8 +10,15 @@ NUMBERS = {
         "129": PAPERS_PROGRAM,
         "50": "the samples that Debevec and Malik used",
     },
-    "07": {"4.018": "the estimate of a ratio of 4 that the paper reports"},
-    "08": {"2.8": "percent, the paper's example of a motion that is not linear"},
+    "07": {
+        "4.018": "the estimate of a ratio of 4 that the paper reports",
+        "0 stops": "where the slider begins",
+    },
+    "08": {
+        "2.8": "percent, the paper's example of a motion that is not linear",
+        "0 %": "an error that no photo reaches",
+        "1 %": "the difference below which the paper calls a motion linear",
+    },
     "09": {"254": "second differences of 256 levels"},
     "13": {
         "76": "decades between the exponents 1 and 255 of RGBE",
@@ -18,8 +28,11 @@ NUMBERS = {
     "14": {
         "2.5": "percent of the sum, in the paper and in the program `pcond`",
         "1.6": "percent of the image's width, read off the figures of the paper",
+        "8 %": "of the longer side, the default width of the library",
         "50": "half of the ratio 1 : 100, see 50.5",
     },
+    "15": {"2 %": "of the image's size, the paper's width of the filter"},
+    "20": {"8 bits": "an example of a file"},
     "22": {
         "129": PAPERS_PROGRAM,
         "50": "an example of a number of samples",

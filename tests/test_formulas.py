@@ -1,7 +1,8 @@
-"""The formulas and numbers of a notebook's page: each symbol is explained, each equation has its number.
+"""The formulas and numbers of a notebook and a sheet: each symbol is explained, each equation numbered.
 
-A page is what its cells of text say. Its table is that of the first cell. A *display* is a formula
-between two $$. What a reader is told in a folded answer must be something that the page computes.
+A page is what the cells of text of a notebook or of an assignment's sheet say. Its table is that of
+the first cell. A *display* is a formula between two $$. What a reader is told in a folded answer
+must be something that the page computes.
 """
 
 import re
@@ -25,7 +26,10 @@ WORDS = re.compile(
     r"\\(?:text|mathrm|operatorname\*?|begin|end|tag)\{[^{}]*\}(?:\{[lcr|]+\})?", re.DOTALL
 )
 SUBSCRIPT = re.compile(r"_(?:\{[^{}]*\}|\\[A-Za-z]+|\w)")
-REFERENCE = re.compile(r"\b(?:[Ee]quations?|[Ee]qs?\.)\s+\(?(\d+)\)?")
+# "equation 1.9" is one of a paper; "one system of equations (30 points)" is none
+REFERENCE = re.compile(
+    r"\b(?:[Ee]quations?|[Ee]qs?\.)\s+\(?(\d+)\)?(?!\.?\d| points| of the (?:same )?paper)"
+)
 # an equation of a paper: a link or a citation stands right before it
 CITED_REFERENCE = re.compile(r"(?:\]\([^)]*\),\s+|\[\w+\s+)(?:equations?|eqs?\.)\s+\(?\d+\)?")
 FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
@@ -33,8 +37,20 @@ CODE_OR_LINK = re.compile(r"`[^`]*`|\]\([^)]*\)|<[^>]*>")
 # a number of two digits or more, with a decimal point or without
 NUMBER = re.compile(r"(?<![\w.])(?:\d+\.\d+|\d{2,}(?: \d{3})*)(?![\w.]\d|\w)")
 YEAR = re.compile(r"(?:19|20)\d\d")
+# spellings of units that these pages do not use: cd/m², 5 %, 24 mm, 16 bits are right
+OTHER_SPELLINGS = re.compile(
+    r"cd/m2|cd/m\^2|\bnits?\b|\d%|\d(?:mm|cm|ms|px|cd)\b|\bsecs?\b|\bEVs\b"
+)
+# a number of one digit is one of these only together with its unit: "8 %", "3 stops"
+UNITS = (
+    r"%|stops?|levels?|decades?|bits?|bytes?|electrons?|pixels?|seconds?|s|mm|cd/m²|degrees?|times"
+)
+NUMBER_WITH_UNIT = re.compile(rf"(?<![\w.·$/])\d (?:{UNITS})(?!\w)")
 
-pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+SHEETS = sorted((NOTEBOOKS[0].parents[1] / "assignments").glob("*.ipynb"))
+
+each_page = pytest.mark.parametrize("path", [*NOTEBOOKS, *SHEETS], ids=lambda path: path.stem)
+each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 
 def symbols(formula):
@@ -61,6 +77,7 @@ def texts_of(path):
     return [cell.source for cell in cells_of(path, "markdown")]
 
 
+@each_page
 def test_each_symbol_of_a_display_is_in_the_table_or_explained_beside_it(path):
     texts = texts_of(path)
     in_table = explained_in("\n".join(line for line in texts[0].splitlines() if line[:1] == "|"))
@@ -70,6 +87,7 @@ def test_each_symbol_of_a_display_is_in_the_table_or_explained_beside_it(path):
             assert symbols(formula) - known == set(), formula
 
 
+@each_page
 def test_the_table_has_a_row_only_once_for_each_symbol_and_says_what_it_is(path):
     rows = table_rows(texts_of(path)[0])
     names = [name.partition("=")[0].strip() for row in rows for name in INLINE.findall(row[0])]
@@ -77,6 +95,7 @@ def test_the_table_has_a_row_only_once_for_each_symbol_and_says_what_it_is(path)
     assert [row for row in rows if len(row) < 2 or len(row[1].strip()) < 3] == []
 
 
+@each_page
 def test_an_equation_that_the_text_refers_to_has_its_number_on_the_page(path):
     text = "\n".join(texts_of(path))
     numbered = set(re.findall(r"\\tag\{(\d+)\}", text))
@@ -85,6 +104,7 @@ def test_an_equation_that_the_text_refers_to_has_its_number_on_the_page(path):
     assert numbered == {str(k + 1) for k in range(len(numbered))}
 
 
+@each_notebook
 def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(path):
     """It stands in the page's code or before the fold, in the table of sentences, or has a source."""
     number = path.stem[:2]
@@ -95,8 +115,17 @@ def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(pat
     known |= set(NUMBER.findall(" ".join(SENTENCES.get(number, {}))))
     known |= set(numbers_from_outside.NUMBERS.get(number, {}))
     known |= {page.stem[:2] for page in NOTEBOOKS}
+    before = " ".join([*open_text.split(), *SENTENCES.get(number, {})])
+    known |= set(NUMBER_WITH_UNIT.findall(before))
     said = set()
     for fold in FOLD.findall(text):
-        prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", fold)))
+        prose = " ".join(INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", fold))).split())
         said |= {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)}
+        said |= set(NUMBER_WITH_UNIT.findall(prose))
     assert said - known == set()
+
+
+@each_page
+def test_a_unit_is_written_in_one_way_with_a_space_before_it(path):
+    prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", "\n".join(texts_of(path)))))
+    assert OTHER_SPELLINGS.findall(prose) == []

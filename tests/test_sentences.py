@@ -18,6 +18,7 @@ from test_notebooks import NOTEBOOKS
 
 from hdrlab.capture import ranges
 from hdrlab.core import metrics
+from hdrlab.response import debevec
 from hdrlab.show.widgets import Tuner, tune
 
 
@@ -113,6 +114,17 @@ SENTENCES = {
         "most modes need two shots": lambda n: (
             {len(n.steps(18, mode)) for mode in n.metering.MODES} == {2, 3}
         ),
+        "skin reflects nearly half of the light": lambda n: 0.4 < n.scene.rho < 0.5,
+        "changes the exposure by at most eight stops at a time": lambda n: (
+            np.diff([shot.EV for shot in n.steps(18, "partial")]).min() == -8
+        ),
+        "nearly three times what you asked for even at its worst place": lambda n: (
+            2.5 < sawtooth_lows(n, "stops")[0] / 10 < 3
+        ),
+        "the plan by noise takes about as long as the plan by stops": lambda n: (
+            0.8 < np.divide(*(n.both(28)[way][0].sum() for way in ("noise", "stops"))) < 1.2
+        ),
+        "Alignment fails for one of the five photos": lambda n: n.shaken(12).wrong == 1,
     },
     "03": {
         "you would compare whole bitmaps 16 129 times": lambda n: 127**2 == 16_129,
@@ -142,6 +154,10 @@ SENTENCES = {
             np.median(np.abs(n.g[n.Z] - n.lE[:, None] - n.B)[(n.Z >= 64) & (n.Z <= 192)])
             < 0.01 * np.log(2)
         ),
+        "becomes a staircase, half a stop off at its steps": lambda n: (
+            0.4 < worst(n.solve(smoothness=0.1)[1].g, n.responses.true_g(), 2, 253) < 0.6
+        ),
+        "40 if you ask for 43": lambda n: len(n.sampling.by_grid(n.frames, 43)) == 40,
     },
     "05": {
         "near the levels 130 and 70": lambda n: (
@@ -190,6 +206,15 @@ SENTENCES = {
             -np.log2([n.stated.prod(), n.true.prod()]), [5, 4.8], atol=0.05
         ),
         "fewer than 10 iterations": lambda n: len(n.iterations) < 10,
+        "below level 13 it is off by more than a stop": lambda n: (
+            off_below(n.green["self-calibration"], n.truth, 13) > 1
+        ),
+        "the error falls more than a thousandfold into a sharp notch at 0.7": lambda n: (
+            np.median(n.errors()) > 1000 * n.errors()[np.isclose(n.along, 0.7)]
+        ),
+        "Noise of a tenth of a level fills the notch": lambda n: (
+            np.median(n.errors(0.1 / 255)) < 3 * n.errors(0.1 / 255)[np.isclose(n.along, 0.7)]
+        ),
     },
     "07": {
         "have a slope of 1, those of `gamma` 0.45": lambda n: round(1 / 2.2, 2) == 0.45,
@@ -248,6 +273,11 @@ SENTENCES = {
             all(0.1 < off(*n.nearest(name, 4)) < 0.4 for name in ("film", "srgb"))
         ),
         "and with 6 also `mix`": lambda n: off(*n.nearest("mix", 6)) < 0.2,
+        "`gsolve` would need 256 pixels": lambda n: debevec.samples_needed(2) == 256,
+        "and if the second or the third is 2.5, it falls near white": lambda n: all(
+            np.diff(n.walk(**{"first": 0, number: 2.5})["mean + c H"])[-10:].max() < 0
+            for number in ("second", "third")
+        ),
         "`wig` stays 2 to 3 % off even with all twelve": lambda n: (
             2 < off(*n.nearest("wig", 12)) < 3
         ),
@@ -268,8 +298,8 @@ SENTENCES = {
         "With thousands of pixels it also represents `mix` well": lambda n: (
             share(n, "mix", 4000) < 1
         ),
-        "`gsolve` gets better for `srgb` and `wig` and worse for `film`": lambda n: (
-            gain(n, "film") < 1 < min(gain(n, "srgb"), gain(n, "wig"))
+        "`gsolve` gets better for `srgb` and `wig`, and worse for `film` and a little for `mix`": (
+            lambda n: gain(n, "film") < gain(n, "mix") < 1 < min(gain(n, "srgb"), gain(n, "wig"))
         ),
         "With a thousand pixels the result for `film` is good from 0.002 to 0.1": lambda n: all(
             off(*n.with_noise(noise, "film")) < 0.25 for noise in (0.002, 0.005, 0.02, 0.05, 0.1)
@@ -296,6 +326,29 @@ SENTENCES = {
         ),
         "make the dark more than a stop too bright": lambda n: (
             n.in_the_dark["log"] > 1 and abs(n.in_the_dark["shot"]) < 0.1
+        ),
+        "For most pixels two to five photos give an estimate": lambda n: (
+            np.mean((photos_that_measure(n) >= 2) & (photos_that_measure(n) <= 5)) > 0.9
+        ),
+        "The brightest pixel is clipped in all seven": lambda n: n.white == 7,
+        "here the choice makes a difference of less than one percent": lambda n: (
+            np.ptp([errors_of(n, name) for name in n.METHODS], axis=0).max() < 1
+        ),
+        "So its standard deviation is twice that of the one before": lambda n: 4**0.5 == 2,
+        "The fourth photo seems to be off by half a stop": lambda n: (
+            round(2 * n.with_wrong_time(2.0)[3]) == 1
+        ),
+        "the longer neighbor seems to be off by a quarter of a stop": lambda n: (
+            round(-4 * n.with_wrong_time(2.0)[4]) == 1
+        ),
+        "and the shorter one by more than half a stop": lambda n: (
+            0.5 < -n.with_wrong_time(2.0)[2] < 0.75
+        ),
+        "so the top three stops of the scene are missing": lambda n: (
+            round(float(np.log2(n.true_L.max() / n.absolute.max()))) == 3
+        ),
+        "a light of 2 electrons in the longest photo has a mean that is far too large": lambda n: (
+            mean_of_cut_counts(2, read_noise=6) > 1.5 * 2
         ),
         "The photos agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
         "and six stops below the windows": lambda n: (
@@ -339,6 +392,15 @@ SENTENCES = {
         "At a tenth of red it is up to 8 %": lambda n: round(blue_off(n, 0.095, 0.105).max()) == 8,
         "up to a half; below $\\frac1{128}$": lambda n: (
             round(blue_off(n, 1 / 128, 1 / 32).max()) == 50 and blue_off(n, 0, 1 / 128).min() == 100
+        ),
+        "twelve decades, of which nine have their full ten bits": lambda n: (
+            [round(float(np.log10(65504 / low))) for low in (2.0**-24, 2.0**-14)] == [12, 9]
+        ),
+        "numbers end at 65504, and one of 65520 or more becomes infinity": lambda n: (
+            np.float16(65519) == 65504 < np.float16(65504 + 16)
+        ),
+        "here the 6 bytes of a pixel in halves became about four": lambda n: (
+            round(n.each["half .exr"]) == 4
         ),
         "RGBE is flat at 0.8 %, one part in 128": lambda n: round(n.top["RGBE"].max(), 1) == 0.8,
         "Half is flat at 0.05 %": lambda n: (
@@ -460,6 +522,13 @@ SENTENCES = {
             < 4
         ),
         "three stops up": lambda n: round(n.corrected().delta) == 3,
+        "The mean of those blocks was 110 before": lambda n: (
+            round(n.corrected("blocks").before) == 110
+        ),
+        "so the correction adds only 0.6 stops": lambda n: (
+            round(float(n.corrected("blocks").delta), 1) == 0.6
+        ),
+        "Five stops down the shade has a handful of levels": lambda n: levels_in_shade(n, -5) < 10,
     },
     "20": {
         "About a third, most of them by only a little": lambda n: (
@@ -485,9 +554,8 @@ SENTENCES = {
             1 + np.argmin(np.abs(n.short["mean of short photos"] - n.short["one coded photo"])) == 9
         ),
         "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
-        "the loss is a factor of two, 0.3 decades": lambda n: (
-            round(-np.log10(np.sqrt(np.mean(n.e**2))), 1) == 0.3
-            and 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.45
+        "In the dark the same error takes twice the light, so the loss is 0.3 decades": lambda n: (
+            round(light_for_error(n, "assorted", 10) - light_for_error(n, "plain", 10), 1) == 0.3
         ),
         "In weak light three quarters of the wave turn into the coarse one, and a fifth remains": (
             lambda n: waves_left(n, 112) == [0.76, 0.21]
@@ -554,6 +622,7 @@ SENTENCES = {
         "with 10 bits they are 0.6 % at 1000 cd/m²": lambda n: (
             round(step_at(n, "gamma", 1000), 1) == 0.6
         ),
+        "and 94 % at 0.01": lambda n: round(step_at(n, "gamma", 0.01)) == 94,
         "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
             round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
         ),
@@ -589,6 +658,42 @@ def bits_without_bands(n, encoding):
         if all(np.less(steps, list(visible_percent.values()))):
             return bits
     return None
+
+
+def off_below(g, truth, level):
+    """Return by how many stops a response is off at least, at the levels below one, on page 6."""
+    return np.abs(np.ravel(g) - truth)[2:level].min() / np.log(2)
+
+
+def photos_that_measure(n):
+    """Return how many photos measure green in each pixel, on page 10."""
+    return ((n.images[..., 1] > 0) & (n.images.max(axis=-1) < 250)).sum(axis=0)
+
+
+def errors_of(n, name):
+    """Return the errors of one kind of mean from dark to bright, in percent, on page 10."""
+    return n.error(n.merge_with_quality(n.inside.images, n.inside.times, n.true_g, method=name).E)
+
+
+def mean_of_cut_counts(electrons, read_noise):
+    """Return the mean of counts of electrons with read noise, where negative counts become 0."""
+    rng = np.random.default_rng(0)
+    counts = rng.poisson(electrons, 100_000) + rng.normal(0, read_noise, 100_000)
+    return np.maximum(counts, 0).mean()
+
+
+def levels_in_shade(n, stops):
+    """Return how many green levels the face has in a photo that is darker by some stops."""
+    shade = n.subjects.backlight((256, 384)).mask
+    darker = n.colour.to_8bit(np.minimum(n.linear * 2.0**stops, 1))
+    return len(np.unique(darker[shade][:, 1]))
+
+
+def light_for_error(n, sensor, percent):
+    """Return in how much light, in decades, a sensor of page 21 has this error."""
+    errors = np.array(n.errors[sensor])
+    dark = np.log10(n.light) < -1
+    return np.interp(-percent, -errors[dark], np.log10(n.light[dark]))
 
 
 def noise_grows(n, size):

@@ -1,13 +1,13 @@
 """Planning a bracket: how many photographs a scene takes, and which.
 
 L_low, L_high  luminances of the scene that the photographs shall hold, cd/m^2
-R  usable range    stops of one photograph, from where it clips down to where noise and rounding take over
+U  usable range    stops of one photograph, from where it clips down to where noise and rounding take over
 O  overlap         stops that two neighbours hold both, for the calibration needs them
 T  shutter time    s, of powers of two: what the dial's names really are
 
-The first photograph clips above L_high, each next one lies R - O stops below, the last holds L_low:
+The first photograph clips above L_high, each next one lies U - O stops below, the last holds L_low:
 
-    n = 1 + ceil((log2(L_high / L_low) - R) / (R - O)),  at least 1
+    n = 1 + ceil((D - U) / (U - O)),  at least 1,  D = log2(L_high / L_low)
 
 Which photographs take the least time, if all of the scene must reach some signal-to-noise ratio? In
 the mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j solve an
@@ -91,7 +91,7 @@ class Shots(NamedTuple):
 
 
 def count(scene: float, usable: float, overlap: float) -> int:
-    """Return n = 1 + ceil((scene - R) / (R - O)), all in stops, and at least 1."""
+    """Return n = 1 + ceil((D - U) / (U - O)), all in stops, and at least 1."""
     return max(1 + math.ceil((scene - usable) / (usable - overlap) - 1e-9), 1)
 
 
@@ -113,7 +113,7 @@ def plan(
         radiance map
     aperture : F, f-number; it stays the same in all, for it changes the depth of field
     iso : S, speed; it stays the same, for it changes the noise
-    usable : R, stops of one photograph. An 8-bit sRGB picture has 11.7 stops from its first level
+    usable : U, stops of one photograph. An 8-bit sRGB picture has 11.7 stops from its first level
         to its
         last; in the upper 7 of them a level is finer than a tenth of a stop.
     overlap : O, stops of agreement between neighbours

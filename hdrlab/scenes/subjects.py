@@ -28,7 +28,7 @@ class Subject(NamedTuple):
 
 
 def backlight(shape: Shape = SHAPE) -> Subject:
-    """Return a woman before a bright evening sky: her face, in the shade, is five stops below it.
+    """Return a woman before a bright evening sky: her face, in the shade, is four stops below it.
 
     The face is the astronaut's, of scikit-image; a white sheet in her place has 500 cd/m^2.
     """
