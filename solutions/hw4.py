@@ -89,9 +89,10 @@ pictures.picture(
 #
 # A neighborhood is even while $|V| < \varepsilon$ (`threshold`) at this width *and at all smaller
 # ones*. The adaptation of a pixel is $V_1$ at the largest width that is still even, or at the
-# smallest width if none is. $a$ is `key`, and $\phi$ is `phi`. Nine blurred images give eight states. Yield for each
-# width: the width $s$, $V_1$, $V$, the mask of neighborhoods that are still even, and the
-# adaptation so far. (Some programs use the index of the loop instead of $s$. That is wrong.)
+# smallest width if none is. $a$ is `key`, and $\phi$ is `phi`. Nine blurred images give eight
+# states. Yield for each width: the width $s$, $V_1$, $V$, the mask of neighborhoods that are
+# still even, and the adaptation so far. (Some programs use the index of the loop instead of $s$.
+# That is wrong.)
 
 # %% task="scale_steps"
 # Yield (s, V1, V, even, adaptation) for each width, from small to large, given V1 at every width.

@@ -168,11 +168,12 @@ pictures.picture(
 # $$r = \begin{cases} g \pm \sigma\, f(d / \sigma) & d \le \sigma \\
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
-# with + where $l$ is above $g$ and - where it is below. $\beta$ is the fraction that remains of an
-# edge's contrast beyond $\sigma$. For $\alpha \ge 1$, $f(x) = x^\alpha$: the larger $\alpha$, the
-# weaker the details, and 1 leaves them as they are. For $\alpha < 1$, this power amplifies details, but its slope at 0 is infinite, so it would amplify
-# noise most of all. Therefore differences up to 0.01, a contrast of 1 %, stay as they are, and a
-# smooth step $\tau$ leads to the power at 0.02:
+# with + where $l$ is above $g$ and - where it is below. $\beta$ is the fraction that remains of
+# an edge's contrast beyond $\sigma$. For $\alpha \ge 1$, $f(x) = x^\alpha$: the larger $\alpha$,
+# the weaker the details, and 1 leaves them as they are. For $\alpha < 1$, this power amplifies
+# details, but its slope at 0 is infinite, so it would amplify noise most of all. Therefore
+# differences up to 0.01, a contrast of 1 %, stay as they are, and a smooth step $\tau$ leads to
+# the power at 0.02:
 #
 # $$f(x) = \tau\, x^\alpha + (1 - \tau)\, x, \qquad \tau = y^2 (2 - y)^2, \qquad
 #   y = \min\Bigl(\max\Bigl(\frac{d}{0.01} - 1,\, 0\Bigr),\, 1\Bigr).$$
@@ -263,8 +264,8 @@ pictures.picture(
 #
 # $$(\text{sdr} + k_\text{sdr})\; 2^{W G} - k_\text{hdr}.$$
 #
-# ($W$ is a number. `low`, `high` and $\gamma$ = `gamma` are numbers, or one for each channel, (3,). The result
-# has the shape of `sdr`.)
+# ($W$ is a number. `low`, `high` and $\gamma$ = `gamma` are numbers, or one for each channel,
+# (3,). The result has the shape of `sdr`.)
 
 # %% task="apply_gain"
 # Return the light (1 = white) of a screen that applies the fraction W of the gain.

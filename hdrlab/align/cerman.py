@@ -7,9 +7,11 @@ r       radius              from the middle to a corner, pixels: the unknowns ar
 H       homography          (3, 3): the same, where pixel (x, y, 1) of `moving` lies on `fixed`
 e       error               mean square of the difference relative to the light, see `light`
 
-A pyramid makes it fast: the correlation is taken at the coarsest level, and the simplex starts each
-level from what the one above found. Neighbours in exposure are registered, and their homographies
-chained.
+Neighbours in exposure are registered, and their homographies chained, as in the paper. A pyramid,
+which the paper does not have, makes it fast: the correlation is taken at the coarsest level, and
+the simplex starts each level from what the one above found. The paper takes the maximum of the
+correlation of the light itself [eq. 5, which prints max for argmax]; here local means are
+subtracted first, and the simplex starts from several peaks.
 """
 
 from collections.abc import Iterator

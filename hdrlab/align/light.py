@@ -15,7 +15,8 @@ t      smallest light      a thousandth of the largest, so that darkness does no
 e      error               mean of d^2
 
 Light below `low` or above `high` in either photograph is discarded in both, so that the same parts
-of the scene are left. In the averages of the coarser levels discarded light counts as `low` or
+of the scene are left. The paper gives no value for t and the limits, and sums d^2 where e is a
+mean [eq. 6, 7]. In the averages of the coarser levels discarded light counts as `low` or
 `high`, which both photographs share.
 """
 

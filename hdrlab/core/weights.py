@@ -59,7 +59,8 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
     f = exp g is the exposure of each level; where g is (n, 3) it is the mean of the channels. Its
     slope f' is taken over `span` levels on either side, in units of the mean slope, and is at least
     `least`: where a curve is flat, the weight must stay finite. w is 1 in the middle, and 0 at both
-    ends. It grows with the level, because the same noise matters less in brighter pixels.
+    ends. It grows with the level, because the same noise matters less in brighter pixels. The paper
+    has neither the span nor the bound, and no 0 at the ends.
     """
     g = np.asarray(g, dtype=np.float64)
     if g.ndim not in (1, 2) or len(g) < 3 or not np.all(np.isfinite(g)):

@@ -11,6 +11,10 @@ There are three steps. Brighten the picture until its mean is 128: in this visib
 regions can be judged as well. Find the relevant regions in it: skin if there is any, or else the
 blocks with the highest contrast and focus. Add to all pixels the light that brings the mean of
 these regions to 128 (`enhance.relight`).
+
+The paper leaves open how D and F are weighted, which R is relevant, where noise ends, and how much
+skin is enough: `relevance`, `find_relevant_blocks`, `NOISE` and `MIN_FACE_FRACTION` are choices of
+this library. So is that black and white pixels do not count in the mean.
 """
 
 import dataclasses

@@ -57,7 +57,7 @@ DEFAULT = Skin(
 def chrominance(Z: ArrayLike) -> F64:
     """Return x = 128 (Cb, Cr) / Y of levels (..., 3), the chrominance of the same colour at level 128.
 
-    Without the division by Y, Cb and Cr would be smaller in the shade.
+    Without the division by Y, as in the paper, Cb and Cr would be smaller in the shade.
     """
     Z = np.asarray(Z, np.float64)
     return 128 * (Z @ CHROMA.T) / np.maximum(Z @ LUMA, 1)[..., None]

@@ -12,6 +12,9 @@ E      radiance          (H, W[, C]) float32: 1 brings a pixel to level n / 2 in
 A frame that does not measure a pixel still bounds it: if frame j is clipped, the radiance is at
 least f^-1(top) / t_j; if frame j is dark, it is at most f^-1(1) / t_j. So a clipped sun is never
 darker than the measured sky next to it. `fast.merge` computes the same map with look-up tables.
+
+Mitsunaga and Nayar divide by scaled exposures, whose mean is 1, and not by times [sec. 6.3]. That
+changes the unit of the map and nothing else.
 """
 
 from enum import IntFlag

@@ -11,7 +11,9 @@ All that two frames indicate about the response is T, for f^-1(m) = R f^-1(T(m))
 comparagram. And T is found without comparing pixels, since it takes ranks to ranks; so the frames
 need not be aligned, and noise averages out. Two models take these equations: a table g, as Debevec
 and Malik's, and a polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a polynomial of high
-order fails; from histograms, without the levels above the cut, it does not.
+order fails; from histograms, without the levels above the cut, it does not. (In Cerman and Hlavac's
+experiment it failed from histograms, too. Here T takes the middle of a level's ranks to the middle
+of another's, and the darkest levels have little weight.)
 """
 
 from dataclasses import dataclass

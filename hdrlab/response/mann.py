@@ -9,9 +9,10 @@ series  M(I), M(R I), M(R^2 I) .. (K,) levels, each R times the exposure of the 
 
 A pixel has level M(I) in the bright frame and M(R I) in the dark one. Look for another pixel of the
 bright frame that has level M(R I). In the dark frame it has M(R^2 I), and so on down: a ladder of
-exposures, each R times the one above, whatever the scene. On logarithmic paper, ln(M - alpha)
-against the logarithm of exposure, a power law is a straight line of slope gamma. Few cameras are so
-simple; for others the line is a compromise.
+exposures, each R times the one above, whatever the scene. The paper compares pixels. Here
+histograms give the transfer T, so the frames need not be aligned. On logarithmic paper, ln(M -
+alpha) against the logarithm of exposure, a power law is a straight line of slope gamma. Few cameras
+are so simple; for others the line is a compromise.
 """
 
 from itertools import pairwise

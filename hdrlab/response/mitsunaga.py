@@ -18,6 +18,11 @@ f^-1(M) = M + sum_n c_n b_n(M): this form holds every polynomial through both en
 eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3 are so
 similar that at N = 10 their normal equations lose all digits. And a ratio is a quotient of sums,
 not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels would add mostly noise.
+
+Three more things differ from the paper. It leaves c_0 free; here f^-1(0) = 0, no exposure without
+light. It uses all samples; here both frames must measure a sample between `MIN_BRIGHTNESS` and
+`MAX_BRIGHTNESS`. It fits each channel by itself; here all channels share the ratios. The paper
+names the functions the other way round: its f is f^-1 here, and its g is the response.
 """
 
 from collections.abc import Iterator, Sequence

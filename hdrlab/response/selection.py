@@ -9,10 +9,13 @@ r        radius        pixels from the middle of the picture
 A patch that shows one even surface has only noise in it. The average of t frames has the variance
 sigma_t^2 / t: it is with this, and not with sigma_t^2, that the spread over a patch of the average
 must be compared. Against the noise of one frame, as eq. 12 is printed, the test would be t times
-too lax.
+too lax. sigma_t^2 is here the mean of the patch's estimates. As it is an estimate, its threshold
+is a quantile of Fisher's F, which becomes chi^2 for many frames.
 
 Frames of different apertures differ, away from the middle, by their vignetting too. Inside some
-circle they do not.
+circle they do not. The paper prints "the smallest circle" in which the levels of one frame against
+those of the other form a compact curve; it means the largest. It gives no criterion, and that of
+`circle` is this library's.
 """
 
 from typing import NamedTuple

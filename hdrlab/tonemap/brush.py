@@ -7,10 +7,10 @@ P    cumulative distribution  at the edges of the bins, (bins + 1,), 0 to 1
 Ld   display luminance        decode(P(ln L)), in [0, 1]: P is the code, and all codes are equally frequent
 
 The histogram of a window does not depend on the rest of the scene. So the window shows detail that
-a picture of the whole scene has no range for. The histogram is clipped, as in adaptive equalization
-(Zuiderveld, Graphics Gems IV, 1994): no bin counts more than `limit` times the mean, and the excess
-is distributed over the other bins. A limit of 1 is the plain logarithm. Without a limit, the
-equalization is complete, and shows the noise of flat walls.
+a picture of the whole scene has no range for. The paper equalizes completely. Here the histogram is
+clipped first, as in adaptive equalization (Zuiderveld, Graphics Gems IV, 1994): no bin counts more
+than `limit` times the mean, and the excess is distributed over the other bins. A limit of 1 is the
+plain logarithm. Without a limit, the equalization is complete, and shows the noise of flat walls.
 """
 
 import math

@@ -80,7 +80,8 @@ def base_range(base: F32, *, cut: float = 0.01) -> tuple[float, float]:
 def compress(base: F32, low: float, high: float, *, contrast: float = 50.0) -> F32:
     """Return m (base - high), m = c / (high - low) [Battiato08 eq. 1.29, 1.30], anchored at the bright end.
 
-    No scene is stretched: m is at most 1.
+    No scene is stretched: m is at most 1. The paper's range of the base is its maximum minus its
+    minimum; `tonemap` takes percentiles, so that one pixel does not decide.
     """
     return min(1.0, math.log10(contrast) / max(high - low, 1e-6)) * (base - high)
 

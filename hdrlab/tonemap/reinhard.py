@@ -3,7 +3,7 @@
 L       luminance                          (H, W) >= 0, any linear unit
 Lav     log average of L                   same unit: how bright the scene is on the whole
 a       key                                what Lav becomes, 0.18: middle gray
-Lm      scaled luminance, a L / Lav        (H, W), 1 = about white
+Lm      scaled luminance, a L / Lav        (H, W), 0.18 = middle gray if a is 0.18
 white   the Lm that becomes white
 s       width of a neighbourhood, pixels   1, 1.6, ..., 43: nine, each 1.6 times the one before
 V1(s)   Lm blurred at width s              (H, W); the surround V2(s) is V1 at the next width
