@@ -41,6 +41,23 @@ class OptionalModule:
             raise MissingPackageError(message, name=self._root)
         return getattr(import_module(self._name), attribute)
 
+    def has_codec(self, name: str) -> bool:
+        """Return whether imagecodecs is installed with a codec, such as "RGBE" or "AVIF".
+
+        Builds of imagecodecs differ: the one for WebAssembly has neither of these two.
+
+        >>> from hdrlab.core.optional import imagecodecs
+        >>> imagecodecs.has_codec("PNG"), imagecodecs.has_codec("SEMAPHORE")
+        (True, False)
+        """
+        if not self:
+            return False
+        try:
+            codec = getattr(self, name)
+        except (ImportError, AttributeError):
+            return False
+        return bool(codec.available)
+
 
 def __getattr__(name: str) -> OptionalModule:
     if name.startswith("_"):

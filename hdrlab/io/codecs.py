@@ -131,13 +131,13 @@ def decode_png(data: bytes, out: Array | None = None) -> Array:
     """Decode a PNG; one with alpha is not decoded into `out`, which has no place for alpha."""
     if data[PNG_COLOR_TYPE_OFFSET] & PNG_ALPHA_FLAG:
         out = None
-    if imagecodecs or data[PNG_BIT_DEPTH_OFFSET] > 8:
+    if imagecodecs.has_codec("PNG") or data[PNG_BIT_DEPTH_OFFSET] > 8:
         return imagecodecs.png_decode(data, out=out)
     return decode_by_pillow(data)
 
 
 def decode_by_pillow(data: bytes, out: Array | None = None) -> Array:
-    """Decode 8 bits a channel: WebP and AVIF, and the others where imagecodecs is not installed."""
+    """Decode 8 bits a channel: WebP and AVIF, and the others where imagecodecs lacks their codec."""
     with Image.open(io.BytesIO(data), formats=("JPEG", "PNG", "WEBP", "AVIF")) as image:
         return np.asarray(image)
 
@@ -145,7 +145,7 @@ def decode_by_pillow(data: bytes, out: Array | None = None) -> Array:
 def decode_avif(data: bytes, out: Array | None = None) -> Array:
     """Decode the first image of an AVIF."""
     depth = avif_depth(data)
-    if depth == 8 and not imagecodecs:
+    if depth == 8 and not imagecodecs.has_codec("AVIF"):
         return decode_by_pillow(data)
     pixels = imagecodecs.avif_decode(data, index=0)
     return pixels if depth == 8 else _fill_16_bits(pixels << (16 - depth), depth)

@@ -292,7 +292,7 @@ def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False
     suffix = require_writable(path)
     picture = as_picture(image)
     with files.replacing(path) as name:
-        if suffix == ".png" and imagecodecs:
+        if suffix == ".png" and imagecodecs.has_codec("PNG"):
             data = imagecodecs.png_encode(picture, **PNG_OPTIONS)
             name.write_bytes(mark_png(data) if is_result else data)
         else:

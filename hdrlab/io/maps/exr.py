@@ -1,4 +1,4 @@
-"""OpenEXR files, .exr, through the official OpenEXR module.
+"""OpenEXR files, .exr, through the official OpenEXR module, or through `scanlines` where it is missing.
 
 Half, float and unsigned channels, which a file may mix, become float32. R, G and B are a color, Y or
 a single channel is a luminance. hdrlab leaves out all other channels, such as alpha (the coverage of
@@ -22,7 +22,9 @@ from hdrlab.core.arrays import F32, Array, ArrayLike, Labels, as_radiance
 from hdrlab.core.optional import OpenEXR
 from hdrlab.core.silence import silence
 from hdrlab.errors import FileFormatError, InputError
+from hdrlab.io import files
 from hdrlab.io.files import check_size, replacing
+from hdrlab.io.maps import scanlines
 
 MAGIC = b"v/1\x01"
 LARGEST_HALF = 65504.0
@@ -31,6 +33,8 @@ BEST_COMPRESSION_RATIO = 2**16
 # A display window may be far larger than the data window only if it is small itself.
 MAX_LARGE_FRAME_PIXELS = 2**22
 MAX_FRAME_TO_DATA_RATIO = 64
+# Names of the storages that hdrlab reads.
+FLAT_IMAGES = ("scanlineimage", "tiledimage")
 # The channels of a color image, in the order of its array.
 COLOR_CHANNELS = ("R", "G", "B")
 # Differences of color that belong to a luminance Y.
@@ -92,7 +96,7 @@ def read_headers(path: str | Path, count: int | None = None) -> list[Header]:
 
 def _make_header(path: str | Path, attributes: dict[str, Any]) -> Header:
     """Return the header that the attributes of a part make, after a check of what they claim."""
-    if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
+    if attributes["type"].name not in FLAT_IMAGES:
         raise FileFormatError(f"{path}: expected a flat image, got {attributes['type'].name}")
     channels = tuple(name for name, _, _ in attributes["channels"])
     subsampled = [name for name, *steps in attributes["channels"] if steps != [1, 1]]
@@ -240,21 +244,40 @@ def write(
             f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}"
         )
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    attributes: dict[str, str | float] = {}
     if comments:
-        header["comments"] = "\n".join(comments)
+        attributes["comments"] = "\n".join(comments)
     if white_luminance is not None:
-        header["whiteLuminance"] = float(white_luminance)
-    save_parts(path, header, {"RGB" if E.ndim == 3 else "Y": pixels})
+        attributes["whiteLuminance"] = float(white_luminance)
+    planes = split_channels(pixels, "RGB" if E.ndim == 3 else "Y")
+    save_parts(path, [scanlines.NewPart(planes, attributes=attributes)])
 
 
-def save_parts(path: str | Path, *content: Any) -> None:
-    """Write a header and its channels, or a list of OpenEXR's parts, whole or not at all."""
-    with replacing(path) as name, OpenEXR.File(*content) as file:
+def split_channels(pixels: Array, names: str) -> dict[str, Array]:
+    """Return the channels of an image (H, W) or (H, W, n) by their names, such as RGB."""
+    if pixels.ndim == 2:
+        return {names: pixels}
+    return {name: pixels[..., k] for k, name in enumerate(names)}
+
+
+def save_parts(path: str | Path, parts: Sequence[scanlines.NewPart]) -> None:
+    """Write parts with ZIP compression, whole or not at all."""
+    if not OpenEXR:
+        files.write(path, scanlines.encode_parts(parts))
+        return
+    content = [_make_part(part) for part in parts]
+    with replacing(path) as name, OpenEXR.File(content) as file:
         try:
             file.write(str(name))
         except RuntimeError as error:
             raise OSError(errno.EIO, " ".join(str(error).split()), str(path)) from None
+
+
+def _make_part(part: scanlines.NewPart) -> Any:
+    """Return a part as the official module writes it."""
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    planes = {name: np.ascontiguousarray(plane) for name, plane in part.planes.items()}
+    return OpenEXR.Part(header | dict(part.attributes), planes, part.name)
 
 
 def read_parts(
@@ -283,6 +306,11 @@ def read_parts(
         magic = file.read(len(MAGIC))
     if magic != MAGIC:
         raise FileFormatError(f"{path}: expected an OpenEXR file, got {magic!r}")
+    if not OpenEXR:
+        try:
+            return scanlines.read_parts(Path(path).read_bytes(), count, header_only=header_only)
+        except FileFormatError as error:
+            raise FileFormatError(f"{path}: the OpenEXR file cannot be read ({error})") from None
     open_exr = OpenEXR.File  # outside `try`: it may say what to install
     printed = io.StringIO()
     try:

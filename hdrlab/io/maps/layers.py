@@ -5,14 +5,12 @@ Programs that do not know about parts read the first, as `hdrlab.io.maps.exr` an
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, describe
-from hdrlab.core.optional import OpenEXR
 from hdrlab.errors import FileFormatError, InputError
-from hdrlab.io.maps import exr
+from hdrlab.io.maps import exr, scanlines
 
 # The channels of images with so many of them; a single channel is a depth.
 CHANNEL_NAMES = {1: "Z", 3: "RGB", 4: "RGBA"}
@@ -85,7 +83,7 @@ def write_layers(
     >>> read_layers(file)["standard deviation"].tolist()
     [[inf, inf, inf], [inf, inf, inf]]
     """
-    parts: list[Any] = []
+    parts: list[scanlines.NewPart] = []
     for name, layer in layers.items():
         pixels = np.ascontiguousarray(layer, np.float32)
         channels = CHANNEL_NAMES.get(1 if pixels.ndim == 2 else pixels.shape[-1])
@@ -93,11 +91,10 @@ def write_layers(
             raise InputError(
                 f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}"
             )
-        header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         is_first = not parts
-        if comments and is_first:
-            header["comments"] = "\n".join(comments)
-        parts.append(OpenEXR.Part(header, {channels: pixels}, name))
+        attributes = {"comments": "\n".join(comments)} if comments and is_first else {}
+        planes = exr.split_channels(pixels, channels)
+        parts.append(scanlines.NewPart(planes, name, attributes))
     sizes = {np.shape(layer)[:2] for layer in layers.values()}
     if len(sizes) != 1:
         raise InputError(f"{path}: expected layers of one size, got {sorted(sizes)}")

@@ -6,7 +6,8 @@ E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 
 
 Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio
 and most others decode m / 256, the lower end, and so does hdrlab: a file read and written again is
-then unchanged. imagecodecs decodes run-length scanlines; the equations below serve the other files.
+then unchanged. imagecodecs codes run-length scanlines quickly; without it, and for the other files,
+the equations below do.
 
 Values of E have the primaries of the header's PRIMARIES line. Without one, Radiance means
 `RADIANCE_PRIMARIES`, but most other programs, and hdrlab, take those of sRGB.
@@ -37,6 +38,10 @@ MAX_RADIANCE = 2.0**127
 MAX_HEADER_BYTES = 2**16
 # Two bytes code a run of at most this many pixels.
 MAX_RUN_PIXELS = 127
+# A count of at most this many bytes precedes bytes that do not repeat.
+MAX_LITERAL_PIXELS = 128
+# Two bytes code a run, so that shorter ones gain little.
+MIN_RUN_PIXELS = 4
 # Lengths of scanlines that can be run-length coded.
 MIN_RUN_LENGTH_SCANLINE = 8
 MAX_RUN_LENGTH_SCANLINE = 32767
@@ -122,9 +127,11 @@ def read(path: str | Path) -> F32:
     with open(path, "rb") as file:
         file.seek(header.start)
         data = file.read()
-    if _has_mixed_scanlines(data, scanlines, length):
+    has_run_lengths = _has_run_length_scanlines(data, length)
+    is_slow = has_run_lengths and not imagecodecs.has_codec("RGBE")
+    if is_slow or _has_mixed_scanlines(data, scanlines, length):
         E = to_radiance(_decode_mixed_scanlines(path, data, scanlines, length))
-    elif _has_run_length_scanlines(data, length):
+    elif has_run_lengths:
         E = _decode_run_lengths(path, data, scanlines, length)
     else:
         files.check_size(path, scanlines, length, 4 * scanlines, available=len(data))
@@ -169,13 +176,17 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
         for line in wrap(comment, MAX_COMMENT_CHARACTERS):
             header += f"# {line}\n"
     header += f"FORMAT={FORMAT}\n\n-Y {height} +X {width}\n"
+    is_fast = imagecodecs.has_codec("RGBE")
     # Enough for a band in which no pixel is repeated.
     buffer = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))
     with files.replacing(path) as name, open(name, "wb") as file:
         file.write(header.encode("ascii", "replace"))
         for y in range(0, height, BAND_ROWS):
             band = np.ascontiguousarray(E[y : y + BAND_ROWS])
-            file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=buffer))
+            if is_fast:
+                file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=buffer))
+            else:
+                file.write(b"".join(_encode_scanline(row) for row in to_pixels(band)))
 
 
 def to_radiance(pixels: NDArray[np.uint8]) -> F32:
@@ -262,6 +273,44 @@ def _decode_run_length_scanline(
         channels += run
     pixels = np.frombuffer(bytes(channels), np.uint8).reshape(4, length)
     return pixels.T, start
+
+
+def _encode_scanline(row: NDArray[np.uint8]) -> bytes:
+    """Return a scanline (W, 4) with run lengths; flat if it is too short or too long for them.
+
+    >>> _encode_scanline(np.full((9, 4), 7, np.uint8)).hex(" ")
+    '02 02 00 09 89 07 89 07 89 07 89 07'
+    """
+    length = len(row)
+    if not MIN_RUN_LENGTH_SCANLINE <= length <= MAX_RUN_LENGTH_SCANLINE:
+        return row.tobytes()
+    channels = [_encode_runs(channel.tobytes()) for channel in row.T]
+    return _run_length_mark(length) + b"".join(channels)
+
+
+def _encode_runs(values: bytes) -> bytes:
+    """Return one channel of a scanline as runs and as bytes that do not repeat.
+
+    >>> _encode_runs(bytes([1, 2, 3, 5, 5, 5, 5, 5])).hex(" ")
+    '03 01 02 03 85 05'
+    """
+    array = np.frombuffer(values, np.uint8)
+    changes = np.flatnonzero(np.diff(array)) + 1
+    starts = np.concatenate([[0], changes])
+    counts = np.diff(starts, append=len(array))
+    is_run = counts >= MIN_RUN_PIXELS
+    coded = bytearray()
+    literal_start = 0
+    run_starts = [*starts[is_run].tolist(), len(array)]
+    run_counts = [*counts[is_run].tolist(), 0]
+    for start, count in zip(run_starts, run_counts, strict=True):
+        for first in range(literal_start, start, MAX_LITERAL_PIXELS):
+            literal = values[first : min(first + MAX_LITERAL_PIXELS, start)]
+            coded += bytes([len(literal)]) + literal
+        literal_start = start + count
+        for left in range(count, 0, -MAX_RUN_PIXELS):
+            coded += bytes([128 + min(left, MAX_RUN_PIXELS), values[start]])
+    return bytes(coded)
 
 
 def _decode_flat_scanline(data: bytes, start: int, length: int) -> tuple[NDArray[np.uint8], int]:
