@@ -2,8 +2,8 @@
 
 "mtb" shifts by whole pixels. So does "auto", but it checks each pair by light: where the photos are
 still displaced by more than MAX_DISPLACEMENT pixels, it shifts by fractions of pixels and rotates, see
-`pipeline.rigid_motion`. Where that does not align a pair either, it tries "cerman", and then
-"homography". A pair that stays unconfirmed is reported.
+`pipeline.rigid_motion` and `pipeline.tile_motion`. Where that does not align a pair either, it tries
+"cerman", and then "homography". A pair that stays unconfirmed is reported.
 """
 
 from collections.abc import Callable, Iterator
@@ -23,7 +23,8 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.diagnostics import registration as validation
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.fast.mtb import Photograph
-from hdrlab.pipeline import catalogue, rigid_motion
+from hdrlab.pipeline import catalogue, rigid_motion, tile_motion
+from hdrlab.pipeline.rigid_motion import Fit
 
 METHODS = ("auto", *catalogue.names("align"))
 # The methods that compare light, from the simplest to the most general.
@@ -41,13 +42,15 @@ OTHER_PERCENTILES = (0.83, 0.17)
 # Results with these percentiles need a higher confidence.
 MIN_OTHER_CONFIDENCE = 0.9
 # Whole pixels are good enough if 95 % of the image is displaced by no more than this.
-MAX_DISPLACEMENT = 0.3
+MAX_DISPLACEMENT = 0.25
 # Pixels by which light may shift the middle of the image against what bitmaps are certain of. A
 # rotation that they overlook hardly moves the middle.
 MAX_MIDDLE_SHIFT = 3
 # A first, quick step that is no longer than this needs no closer look; it falls short of the
-# displacement by up to a half.
-MAX_QUICK_DISPLACEMENT = 0.1
+# displacement by up to a quarter.
+MAX_QUICK_DISPLACEMENT = 0.2
+# A motion is found if a next step moves 95 % of the image by no more than so many pixels.
+MAX_REMAINING_DISPLACEMENT = 0.1
 
 # A response, or a function that finds it when light is compared.
 Curve = ArrayLike | Callable[[], F64 | None] | None
@@ -140,8 +143,8 @@ def align_pair(
     first = best_percentile(moving, B, fixed, A)
     method = "mtb" if np.any(first.step != np.eye(3)) else "none"
     shifted = PairResult(validation=first, method=method)
-    level = rigid_motion.quick_level(A.Y)
-    quick = rigid_motion.check(B.Y, A.Y, first.step, level, smoothed=False)
+    side = tile_motion.quick_side(A.Y[0].shape)
+    quick = tile_motion.check(B.Y[0], A.Y[0], first.step, side)
     if quick.is_confirmed and quick.displacement <= MAX_QUICK_DISPLACEMENT:
         return PairResult(validation=confirm(first, first.step), method=method)
     return improve(shifted, B, A, make_pyramid)
@@ -197,9 +200,7 @@ def improve(
     is_noisy = rigid_motion.is_reduced(A.Y, level)
     if is_noisy and rigid_motion.check(B.Y, A.Y, first.step, level).is_confirmed:
         return PairResult(validation=confirm(first, first.step), method=shifted.method)
-    found = rigid_motion.refine(B.Y, A.Y, first.step, level)
-    if not found.is_confirmed or found.displacement > MAX_QUICK_DISPLACEMENT:
-        found = rigid_motion.search(B.Y, A.Y, [first.step, np.eye(3)], level)
+    found = find_motion(B, A, first.step, level)
     H = found.motion
     rest = rigid_motion.displacement(H @ np.linalg.inv(first.step), A.Y[0].shape)
     if found.is_confirmed and rest <= MAX_DISPLACEMENT:
@@ -208,6 +209,10 @@ def improve(
     if is_certain and _measure_middle_shift(H, first.step, A.Y[0].shape) > MAX_MIDDLE_SHIFT:
         return shifted
 
+    if found.is_confirmed and found.scale == 1:
+        shift_fit = tile_motion.check(B.Y[0], A.Y[0], first.step, tile_motion.SIDE_PIXELS)
+        if found.similarity > shift_fit.similarity:
+            return PairResult(validation=confirm(first, H), method="rotation")
     in_place = rigid_motion.check(B.Y, A.Y, np.eye(3), level)
     if not found.is_confirmed and not (found.is_usable or in_place.is_usable):
         return shifted  # nearly black or white photos, in which there is nothing to search for
@@ -239,6 +244,23 @@ def improve(
     if is_certain:
         return shifted  # the bitmaps are certain, and light shows nothing that fits
     return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
+
+
+def find_motion(B: Photograph, A: Photograph, start: F64, level: int) -> Fit:
+    """Return the Fit at the rigid motion of two photos, near `start` or else anywhere.
+
+    `level` is the finest level at which structure outweighs noise.
+    """
+    near = tile_motion.refine(B.Y[0], A.Y[0], start)
+    if near.is_confirmed and near.displacement <= MAX_REMAINING_DISPLACEMENT:
+        return near
+    found = rigid_motion.refine(B.Y, A.Y, start, level)
+    if not found.is_confirmed or found.displacement > MAX_REMAINING_DISPLACEMENT:
+        found = rigid_motion.search(B.Y, A.Y, [start, np.eye(3)], level)
+    if not found.is_confirmed or not level:
+        return found
+    fine = tile_motion.refine(B.Y[0], A.Y[0], found.motion)
+    return fine if fine.is_confirmed else found
 
 
 def _measure_middle_shift(H: F64, other: F64, shape: tuple[int, ...]) -> float:

@@ -6,7 +6,9 @@ A      fixed, brighter photo   (h, w); each value is replaced by the one of the 
 H      rigid motion            (3, 3): where pixel (x, y, 1) of the moving photo lies on the fixed one
 r      residual                B moved by H, minus A
 G      gradient                (2, h, w): the mean gradient of both, values per pixel
-w      weight                  of a Cauchy distribution: things that moved count little
+w      weight                  of a Cauchy distribution: things that moved count little. Its width
+                               grows with the gradient, because a small motion makes larger
+                               residuals at an edge, which tell most about it
 N      normal equations        (blocks, 5, 5): sums of w times the products of (G_x, G_y, G_arc, 1, r)
 
 Near the right place r is linear in a small motion: r = G . (shift + rotation) [Lucas and Kanade,
@@ -18,7 +20,7 @@ The same equations, solved for the shift of each block of the image alone, tell 
 in a wrong place the blocks want to move in different directions.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,9 +35,8 @@ from hdrlab.core.filters import warp
 MAX_PIXELS = 2**18
 # The coarsest level that is searched has at least this many pixels a side.
 MIN_SIDE_PIXELS = 32
-# A quick check uses a level with a fraction of the photo's pixels, if that is within limits.
-QUICK_FRACTION = 1 / 16
-MIN_QUICK_PIXELS = 2**16
+# A residual that a displacement by so many pixels of the level explains has its full weight.
+EXPLAINED_PIXELS = 0.5
 # A level ends after this many steps, or with a step that moves no more than so many pixels.
 MAX_STEPS = 8
 MIN_STEP_PIXELS = 0.02
@@ -158,6 +159,11 @@ def match_values(dark: Array, bright: Array, H: F64) -> Level:
     dx, dy = np.rint(warp.apply(H, [center])[0] - center).astype(int)
     seen = dark[max(-dy, 0) : height - max(dy, 0), max(-dx, 0) : width - max(dx, 0)]
     seen_bright = bright[max(dy, 0) : height + min(dy, 0), max(dx, 0) : width + min(dx, 0)]
+    return match_ranks(dark, bright, seen, seen_bright)
+
+
+def match_ranks(dark: Array, bright: Array, seen: Array, seen_bright: Array) -> Level:
+    """Return the Level of two gray photos of 8 bits, of which two parts show the same things."""
     counts = np.bincount(seen.ravel(), minlength=256)
     values = np.flatnonzero(counts)
     bright_counts = np.bincount(seen_bright.ravel(), minlength=256)
@@ -195,41 +201,75 @@ def fit(level: Level, H: F64, scale: int) -> Fit:
     """
     shape = level.fixed.shape
     height, width = shape
+    radius = np.hypot(height, width) / 2
+    y = (np.arange(height, dtype=np.float32)[:, None] - (height - 1) / 2) / radius
+    x = (np.arange(width, dtype=np.float32) - (width - 1) / 2) / radius
     moved = move(level.moving, H)
-    rows = slice(1, height - 1)
-    before = slice(0, height - 2)
-    after = slice(2, height)
-    inner = slice(1, width - 1)
-    r = moved[rows, inner] - level.fixed[rows, inner]
-    moved_x = (moved[rows, 2:] - moved[rows, :-2]) / 2
-    moved_y = (moved[after, inner] - moved[before, inner]) / 2
-    fixed_x = (level.fixed[rows, 2:] - level.fixed[rows, :-2]) / 2
-    fixed_y = (level.fixed[after, inner] - level.fixed[before, inner]) / 2
+    return fit_moved(level, moved, H, scale, shape=shape, y=y, x=x, sum_blocks=_sum_blocks)
+
+
+def fit_moved(
+    level: Level,
+    moved: F32,
+    H: F64,
+    scale: int,
+    *,
+    shape: tuple[int, ...],
+    y: F32,
+    x: F32,
+    sum_blocks: Callable[[F32, F32], F64],
+) -> Fit:
+    """Return the Fit of an image, or of a stack of tiles of it, whose darker photo was moved by H.
+
+    Parameters
+    ----------
+    level : Level
+        Its `fixed` is (..., h, w); its `moving` is not used.
+    moved : (..., h, w)
+        The darker photo, moved by H; NaN where nothing is known.
+    H : (3, 3)
+    scale : int
+        Pixels of the photo in one pixel of the level.
+    shape : (int, int)
+        Size of the whole image.
+    y, x : (..., h, 1) and (..., 1, w)
+        Distance from the middle of the image, 1 at its corners.
+    sum_blocks : function
+        From terms (5, ..., h - 2, w - 2) and weights (..., h - 2, w - 2) to N (blocks, 5, 5).
+    """
+    fixed = level.fixed
+    rows = slice(1, -1)
+    r = moved[..., rows, rows] - fixed[..., rows, rows]
+    moved_x = (moved[..., rows, 2:] - moved[..., rows, :-2]) / 2
+    moved_y = (moved[..., 2:, rows] - moved[..., :-2, rows]) / 2
+    fixed_x = (fixed[..., rows, 2:] - fixed[..., rows, :-2]) / 2
+    fixed_y = (fixed[..., 2:, rows] - fixed[..., :-2, rows]) / 2
     G_x = (moved_x + fixed_x) / 2
     G_y = (moved_y + fixed_y) / 2
-    is_known = np.isfinite(r + G_x + G_y) & ((G_x != 0) | (G_y != 0))
+    squared_gradient = G_x**2 + G_y**2
+    is_known = np.isfinite(r + squared_gradient) & (squared_gradient > 0)
     usable = _measure_usable(level, moved)
-    nothing = Fit(
-        H=H, next=H, step=0.0, usable=usable, similarity=0.0, shifts=np.zeros(0), scale=scale
-    )
     if is_known.mean() < MIN_STRUCTURE_FRACTION:
-        return nothing
+        return Fit(
+            H=H, next=H, step=0.0, usable=usable, similarity=0.0, shifts=np.zeros(0), scale=scale
+        )
     similarity = _correlate(
         np.stack([moved_x[is_known], moved_y[is_known]]),
         np.stack([fixed_x[is_known], fixed_y[is_known]]),
     )
     r[~is_known] = 0
+    squared_gradient[~is_known] = 0
     known = r[is_known]
     scale_of_r = 1.5 * float(np.median(np.abs(known[:: len(known) // 10_000 + 1]))) + 0.5
-    w = is_known / (1 + (r / (2 * scale_of_r)) ** 2)
-    radius = np.hypot(height, width) / 2
-    y = (np.arange(height, dtype=np.float32)[rows, None] - (height - 1) / 2) / radius
-    x = (np.arange(width, dtype=np.float32)[inner] - (width - 1) / 2) / radius
-    terms = np.stack([G_x, G_y, x * G_y - y * G_x, np.ones_like(r), r])
+    variance_of_r = scale_of_r**2 + EXPLAINED_PIXELS**2 * squared_gradient
+    w = np.asarray(is_known / (1 + r**2 / (4 * variance_of_r)), np.float32)
+    arc = x[..., rows] * G_y - y[..., rows, :] * G_x
+    terms = np.stack([G_x, G_y, arc, np.ones_like(r), r])
     terms[:, ~is_known] = 0
-    N = _sum_blocks(terms, w)
-    dx, dy, arc, _ = _solve(N.sum(axis=0), [0, 1, 2, 3])
-    delta = warp.turn(shape, np.rad2deg(arc / radius), (dy, dx))
+    N = sum_blocks(terms, w)
+    dx, dy, turn, _ = _solve(N.sum(axis=0), [0, 1, 2, 3])
+    radius = np.hypot(shape[0], shape[1]) / 2
+    delta = warp.turn(shape, np.rad2deg(turn / radius), (dy, dx))
     return Fit(
         H=H,
         next=delta @ H,
@@ -255,25 +295,22 @@ def _correlate(a: F32, b: F32) -> float:
 
 
 def _solve(N: F64, unknowns: list[int]) -> F64:
-    """Return the solution of normal equations (5, 5) for some of the terms."""
-    normal = N[np.ix_(unknowns, unknowns)]
-    ridge = 1e-6 * np.trace(normal) + 1e-9
-    return np.asarray(np.linalg.solve(normal + ridge * np.eye(len(unknowns)), N[unknowns, 4]))
+    """Return the solutions (..., n) of normal equations (..., 5, 5) for n of the terms."""
+    terms = np.array(unknowns)
+    normal = N[..., terms[:, None], terms]
+    ridge = 1e-6 * np.trace(normal, axis1=-2, axis2=-1) + 1e-9
+    normal = normal + ridge[..., None, None] * np.eye(len(terms))
+    return np.asarray(np.linalg.solve(normal, N[..., terms, 4, None])[..., 0])
 
 
 def _block_shifts(N: F64, max_sigma: float) -> F64:
     """Return how far each block would move alone, if that is known to `max_sigma` pixels."""
-    shifts = []
-    for block in N:
-        normal = block[:2, :2]
-        if not np.linalg.det(normal) > 0:
-            continue
-        variance = block[4, 4] / max(block[3, 3], 1) + ROUNDING_VARIANCE
-        sigma = np.sqrt(variance * np.linalg.eigvalsh(np.linalg.inv(normal))[-1])
-        if sigma < max_sigma:
-            dx, dy, _ = _solve(block, [0, 1, 3])
-            shifts.append(np.hypot(dx, dy))
-    return np.array(shifts)
+    N = N[np.linalg.det(N[:, :2, :2]) > 0]
+    variance = N[:, 4, 4] / np.maximum(N[:, 3, 3], 1) + ROUNDING_VARIANCE
+    least_known = np.linalg.eigvalsh(N[:, :2, :2])[:, 0]
+    is_known = variance < max_sigma**2 * least_known
+    shifts = _solve(N[is_known], [0, 1, 3])[:, :2]
+    return np.asarray(np.hypot(shifts[:, 0], shifts[:, 1]))
 
 
 def _sum_blocks(terms: F32, w: F32) -> F64:
@@ -336,12 +373,6 @@ def descend(level: Level, H: F64, scale: int) -> Fit:
     return found
 
 
-def quick_level(pyramid: Sequence[Array]) -> int:
-    """Return the level at which a quick check is made."""
-    size = QUICK_FRACTION * pyramid[0].size
-    return _first_level(pyramid, min(max(size, MIN_QUICK_PIXELS), MAX_PIXELS))
-
-
 def is_reduced(bright: Sequence[Array], number: int) -> bool:
     """Return whether noise made a level coarser than it would have to be."""
     return number > _first_level(bright, MAX_PIXELS)
@@ -375,19 +406,11 @@ def _first_level(pyramid: Sequence[Array], max_pixels: float) -> int:
     return next(small, len(pyramid) - 1)
 
 
-def check(
-    dark: Sequence[Array],
-    bright: Sequence[Array],
-    H: F64,
-    number: int,
-    *,
-    smoothed: bool = True,
-) -> Fit:
+def check(dark: Sequence[Array], bright: Sequence[Array], H: F64, number: int) -> Fit:
     """Return the Fit of two pyramids of gray photos at a level, for H in pixels of the photos."""
     scale = 2**number
     small_H = homography.enlarge(H, 1 / scale)
-    level = match_values(dark[number], bright[number], small_H)
-    return fit(smooth(level) if smoothed else level, small_H, scale)
+    return fit(smooth(match_values(dark[number], bright[number], small_H)), small_H, scale)
 
 
 def common_light(dark: Sequence[Array], bright: Sequence[Array], H: F64, number: int) -> F32:

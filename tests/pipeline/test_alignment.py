@@ -182,6 +182,13 @@ def test_auto_finds_small_and_large_rotations_to_a_fraction_of_a_pixel(scene, de
     assert all(pair.confirmed for pair in found.pairs)
 
 
+@pytest.mark.parametrize(("scene", "degrees"), [("chapel", 0.05), ("room", 0.08)])
+def test_auto_finds_a_displacement_of_half_a_pixel_in_dark_photos(scene, degrees):
+    taken, truth = taken_by_hand(scene, degrees, seed=4)
+    found = register(taken.images)
+    assert misregistration(found.homographies, truth, taken.images.shape[1:3]) < 0.4
+
+
 def test_auto_does_not_resample_photos_from_a_tripod():
     room = scenes.room(LARGE)
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
