@@ -120,6 +120,21 @@ def test_a_question_stands_before_each_picture(path):
             assert asked or not calls_of(cell), cell.id
 
 
+def test_a_question_that_begins_with_predict_takes_an_answer_and_no_other_does(path):
+    """Between two questions or headings there is at most one that begins so, and then a widget."""
+    waiting = []
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            kinds = re.findall(r"\*\*(Predict|Think)\.\*\*", cell.source)
+            if kinds:
+                assert "Predict" not in [*waiting, *kinds[:-1]], cell.id
+                waiting = kinds[-1:]
+        elif re.search(r"^predict\.", cell.source, re.M):
+            assert waiting != ["Think"], cell.id
+            waiting = []
+    assert waiting != ["Predict"]
+
+
 def test_a_static_strip_stands_beside_each_widget(path):
     """Nothing but text comes between a widget and its strip."""
     code = cells_of(path, "code")

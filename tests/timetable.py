@@ -2,7 +2,7 @@
 
     python tests/timetable.py     # writes the minutes into the site's course.md, and makes COURSE.md of it
 
-A notebook: a minute for every 160 words, one for each prediction, one for each cell that draws. A
+A notebook: a minute for every 160 words, one for each question, one for each cell that draws. A
 task: ten minutes, and three for each line of code that the library's own function needs. No class
 has been timed.
 """
@@ -20,8 +20,9 @@ PAGE = ROOT / "hdrlab/course/site/pages/course.md"
 COPY = ROOT / "COURSE.md"  # the same, with links that lead on from the top of the repository
 WORDS_A_MINUTE = 160
 # minutes
-PREDICTION, PICTURE, SHEET, CODE_LINE, STEP = 1, 1, 10, 3, 5
+QUESTION, PICTURE, SHEET, CODE_LINE, STEP = 1, 1, 10, 3, 5
 DRAWS = re.compile(r"pictures\.|widgets\.")
+ASKS = re.compile(r"\*\*(?:Predict|Think)\.\*\*")
 NOTEBOOK = r"^\| \[(\d\d · [^\]]+)\]\(notebooks/(\w+)\.ipynb\) \|(.*)\| (\d+) \|$"
 TASK = r"^\| (\w+) \| `(\w+)` \|(.*)\| (\d+) \| (\d+) \|$"
 WEEK = r"^\| (\d+) \| ([\d, ]+) \| (\d+) \| (.*?) \| (\d+) \|$"
@@ -39,7 +40,7 @@ def sections(path):
         text = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
             heading = next(iter(re.findall(r"^## (.+)$", text, re.M)), heading)
-            minutes = len(text.split()) / WORDS_A_MINUTE + PREDICTION * text.count("**Predict.**")
+            minutes = len(text.split()) / WORDS_A_MINUTE + QUESTION * len(ASKS.findall(text))
         else:
             minutes = PICTURE * bool(DRAWS.search(text))
         found[heading] = found.get(heading, 0.0) + minutes

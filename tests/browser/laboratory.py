@@ -41,6 +41,9 @@ QUIET = (
     "--disable-sync",
 )
 
+# What the switch "Show all answers" remembers: questions then cover nothing.
+SHOW_ALL_ANSWERS = "localStorage.setItem('hdrlab-answers', 'shown')"
+
 # The pixels of a widget's picture, as one number.
 DIGEST = """(el) => {
     const canvas = el.querySelector("canvas");

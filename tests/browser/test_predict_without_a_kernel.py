@@ -1,4 +1,4 @@
-"""Predictions on a plain page: by pointer and by keys, skipped, answered before, and for a screen reader."""
+"""Predictions on a plain page: by pointer, by keys, without an answer, answered before, read aloud."""
 
 import imageio.v3 as iio
 import numpy as np
@@ -44,8 +44,12 @@ def status(page):
     return page.get_by_role("status").last.inner_text()
 
 
+def check(page):
+    page.get_by_role("button", name="Check my answer").click()
+
+
 def show(page):
-    page.get_by_role("button", name="Show").click()
+    page.get_by_role("button", name="Show", exact=True).click()
 
 
 def given(page):
@@ -55,7 +59,7 @@ def given(page):
 def test_a_choice_is_compared_with_the_truth_and_kept(ask):
     page = ask("choice")
     page.get_by_role("radio", name="the sky").check()
-    show(page)
+    check(page)
     assert status(page).startswith("You said: the sky. The truth: the wall. It is white.")
     assert given(page) == 0 and page.evaluate("window.model.get('done')")
     assert page.get_by_role("button").count() == 0
@@ -64,23 +68,32 @@ def test_a_choice_is_compared_with_the_truth_and_kept(ask):
 def test_a_number_is_given_by_keys_and_told_how_far_it_is(ask):
     page = ask("number")
     page.get_by_role("slider", name="your answer").press("End")
-    show(page)
+    check(page)
     assert status(page).startswith("You said 20 stops, 8 too high. The truth: 12 stops.")
     assert page.get_by_role("slider", name="the truth", include_hidden=True).input_value() == "12"
 
 
-def test_a_curve_drawn_near_the_truth_is_near(ask):
+def test_a_curve_drawn_with_the_pointer_near_the_truth_is_near(ask):
     page = ask("curve")
     box = page.locator("canvas").bounding_box()
-    low, high = (1 - (y + 0.2) / 1.4 for y in (0, 1))  # the axes leave room
-    page.mouse.move(box["x"] + 2, box["y"] + low * box["height"])
-    page.mouse.down()
-    for share in np.linspace(0, 1, 30):
-        x, y = share * (box["width"] - 4) + 2, (low + share * (high - low)) * box["height"]
-        page.mouse.move(box["x"] + x, box["y"] + y)
+    field = (0.08, 0.97, 0.14, 0.82)  # where 0 and 1 stand in the canvas; the axes leave room
+    left, right, high, low = field
+    for position in np.linspace(0, 1, 30):
+        x = box["x"] + (left + position * (right - left)) * box["width"]
+        y = box["y"] + (low + position * (high - low)) * box["height"]
+        page.mouse.move(x, y)
+        page.mouse.down()
     page.mouse.up()
-    show(page)
-    assert status(page).startswith("Near: your curve is off by 0.0")
+    check(page)
+    assert "3 of 3" in status(page) and "1 of 1 near" in status(page)
+
+
+def test_the_shape_of_a_curve_is_scored_apart_from_its_position(ask):
+    line = [k / 16 for k in range(17)]
+    shifted = ask("curve", given=[y - 0.3 for y in line], done=True)
+    assert "3 of 3" in status(shifted) and "0.3 too low" in status(shifted)
+    flat = ask("curve", given=[0.5] * 17, done=True)
+    assert "0 of 3" in status(flat) and "nearly flat" in status(flat)
 
 
 def test_a_curve_is_drawn_by_keys_and_read_aloud(ask):
@@ -89,7 +102,7 @@ def test_a_curve_is_drawn_by_keys_and_read_aloud(ask):
     for key in ("ArrowUp", "ArrowRight", "ArrowRight", "ArrowDown"):
         page.keyboard.press(key)
     assert page.get_by_role("status").first.inner_text() == "level 0.125: light 0.5"
-    show(page)
+    check(page)
     assert [round(y, 3) for y in given(page) if y is not None] == [0.535, 0.535, 0.5]
     assert "and the true one" in page.get_by_role("img").get_attribute("aria-label")
 
@@ -104,11 +117,8 @@ def luminances(page, places):
 
 def test_the_field_of_a_curve_is_dark_where_jupyterlab_is_and_both_curves_stand_out(ask):
     page = ask("curve", given=[1.0] * 17, done=True)
-    places = [
-        (0.3, 0.05),
-        (0.5, 0.2 / 1.4),
-        (0.7, 1 - 0.9 / 1.4),
-    ]  # the field, yours at 1, the truth
+    # the field, your curve at 1, the truth at 0.7
+    places = [(0.31, 0.08), (0.525, 0.16), (0.075 + 0.9 * 0.7, 0.031 + 0.896 * (1 - 0.9 / 1.4))]
     assert luminances(page, places)[0] == 1
     page.evaluate("document.body.dataset.jpThemeLight = 'false'")
     field, *lines = luminances(page, places)
@@ -120,7 +130,7 @@ def test_a_pixel_is_marked_by_the_pointer_and_told_how_far_it_is(ask, across, to
     page = ask("place")
     box = page.locator("canvas").bounding_box()
     page.mouse.click(box["x"] + across * box["width"], box["y"] + 20)
-    show(page)
+    check(page)
     assert status(page).startswith(told)
 
 
@@ -129,14 +139,14 @@ def test_a_pixel_is_marked_by_keys(ask):
     page.locator(".hdrlab-stage").focus()
     for key in ("ArrowRight", "Shift+ArrowRight", "ArrowUp"):
         page.keyboard.press(key)
-    show(page)
+    check(page)
     assert given(page) == [117, 59]
 
 
 @pytest.mark.parametrize("kind", ASKED)
-def test_skipping_is_one_click_and_shows_the_truth(ask, kind):
+def test_showing_is_one_click_and_needs_no_answer(ask, kind):
     page = ask(kind)
-    page.get_by_role("button", name="Skip").click()
+    show(page)
     assert status(page).startswith("The truth: ") and "so far" not in status(page)
     assert given(page) is None and page.evaluate("window.model.get('done')")
 
@@ -144,8 +154,8 @@ def test_skipping_is_one_click_and_shows_the_truth(ask, kind):
 @pytest.mark.parametrize("kind", ASKED)
 def test_without_an_answer_the_truth_stays_hidden(ask, kind):
     page = ask(kind)
-    show(page)
-    assert status(page) == "First your answer, or skip it."
+    check(page)
+    assert status(page) and "truth" not in status(page)
     assert not page.evaluate("window.model.get('done')")
 
 
@@ -157,7 +167,7 @@ def test_a_saved_answer_comes_back_with_its_truth(ask):
 def test_the_page_counts_what_was_near(ask):
     page = ask("choice")
     page.get_by_role("radio", name="the wall").check()
-    show(page)
+    check(page)
     assert status(page).endswith("On this page so far: 1 of 1 near.")
 
 
@@ -170,6 +180,6 @@ def test_a_question_fits_the_screen_and_axe_finds_nothing_wrong_before_and_after
     page.set_viewport_size({"width": width, "height": 900})
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert axe(page, "#at") == []
-    page.get_by_role("button", name="Skip").click()
+    show(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert axe(page, "#at") == []

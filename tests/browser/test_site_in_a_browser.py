@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from laboratory import PATIENCE
+from laboratory import PATIENCE, SHOW_ALL_ANSWERS
 
 from hdrlab.course.site.pages import cache_of
 
@@ -65,6 +65,9 @@ def site(browser, kept, tmp_path_factory):
 
 @pytest.fixture
 def opened(site, page):
+    """Open a page with all answers shown; what questions cover is tested elsewhere."""
+    page.add_init_script(SHOW_ALL_ANSWERS)
+
     def open_(name, width=1280):
         page.set_viewport_size({"width": width, "height": 900})
         page.goto((site / f"{name}.html").as_uri())
@@ -140,7 +143,7 @@ def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_
     assert_it_fits(page, axe)
     for widget in widgets:
         if widget.get_attribute("data-kind") == "predict":
-            widget.get_by_role("button", name="Skip").click()
+            widget.get_by_role("button", name="Show", exact=True).click()
             assert widget.get_by_role("status").last.inner_text().startswith("The truth: ")
         else:
             changed_by(page, widget, lambda widget=widget: move(page, widget))

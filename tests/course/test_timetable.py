@@ -138,7 +138,7 @@ def test_the_lab_fits_two_hours_and_says_what_is_left(page):
     assert f"That leaves {120 - taken} minutes" in page and taken <= 110
 
 
-def test_reading_a_prediction_and_a_figure_take_a_minute_each(tmp_path):
+def test_reading_a_question_and_a_figure_take_a_minute_each(tmp_path):
     words = {
         "cell_type": "markdown",
         "source": ["## One\n", "word " * (2 * timetable.WORDS_A_MINUTE - 2)],

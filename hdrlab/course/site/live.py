@@ -59,6 +59,11 @@ class ExportedWidget(NamedTuple):
         """Name of the file with its script and style."""
         return f"code-{hashlib.sha256((self.script + self.style).encode()).hexdigest()[:16]}"
 
+    @property
+    def question(self) -> str:
+        """The question that the widget asks, "" if it asks none."""
+        return str(self.state.get("question", ""))
+
     def as_html(self, folder: str) -> str:
         """Return the HTML of the widget; `folder` is the address of its files."""
         still = f"<p>{escape(self.alt)}</p>"
@@ -67,7 +72,8 @@ class ExportedWidget(NamedTuple):
             attributes = f'alt="{escape(self.alt)}" {_image_attributes(self.picture)}'
             still = f'<img {source} {attributes} loading="lazy">'
         scripts = f'data-code="{folder}/{self.code}.js" data-from="{folder}/{self.name}.js"'
-        return f'<div class="live" data-name="{self.name}" {scripts}>{still}</div>'
+        asks = f' data-asks="{escape(self.question)}"' if self.question else ""
+        return f'<div class="live" data-name="{self.name}"{asks} {scripts}>{still}</div>'
 
 
 def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, ExportedWidget]]:

@@ -19,7 +19,7 @@ import numpy as np
 from markupsafe import Markup
 
 from hdrlab.course.authoring.execute import ExecutedNotebook, library_key
-from hdrlab.course.site import live, reference
+from hdrlab.course.site import covers, live, reference
 from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
@@ -173,6 +173,8 @@ def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -
     for output, widget in exported:
         live.write_widget(widget, folder)
         output["data"] = {"text/html": widget.as_html(f"../{WIDGETS}")}
+    questions = [output for output, widget in exported if widget.question]
+    covers.mark_covered(notebook.cells, _cells_of(questions, notebook))
     live.extract_images(notebook, name, folder, f"../{WIDGETS}")
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
@@ -186,6 +188,16 @@ def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -
             tags = cell.metadata.get("tags", ())
             cell.metadata["tags"] = [*tags, "hide-input"]
     return nbformat.writes(notebook), len(exported)
+
+
+def _cells_of(outputs: Sequence[Any], notebook: Any) -> list[int]:
+    """Return the indices of the cells that have some of these outputs."""
+    wanted = {id(output) for output in outputs}
+    return [
+        index
+        for index, cell in enumerate(notebook.cells)
+        if any(id(output) in wanted for output in cell.get("outputs", ()))
+    ]
 
 
 def unlink_missing_notebooks(text: str, known: set[str]) -> str:

@@ -7,12 +7,121 @@ const HANDLES = 17; // of a curve: the keys move one after the other, a drag all
 
 const digits = (value) => `${Number(value.toPrecision(3))}`;
 
+// A question covers what follows it until the reader answers: in JupyterLab and Notebook the outputs of the next
+// cells, up to and including the first answer that unfolds; a heading, another question or the end comes before it.
+// The site does the same when a page is built. Where neither is the page around the widget, nothing is covered.
+const SWITCH = "hdrlab-answers"; // in the browser's own memory: "shown" uncovers everything
+const RECOUNT_DELAY = 100; // ms from a change of the notebook until its covers are counted again
+const ASKS = /^(Predict|Think)\.$/; // in bold: how a question in the text begins
+
+function allShown() {
+  try {
+    return localStorage.getItem(SWITCH) === "shown";
+  } catch {
+    return false; // a browser that remembers nothing
+  }
+}
+
+function showAll(shown) {
+  try {
+    localStorage.setItem(SWITCH, shown ? "shown" : "covered");
+  } catch {} // then the switch holds until the page is closed
+  globalThis.dispatchEvent(new CustomEvent(SWITCH, { detail: shown }));
+}
+
+// Whether a cell of text is the answer, ends what a question covers ("end"), or stands between ("text").
+function kindOfText(cell) {
+  const rendered = cell.querySelector(".jp-RenderedMarkdown");
+  if (!rendered?.childElementCount) return "end"; // not drawn yet: it is looked at again when it is
+  for (const part of rendered.children) {
+    if (part.tagName === "DETAILS") return "answer";
+    const bold = [...part.querySelectorAll("strong")];
+    if (/^H[1-6]$/.test(part.tagName) || bold.some(({ textContent }) => ASKS.test(textContent))) return "end";
+  }
+  return "text";
+}
+
+// Cover and uncover all cells of a notebook.
+function coverCells(notebook, shown) {
+  let question = null;
+  let count = 0;
+  const finish = () => {
+    const notice = question?.querySelector(".hdrlab-cover");
+    if (notice) notice.hidden = shown || count === 0;
+    [question, count] = [null, 0];
+  };
+  for (const cell of notebook.querySelectorAll(".jp-Cell")) {
+    const asking = cell.querySelector('.hdrlab[data-kind="predict"]');
+    const text = cell.classList.contains("jp-MarkdownCell") ? kindOfText(cell) : "";
+    if (asking || text === "end") finish();
+    const covered = question !== null && text !== "text";
+    cell.classList.toggle("hdrlab-covered", covered && !shown);
+    if (covered) count += 1;
+    if (text === "answer") finish();
+    if (asking && !asking.dataset.done) question = asking;
+  }
+  finish();
+}
+
+// Keep a notebook's covers right while its cells are run, rendered, moved and answered.
+function watch(el) {
+  const notebook = el.closest(".jp-Notebook");
+  if (!notebook) return () => {};
+  const watched = (globalThis.hdrlabCovers ??= new WeakMap());
+  if (!watched.has(notebook)) {
+    let [waiting, shown] = [0, allShown()];
+    const count = () => {
+      waiting = 0;
+      coverCells(notebook, shown);
+    };
+    new MutationObserver(() => (waiting ||= setTimeout(count, RECOUNT_DELAY))).observe(notebook, { childList: true, subtree: true });
+    globalThis.addEventListener(SWITCH, ({ detail }) => {
+      shown = detail;
+      count();
+    });
+    watched.set(notebook, count);
+  }
+  watched.get(notebook)();
+  return watched.get(notebook);
+}
+
 // How the answers on a page (in JupyterLab: in a notebook) went so far: question to whether it was near.
 function tallyOf(el) {
   const page = el.closest(".jp-NotebookPanel") ?? document;
   const tallies = (globalThis.hdrlabTallies ??= new WeakMap());
   if (!tallies.has(page)) tallies.set(page, new Map());
   return tallies.get(page);
+}
+
+const PARTS = ["on the left", "in the middle", "on the right"];
+const SAME_SLOPE = 0.35; // of the steepest part's slope: a smaller difference is right
+const [FLAT, STEEP] = [0.25, 0.75]; // of the steepest part's slope
+
+// The height at x of a curve through some points: straight between them, level beyond them.
+function heightAt(points, x) {
+  const after = points.findIndex(([at]) => at >= x);
+  if (after <= 0) return points[after < 0 ? points.length - 1 : 0][1];
+  const [[x0, y0], [x1, y1]] = [points[after - 1], points[after]];
+  return y0 + ((y1 - y0) * (x - x0)) / (x1 - x0);
+}
+
+// Compare the slopes of a drawn curve and the true one, a third of the axis at a time: wherever the curve stands.
+function compareShape(mine, truth, left, right) {
+  const edges = [0, 1, 2, 3].map((k) => left + ((right - left) * k) / PARTS.length);
+  const rises = (curve) => PARTS.map((_, k) => curve(edges[k + 1]) - curve(edges[k]));
+  const [drawn, wanted] = [rises(mine), rises(truth)];
+  const steepest = Math.max(...wanted.map(Math.abs)) || 1;
+  const words = (rise) => {
+    if (Math.abs(rise) < FLAT * steepest) return "nearly flat";
+    const way = rise > 0 ? "rising" : "falling";
+    return Math.abs(rise) > STEEP * steepest ? `${way} steeply` : way;
+  };
+  return PARTS.map((part, k) => {
+    const isRight = Math.abs(drawn[k] - wanted[k]) <= SAME_SLOPE * steepest;
+    const than = Math.abs(drawn[k]) > Math.abs(wanted[k]) ? "steeper" : "flatter";
+    const yours = words(drawn[k]) === words(wanted[k]) ? than : words(drawn[k]);
+    return { isRight, words: `${part} ${words(wanted[k])}: ${isRight ? "yes" : `yours is ${yours}`}` };
+  });
 }
 
 // Each kind adds its controls, and returns: read() the answer or null, show(answer) it, reveal(answer) the truth
@@ -89,25 +198,32 @@ const KINDS = {
     const [left, right, low, high] = model.get("scale");
     const [across, up] = model.get("labels");
     const [xs, ys] = model.get("truth");
-    element(root, "div", { className: "hdrlab-axis", textContent: `↑ ${up}, ${digits(low)} to ${digits(high)}` });
+    const [ticks, marks] = [model.get("ticks"), model.get("marks")];
+    element(root, "div", { className: "hdrlab-axis", textContent: `↑ ${up}` });
     const help = `${up} over ${across}: arrow keys left and right choose a point of your curve, up and down move it`;
     const { frame, canvas, context } = stage(root, help);
-    [canvas.width, canvas.height] = [1280, 720];
-    canvas.style.width = "640px"; // sharp on screens with two pixels for one
+    const shown = clamp(innerWidth - 48, 280, 640); // pixels of the page; the canvas has twice as many, for sharp lines
+    [canvas.width, canvas.height] = [2 * shown, Math.round(2 * shown * (shown < SMALL ? 0.8 : 0.6))];
+    canvas.style.width = `${shown}px`;
     canvas.toggleAttribute("data-ink", true);
-    element(root, "div", { className: "hdrlab-axis", textContent: `→ ${across}, ${digits(left)} to ${digits(right)}` });
+    element(root, "div", { className: "hdrlab-axis", textContent: `→ ${across}` });
     const tell = teller(root);
     const mine = new Array(HANDLES).fill(null);
     let [at, closed, last] = [0, false, null];
 
-    const point = ([x, y]) => [((x - left) / (right - left)) * canvas.width, (1 - (y - low) / (high - low)) * canvas.height];
+    // The field of the curve in the canvas; the numbers of the axes stand around it.
+    const field = { left: 96, top: 24, width: canvas.width - 96 - 32, height: canvas.height - 24 - 56 };
+    const point = ([x, y]) => [
+      field.left + ((x - left) / (right - left)) * field.width,
+      field.top + (1 - (y - low) / (high - low)) * field.height,
+    ];
     const position = (k) => left + ((right - left) * k) / (HANDLES - 1);
     const level = (y) => clamp(low + (high - low) * (1 - y), low, high);
     const known = () => mine.map((y, k) => [position(k), y]).filter(([, y]) => y !== null);
 
-    function line(points, colour, dashes) {
+    function line(points, colour, dashes, width = 6) {
       context.strokeStyle = colour;
-      context.lineWidth = 6;
+      context.lineWidth = width;
       context.setLineDash(dashes);
       context.beginPath();
       points.map(point).forEach(([x, y]) => context.lineTo(x, y));
@@ -115,15 +231,34 @@ const KINDS = {
       context.setLineDash([]);
     }
 
+    function paintAxes() {
+      context.font = "26px system-ui, sans-serif";
+      context.fillStyle = "#444";
+      for (const x of ticks[0]) {
+        line([[x, low], [x, high]], "#d8d8d8", [], 2);
+        context.textAlign = "center";
+        context.fillText(digits(x), point([x, low])[0], field.top + field.height + 36);
+      }
+      for (const y of ticks[1]) {
+        line([[left, y], [right, y]], "#d8d8d8", [], 2);
+        context.textAlign = "right";
+        context.fillText(digits(y), field.left - 12, point([left, y])[1] + 9);
+      }
+      for (const { axis, value, name } of marks) {
+        line(axis === "x" ? [[value, low], [value, high]] : [[left, value], [right, value]], "#767676", [4, 6], 3);
+        const [x, y] = point(axis === "x" ? [value, high] : [left, value]);
+        context.textAlign = "left";
+        context.fillText(name, x + 8, axis === "x" ? y + 26 : y - 8);
+      }
+      context.strokeStyle = "#767676";
+      context.lineWidth = 2;
+      context.strokeRect(field.left, field.top, field.width, field.height);
+    }
+
     function paint(truth = false) {
       context.fillStyle = "#fff";
       context.fillRect(0, 0, canvas.width, canvas.height);
-      context.strokeStyle = "#d0d0d0";
-      context.lineWidth = 2;
-      for (let k = 0; k <= 4; k++) {
-        context.strokeRect(0, (canvas.height * k) / 4, canvas.width, 0);
-        context.strokeRect((canvas.width * k) / 4, 0, 0, canvas.height);
-      }
+      paintAxes();
       line(known(), YOURS, [18, 12]);
       context.fillStyle = YOURS;
       for (const one of known().map(point)) context.fillRect(one[0] - 7, one[1] - 7, 14, 14);
@@ -134,7 +269,9 @@ const KINDS = {
 
     function draw(event) {
       if (closed || (event.type === "pointermove" && last === null)) return;
-      const [x, y] = place(event, canvas);
+      const [across, down] = place(event, canvas);
+      const x = (across * canvas.width - field.left) / field.width;
+      const y = (down * canvas.height - field.top) / field.height;
       const k = clamp(Math.round(x * (HANDLES - 1)), 0, HANDLES - 1);
       const [from, to] = [last ?? k, k];
       for (let j = Math.min(from, to); j <= Math.max(from, to); j++) mine[j] = level(y);
@@ -161,15 +298,6 @@ const KINDS = {
     });
     paint();
 
-    // My curve at x, straight between the points I drew, level beyond them.
-    function yours(answer, x) {
-      const points = answer.map((y, k) => [position(k), y]).filter(([, y]) => y !== null);
-      const after = points.findIndex(([at]) => at >= x);
-      if (after <= 0) return points[after < 0 ? points.length - 1 : 0][1];
-      const [[x0, y0], [x1, y1]] = [points[after - 1], points[after]];
-      return y0 + ((y1 - y0) * (x - x0)) / (x1 - x0);
-    }
-
     return {
       read: () => (known().length > 1 ? [...mine] : null),
       show(answer) {
@@ -181,9 +309,19 @@ const KINDS = {
         paint(true);
       },
       compare(answer) {
-        const away = xs.reduce((sum, x, k) => sum + Math.abs(yours(answer, x) - ys[k]), 0) / xs.length;
-        const near = away <= NEAR * (high - low);
-        return [near, `${near ? "Near: your" : "Your"} curve is off by ${digits(away)} on average (${up})`];
+        const drawn = answer.map((y, k) => [position(k), y]).filter(([, y]) => y !== null);
+        const [mine, truth] = [drawn, xs.map((x, k) => [x, ys[k]])].map((points) => (x) => heightAt(points, x));
+        const parts = compareShape(mine, truth, left, right);
+        const good = parts.filter(({ isRight }) => isRight).length;
+        const shape = parts.map(({ words }) => words).join("; ");
+        const places = Array.from({ length: 4 * HANDLES }, (_, k) => left + ((right - left) * k) / (4 * HANDLES - 1));
+        const away = places.map((x) => mine(x) - truth(x));
+        const mean = away.reduce((sum, one) => sum + one, 0) / away.length;
+        const worst = away.reduce((best, one, k) => (Math.abs(one) > Math.abs(away[best]) ? k : best), 0);
+        const side = (value) => `${digits(Math.abs(value))} too ${value > 0 ? "high" : "low"}`;
+        const near = Math.abs(mean) <= NEAR * (high - low);
+        const where = `${near ? "near" : "off"}, on average ${side(mean)}, most at ${digits(places[worst])}: ${side(away[worst])}`;
+        return [near && good === parts.length, `Shape, ${good} of ${parts.length} parts: ${shape}. Position (${up}): ${where}`];
       },
     };
   },
@@ -265,19 +403,34 @@ const KINDS = {
   },
 };
 
+// The switch that uncovers everything, for those who teach; the browser remembers it.
+function addSwitch(controls) {
+  const line = element(controls, "label", { className: "hdrlab-all" });
+  const box = element(line, "input", { type: "checkbox", checked: allShown() });
+  element(line, "span", { textContent: "Show all answers" });
+  box.addEventListener("change", () => showAll(box.checked));
+  globalThis.addEventListener(SWITCH, ({ detail }) => (box.checked = detail));
+  return line;
+}
+
 async function render({ model, el }) {
   const root = start(el, "predict");
   element(root, "p", { className: "hdrlab-question", textContent: model.get("question") });
   const answers = await KINDS[model.get("kind")](root, model);
   const controls = element(root, "div", { className: "hdrlab-controls" });
-  const say = element(controls, "button", { type: "button", textContent: "Show" });
-  const skip = element(controls, "button", { type: "button", textContent: "Skip", className: "hdrlab-plain" });
+  const check = element(controls, "button", { type: "button", textContent: "Check my answer" });
+  const show = element(controls, "button", { type: "button", textContent: "Show", className: "hdrlab-plain" });
+  const all = addSwitch(controls);
   const note = element(root, "p", { className: "hdrlab-note", role: "status" });
+  const cover = element(root, "p", { className: "hdrlab-cover", textContent: "What follows is covered until you answer or press Show." });
+  cover.hidden = true;
+  let recount = () => {};
 
   function reveal() {
     const answer = model.get("given");
+    const hadFocus = controls.contains(document.activeElement);
     answers.reveal(answer);
-    [say, skip].forEach((button) => button.remove());
+    [check, show, all, cover].forEach((part) => part.remove());
     const told = [`The truth: ${model.get("told") || "what is orange."}`, model.get("because")];
     if (answer !== null) {
       const [near, words] = answers.compare(answer);
@@ -288,6 +441,12 @@ async function render({ model, el }) {
       told.push(`On this page so far: ${good} of ${tally.size} near.`);
     }
     note.textContent = told.filter(Boolean).join(" ");
+    if (hadFocus) {
+      note.tabIndex = -1; // the button is gone: the next Tab leads on from here
+      note.focus();
+    }
+    root.dataset.done = "true";
+    recount();
   }
 
   function keep(answer) {
@@ -297,16 +456,18 @@ async function render({ model, el }) {
     reveal();
   }
 
-  say.addEventListener("click", () => {
+  check.addEventListener("click", () => {
     const answer = answers.read();
-    if (answer === null) note.textContent = "First your answer, or skip it.";
+    if (answer === null) note.textContent = "Give an answer first, or press Show.";
     else keep(answer);
   });
-  skip.addEventListener("click", () => keep(null));
+  show.addEventListener("click", () => keep(null));
   if (model.get("done")) {
     if (model.get("given") !== null) answers.show(model.get("given"));
     reveal();
   }
+  // The widget may stand in the page only after this: JupyterLab attaches it later.
+  requestAnimationFrame(() => (recount = watch(el)));
 }
 
 export default { render };

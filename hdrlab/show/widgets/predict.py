@@ -7,7 +7,8 @@ Readers answer with pointer, finger or keys, or skip the question with one click
 kernel. The answer stays in the notebook's own state and is sent nowhere.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -25,6 +26,11 @@ from hdrlab.show.widgets.scripts import Widget, script
 MAX_PICTURE_SIDE = 960
 SLIDER_STEPS = 100
 MAX_CURVE_POINTS = 257
+MAX_TICKS = 8
+LEVEL_TICKS = (0.0, 64.0, 128.0, 192.0, 255.0)
+# Names of axes that show pixel values of 8 bits; such an axis is marked at black and at white.
+LEVEL_NAME = re.compile(r"\b(?:level|pixel value)\b")
+MAX_LEVEL_SPAN = 400
 
 
 class Prediction(Widget):
@@ -38,6 +44,8 @@ class Prediction(Widget):
     told = traitlets.Unicode().tag(sync=True)  # the true answer in words, for some kinds
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     scale = traitlets.List(traitlets.Float()).tag(sync=True)
+    ticks = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # of x and of y
+    marks = traitlets.List(traitlets.Dict()).tag(sync=True)  # axis, value, name: of a line
     unit = traitlets.Unicode().tag(sync=True)
     pictures = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP
     alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
@@ -139,9 +147,19 @@ def number(
 
 
 def curve(
-    question: str, x: ArrayLike, y: ArrayLike, *, names: tuple[str, str], because: str = ""
+    question: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    names: tuple[str, str],
+    because: str = "",
+    x_marks: Mapping[float, str] | None = None,
+    y_marks: Mapping[float, str] | None = None,
 ) -> Prediction:
     """Return a question whose answer is a drawn curve y over x, on axes with round ends.
+
+    The widget compares the slope of each third, and separately how far the curve is too high or too
+    low. An axis of pixel values has ticks at 0 and 255.
 
     Parameters
     ----------
@@ -151,6 +169,7 @@ def curve(
     names : the names of x and of y, with their units
     because : str
         A sentence that is shown with the answer.
+    x_marks, y_marks : from a value to the name of a line that marks it, optional
 
     Raises
     ------
@@ -176,6 +195,10 @@ def curve(
     low = step * np.floor((y.min() - margin) / step)
     high = step * np.ceil((y.max() + margin) / step)
     x_name, y_name = names
+    marks = []
+    for axis, named in (("x", x_marks), ("y", y_marks)):
+        for value, name in (named or {}).items():
+            marks.append({"axis": axis, "value": float(value), "name": name})
     return ask(
         "curve",
         question,
@@ -184,8 +207,21 @@ def curve(
         because,
         scale=[float(x[0]), float(x[-1]), float(low), float(high)],
         labels=[x_name, y_name],
+        ticks=[_tick_values(x[0], x[-1], x_name), _tick_values(low, high, y_name)],
+        marks=marks,
         alts=[f"Axes: {y_name} over {x_name}"],
     )
+
+
+def _tick_values(low: float, high: float, name: str) -> list[float]:
+    """Return round values on an axis; 0 and 255 are among those of an axis of pixel values."""
+    if LEVEL_NAME.search(name) and 128 < high - low < MAX_LEVEL_SPAN:
+        return [value for value in LEVEL_TICKS if low <= value <= high]
+    power = 10.0 ** np.floor(np.log10((high - low) / MAX_TICKS))
+    step = next(k * power for k in (1, 2, 5, 10, 20) if (high - low) / (k * power) <= MAX_TICKS)
+    first = int(np.ceil(low / step - 1e-9))
+    last = int(np.floor(high / step + 1e-9))
+    return [float(k * step) for k in range(first, last + 1)]
 
 
 def place(

@@ -21,16 +21,53 @@
     return value?.letters === undefined ? value : bytesOf(value);
   };
 
+  // The browser's own memory. Where it keeps nothing for a file, what is remembered holds for this page alone.
+  const recall = (key) => {
+    try {
+      return localStorage.getItem(key);
+    } catch {
+      return null;
+    }
+  };
+  const remember = (key, value) => {
+    try {
+      localStorage.setItem(key, value);
+    } catch {}
+  };
+
+  // The answer to a question survives a reload, as long as it is the same question.
+  const keyOf = (name) => `hdrlab-answer:${name}`;
+  const answerTo = ({ name, asks }) => {
+    const kept = JSON.parse(recall(keyOf(name)) ?? "{}");
+    return kept.question === asks ? kept : {};
+  };
+
+  // A question covers the marked cells after it, up to the next question.
+  const questions = new Map([...document.querySelectorAll(".live[data-asks]")].map((place) => [place, []]));
+  let asking = null;
+  for (const part of document.querySelectorAll(".live[data-asks], .tag_covered, details.covered"))
+    if (questions.has(part)) asking = part;
+    else questions.get(asking)?.push(part);
+  const uncover = (place) => questions.get(place)?.forEach((part) => part.classList.remove("tag_covered", "covered"));
+  for (const place of questions.keys()) if (answerTo(place.dataset).done) uncover(place);
+
   // What a widget's script asks of its model: values, and who is told when one changes.
-  function modelOf(state) {
+  function modelOf(state, place) {
     const listeners = {};
+    const { name, asks } = place.dataset;
+    if (asks) Object.assign(state, answerTo(place.dataset));
     return {
       get: (name) => state[name],
       set: (name, value) => {
         state[name] = value;
         for (const listener of listeners[`change:${name}`] ?? []) listener();
       },
-      save_changes: () => {},
+      save_changes() {
+        if (!asks || !state.done) return;
+        remember(keyOf(name), JSON.stringify({ question: asks, given: state.given, done: true }));
+        uncover(place);
+        again.hidden = false;
+      },
       on: (name, listener) => (listeners[name] ??= []).push(listener),
       off: (name, listener) => (listeners[name] = (listeners[name] ?? []).filter((one) => one !== listener)),
     };
@@ -51,7 +88,9 @@
     await shown?.decode();
     el.toggleAttribute("data-ink", shown?.hasAttribute("data-ink") ?? false); // and so is what is drawn in its place
     const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value, shown)]));
-    await widget.render({ model: modelOf(values), el });
+    await widget.render({ model: modelOf(values, place), el });
+    const notice = el.querySelector(".hdrlab-cover");
+    if (notice) notice.hidden = questions.get(place).length === 0;
     const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
     for (let k = 0; k < 120 && waiting(); k++) await frame();
     place.replaceChildren(el); // the picture that stood here until now is what the canvas begins with
@@ -65,6 +104,7 @@
       for (const place of places.get(name) ?? [])
         open(place, content).catch((error) => {
           place.dataset.state = "failed";
+          uncover(place);
           console.error(error);
         });
     },
@@ -108,28 +148,54 @@
     block.append(button);
   }
 
-  // Cells that only draw are folded; a switch opens all of them, on this page and on the next.
-  function unfoldable(folds) {
-    const button = Object.assign(document.createElement("button"), { className: "codes" });
-    const set = (open) => {
-      folds.forEach((fold) => (fold.open = open));
-      button.textContent = open ? "Fold the code of pictures" : "Show all code";
-      if (open) reach();
-    };
-    let open = false;
-    try {
-      open = localStorage.getItem("hdrlab-code") === "open";
-    } catch {} // where a browser keeps nothing for a file, the switch is of this page alone
-    button.addEventListener("click", () => {
-      set((open = !open));
-      try {
-        localStorage.setItem("hdrlab-code", open ? "open" : "folded");
-      } catch {}
-    });
-    set(open);
-    for (const fold of folds) fold.querySelector("summary").removeAttribute("aria-label"); // its text says more
-    document.querySelector("main h1").after(button);
+  // A button below the title. One that switches remembers how it is, for this page and the next.
+  const buttons = Object.assign(document.createElement("div"), { className: "switches" });
+  function button(textContent, action) {
+    const made = Object.assign(document.createElement("button"), { className: "codes", textContent });
+    made.addEventListener("click", action);
+    buttons.append(made);
+    return made;
   }
+  function switchable(key, [off, on], set) {
+    let open = recall(key) === on.value;
+    const apply = () => {
+      made.textContent = (open ? on : off).label;
+      set(open);
+    };
+    const made = button("", () => {
+      open = !open;
+      remember(key, (open ? on : off).value);
+      apply();
+    });
+    apply();
+  }
+
+  // Cells that only draw are folded; a switch opens all of them.
+  const folds = document.querySelectorAll("main details.hide");
+  if (folds.length) {
+    const labels = [{ label: "Show all code", value: "folded" }, { label: "Fold the code of pictures", value: "open" }];
+    switchable("hdrlab-code", labels, (open) => {
+      folds.forEach((fold) => (fold.open = open));
+      if (open) reach();
+    });
+    for (const fold of folds) fold.querySelector("summary").removeAttribute("aria-label"); // its text says more
+  }
+
+  // Another switch shows what the questions cover.
+  let again = null;
+  if (questions.size) {
+    const labels = [{ label: "Show all answers", value: "covered" }, { label: "Cover the answers", value: "shown" }];
+    switchable("hdrlab-answers", labels, (shown) => {
+      document.documentElement.classList.toggle("answers", shown);
+      if (shown) reach();
+    });
+    again = button("Ask me again", () => {
+      for (const { dataset } of questions.keys()) localStorage.removeItem(keyOf(dataset.name));
+      location.reload();
+    });
+    again.hidden = ![...questions.keys()].some(({ dataset }) => answerTo(dataset).done);
+  }
+  if (buttons.childElementCount) document.querySelector("main h1").after(buttons);
 
   // On paper an answer cannot be opened, so all are; afterwards they are as they were.
   const closed = () => document.querySelectorAll("main details:not(.hide):not([open])");
@@ -139,8 +205,6 @@
 
   if (navigator.clipboard)
     document.querySelectorAll("main .highlight:not(.cell_output *)").forEach(copyable);
-  const folds = document.querySelectorAll("main details.hide");
-  if (folds.length) unfoldable(folds);
   document.querySelectorAll(".live").forEach((place) => near.observe(place));
   reach();
   addEventListener("resize", reach);
