@@ -36,6 +36,9 @@ def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
     """Return Lm = a L / Lav, limited to 1e15."""
     with np.errstate(over="ignore"):
         unit = np.float32(max(log_average(L) / key, SMALLEST_FLOAT32))
+        if np.isinf(unit):  # the light itself is near the largest float32
+            factor = np.float32(key / log_average(L))
+            return _bands.banded(lambda L: np.minimum(L * factor, MAX_SCALED_LUMINANCE), L)
         return _bands.banded(lambda L: np.minimum(L / unit, MAX_SCALED_LUMINANCE), L)
 
 

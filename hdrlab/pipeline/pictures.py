@@ -1,5 +1,6 @@
 """Tone mapping: a radiance map becomes a picture, by `photograph`, a method of `tonemap` or your function."""
 
+import math
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -9,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import colour
+from hdrlab.core import colour, extremes
+from hdrlab.core.arrays import F32, as_radiance
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.pipeline.photograph import choose_settings, measure_scene_ev, photograph
@@ -17,6 +19,13 @@ from hdrlab.pipeline.photograph import choose_settings, measure_scene_ev, photog
 # The default operator, which chooses its settings for the map.
 AUTO = "photograph"
 DEFAULT_SATURATION = 1.0
+# The median of usual maps. Beyond, sums and quotients leave the range of float32.
+MIN_USUAL_MEDIAN = 1e-25
+MAX_USUAL_MEDIAN = 1e25
+MAX_FLOAT32_EXPONENT = 127
+# Operators stretch the range of most pixels. Where at most this fraction has any light, this would
+# be the range of black, which they would show as white.
+MAX_FRACTION_OF_FEW_LIGHTS = 0.5
 
 
 class Developed(NamedTuple):
@@ -90,11 +99,16 @@ def develop_and_describe(
     'reinhard, key 0.36, saturation 1'
     """
     operator = find_operator(tonemap)
+    E, scale = scale_into_range(E)
+    if luminance_of_unit is not None:
+        luminance_of_unit = luminance_of_unit / scale
     settings, default_saturation = resolve_settings(operator, E, knobs, luminance_of_unit)
     if saturation is None:
         saturation = default_saturation
     L = colour.luminance(E)
     Ld = operator(L, **settings)
+    if np.count_nonzero(L) <= MAX_FRACTION_OF_FEW_LIGHTS * L.size:
+        Ld = np.where(L > 0, Ld, np.float32(0))
     picture = colour.render(E, L, Ld, saturation=float(saturation), way=way)
     name = _name_operator(tonemap)
     described = settings | {"saturation": float(saturation)}
@@ -102,6 +116,27 @@ def develop_and_describe(
     if operator is photograph and luminance_of_unit is not None:
         parts.append(f"for a scene of EV {measure_scene_ev(E, luminance_of_unit):z.0f}")
     return Developed(picture, ", ".join(parts))
+
+
+def scale_into_range(E: ArrayLike) -> tuple[F32, float]:
+    """Return a radiance map that operators can compute with in float32, and its factor.
+
+    A map whose median is near the ends of float32 is multiplied by a power of two. The unit of
+    radiance does not matter to an operator, and this changes no digit. Other maps stay as they are.
+
+    Examples
+    --------
+    >>> E, scale = scale_into_range(np.full((2, 3), 3e38))
+    >>> bool(1 <= E[0, 0] < 2), E[0, 0] == np.float32(3e38) * scale
+    (True, True)
+    """
+    E = as_radiance(E)
+    median = extremes.positive_median(E)
+    if median == 0 or MIN_USUAL_MEDIAN <= median <= MAX_USUAL_MEDIAN:
+        return E, 1.0
+    exponent_of_largest = math.frexp(float(E.max()))[1]
+    exponent = min(1 - math.frexp(median)[1], MAX_FLOAT32_EXPONENT - exponent_of_largest)
+    return np.ldexp(E, exponent), 2.0**exponent
 
 
 def _name_operator(tonemap: Method) -> str:

@@ -136,6 +136,8 @@ def tonemap(
         sigma_s = SIGMA_S_FRACTION * max(L.shape)
     if not (1 < contrast < np.inf and 0 <= cut < 0.5):
         raise InputError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
+    if L.max() == 0:
+        return np.zeros_like(L)
     base, detail = layers(logarithm(L), sigma_s=sigma_s, sigma_r=sigma_r)
     low, high = base_range(base, cut=cut)
     return np.minimum(combine(compress(base, low, high, contrast=contrast), detail), 1)
