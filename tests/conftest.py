@@ -7,6 +7,7 @@ import tempfile
 import threading
 from functools import cache
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -35,6 +36,12 @@ def pytest_addoption(parser):
         "--tier",
         choices=[*TIERS, ALL],
         help="run the tests of this tier, see tests/tiers.py (quick; all where files are named)",
+    )
+    parser.addoption(
+        "--shuffle",
+        type=int,
+        metavar="SEED",
+        help="run the tests in a random order: files, and the tests of each, by this seed",
     )
 
 
@@ -71,7 +78,23 @@ def pytest_collection_modifyitems(config, items):
             selected.append(item)
         config.hook.pytest_deselected(items=others)
         items[:] = own
-    items.sort(key=lambda item: start_order(item.nodeid))
+    if config.option.shuffle is None:
+        items.sort(key=lambda item: start_order(item.nodeid))
+    else:
+        items[:] = shuffle(items, config.option.shuffle)
+
+
+def shuffle(items, seed):
+    """Return tests in a random order; those of a file stay together, which share what they made."""
+    random = Random(seed)
+    items_of_file = {}
+    for item in items:
+        items_of_file.setdefault(item.path, []).append(item)
+    files = list(items_of_file.values())
+    random.shuffle(files)
+    for tests in files:
+        random.shuffle(tests)
+    return [item for tests in files for item in tests]
 
 
 class ByNotebook(LoadScopeScheduling):

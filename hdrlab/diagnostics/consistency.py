@@ -10,12 +10,11 @@ the times, the response or the alignment contradict the pixels. The functions he
 many stops, for each frame.
 """
 
-import warnings
-
 import numpy as np
 
 from hdrlab.core import arrays
 from hdrlab.core.arrays import F32, F64, ArrayLike, Flags, Labels, Mask
+from hdrlab.core.silence import ignore_library_warnings
 from hdrlab.errors import InputError
 
 # away from the noise below and the shoulder above
@@ -127,8 +126,7 @@ def measure_deviations(medians: F64) -> F64:
 
     The median over levels and channels; NaN for a frame that shares no level with another.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
+    with ignore_library_warnings():  # a level that no frame shows has no mean
         apart = medians - np.nanmean(_keep_shared(medians), axis=0)
         return np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1)
 
@@ -162,8 +160,7 @@ def measure_spread(medians: F64) -> float:
     >>> measure_spread(np.zeros((3, 1, 256)))  # three frames that agree on every level
     0.0
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
+    with ignore_library_warnings():
         return float(np.nanmedian(np.nanstd(_keep_shared(medians), axis=0)[..., LEVELS]))
 
 

@@ -7,7 +7,6 @@ profile, see `hdrlab.io.profiles`.
 """
 
 import re
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -22,6 +21,7 @@ from PIL import ExifTags, Image
 from hdrlab.core import optional
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif
+from hdrlab.core.silence import ignore_library_warnings
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import codecs, jpegxl, profiles, raw, tiff_pages
 from hdrlab.io.exif_camera import read_camera, read_time_taken
@@ -300,13 +300,11 @@ def _read_pillow_header(path: Path, kind: str, head: bytes) -> PhotoHeader:
     if kind == "AVIF":
         _require_avif(path)
     try:
-        with warnings.catch_warnings():
-            # Pillow warns of large sizes, which check_size judges, and of odd EXIF.
-            warnings.simplefilter("ignore")
-            with Image.open(path, formats=(kind,)) as image:
-                width, height = image.size
-                mode = image.mode
-                info = dict(image.info)
+        # Pillow warns of large sizes, which check_size judges, and of odd EXIF.
+        with ignore_library_warnings(), Image.open(path, formats=(kind,)) as image:
+            width, height = image.size
+            mode = image.mode
+            info = dict(image.info)
         depth = info.get("bit_depth", _read_bit_depth(kind, head))
     except Image.DecompressionBombError as error:
         raise FileFormatError(f"{path}: its header claims too large a size ({error})") from None
@@ -447,8 +445,7 @@ def _read_interop_index(exif: Image.Exif) -> object:
 def _read_exif(load: Callable[[], Image.Exif]) -> ExifFacts:
     """Return what hdrlab uses of EXIF; unreadable EXIF states nothing, the photo may still be good."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with ignore_library_warnings():
             exif = load()
             orientation = exif.get(ExifTags.Base.Orientation, 1)
             exposure = read_exposure(exif)

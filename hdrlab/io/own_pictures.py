@@ -8,7 +8,6 @@ Radiance maps need no mark: no photo has floating-point pixels.
 """
 
 import struct
-import warnings
 import zlib
 from pathlib import Path
 from uuid import UUID
@@ -16,6 +15,7 @@ from uuid import UUID
 from PIL import Image
 from PIL.ExifTags import Base
 
+from hdrlab.core.silence import ignore_library_warnings
 from hdrlab.errors import InputError
 from hdrlab.io import decode
 
@@ -60,11 +60,9 @@ def is_own_picture(path: Path) -> bool:
     if path.suffix.lower() == ".avif":
         return _ends_with(path, _own_box())
     try:
-        with warnings.catch_warnings():
-            # Pillow warns of odd EXIF, which does not matter here.
-            warnings.simplefilter("ignore")
-            with Image.open(path) as image:
-                named = image.info.get("Software") or image.getexif().get(Base.Software)
+        # Pillow warns of odd EXIF, which does not matter here.
+        with ignore_library_warnings(), Image.open(path) as image:
+            named = image.info.get("Software") or image.getexif().get(Base.Software)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return False
     return named == SOFTWARE

@@ -127,7 +127,7 @@ def scale_into_range(E: ArrayLike) -> tuple[F32, float]:
     Examples
     --------
     >>> E, scale = scale_into_range(np.full((2, 3), 3e38))
-    >>> bool(1 <= E[0, 0] < 2), E[0, 0] == np.float32(3e38) * scale
+    >>> bool(1 <= E[0, 0] < 2), bool(E[0, 0] == np.float32(3e38) * scale)
     (True, True)
     """
     E = as_radiance(E)

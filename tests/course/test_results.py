@@ -266,6 +266,32 @@ def test_a_score_never_exceeds_the_maximum_of_a_homework_with_chosen_tasks(earne
     assert results.from_json(results.to_json(result)) == result
 
 
+@pytest.mark.parametrize("value", [None, 7, 1e300, "1e99999999", "9" * 5000, [], {"a": 1}, [3]])
+def test_a_result_with_any_wrong_value_is_read_or_refused_at_once(hostile, value):
+    """What is read can be written again, with its score."""
+
+    def try_reading(whole):
+        try:
+            read = results.from_json(json.dumps(whole).encode())
+        except InputError:
+            return
+        assert np.isfinite(read.score)
+        assert results.to_json(read)
+
+    text = results.to_json(hostile).decode()
+    whole = json.loads(text)
+    for name in whole:
+        try_reading(whole | {name: value})
+    for name in whole["checks"][1]:
+        changed = json.loads(text)
+        changed["checks"][1][name] = value
+        try_reading(changed)
+    for name in ("points", "max_points"):
+        changed = json.loads(text)
+        changed["checks"][1]["exact"][name] = value
+        try_reading(changed)
+
+
 def test_a_result_of_an_earlier_version_counts_all_of_its_points():
     whole = json.loads(results.to_json(chosen((40, 40, 40), None)))
     del whole["at_most"]

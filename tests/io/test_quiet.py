@@ -4,12 +4,17 @@ import base64
 import os
 import subprocess
 import sys
+import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import OpenEXR
 import pytest
+from PIL import Image
 
+from hdrlab.core.silence import ignore_library_warnings
 from hdrlab.io.maps import exr
+from hdrlab.io.photos import read_photo
 
 # its pixels refer to some before the first: the codec warns of it
 DAMAGED_PNG = (
@@ -44,3 +49,17 @@ def test_reading_a_damaged_photo_prints_nothing_of_the_codecs(tmp_path):
     command = [sys.executable, "-c", read, str(tmp_path / "x.png")]
     said = subprocess.run(command, capture_output=True, text=True).stderr
     assert "x.png: it is cut short" in said and "PNG warning" not in said
+
+
+def test_reading_photos_in_threads_leaves_the_filters_of_warnings_as_they_were(tmp_path):
+    path = tmp_path / "x.jpg"
+    Image.fromarray(np.full((8, 8, 3), 90, np.uint8)).save(path)
+    before = list(warnings.filters)
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: read_photo(path), range(400)))
+    assert list(warnings.filters) == before
+
+
+def test_a_warning_of_anybody_else_is_shown_while_photos_are_read():
+    with ignore_library_warnings(), pytest.warns(UserWarning, match="ours"):
+        warnings.warn("ours", stacklevel=1)

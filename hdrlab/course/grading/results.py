@@ -5,6 +5,9 @@ The JSON of one submission with the same checks is always the same, byte for byt
 
 import base64
 import json
+import math
+import re
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
@@ -43,6 +46,8 @@ PUBLIC_CHECK_FIELDS = (
     "said",
     "follows",
 )
+# exact points, as str() writes a Fraction
+EXACT_POINTS = re.compile(r"-?\d{1,30}(/\d{1,30})?", re.ASCII)
 # fields that results of early versions of hdrlab do not have
 EARLY_RESULT = {"at_most": None}
 EARLY_CHECK = {"kind": "", "follows": ""}
@@ -271,7 +276,14 @@ def _result_from_json(written: dict[str, Any]) -> Result:
     values: dict[str, Any] = dict(EARLY_RESULT)
     values |= {field.name: written[field.name] for field in fields(Result) if field.name in written}
     values["checks"] = tuple(_check_from_json(check) for check in written["checks"])
-    values["problems"] = tuple(written["problems"])
+    values["problems"] = _require_texts("problems", written["problems"])
+    for name in ("student", "homework", "title", "tier", "submission", "specification", "seed"):
+        _require_texts(name, [values[name]])
+    for name in ("misconceptions", "versions"):
+        _require_texts(name, values[name].values())
+    at_most = values["at_most"]
+    if at_most is not None and not (isinstance(at_most, int | float) and math.isfinite(at_most)):
+        raise ValueError(f"at_most {at_most!r:.40}")
     return Result(**values)
 
 
@@ -280,8 +292,27 @@ def _check_from_json(written: dict[str, Any]) -> Check:
     for field in fields(Check):
         if field.name in written or field.name not in EARLY_CHECK:
             values[field.name] = written[field.name]
-    values["points"] = Fraction(written["exact"]["points"])
-    values["max_points"] = Fraction(written["exact"]["max_points"])
-    values["hints"] = tuple(written["hints"])
+    values["points"] = _read_points(written["exact"]["points"])
+    values["max_points"] = _read_points(written["exact"]["max_points"])
+    values["hints"] = _require_texts("hints", written["hints"])
     values["drawing"] = drawing_from_json(written["drawing"])
+    for name in ("task", "name", "promise", "outcome", "message", "said", "kind", "follows"):
+        _require_texts(name, [values[name]])
+    if not isinstance(values["hidden"], bool):
+        raise TypeError(f"hidden {values['hidden']!r:.40}")
     return Check(**values)
+
+
+def _read_points(text: object) -> Fraction:
+    """Return points such as "3/2". Fraction itself would compute the digits of "1e99999999"."""
+    if not isinstance(text, str) or not EXACT_POINTS.fullmatch(text):
+        raise ValueError(f"points {text!r:.40}")
+    return Fraction(text)
+
+
+def _require_texts(name: str, values: Collection[object]) -> tuple[str, ...]:
+    """Return values as texts, or raise a TypeError if one of them is something else."""
+    texts = tuple(value for value in values if isinstance(value, str))
+    if len(texts) != len(values) or isinstance(values, str):
+        raise TypeError(f"{name} is no text")
+    return texts

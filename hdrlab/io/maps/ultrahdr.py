@@ -14,7 +14,6 @@ the gains there, to linear light that no gamut has cut, and converts the result 
 import io
 import re
 import struct
-import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from PIL import Image
 
 from hdrlab.core import colour, gainmap, gamut
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_picture, as_radiance, describe
+from hdrlab.core.silence import ignore_library_warnings
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import decode, files, profiles, web
 from hdrlab.io.codecs import decode_jpeg, jpeg_end
@@ -384,7 +384,7 @@ def _decode_gain_map(header: decode.PhotoHeader, jpeg: bytes) -> tuple[F32, byte
     mode = "L" if len(header.shape) == 2 else "RGB"
     # Pillow warns about the EXIF of the gain map, which nobody needs.
     with (
-        warnings.catch_warnings(action="ignore"),
+        ignore_library_warnings(),
         Image.open(io.BytesIO(jpeg), formats=("JPEG",)) as image,
     ):
         min_bytes = image.height * image.width // decode.BEST_COMPRESSION_RATIO
