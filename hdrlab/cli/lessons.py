@@ -101,6 +101,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course import materials
     from hdrlab.course.authoring import execute
+    from hdrlab.course.classroom.jobs import lock_folder
     from hdrlab.course.site import pages
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
@@ -113,15 +114,16 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()
     cache = pages.claim(out)
-    steps = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
-    try:
-        executed = list(common.progress(steps, "notebooks", len(chosen) + 1))
-    except execute.NotebookError as error:
-        raise click.ClickException(str(error)) from None
-    executed.sort(key=lambda notebook: notebook.source.stem)
-    more_pages = {"commands.md": _commands_page()}
-    with elapsed("pages"):
-        made = pages.build(out, executed, handouts, more_pages, address=address)
+    with lock_folder(cache):
+        steps = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
+        try:
+            executed = list(common.progress(steps, "notebooks", len(chosen) + 1))
+        except execute.NotebookError as error:
+            raise click.ClickException(str(error)) from None
+        executed.sort(key=lambda notebook: notebook.source.stem)
+        more_pages = {"commands.md": _commands_page()}
+        with elapsed("pages"):
+            made = pages.build(out, executed, handouts, more_pages, address=address)
     common.echo_notes(made.complaints)
     fresh = sum(notebook.fresh for notebook in executed)
     counts = f"{made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks"

@@ -78,6 +78,10 @@ def bracket(
 ) -> Bracket:
     """Return the Bracket of `images` and `times`, checked and sorted from short to long.
 
+    Photographs take much memory, so no copy is made where none is needed: an array of frames that
+    are sorted already, and a mask, are those of the Bracket, too. Pass a copy if you change yours
+    afterwards.
+
     Raises
     ------
     ValueError

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from hdrlab import cli
+from hdrlab.course.classroom.jobs import lock_folder
 from hdrlab.course.gallery import store, tokens
 from hdrlab.io import photos, radiance
 
@@ -229,3 +230,22 @@ def test_links_never_overwrite_the_gallery(out, tmp_path, monkeypatch):
     before = (tmp_path / "g/gallery.sqlite").read_bytes()
     assert run(f"gallery links g -o {out} --address {ADDRESS}") == 2
     assert (tmp_path / "g/gallery.sqlite").read_bytes() == before
+
+
+def test_a_site_is_built_by_one_process_at_a_time(tmp_path, capsys):
+    (tmp_path / "small.ipynb").write_text("{}")
+    with lock_folder(tmp_path / ".site.cache"):
+        assert run(f"site --out {tmp_path / 'site'} --notebooks {tmp_path / 'small.ipynb'}") == 2
+    error = capsys.readouterr().err
+    assert "another run" in error
+    assert error.count("\n") == 1
+
+
+def test_a_gallery_that_another_process_has_made_meanwhile_is_kept(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(f"gallery init g --closes {CLOSES}") == 0
+    before = contents(tmp_path / "g")
+    monkeypatch.setattr(Path, "exists", lambda path: False)
+    assert run(f"gallery init g --closes {CLOSES} --title Other") == 2
+    monkeypatch.undo()
+    assert contents(tmp_path / "g") == before
