@@ -178,8 +178,7 @@ def measure_rms_spread(medians: F64) -> float:
     >>> measure_spread(medians), round(measure_rms_spread(medians), 3)
     (0.0, 0.577)
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
+    with ignore_library_warnings():
         variances = np.nanvar(_keep_shared(medians), axis=0)[..., WIDE_LEVELS]
         return float(np.sqrt(np.nanmean(variances)))
 
