@@ -133,6 +133,7 @@ pictures.picture(
 # if one more image had the offset $(0, 0)$: a single image that moves 3 rows down loses 3 rows.
 
 # %% task="shift"
+# Return the images moved by `offsets`, and cropped to the rectangle that all of them cover.
 
 # %% [markdown] about="align"
 # ## 8 · Alignment ({points})

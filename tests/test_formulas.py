@@ -46,6 +46,13 @@ UNITS = (
     r"%|stops?|levels?|decades?|bits?|bytes?|electrons?|pixels?|seconds?|s|mm|cd/m²|degrees?|times"
 )
 NUMBER_WITH_UNIT = re.compile(rf"(?<![\w.·$/])\d (?:{UNITS})(?!\w)")
+# and so is a number that is written as a word: "three stops", "half a level"
+NUMBER_WORDS = (
+    "two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|half an?|"
+    "a (?:quarter|third|fifth|tenth|hundredth|fiftieth|thousandth) of an?"
+)
+MEASURES = r"stops?|levels?|decades?|percent|bits|electrons?|degrees?|times|seconds?"
+WORDS_WITH_UNIT = re.compile(rf"\b(?:{NUMBER_WORDS}) (?:{MEASURES})\b")
 
 SHEETS = sorted((NOTEBOOKS[0].parents[1] / "assignments").glob("*.ipynb"))
 
@@ -71,6 +78,11 @@ def table_rows(text):
     """Return the rows of the table of symbols, each a list of its cells."""
     rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
     return rows[2:]
+
+
+def quantities(text):
+    """Return the numbers of one digit, or one word, with their units: {"8 %", "three stops"}."""
+    return set(NUMBER_WITH_UNIT.findall(text)) | set(WORDS_WITH_UNIT.findall(text.lower()))
 
 
 def texts_of(path):
@@ -116,12 +128,12 @@ def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(pat
     known |= set(numbers_from_outside.NUMBERS.get(number, {}))
     known |= {page.stem[:2] for page in NOTEBOOKS}
     before = " ".join([*open_text.split(), *SENTENCES.get(number, {})])
-    known |= set(NUMBER_WITH_UNIT.findall(before))
+    known |= quantities(before)
     said = set()
     for fold in FOLD.findall(text):
         prose = " ".join(INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", fold))).split())
         said |= {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)}
-        said |= set(NUMBER_WITH_UNIT.findall(prose))
+        said |= quantities(prose)
     assert said - known == set()
 
 

@@ -78,6 +78,9 @@ SENTENCES = {
             11.5 < ranges.sensor_range(n.GOOD)[1] < 12
         ),
         "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
+        "With steps of four stops, neighboring photos share three stops": lambda n: (
+            int(np.log2(20_000 / 122)) - 4 == 3
+        ),
     },
     "02": {
         "The partial meter needs 8.2 stops": lambda n: (
@@ -157,6 +160,9 @@ SENTENCES = {
         "becomes a staircase, half a stop off at its steps": lambda n: (
             0.4 < worst(n.solve(smoothness=0.1)[1].g, n.responses.true_g(), 2, 253) < 0.6
         ),
+        "it reaches level 128 in a hundredth of a second": lambda n: (
+            round(float(np.exp(-brightest_spot(n))), 2) == 0.01
+        ),
         "40 if you ask for 43": lambda n: len(n.sampling.by_grid(n.frames, 43)) == 40,
     },
     "05": {
@@ -227,7 +233,10 @@ SENTENCES = {
         "The true order fits with and without noise": lambda n: (
             max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1
         ),
-        "a ratio of 4 comes out 2 % too small": lambda n: (
+        "by a quarter of a stop at level 250, and by more above it": lambda n: (
+            bend_of_table(n, 250) == 1 < bend_of_table(n, 254)
+        ),
+        "With noise of four levels, which is a lot, a ratio of 4 comes out 2 % too small": lambda n: (
             round(100 * (1 - n.estimate(4.0, 4.0)[0].k / 4)) == 2
         ),
         "the table and the polynomial are within a few hundredths of a stop": lambda n: (
@@ -260,6 +269,9 @@ SENTENCES = {
         "The two errors are about equal, with opposite signs": lambda n: all(
             left > 0 > right and abs(left + right) < 0.1 * left
             for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
+        ),
+        "although that curve was right to a tenth of a percent": lambda n: (
+            np.abs(spline_error(n, n.by_motion)).max() < 0.1
         ),
         "The radiance from the curve of the motion blur is far off": lambda n: (
             radiance_off(n, "motion") > 0.1
@@ -354,6 +366,12 @@ SENTENCES = {
         "and six stops below the windows": lambda n: (
             round(n.scenes.decades(n.real.E) / np.log10(2)) == 6
         ),
+        "the well holds four times as many electrons where the hat has its largest weight": lambda n: (
+            round(float(np.exp(n.true_g[255])) / 2) == 4
+        ),
+        "and up to four times where read noise is larger": lambda n: np.allclose(
+            n.inside.times[1:] / n.inside.times[:-1], 4
+        ),
         "a pixel reaches level 128 at an eighth of the light that fills its well": lambda n: (
             round(float(np.exp(n.true_g[255]))) == 8
         ),
@@ -411,6 +429,9 @@ SENTENCES = {
         "the mean of both sides, 50.5": lambda n: np.mean([1, 100]) == 50.5,
         "as if its neighborhood were 50 times as bright": lambda n: int(50.5) == 50,
         "the darker half of the pixels shares a handful": lambda n: n.darker_levels("linear") <= 5,
+        "With $k = 8$ there is room for three stops above the neighborhood": lambda n: (
+            np.log2(8) == 3
+        ),
         "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
     },
     "16": {
@@ -467,6 +488,12 @@ SENTENCES = {
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
         "a ramp of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
+        "A pattern of 0.1 nats becomes three times as strong with $\\alpha = 0.5$": lambda n: (
+            round((0.92 * 0.1) ** 0.5 / 0.1) == 3
+        ),
+        "with the power alone, it would become twelve times as strong": lambda n: (
+            round((0.92 * 0.005 * np.sqrt(2 / np.pi)) ** 0.5 / 0.005) == 12
+        ),
         "Noise of 0.005 nats becomes not quite twice as strong": lambda n: (
             1.7 < noise_grows(n, 0.005) < 2
         ),
@@ -663,6 +690,16 @@ def bits_without_bands(n, encoding):
 def off_below(g, truth, level):
     """Return by how many stops a response is off at least, at the levels below one, on page 6."""
     return np.abs(np.ravel(g) - truth)[2:level].min() / np.log(2)
+
+
+def brightest_spot(n):
+    """Return the ln E of the brightest of the three spots of page 4."""
+    return n.fast.gsolve(n.sampling.by_rank(n.frames, 3), n.B, 30, n.weights.hat()).lE.max()
+
+
+def bend_of_table(n, level):
+    """Return by how many quarters of a stop page 7's table from pixels is off at a level."""
+    return round(4 * worst(n.tables(1.0)[0], n.cubic, level, level))
 
 
 def photos_that_measure(n):
