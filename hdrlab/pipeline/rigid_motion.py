@@ -123,7 +123,12 @@ class Fit:
             return self.similarity >= MIN_SIMILARITY_WITHOUT_BLOCKS
         if self.similarity < MIN_SIMILARITY:
             return False
-        return float(np.median(self.shifts)) <= allowed_shift(self.scale)
+        return self.median_shift <= allowed_shift(self.scale)
+
+    @property
+    def median_shift(self) -> float:
+        """Median of `shifts`; infinite without enough blocks."""
+        return float(np.median(self.shifts)) if len(self.shifts) >= MIN_BLOCKS else np.inf
 
     @property
     def motion(self) -> F64:
