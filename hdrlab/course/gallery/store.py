@@ -211,8 +211,14 @@ def _open(path: Path) -> sqlite3.Connection:
     db = sqlite3.connect(
         path, timeout=LOCK_TIMEOUT_SECONDS, isolation_level=None, check_same_thread=False
     )
-    for pragma in PRAGMAS:
-        db.execute(f"PRAGMA {pragma}")
+    try:
+        for pragma in PRAGMAS:
+            db.execute(f"PRAGMA {pragma}")
+        # a file that is no database, or is damaged, is found here
+        db.execute("PRAGMA user_version")
+    except BaseException:
+        db.close()
+        raise
     return db
 
 

@@ -270,7 +270,8 @@ def save_parts(path: str | Path, parts: Sequence[scanlines.NewPart]) -> None:
         try:
             file.write(str(name))
         except RuntimeError as error:
-            raise OSError(errno.EIO, " ".join(str(error).split()), str(path)) from None
+            reason = " ".join(str(error).split())
+            raise OSError(errno.EIO, f"{reason} (the disk may be full)", str(path)) from None
 
 
 def _make_part(part: scanlines.NewPart) -> Any:
