@@ -119,8 +119,8 @@ taken = camera.shoot(
 g = responses.true_g("linear", 2**16)
 X = np.exp(g - g[-1])[taken.images]
 E, s = inverse_variance_merge(X, np.full(X.shape, 1 / 65535), X < 0.98, t, full, R)
-within = np.abs(E - green) < 1.96 * s
-print(f"{np.mean(within[s < np.inf]):.1%} of the measured pixels lie within E ± 1.96 s")
+covered = np.abs(E - green) < 1.96 * s
+print(f"{np.mean(covered[s < np.inf]):.1%} of the measured pixels lie within E ± 1.96 s")
 pictures.radiance(s / E, alt="s / E in false color: it is largest in the shadows")
 
 # %% [markdown] about="guided"

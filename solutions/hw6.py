@@ -4,10 +4,11 @@
 # Due {due}. {total} points. {late}
 #
 # The tasks cover methods that no other homework contains: the scales of the color channels, a
-# power-law response from repeated comparison, registration by correlation, adding light along a
-# simulated response, veiling glare, assorted pixels, coded exposure, the space of response curves,
-# joining blends of light, the clipped histogram of the Detail Brush, contrast, focus and skin as
-# measures of what matters in a photo, and the circle without vignetting. You write the core of
+# power-law response from repeated comparison, registration by correlation and simplex, adding light
+# along a simulated response, veiling glare, assorted pixels, coded exposure, several sensors behind
+# one lens, video, the space of response curves, joining blends of light, finding a chart, the Detail
+# Brush, curves and operators, contrast, focus and skin as measures of what matters in a photo, and
+# the circle without vignetting. You write the core of
 # each.
 #
 # {choice}
@@ -18,9 +19,11 @@
 # | $T$ | pixel value in the dark photo for each one in the bright photo | (n,) |
 # | $R$, $\gamma$ | exposure ratio of two photos, below 1; exponent of a power-law response | |
 # | $X$, $c$ | two photos on one scale; their correlation | (2, h, w); (2h - 1, 2w - 1) |
+# | $d_y$, $d_x$, $r\varphi$ | motion of a photo down, right, and by turning, in pixels | (3,) |
 # | $q$, $\Delta$ | light, and light to add, in stops | |
 # | $F$, $G$, $E$; $s$ | radiance with glare, scattered light, clean radiance; share of glare | (H, W) |
 # | $Z$, $e$, $w$ | pixel values, transparency of the filter of each pixel, weight | (H, W) |
+# | $B$, $D$; $u$, $P$ | radiance from two sensors; fraction of full pixels, prediction | (H, W) |
 # | $x$, $h$, $y$ | object, shutter, photo of the moving object | (n,), (m,), (n + m - 1,) |
 # | $H$, $\mathrm{sd}$ | principal components of response curves, and the spread along each | (K, n), (K,) |
 # | $V$, $Q$ | powers of the brightness; quadratic form of the error | (l, d + 1), (d + 1, d + 1) |
@@ -216,8 +219,55 @@ pictures.picture(
 # %% about="correlation peaks"
 print("shifts (down, right) of the three highest peaks:", np.asarray(peaks(c, 3)).tolist())
 
+# %% [markdown] about="refine"
+# ## 6 · From a peak to the motion: the simplex ({points})
+#
+# A peak of the correlation is a whole number of pixels, and the camera also turned. So Cerman and
+# Hlavac (section 6.2) search on from the peak. The search moves a simplex: a triangle in two
+# dimensions, and four points in three.
+#
+# The motion of the moving photo is $(d_y, d_x, r\varphi)$, three numbers in pixels. The photo is
+# turned by the angle $\varphi$ about its middle, $x_m = \frac{w - 1}{2}$ and $y_m = \frac{h -
+# 1}{2}$, clockwise as seen, and then shifted. Its pixel $(x, y)$ gets to the place
+#
+# $$x' = x_m + (x - x_m) \cos\varphi - (y - y_m) \sin\varphi + d_x, \qquad
+#   y' = y_m + (x - x_m) \sin\varphi + (y - y_m) \cos\varphi + d_y$$
+#
+# of the fixed photo; $r = \frac{1}{2}\sqrt{h^2 + w^2}$ is half of the diagonal. For a pixel of the
+# fixed photo, $a$ is its value there, and $b$ is the value of the moving photo at the place that
+# gets to this pixel, by linear interpolation. The error of a motion is the mean, over all pixels
+# that have an $a$ and a $b$, of
+#
+# $$d^2 = \Bigl( \frac{a - b}{(a + b) / 2} \Bigr)^2.$$
+#
+# A pixel has no $a$ or $b$ if it is discarded (NaN), or if the place lies outside of the moving
+# photo. Return the motion for which the error has its minimum near `start`.
+#
+# Nelder and Mead's method needs no derivatives: `scipy.optimize.minimize(..., method="Nelder-Mead",
+# options={"initial_simplex": ...})`. Begin with the points `start`, and `start` with `reach` added
+# to one of its three numbers; scipy's own first simplex would be too small. Other methods of search
+# are fine, too. The checks accept an error of 0.1 pixels, and `start` is at most two pixels from the
+# minimum.
+#
+# *Example*: the photos are equal, except that the content of the moving one lies three pixels
+# farther left. Then the motion is (0, 3, 0).
+#
+# (`X` (2, h, w) contains the fixed photo `X[0]` and the moving one `X[1]`, float32, with values
+# above 0 or NaN. `start` is (3,). Return (3,).)
+
+# %% task="refine"
+# Return the motion (dy, dx, r phi) of X[1] that fits X[0] best, near `start`.
+
+# %% about="refine"
+shot_light = L.astype(np.float32)
+two_shots = np.stack([shot_light[10:90, 10:110], shot_light[14:94, 4:104]])
+print(
+    "the motion, found from two pixels away:",
+    np.round(refine(two_shots, np.array([3.0, -4, 0])), 2),
+)
+
 # %% [markdown] about="offset"
-# ## 6 · How much light is missing? ({points})
+# ## 7 · How much light is missing? ({points})
 #
 # Battiato and others (2008, section 1.3.3) correct a photo that is too dark or too bright. They
 # simulate the response of a camera by a curve. A pixel that receives the light $q$, in stops, gets
@@ -244,7 +294,7 @@ print("shifts (down, right) of the three highest peaks:", np.asarray(peaks(c, 3)
 # Return the light to add, in stops, so that the average value becomes the target; from -8 to 8.
 
 # %% [markdown] about="table"
-# ## 7 · A look-up table that adds light ({points})
+# ## 8 · A look-up table that adds light ({points})
 #
 # To add $\Delta$ = `delta` stops of light, every pixel moves along the same curve $f$ (equation
 # 1.11 of the same paper):
@@ -274,7 +324,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="lowest_ratio"
-# ## 8 · How much light does the lens scatter? ({points})
+# ## 9 · How much light does the lens scatter? ({points})
 #
 # A lens scatters a share $s$ of the light all over the image: *veiling glare*. If $E$ is the
 # radiance, and $G$ is the light that arrives at a pixel if all light of the scene is scattered, a
@@ -302,7 +352,7 @@ pictures.picture(
 # Return the share of glare from the lowest ratios F / G, and the agreement q3 / q1.
 
 # %% [markdown] about="subtract_glare"
-# ## 9 · Subtract the glare ({points})
+# ## 10 · Subtract the glare ({points})
 #
 # Now solve $F = (1 - s)\, E + s\, G$ for $E$, with $s$ = `share`, a number from 0 to less than 1.
 # Noise can make $F - s\, G$ smaller than it is, or even negative. Light is not negative, and 0
@@ -329,7 +379,7 @@ clear = subtract_glare(veiled, scattered, share)
 pictures.radiance(np.hstack([veiled, clear]), alt="The room with and without veiling glare")
 
 # %% [markdown] about="reconstruct"
-# ## 10 · Assorted pixels: a bracket in one photo ({points})
+# ## 11 · Assorted pixels: a bracket in one photo ({points})
 #
 # In front of each pixel of the sensor is a filter of transparency $e$, from 1 down to 1/64 ([Nayar
 # and Mitsunaga, 2000](https://doi.org/10.1109/CVPR.2000.855857)). Neighbors have different
@@ -368,7 +418,7 @@ pictures.radiance(
 )
 
 # %% [markdown] about="smear"
-# ## 11 · Coded exposure: what the sensor sees ({points})
+# ## 12 · Coded exposure: what the sensor sees ({points})
 #
 # An object moves while the shutter is open. [Raskar, Agrawal and Tumblin
 # (2006)](https://doi.org/10.1145/1179352.1141957) let the shutter flutter: it opens and closes in
@@ -389,7 +439,7 @@ pictures.radiance(
 # Return the photo y (n + m - 1, ...) of an object x that moves while the shutter h flutters.
 
 # %% [markdown] about="sharpen"
-# ## 12 · Make it sharp again ({points})
+# ## 13 · Make it sharp again ({points})
 #
 # The equation above is linear: $y = A x$, where the matrix $A$ (n + m - 1, n) has $h / m$ in each
 # column, one row lower than in the column before. It has more rows than columns, so with noise
@@ -419,8 +469,82 @@ pictures.picture(
     alt="The object, its smooth photo, and the sharpened photo, which follows the object closely",
 )
 
+# %% [markdown] about="join_sensors"
+# ## 14 · One lens, several sensors ({points})
+#
+# Behind one lens, beam splitters send most of the light to one sensor, and little to another
+# ([Tocci and others, 2011](https://doi.org/10.1145/2010324.1964936), section 5). `B` and `D` (H, W)
+# are the radiance from the brighter and the darker sensor. `full` (H, W) is True where a pixel of
+# the brighter sensor is full; its `B` is too low. The darker sensor is never full, but noisier. So
+# use it only where the other one fails, and without a visible seam.
+#
+# The *window* of a pixel is the 5 × 5 pixels around it, itself included. Beyond the border of the
+# image, the nearest pixel of the image stands in. $u$ is the fraction of the pixels in the window
+# that are full. A full pixel is predicted by
+#
+# $$P = D\, \frac{\sum B}{\sum D},$$
+#
+# where both sums are over the pixels of the window that are not full. There are four cases:
+#
+# | case | the pixel | its window | $E$ |
+# |---|---|---|---|
+# | 1 | is not full | no pixel is full | $B$ |
+# | 2 | is not full | some pixels are full | $(1 - u)\, B + u\, D$ |
+# | 3 | is full | some pixels are not full | $(1 - u)\, P + u\, D$ |
+# | 4 | is full | all pixels are full | $D$ |
+#
+# Filters such as `scipy.ndimage.uniform_filter` make small rounding errors: do not compare $u$ with
+# exactly 0 or 1.
+#
+# *Example*: all pixels have $B = 10$ and $D = 9$, except for one, which is full and has $D = 18$. It
+# has $u = 1/25$ and $P = 18 \cdot 10 / 9 = 20$, so $E = 0.96 \cdot 20 + 0.04 \cdot 18 = 19.92$. Its
+# neighbors have $E = 0.96 \cdot 10 + 0.04 \cdot 9 = 9.96$.
+#
+# (`B` and `D` are above 0, `full` is bool. Return the pair $E$ (H, W) and the cases (H, W), 1 to 4,
+# of any type of numbers.)
+
+# %% task="join_sensors"
+# Return the radiance E (H, W) from two sensors, and the case (H, W), 1 to 4, of each pixel.
+
+# %% about="join_sensors"
+bright_sensor = np.minimum(L / np.quantile(L, 0.95), 1)
+sensor_noise = np.random.default_rng(2).normal(0, 0.02, L.shape)
+dark_sensor = np.maximum(L / np.quantile(L, 0.95) + sensor_noise, 1e-3)
+E, cases = join_sensors(bright_sensor, dark_sensor, bright_sensor == 1)
+print("pixels of the cases 1 to 4:", np.bincount(np.asarray(cases, int).ravel(), minlength=5)[1:])
+pictures.radiance(E, alt="The radiance of the room from two sensors")
+
+# %% [markdown] about="consistency"
+# ## 15 · Does a neighboring frame agree? ({points})
+#
+# A video alternates between short and long exposures ([Kang and others,
+# 2003](https://doi.org/10.1145/882262.882270)). A frame borrows radiance from its neighbors, which
+# are first moved along the estimated motion. Where this motion is wrong, the neighbor contradicts
+# the frame, and must get no weight. `v` and `v_` (H, W, C) are the values of the frame and of its
+# neighbor at the same exposure, from 0 to 1, in $C$ channels. Let
+#
+# $$d = \min\Bigl( \frac{\max_C |v - v\_|}{16/255},\; 1 \Bigr), \qquad f = 2 d^3 - 3 d^2 + 1,$$
+#
+# where the maximum is over the channels.
+#
+# *Example*: the channels of a pixel differ by 8/255, 4/255 and 0. Then $d = \frac{1}{2}$ and $f =
+# \frac{1}{2}$.
+#
+# ($C$ is 1 or 3. Return $f$ (H, W, 1).)
+
+# %% task="consistency"
+# Return f (H, W, 1), the weight of a neighboring frame v_ of the frame v: 1 where both agree.
+
+# %% about="consistency"
+one_frame = np.full((1, 5, 3), 0.5)
+next_frame = one_frame + np.array([0, 4, 8, 12, 20])[:, None] / 255
+print(
+    "weights for differences of 0, 4, 8, 12 and 20 levels:",
+    np.ravel(consistency(one_frame, next_frame)),
+)
+
 # %% [markdown] about="fit_space"
-# ## 13 · The space of response curves ({points})
+# ## 16 · The space of response curves ({points})
 #
 # The responses of real cameras are alike. [Grossberg and Nayar
 # (2003)](https://doi.org/10.1109/CVPR.2003.1211522) describe them by a few numbers. `curves` (C,
@@ -460,7 +584,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="solve_map"
-# ## 14 · A curve from a few samples: the prior ({points})
+# ## 17 · A curve from a few samples: the prior ({points})
 #
 # A few samples of a response give equations $A c = b$ for its coefficients, often fewer than there
 # are unknowns. But not all coefficients are equally plausible: over many cameras, $c_k$ has the
@@ -493,7 +617,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="quadratic_form"
-# ## 15 · Join blends of light ({points})
+# ## 18 · Join blends of light ({points})
 #
 # A *blend* is a series of samples of the response: while the exposure rises evenly, in known
 # relative steps $I_{ij}$, the camera measures the brightnesses $M_{ij}$ (Wilburn, Xu and
@@ -528,8 +652,41 @@ Q = quadratic_form(two_blends, 3)
 for name, a in {"M": [0, 1, 0, 0], "M^2": [0, 0, 1, 0], "M^3": [0, 0, 0, 1]}.items():
     print(f"g = {name}: E = {np.array(a) @ Q @ np.array(a):.6f}")
 
+# %% [markdown] about="homography"
+# ## 19 · Where are the patches of the chart? ({points})
+#
+# A chart with known colors calibrates a camera. In a photo, its four corners form any convex
+# quadrilateral, and a homography says where every point of the chart lies: a matrix $H$ with
+#
+# $$\begin{pmatrix} x\, s \\ y\, s \\ s \end{pmatrix} =
+#   H \begin{pmatrix} u \\ v \\ 1 \end{pmatrix}$$
+#
+# for a point $(u, v)$ of the chart, the place $(x, y)$ in the photo, and some number $s$, which may
+# be another one for each point. Return the $H$ that takes the four points `source` to the four
+# points `target`, in their order. $H$ is unknown up to a factor, so let the last element be 1,
+# $H_{33} = 1$. The other eight numbers follow from a linear system with two equations for each
+# point.
+#
+# *Example*: the corners (0, 0), (1, 0), (1, 1), (0, 1) go to (5, 5), (7, 5), (7, 7), (5, 7). $H$ has
+# the rows (2, 0, 5), (0, 2, 5) and (0, 0, 1).
+#
+# (`source` and `target` are (4, 2), with $(x, y)$ in each row: the column first. In the checks, both
+# are the corners of a convex quadrilateral, and the factor can be chosen. Return (3, 3).)
+
+# %% task="homography"
+# Return H (3, 3), with H[2, 2] = 1, that takes the four points source (4, 2) to target (4, 2).
+
+# %% about="homography"
+H_chart = np.asarray(
+    homography([[0, 0], [6, 0], [6, 4], [0, 4]], [[20, 30], [95, 22], [90, 80], [25, 70]])
+)
+middle_of_a_patch = H_chart @ [2.5, 1.5, 1]
+print(
+    "the middle of the third patch of row 2 lies at", middle_of_a_patch[:2] / middle_of_a_patch[2]
+)
+
 # %% [markdown] about="clip_histogram"
-# ## 16 · A clipped histogram for the Detail Brush ({points})
+# ## 20 · A clipped histogram for the Detail Brush ({points})
 #
 # The Detail Brush ([Mitsunaga and Nayar, 1999](https://doi.org/10.1109/CVPR.1999.786966), section
 # 7) equalizes the histogram of a small window, so that it shows detail. On a flat wall, full
@@ -563,8 +720,79 @@ pictures.picture(
     alt="A histogram with high bins, and the clipped one, whose low bins are raised",
 )
 
+# %% [markdown] about="equalise"
+# ## 21 · Equalize a window ({points})
+#
+# Now put the Detail Brush together. `L` (H, W) is the luminance of a window of at most 10,000
+# pixels, above 0, in any linear unit. Return its display luminance (H, W), from 0 to 1:
+#
+# - `low` and `high` are the second smallest and the second largest value of `L`, because one pixel
+#   may be defective. If `high` < 2 `low`, the window is flat. Then divide `low` and multiply `high`
+#   by the same factor, so that `high` becomes 2 `low`.
+# - Divide $\ln L$ from $\ln$ `low` to $\ln$ `high` into `bins` bins of equal width. The histogram is
+#   the fraction of the pixels in each bin. A pixel beyond an end belongs to the bin at that end.
+# - Clip the histogram at `limit`, as in the task above.
+# - $P$ at an edge of the bins is the sum of all bins below it: 0 at $\ln$ `low`, and 1 at $\ln$
+#   `high`. For a pixel between two edges, interpolate.
+# - $P$ is the code of a display. Its display luminance is that of sRGB: $P / 12.92$ if $P \le
+#   0.04045$, and $((P + 0.055) / 1.055)^{2.4}$ otherwise.
+#
+# The checks accept an error of 0.025, so it does not matter how a pixel at the edge of a bin counts.
+#
+# *Example*: half of the pixels have the luminance 1, the others 100, and `bins` = 2, `limit` = 2.
+# Both bins are 0.5, which is below $t = 1$. At the edge between them, $P = 0.5$ and the display
+# luminance is 0.214.
+#
+# (You may call your `clip_histogram`. In the checks, $\text{limit} / \text{bins} \le 1$.)
+
+# %% task="equalise"
+# Return the display luminance (H, W) of a window by equalizing its clipped histogram of ln L.
+
+# %% about="clip_histogram equalise"
+brush_window = L[30:80, 90:150]
+equalised = [equalise(brush_window, bins=256, limit=limit) for limit in (1.0, 4.0, 60.0)]
+pictures.picture(
+    colour.to_8bit(np.hstack(equalised)),
+    alt="A window of the room, with more and more contrast from left to right",
+)
+
+# %% [markdown] about="spread"
+# ## 22 · A curve or an operator? ({points})
+#
+# A tone-mapping curve gives equal luminances equal display values. An operator that looks at the
+# neighborhood does not. To see how much, plot the display luminance over the luminance: a curve
+# draws a line, an operator a band.
+#
+# Sort the pixels by their luminance $L$. Divide them into `bins` classes of equally many pixels, the
+# darkest first. For each class, return three numbers: a luminance of the class, the smallest and the
+# largest display luminance $L_d$ of its pixels. The luminance may be that of any of its pixels, such
+# as the one in the middle, or a mean.
+#
+# *Example*: $L = (4, 1, 3, 2)$, $L_d = (0.9, 0.1, 0.5, 0.2)$ and 2 classes. The first class has the
+# luminances 1 and 2, and $L_d$ from 0.1 to 0.2. The second one has 3 and 4, and $L_d$ from 0.5 to
+# 0.9.
+#
+# (`L` and `Ld` are (H, W); in the checks, all luminances differ, and `bins` divides the number of
+# pixels. Return three arrays (`bins`,): luminance, minimum, maximum.)
+
+# %% task="spread"
+# Return luminance, smallest Ld and largest Ld (bins,) of classes of equally many pixels.
+
+# %% about="spread"
+curve_Ld = L / (1 + L)
+drawn_band = spread(L, curve_Ld * (1 + 0.2 * np.sin(np.indices(L.shape)[0] / 9)), bins=48)
+pictures.picture(
+    curves.lines(
+        np.log10(drawn_band[0]),
+        {"smallest": drawn_band[1], "largest": drawn_band[2]},
+        across="log10 of the luminance",
+        up="display luminance",
+    ),
+    alt="A band: the smallest and the largest display luminance of each class of luminance",
+)
+
 # %% [markdown] about="contrast"
-# ## 17 · The contrast of a block ({points})
+# ## 23 · The contrast of a block ({points})
 #
 # Which parts of a photo matter for its exposure? Battiato and others (2008, section 1.3.1) divide
 # it into blocks, and measure contrast and focus of each. For the contrast, $I[i]$ is the number of
@@ -589,7 +817,7 @@ pictures.picture(
 # Return D, the mean distance of the smoothed histogram of a block from its mean.
 
 # %% [markdown] about="focus"
-# ## 18 · The focus of a block ({points})
+# ## 24 · The focus of a block ({points})
 #
 # The Laplacian of a pixel is the sum of its four neighbors (above, below, left, right), minus four
 # times the pixel. At the edge of the block, the pixel itself stands in for a neighbor that is
@@ -615,7 +843,7 @@ for name, measure in measured.items():
     print(np.array([[measure(block) for block in row] for row in blocks]).round().astype(int))
 
 # %% [markdown] about="find_by_locus"
-# ## 19 · Skin by its color ({points})
+# ## 25 · Skin by its color ({points})
 #
 # If there are faces in a photo, they decide its exposure. From a candle to the sky, skin has
 # colors in a narrow region, the *skin locus* (Soriano and others, 2003). With
@@ -649,8 +877,43 @@ print(
     np.asarray(find_by_locus(colors)).tolist(),
 )
 
+# %% [markdown] about="distance"
+# ## 26 · Skin by its distance from skin ({points})
+#
+# The skin locus says yes or no. A Gaussian says how far a color is from the colors of skin (Battiato
+# and others, 2008, equation 1.8). The chrominance of a pixel is $x = (C_b, C_r)$. With
+#
+# $$Y = 0.299\, R + 0.587\, G + 0.114\, B$$
+#
+# it is, brought to the brightness 128 so that skin in the shade is skin, too,
+#
+# $$C_b = \frac{128}{\max(Y, 1)} (-0.168736\, R - 0.331264\, G + 0.5\, B), \qquad
+#   C_r = \frac{128}{\max(Y, 1)} (0.5\, R - 0.418688\, G - 0.081312\, B).$$
+#
+# The skin of a training set has the mean $\mu$ (2,) and the covariance $S$ (2, 2) of $(C_b, C_r)$.
+# Return the Mahalanobis distance of each pixel,
+#
+# $$d = \sqrt{(x - \mu)^\top S^{-1} (x - \mu)}.$$
+#
+# *Example*: $(128, 128, 128)$ has $x = (0, 0)$. For $\mu = (-6, 0)$ and $S$ with 9 and 16 on its
+# diagonal and 0 beside it, $d = 6/3 = 2$.
+#
+# (`Z` contains pixel values from 0 to 255, of type float, (N, 3) or (H, W, 3). `skin` is the pair
+# ($\mu$, $S$); the checks always pass it. Return (N,) or (H, W).)
+
+# %% task="distance"
+# Return the Mahalanobis distance d of each pixel from skin, which is the pair (mu, S).
+
+# %% about="distance"
+skin_gaussian = (np.array([-17.0, 24.0]), np.array([[20.0, -25], [-25, 49]]))
+swatches = np.array([[224.0, 172, 105], [115, 82, 68], [194, 150, 130], [60, 90, 200]])
+print(
+    "light skin, dark skin, skin of a color chart, blue:",
+    np.round(distance(swatches, skin_gaussian), 1).tolist(),
+)
+
 # %% [markdown] about="circle"
-# ## 20 · The circle without vignetting ({points})
+# ## 27 · The circle without vignetting ({points})
 #
 # A lens darkens the corners of an image, more so at a wide aperture. If two photos have different
 # apertures, this is no difference of exposure. [Mitsunaga and Nayar (1999, section
@@ -682,8 +945,8 @@ print(
 
 # %% about="circle"
 y, x = np.indices(L.shape)
-distance = np.hypot(y - 59.5, x - 79.5)
-darkening = np.clip(1.2 - distance / 250, 0, 1)
+from_middle = np.hypot(y - 59.5, x - 79.5)
+darkening = np.clip(1.2 - from_middle / 250, 0, 1)
 steady = np.clip(0.3 * L / np.quantile(L, 0.8), 0.01, 0.6)
 small = np.rint(255 * steady ** (1 / 2.2)).astype(np.uint8)
 wide = np.rint(255 * (1.5 * steady * darkening) ** (1 / 2.2)).astype(np.uint8)

@@ -117,6 +117,12 @@ def descend(
     return path, np.array([errors[tuple(unknowns)] for unknowns in path])
 
 
+def refine(X: F32, start: ArrayLike, *, reach: float = _FINER_SIMPLEX_PIXELS) -> F64:
+    """Return the motion (dy, dx, r phi) with the smallest error near `start`, by a simplex."""
+    path, _ = descend(X, start, reach)
+    return path[-1]
+
+
 def search(pyramid: list[F32]) -> Iterator[State]:
     """Yield a State per level: peaks of the correlation at the coarsest, then a simplex at each."""
     shifts = peaks(correlation(pyramid[-1]), _MAX_PEAKS)

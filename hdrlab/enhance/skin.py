@@ -83,10 +83,14 @@ def fit(Z: ArrayLike) -> Skin:
     return Skin(x.mean(axis=0), S)
 
 
-def distance(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
-    """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8]."""
-    difference = chrominance(Z) - skin.mu
-    inverse = np.linalg.inv(skin.S)
+def distance(Z: ArrayLike, skin: Skin | None = None) -> F64:
+    """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8].
+
+    Without `skin`, the Gaussian is `DEFAULT`.
+    """
+    mu, S = DEFAULT if skin is None else skin
+    difference = chrominance(Z) - mu
+    inverse = np.linalg.inv(S)
     return np.sqrt(np.einsum("...i,ij,...j->...", difference, inverse, difference))
 
 

@@ -127,6 +127,13 @@ def test_the_expected_number_of_parts_is_required():
     assert message.startswith("w: ") and "2 parts" in message and "array" in message
 
 
+def test_an_array_with_a_row_for_each_part_is_accepted_with_a_note(notes):
+    first, second = parts(np.array([[1.0, 2], [3, 4]]), 2, what="mean and sd")
+    assert first.tolist() == [1, 2] and second.tolist() == [3, 4]
+    assert len(notes) == 1 and "mean and sd" in notes[0]
+    refused(parts, np.array(2.0), 2)
+
+
 def test_at_least_one_state_is_required():
     assert states((1, 2)) == [1, 2] and states([0]) == [0]
     for came, named in (

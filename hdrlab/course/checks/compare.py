@@ -100,7 +100,13 @@ def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> 
 
 
 def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
-    """Return the first `count` parts of an answer in several parts, or raise AnswerMismatch."""
+    """Return the first `count` parts of an answer in several parts, or raise AnswerMismatch.
+
+    One array with `count` rows is taken for its rows.
+    """
+    if isinstance(came, np.ndarray) and came.ndim > 0 and len(came) == count:
+        notes.append(f"{what}: an array of shape {came.shape} was taken for {count} parts")
+        came = tuple(came)
     has_parts = isinstance(came, tuple | list) and len(came) >= count
     require(has_parts, f"{what}: expected {count} parts, got {_describe(came)}")
     return tuple(came[:count])
