@@ -64,7 +64,8 @@ pictures.radiance(room, alt="The radiance of the room in false color")
 # $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + \text{adaptation}}, \qquad\text{at most } 1.$$
 #
 # If the adaptation is $L_m$ itself, this is the global operator, and everything brighter than
-# $L_{white}$ (`white`) becomes white. `white` may be infinite; then the bracket equals 1.
+# $L_{white}$ (`white`) becomes white. In a brighter neighborhood, it may stay below 1. `white` may
+# be infinite; then the bracket equals 1.
 
 # %% task="display"
 # Return Ld = Lm (1 + Lm / white^2) / (1 + adaptation), clipped at 1.

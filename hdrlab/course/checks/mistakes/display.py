@@ -29,3 +29,13 @@ def not_clipped(Lm, adaptation, white=np.inf):
 )
 def white_not_squared(Lm, adaptation, white=np.inf):
     return np.minimum(Lm * (1 + Lm / white) / (1 + adaptation), 1)
+
+
+@mistake(
+    "display_white_by_Lm_alone",
+    says="You set all pixels with Lm of at least white to 1. In a bright neighborhood, the formula "
+    "gives less: clip its result at 1, and nothing else.",
+)
+def white_by_Lm_alone(Lm, adaptation, white=np.inf):
+    Ld = np.minimum(Lm * (1 + Lm / white**2) / (1 + adaptation), 1)
+    return np.where(Lm >= white, 1, Ld)

@@ -36,3 +36,14 @@ def wrong_sign(G):
     Gy = np.pad(G[0, :-1], ((1, 1), (0, 0)))
     Gx = np.pad(G[1, :, :-1], ((0, 0), (1, 1)))
     return -np.diff(Gy, axis=0) - np.diff(Gx, axis=1)
+
+
+@mistake(
+    "divergence_across_the_edges",
+    says="You use the last row of Gy and the last column of Gx. These steps lead out of the image, "
+    "where nothing flows: use 0 in their place.",
+)
+def across_the_edges(G):
+    Gy = np.pad(G[0], ((1, 0), (0, 0)))
+    Gx = np.pad(G[1], ((0, 0), (1, 0)))
+    return np.diff(Gy, axis=0) + np.diff(Gx, axis=1)

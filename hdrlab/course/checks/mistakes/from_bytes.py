@@ -46,3 +46,17 @@ def upside_down(data):
     order = "<f4" if float(scale) < 0 else ">f4"
     E = np.frombuffer(data, order, prod(shape), match.end()).reshape(shape)
     return E.astype(np.float32)
+
+
+@mistake(
+    "from_bytes_header_of_three_lines",
+    says="You split the header at line breaks. Any white space may separate its parts, so the whole "
+    "header may stand in one line.",
+)
+def header_of_three_lines(data):
+    kind, size, scale, values = data.split(b"\n", 3)
+    width, height = map(int, size.split())
+    shape = (height, width, 3)[: 3 if kind == b"PF" else 2]
+    order = "<f4" if float(scale) < 0 else ">f4"
+    E = np.frombuffer(values, order, prod(shape)).reshape(shape)
+    return E[::-1].astype(np.float32)

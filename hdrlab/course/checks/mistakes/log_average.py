@@ -42,3 +42,21 @@ def stays_a_logarithm(L, *, delta=1e-06):
 def linear(L, *, delta=1e-06):
     median = np.median(L[L > 0]) if np.any(L) else 1.0
     return float(np.mean(L + delta * float(median)))
+
+
+@mistake(
+    "log_average_absolute_delta",
+    says="You add delta itself, whatever the unit of L is. Add delta times the median of the pixels "
+    "that are not black.",
+)
+def absolute_delta(L, *, delta=1e-06):
+    return float(np.exp(np.log(L + delta).mean(dtype=np.float64)))
+
+
+@mistake(
+    "log_average_black_in_the_median",
+    says="Your median counts black pixels, so it is too small. Take the median of the pixels that "
+    "are not black.",
+)
+def black_in_the_median(L, *, delta=1e-06):
+    return float(np.exp(np.log(L + delta * float(np.median(L))).mean(dtype=np.float64)))

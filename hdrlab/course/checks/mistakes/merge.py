@@ -182,3 +182,23 @@ def not_weighted(images, times, g, w=None):
     lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
     E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
     return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_clipped_levels_count",
+    says="Your hat is not 0 at pixel values 0 and 255, so clipped pixels count. Do not add anything "
+    "to the hat.",
+)
+def clipped_levels_count(images, times, g, w=None):
+    images = np.asarray(images)
+    t = np.asarray(times, np.float64)
+    g = np.asarray(g, np.float64)
+    n = np.iinfo(images.dtype).max + 1
+    Z = images.reshape(*images.shape[:3], -1)
+    c = np.arange(Z.shape[-1])
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    z = np.arange(n)
+    table = np.minimum(z + 1, n - z) if w is None else np.asarray(w)
+    W = table[Z]
+    lE = np.sum(W * (g[Z, c] - np.log(t)[:, None, None, None]), axis=0) / W.sum(axis=0)
+    return np.exp(lE).reshape(images.shape[1:]).astype(np.float32)

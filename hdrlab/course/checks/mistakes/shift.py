@@ -62,3 +62,22 @@ def wrong_way(images, offsets):
             for image, (dy, dx) in zip(images, moved.tolist(), strict=True)
         ]
     )
+
+
+@mistake(
+    "shift_without_the_frame",
+    says="You crop to what the moved images share, even outside of the original frame. Crop as if "
+    "one more image had the offset (0, 0).",
+)
+def without_the_frame(images, offsets):
+    images = np.asarray(images)
+    moved = as_offsets(offsets, len(images))
+    height, width = images.shape[1:3]
+    top, left = moved.max(axis=0)
+    bottom, right = moved.min(axis=0) + (height, width)
+    return np.stack(
+        [
+            image[top - dy : bottom - dy, left - dx : right - dx]
+            for image, (dy, dx) in zip(images, moved.tolist(), strict=True)
+        ]
+    )

@@ -22,3 +22,13 @@ def always_half(h, q):
 )
 def mean(h, q):
     return int(np.sum(np.arange(256) * h) / np.sum(h))
+
+
+@mistake(
+    "threshold_goes_on",
+    says="Where the cumulative count is exactly q, you go on to the next pixel value. At least q is "
+    "enough: use side='left', or >= in place of >.",
+)
+def goes_on(h, q):
+    below = np.cumsum(h)
+    return np.searchsorted(below, np.asarray(q) * below[-1], side="right")

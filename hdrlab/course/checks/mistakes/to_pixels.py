@@ -57,3 +57,16 @@ def not_times_256(E):
     mantissa = np.ldexp(E, -exponent)
     pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
     return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
+
+
+@mistake(
+    "to_pixels_exact_powers_wrap",
+    says="Where the brightest channel is an exact power of 2, your mantissa is 256, which does not "
+    "fit into a byte. Use np.frexp, or floor(log2(...)) + 1.",
+)
+def exact_powers_wrap(E):
+    brightest = E.max(axis=-1, keepdims=True)
+    exponent = np.ceil(np.log2(np.maximum(brightest, 1e-32))).astype(int)
+    mantissa = np.floor(np.ldexp(E, 8 - exponent)) % 256
+    pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black

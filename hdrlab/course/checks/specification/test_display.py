@@ -52,3 +52,20 @@ def test_the_neighborhood_goes_below_the_fraction_bar(subject, rng):
         subject.display(Lm, around), np.minimum(Lm / (1 + around), 1), 1e-4, what="Ld", picture=True
     )
     finite(subject.display(Lm * 1e6, around), Lm.shape, what="Ld")
+
+
+@points(2)
+def test_white_and_the_neighborhood_work_together(subject, rng):
+    """A pixel is brighter than white, and its neighborhood is brighter still. Is it white?
+
+    Not if the formula says less than 1. Only values above 1 are clipped.
+
+    Compute the whole formula with both arguments, and take the minimum of it and 1.
+    """
+    Lm = drawn(rng)
+    around = np.exp(1.5 * rng.standard_normal(Lm.shape)).astype(np.float32)
+    white = float(rng.uniform(1.5, 4))
+    Lm[:3] = white * rng.uniform(1, 1.5, Lm[:3].shape)
+    around[:3] = white * rng.uniform(3, 5, Lm[:3].shape)
+    expected = np.minimum(Lm * (1 + Lm / white**2) / (1 + around), 1)
+    same(subject.display(Lm, around, white), expected, 1e-4, what="Ld", picture=True)

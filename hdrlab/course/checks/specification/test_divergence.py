@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from hdrlab.core.filters.poisson import divergence
 from hdrlab.course.checks.compare import finite, points, same
 
 
@@ -64,3 +65,21 @@ def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
     divG = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")
     same(float(divG.sum()), 0.0, 1e-3, what="the sum of div G")
     same(float((divG * u).sum()), -float((G * gradient(u)).sum()), 1e-3, what="the sum of u div G")
+
+
+@points(2, needs="test_the_divergence_of_a_gradient_is_the_laplacian")
+def test_steps_across_the_edges_are_ignored(subject, rng):
+    """The last row of Gy leads out of the image. What flows there?
+
+    Nothing, whatever the field contains there.
+
+    Use 0 in place of Gy[-1, :] and of Gx[:, -1].
+    """
+    inside = field(rng)
+    G = inside.copy()
+    G[0, -1] = rng.uniform(1, 2, G.shape[2])
+    G[1, :, -1] = rng.uniform(1, 2, G.shape[1])
+    expected = divergence(inside)
+    same(
+        subject.divergence(G), expected, 1e-4, what="div G of a field that leads out", picture=True
+    )

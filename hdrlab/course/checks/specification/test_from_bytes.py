@@ -61,3 +61,17 @@ def test_a_value_that_looks_like_white_space_is_kept(subject):
     """
     E = np.array([0x20200A0A, 0x0A0A2020], "<u4").view("<f4").reshape(1, 2)
     same(np.asarray(subject.from_bytes(file(E)), np.float64) / E.max(), E / E.max(), 1e-6, what="E")
+
+
+@points(2)
+def test_any_white_space_separates_the_header(subject, rng):
+    """Another program writes the header into one line. Can you read it?
+
+    Any white space may separate its parts: spaces, tabs or several lines.
+
+    Search for the parts, not for lines. A regular expression is one way: rb"(P[Ff])\\s+(\\d+)\\s+...".
+    """
+    E = drawn(rng)
+    for gap in (b" ", b"\t", b" \n"):
+        what = f"E of a file with {gap!r} in the header"
+        same(subject.from_bytes(file(E, gap=gap)), E, 1e-6 * E.max(), what=what)

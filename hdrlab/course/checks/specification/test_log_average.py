@@ -62,3 +62,21 @@ def test_ten_times_the_light_gives_ten_times_the_average(subject, rng):
         float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10)
     )
     same(ten / one, 10.0, 0.01, what="Lav of 10 L / Lav of L")
+
+
+@points(2, needs="test_it_is_the_geometric_mean")
+def test_delta_is_given_in_medians(subject, rng):
+    """The scene is in another unit, a thousand times larger. Is the same delta added?
+
+    No. `delta` is a share of the median, so it grows with L.
+
+    delta * np.median(L[L > 0]): black pixels do not count in this median.
+    """
+    L = drawn(rng) * np.float32(10.0 ** rng.choice([-3, 3]))
+    L[:15] = 0
+    delta = float(rng.uniform(0.1, 0.4))
+    added = delta * float(np.median(L[L > 0]))
+    expected = np.log(added + L.astype(float)).mean()
+    came = finite(subject.log_average(L, delta=delta), (), what="Lav")
+    require(came > 0, f"Lav: expected a value above 0, got {float(came):.4g}")
+    same(np.log(came), expected, 1e-3, what="ln Lav with a large delta")

@@ -130,3 +130,18 @@ def test_each_channel_uses_its_own_curve(subject, rng):
     images = np.stack([photographs(rng, smooth(rng)) for _ in range(3)], axis=-1)
     g = np.stack([G, responses.true_g("linear"), responses.true_g("film")], axis=-1)
     same_map(subject.merge(images, TIMES, g), merge(images, TIMES, g))
+
+
+@points(3)
+def test_clipped_levels_do_not_count(subject, rng):
+    """A pixel is white in one photo and gray in another. Which one measures its light?
+
+    Only the gray one: the hat is 0 at pixel values 0 and 255.
+
+    If no w is given, use w(z) = z below the middle and 255 - z above it. Do not add anything to it.
+    """
+    images = photographs(rng, smooth(rng))
+    part = rng.integers(0, 4, images.shape[1:])
+    images[0][part == 0] = 0
+    images[2][part == 1] = 255
+    same_map(subject.merge(images, TIMES, G), merge(images, TIMES, G))

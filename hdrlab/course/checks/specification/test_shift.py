@@ -20,6 +20,11 @@ def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
     same(subject.shift(np.stack(images), offsets), np.stack([common] * len(offsets)), 0, what=what)
 
 
+def with_a_still(offsets):
+    """Return the offsets of these images, and of one that does not move."""
+    return np.vstack([[[0, 0]], offsets])
+
+
 @points(5)
 def test_moved_images_are_aligned(subject, rng):
     """An offset (dy, dx) says where the image must move: down, and to the right.
@@ -39,7 +44,7 @@ def test_pixels_do_not_wrap_around_the_border(subject, rng):
 
     Crop the images to the rectangle that all moved images cover.
     """
-    agree(subject, rng, rng.integers(-9, 10, (4, 2)))
+    agree(subject, rng, with_a_still(rng.integers(-9, 10, (3, 2))))
 
 
 @points(3)
@@ -50,7 +55,7 @@ def test_color_images_move_like_gray_ones(subject, rng):
 
     image[top:bottom, left:right] keeps all channels.
     """
-    agree(subject, rng, rng.integers(-6, 7, (3, 2)), channels=(3,))
+    agree(subject, rng, with_a_still(rng.integers(-6, 7, (2, 2))), channels=(3,))
 
 
 def test_images_without_offsets_stay_whole(subject, rng):
@@ -61,3 +66,15 @@ def test_images_without_offsets_stay_whole(subject, rng):
     Crop only what an offset moves out of the frame, or leaves uncovered.
     """
     agree(subject, rng, np.zeros((3, 2), int), what="the images")
+
+
+@points(2)
+def test_images_that_all_move_the_same_way_keep_to_the_frame(subject, rng):
+    """All images move down and to the right. Which rows does the result begin with?
+
+    Not with the first rows that all images cover after the move, if these are outside of the frame.
+
+    Crop as if one more image had the offset (0, 0).
+    """
+    offsets = rng.integers(2, 9, (3, 2)) * rng.choice([-1, 1], 2)
+    agree(subject, rng, offsets, what="images that all move the same way")

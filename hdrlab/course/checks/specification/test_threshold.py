@@ -79,3 +79,20 @@ def test_the_threshold_of_a_uniform_image_is_its_value(subject, rng):
     """
     code = int(rng.integers(1, 255))
     same(subject.threshold(histogram(np.full((8, 9), code)), 0.5), code, 0, what="t")
+
+
+@points(2)
+def test_exactly_the_fraction_is_enough(subject, rng):
+    """Exactly half of the pixels are 40 or darker, all others are 200. Which is the threshold?
+
+    40. At 40, at least half of the pixels lie at or below.
+
+    In np.searchsorted, side="left" finds the first place that reaches q. side="right" goes on.
+    """
+    low, high = int(rng.integers(10, 100)), int(rng.integers(120, 240))
+    h = np.zeros(256, int)
+    h[low] = 32
+    h[high] = 32
+    same(subject.threshold(h, 0.5), low, 0, what="t of two equal halves")
+    h[high] = 96
+    same(subject.threshold(h, 0.25), low, 0, what="t of a quarter")

@@ -93,3 +93,23 @@ def test_twice_the_light_adds_one_to_the_exponent_and_black_is_zero(subject, rng
         what="the change of the bytes at twice the light",
     )
     same(one[..., 3], truth[..., 3], 0, what="the exponents")
+
+
+@points(2, needs="test_decoding_restores_the_radiance_to_one_part_in_128")
+def test_an_exact_power_of_two_is_no_exception(subject, rng):
+    """The brightest channel is exactly 1. What are its mantissa and its exponent?
+
+    128 and 129: a mantissa of 256 does not fit into a byte.
+
+    Use np.frexp, or floor(log2(...)) + 1. ceil(log2(...)) is one too small for exact powers.
+    """
+    E = drawn(rng)
+    for k in range(6):
+        E[k] *= np.float32(2.0 ** (k - 3)) / E[k].max(axis=-1, keepdims=True)
+    brightest = E.max(axis=-1)
+    is_power = brightest == 2.0 ** np.round(np.log2(brightest))
+    pixels = asked(subject, E)
+    largest = pixels[..., :3].max(axis=-1)
+    same(largest, np.full(largest.shape, 128), 0, what="the largest mantissa", where=is_power)
+    exponent = np.log2(brightest) + 129
+    same(pixels[..., 3], exponent, 0.1, what="the exponent", where=is_power)
