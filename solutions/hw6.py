@@ -520,10 +520,10 @@ pictures.radiance(E, alt="The radiance of the room from two sensors")
 # A video alternates between short and long exposures ([Kang and others,
 # 2003](https://doi.org/10.1145/882262.882270)). A frame borrows radiance from its neighbors, which
 # are first moved along the estimated motion. Where this motion is wrong, the neighbor contradicts
-# the frame, and must get no weight. `v` and `v_` (H, W, C) are the values of the frame and of its
-# neighbor at the same exposure, from 0 to 1, in $C$ channels. Let
+# the frame, and must get no weight. $v$ and $v'$, the arguments `v` and `v_` (H, W, C), are the
+# values of the frame and of its neighbor at the same exposure, from 0 to 1, in $C$ channels. Let
 #
-# $$d = \min\Bigl( \frac{\max_C |v - v\_|}{16/255},\; 1 \Bigr), \qquad f = 2 d^3 - 3 d^2 + 1,$$
+# $$d = \min\Bigl( \frac{\max_C |v - v'|}{16/255},\; 1 \Bigr), \qquad f = 2 d^3 - 3 d^2 + 1,$$
 #
 # where the maximum is over the channels.
 #
