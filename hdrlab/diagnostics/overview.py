@@ -20,6 +20,8 @@ from hdrlab.core.arrays import Array, Indices, Mask
 Box = tuple[slice, slice]
 # pixels of the copy
 MAX_PIXELS = 180_000
+# A clipped pixel counts as so much; that of others is at most 1.
+CLIPPED_EXPOSURE = np.float32(2**12)
 # A mean takes about this many pixels on each side of a block, and at most twice as many.
 MIN_SAMPLES_PER_SIDE = 2
 
@@ -146,12 +148,13 @@ def _average_channel(
     order = np.argsort(g, kind="stable")
     brightest = g[order[-1]]
     exposures = np.exp(g - brightest).astype(np.float32)
+    exposures[top:] = CLIPPED_EXPOSURE  # so that one sum finds the clipped pixels, too
     sums = _reduce(np.add, exposures.take(Z), rows, columns)
-    means = sums / (np.diff(rows)[:, None] * np.diff(columns))
+    counts = np.diff(rows)[:, None] * np.diff(columns)
     ascending = g[order] - brightest
     limits = (ascending[1:] + ascending[:-1]) / 2
-    levels = order[np.searchsorted(limits, np.log(np.maximum(means, 1e-30)))]
-    is_clipped = _reduce(np.minimum, Z, rows, columns) >= top
-    has_clipped = _reduce(np.maximum, Z, rows, columns) >= top
-    levels = np.where(is_clipped, np.maximum(levels, top), np.minimum(levels, top - 1))
+    levels = order[np.searchsorted(limits, np.log(np.maximum(sums / counts, 1e-30)))]
+    has_clipped = sums >= CLIPPED_EXPOSURE
+    is_clipped = sums >= CLIPPED_EXPOSURE * counts
+    levels = np.where(is_clipped, top, np.minimum(levels, top - 1))
     return levels, is_clipped | ~has_clipped

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hdrlab.core.arrays import F64
+from hdrlab.core.arrays import F32, F64
 from hdrlab.diagnostics import outlying_frames
 from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.pipeline import dark_pixels
 from hdrlab.pipeline.assembly import Assembly, select_photos
 from hdrlab.radiance import flare
 from hdrlab.radiance.merge import Merged
@@ -78,11 +79,17 @@ def _correct_time_for_highlights(
 
 
 def remove_ghosts(
-    state: Assembly, mode: str, pixel_weights: F64, merge: Callable[..., Merged]
+    state: Assembly,
+    mode: str,
+    pixel_weights: F64,
+    merge: Callable[..., Merged],
+    *,
+    certainty: F32 | None = None,
 ) -> Assembly:
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
+    Pixels without a color fade to gray, see `dark_pixels.measure_color_certainty`.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
     from hdrlab.pipeline import deghosting
@@ -97,7 +104,11 @@ def remove_ghosts(
         merge=merge,
         fixed=len(bracket.images) // 2 if mode == "reference" else None,
     )
-    state = replace(state, stage="ghosts", E=result.E, quality=result.quality, moving=result.labels)
+    E = result.E
+    if certainty is not None:
+        is_new = np.reshape(state.E != E, (*E.shape[:2], -1)).any(axis=-1)
+        E = dark_pixels.fade_to_neutral(E, np.where(is_new, certainty, 1))
+    state = replace(state, stage="ghosts", E=E, quality=result.quality, moving=result.labels)
     percent = 100 * np.mean(result.labels > 0)
     if percent >= ghosts.WIDESPREAD:
         state = state.with_doubt(warning_text("widespread", percent=percent))

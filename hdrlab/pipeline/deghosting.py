@@ -6,21 +6,22 @@ the same scene would get other regions in another size. Here, it sees the photos
 size.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy import ndimage
 
-from hdrlab.core.arrays import F64, Array, Mask
+from hdrlab.core.arrays import F64, Array, Labels, Mask
 from hdrlab.core.bracket import Bracket
-from hdrlab.diagnostics.overview import Overview, make_overview
+from hdrlab.diagnostics.overview import make_overview
 from hdrlab.radiance.deghosting import ghosts, regions
 from hdrlab.radiance.deghosting.ghosts import Ghosts
 from hdrlab.radiance.merge import CLIPPING_LEVEL, Merged, as_tables
 
 # width of the seam between a region and the map around it, in pixels of the small copy
 SEAM_WIDTH = 2
+# rows of the small copy that are merged at once
+BAND_ROWS = 32
 # in ln E; a measurement may be this far below the lower bound of a clipped photo
 BOUND_TOLERANCE = 0.25
 
@@ -69,41 +70,48 @@ def remove_ghosts(
     used = np.ones(images.shape[:3], bool) if bracket.valid is None else bracket.valid.copy()
     if not len(found.references):
         return replace(found, E=merged.E, quality=merged.quality, labels=labels, used=used)
-    chosen = _choose_photos(small, found)
+    references = _map_references(found)
+    # A block that is clipped in part has no mean, but its other pixels are those of the reference.
+    chosen = found.used | (np.arange(len(images))[:, None, None] == references)
+    seams = regions.feather(found.labels, SEAM_WIDTH)
     E = merged.E.copy()
     quality = merged.quality.copy()
-    alpha = regions.feather(labels, max(1, round(SEAM_WIDTH * small.scale)))
-    for number, box in enumerate(ndimage.find_objects(found.labels), start=1):
-        full_box = small.enlarge_box(box)
-        y, x = full_box
-        frames = np.stack([small.enlarge(photo, box) for photo in chosen])
-        frames &= used[:, y, x]
+    for box in _divide_into_bands(found.labels):
+        y, x = small.enlarge_box(box)
         photos = images[:, y, x]
-        reference = int(found.references[number - 1])
-        frames |= _find_substitutes(photos, times, g, frames, used[:, y, x], reference, top)
+        shown = used[:, y, x].copy()
+        frames = np.stack([small.enlarge(photo, box) for photo in chosen]) & shown
+        reference = small.enlarge(references, box)
+        frames |= _find_substitutes(photos, times, g, frames, shown, reference, top)
         still = merge(photos, times, g, pixel_weights, valid=frames)
-        inside = labels[full_box] == number
-        changed = inside & (frames != used[:, y, x]).any(axis=0)
-        E[full_box][changed] = regions.blend(E[full_box], still.E, alpha[full_box])[changed]
-        quality[full_box][changed] = still.quality[changed]
-        used[:, y, x][:, inside] = frames[:, inside]
+        changed = (labels[y, x] > 0) & (frames != shown).any(axis=0)
+        alpha = small.enlarge(seams, box)
+        seam = changed & (alpha < 1)
+        # one row of pixels
+        blended = regions.blend(E[y, x][seam][None], still.E[seam][None], alpha[seam][None])
+        E[y, x][changed] = still.E[changed]
+        E[y, x][seam] = blended[0]
+        quality[y, x][changed] = still.quality[changed]
+        used[:, y, x][:, changed] = frames[:, changed]
     return Ghosts(E, quality, labels, found.references, used, found.score)
 
 
-def _choose_photos(small: Overview, found: Ghosts) -> Mask:
-    """Return the photos (P, h, w) to use in the overview, where a block may be clipped in part.
+def _map_references(found: Ghosts) -> Labels:
+    """Return the number of the reference photo of each block (h, w), -1 outside of the regions."""
+    return np.concatenate([[-1], found.references])[found.labels].astype(np.int32)
 
-    Such a block has no mean in that photo, but the pixels that are not clipped are still those of
-    the reference.
-    """
-    chosen = found.used.copy()
-    for number, reference in enumerate(found.references, start=1):
-        chosen[reference] |= found.labels == number
-    return chosen
+
+def _divide_into_bands(labels: Labels) -> Iterator[regions.Box]:
+    """Yield the parts of bands of rows that regions cover, so that no pixel is merged twice."""
+    for start in range(0, len(labels), BAND_ROWS):
+        rows = slice(start, min(start + BAND_ROWS, len(labels)))
+        columns = np.flatnonzero(labels[rows].any(axis=0))
+        if len(columns):
+            yield rows, slice(int(columns[0]), int(columns[-1]) + 1)
 
 
 def _find_substitutes(
-    photos: Array, times: F64, g: F64, chosen: Mask, shown: Mask, reference: int, top: int
+    photos: Array, times: F64, g: F64, chosen: Mask, shown: Mask, reference: Labels, top: int
 ) -> Mask:
     """Return a photo for each pixel that no chosen photo measures, (P, H, W).
 
@@ -112,20 +120,26 @@ def _find_substitutes(
     pixel is bright, and photos in which it is darker show another moment.
     """
     values = photos.reshape(*photos.shape[:3], -1)
-    curves = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), values.shape[-1]))
-    measures = (values < top).all(axis=-1) & (values > 0).any(axis=-1) & shown
-    missing = ~(measures & chosen).any(axis=0)
-    is_white = (values[reference] >= top).all(axis=-1)
-    bound = curves[top] - np.log(times[reference]) - BOUND_TOLERANCE
+    measures = shown.copy()
+    is_black = np.ones_like(shown)
+    for channel in range(values.shape[-1]):
+        measures &= values[..., channel] < top
+        is_black &= values[..., channel] == 0
+    measures &= ~is_black
+    missing = ~(measures & chosen).any(axis=0) & (reference >= 0)
     substitutes = np.zeros_like(chosen)
     if not missing.any():
         return substitutes
+    numbers = reference[missing]
+    is_white = (values[:, missing] >= top).all(axis=-1)[numbers, np.arange(len(numbers))]
+    curves = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), values.shape[-1]))
+    bounds = curves[top] - np.log(times[numbers])[:, None] - BOUND_TOLERANCE
     channels = np.arange(values.shape[-1])
+    is_left = np.ones(len(numbers), bool)
     for j in np.argsort(times)[::-1]:
-        candidates = missing & measures[j]
-        log_radiance = curves[values[j][candidates], channels] - np.log(times[j])
-        is_too_dark = (log_radiance < bound).any(axis=-1)
-        candidates[candidates] = ~(is_too_dark & is_white[candidates])
-        substitutes[j] = candidates
-        missing &= ~candidates
+        log_radiance = curves[values[j][missing], channels] - np.log(times[j])
+        is_too_dark = is_white & (log_radiance < bounds).any(axis=-1)
+        is_taken = is_left & measures[j][missing] & ~is_too_dark
+        substitutes[j][missing] = is_taken
+        is_left &= ~is_taken
     return substitutes

@@ -283,7 +283,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     yield state
 
     if removes_ghosts:
-        state = corrections.remove_ghosts(state, options.ghosts, pixel_weights, merge)
+        state = corrections.remove_ghosts(
+            state, options.ghosts, pixel_weights, merge, certainty=certainty
+        )
         yield state
     if options.flare != "none":
         state = corrections.remove_glare(state)
