@@ -152,7 +152,7 @@ def assemble(
     only if mtb is not enough.
 
     --ghosts regions finds regions in which something moved, and takes each from the photo that
-    exposed it best. --ghosts auto does so if movement covers more than 1.5 % of the image.
+    exposed it best. --ghosts auto does so if the photos contradict each other somewhere.
     --ghosts reference takes all moving objects from the middle photo.
 
     If EXIF states time, ISO and f-number, hdrlab knows how bright the scene was, and the image of a

@@ -22,8 +22,8 @@ Box = tuple[slice, slice]
 MAX_PIXELS = 180_000
 # A clipped pixel counts as so much; that of others is at most 1.
 CLIPPED_EXPOSURE = np.float32(2**12)
-# A mean takes about this many pixels on each side of a block, and at most twice as many.
-MIN_SAMPLES_PER_SIDE = 2
+# A mean takes about this many pixels on each side of a block, evenly spaced.
+SAMPLES_PER_SIDE = 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +103,7 @@ def make_overview(
             row_edges=np.arange(height + 1),
             column_edges=np.arange(width + 1),
         )
-    step = max(1, int(scale / MIN_SAMPLES_PER_SIDE))
+    step = max(1, round(scale / SAMPLES_PER_SIDE))
     rows = _divide(height, step, scale)
     columns = _divide(width, step, scale)
     channel_count = images[0].size // (height * width)

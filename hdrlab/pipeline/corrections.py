@@ -89,7 +89,8 @@ def remove_ghosts(
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
-    Pixels without a color fade to gray, see `dark_pixels.measure_color_certainty`.
+    With "auto", nothing changes if nothing moved. Pixels without a color fade to gray, see
+    `dark_pixels.measure_color_certainty`.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
     from hdrlab.pipeline import deghosting
@@ -104,6 +105,8 @@ def remove_ghosts(
         merge=merge,
         fixed=len(bracket.images) // 2 if mode == "reference" else None,
     )
+    if mode == "auto" and not len(result.references):
+        return state
     E = result.E
     if certainty is not None:
         is_new = np.reshape(state.E != E, (*E.shape[:2], -1)).any(axis=-1)

@@ -8,10 +8,11 @@ size.
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import F64, Array, Labels, Mask
+from hdrlab.core.arrays import F32, F64, Array, Labels, Mask
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics.overview import make_overview
 from hdrlab.radiance.deghosting import ghosts, regions
@@ -82,8 +83,11 @@ def remove_ghosts(
         shown = used[:, y, x].copy()
         frames = np.stack([small.enlarge(photo, box) for photo in chosen]) & shown
         reference = small.enlarge(references, box)
-        frames |= _find_substitutes(photos, times, g, frames, shown, reference, top)
+        filled = _fill_pixels(photos, times, g, frames, shown, reference, top)
+        frames |= filled.frames
         still = merge(photos, times, g, pixel_weights, valid=frames)
+        is_white = filled.white > 0
+        still.E[is_white] = filled.white[is_white]
         changed = (labels[y, x] > 0) & (frames != shown).any(axis=0)
         alpha = small.enlarge(seams, box)
         seam = changed & (alpha < 1)
@@ -110,14 +114,21 @@ def _divide_into_bands(labels: Labels) -> Iterator[regions.Box]:
             yield rows, slice(int(columns[0]), int(columns[-1]) + 1)
 
 
-def _find_substitutes(
-    photos: Array, times: F64, g: F64, chosen: Mask, shown: Mask, reference: Labels, top: int
-) -> Mask:
-    """Return a photo for each pixel that no chosen photo measures, (P, H, W).
+class _Filled(NamedTuple):
+    """Photos (P, H, W) for pixels that no chosen photo measures, and white (H, W[, C]), or 0."""
 
-    It is the longest one in which no channel of the pixel is clipped. Otherwise the pixel would
-    have the color of clipped pixel values. Where all channels of the reference are clipped, the
-    pixel is bright, and photos in which it is darker show another moment.
+    frames: Mask
+    white: F32
+
+
+def _fill_pixels(
+    photos: Array, times: F64, g: F64, chosen: Mask, shown: Mask, reference: Labels, top: int
+) -> _Filled:
+    """Return what to show in the pixels that no chosen photo measures.
+
+    It is the longest photo in which no channel is clipped. But where the reference is clipped, a
+    photo in which the pixel is darker shows another moment. If there is no other photo, the pixel
+    is white, as clipped pixel values have no color.
     """
     values = photos.reshape(*photos.shape[:3], -1)
     measures = shown.copy()
@@ -127,19 +138,22 @@ def _find_substitutes(
         is_black &= values[..., channel] == 0
     measures &= ~is_black
     missing = ~(measures & chosen).any(axis=0) & (reference >= 0)
-    substitutes = np.zeros_like(chosen)
-    if not missing.any():
-        return substitutes
-    numbers = reference[missing]
-    is_white = (values[:, missing] >= top).all(axis=-1)[numbers, np.arange(len(numbers))]
-    curves = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), values.shape[-1]))
-    bounds = curves[top] - np.log(times[numbers])[:, None] - BOUND_TOLERANCE
-    channels = np.arange(values.shape[-1])
-    is_left = np.ones(len(numbers), bool)
-    for j in np.argsort(times)[::-1]:
-        log_radiance = curves[values[j][missing], channels] - np.log(times[j])
-        is_too_dark = is_white & (log_radiance < bounds).any(axis=-1)
-        is_taken = is_left & measures[j][missing] & ~is_too_dark
-        substitutes[j][missing] = is_taken
-        is_left &= ~is_taken
-    return substitutes
+    frames = np.zeros_like(chosen)
+    white = np.zeros(values.shape[1:], np.float32)
+    if missing.any():
+        numbers = reference[missing]
+        candidates = values[:, missing]
+        is_clipped = candidates[numbers, np.arange(len(numbers))] >= top
+        curves = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), values.shape[-1]))
+        bounds = curves[top] - np.log(times[numbers])[:, None]
+        channels = np.arange(values.shape[-1])
+        is_left = np.ones(len(numbers), bool)
+        for j in np.argsort(times)[::-1]:
+            log_radiance = curves[candidates[j], channels] - np.log(times[j])
+            is_darker = (is_clipped & (log_radiance < bounds - BOUND_TOLERANCE)).any(axis=-1)
+            is_taken = is_left & measures[j][missing] & ~is_darker
+            frames[j][missing] = is_taken
+            is_left &= ~is_taken
+        is_white = is_left & is_clipped.any(axis=-1)
+        white[missing] = np.where(is_white[:, None], np.exp(bounds), 0)
+    return _Filled(frames, white.reshape(photos.shape[1:]))

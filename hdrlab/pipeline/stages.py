@@ -87,7 +87,7 @@ def assemble(
     ghosts : {"auto", "none", "regions", "reference"}
         How to show things that moved. "none" leaves them half transparent. "regions" takes each
         moving region from the photo that exposes it best, "reference" takes all of them from the
-        middle photo, see `radiance.deghosting.ghosts`. "auto" is "regions" if much moved, see
+        middle photo, see `radiance.deghosting.ghosts`. "auto" is "regions" if something moved, see
         `diagnostics.motion`. If most of the image moved, there is a warning.
     flare : {"none", "glare"}
         "glare" removes veiling glare, the light that the lens scattered, see `radiance.flare`.
@@ -263,9 +263,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     block_errors = blocks_task.result()
     contradictions = contradictions_task.result()
 
-    has_motion = not is_misaligned and measured_motion.fraction > motion.MIN_MOVING_FRACTION
+    may_have_ghosts = not is_misaligned and measured_motion.fraction > motion.MIN_SUSPECT_FRACTION
     removes_ghosts = options.ghosts in ("regions", "reference") or (
-        options.ghosts == "auto" and has_motion
+        options.ghosts == "auto" and may_have_ghosts
     )
     is_usable = not state.fallback and not checks.is_worthless(medians)
     if options.release and is_usable and not removes_ghosts:
@@ -286,7 +286,8 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state = corrections.remove_ghosts(
             state, options.ghosts, pixel_weights, merge, certainty=certainty
         )
-        yield state
+        if state.moving is not None:
+            yield state
     if options.flare != "none":
         state = corrections.remove_glare(state)
         yield state
@@ -295,6 +296,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     part_errors = tones.measure_part_errors(block_errors, moving=moving)
     if state.moving is not None or is_misaligned:
         measured_motion = motion.Motion(fraction=0.0, band_stops=0.0)
+    elif removes_ghosts:
+        # The photos contradict each other, but nothing moved.
+        measured_motion = measured_motion._replace(fraction=0.0)
     checked = checks.check_map(
         state,
         medians,

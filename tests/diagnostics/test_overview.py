@@ -11,9 +11,9 @@ TOP = 250
 
 
 def draw_blocks(rng, low=5, high=240):
-    """Return a bracket of two photos (12, 18, 3) and the same in three times the size."""
+    """Return a bracket of two photos (12, 18, 3) and the same in four times the size."""
     images = rng.integers(low, high, (2, 12, 18, 3)).astype(np.uint8)
-    return images, images.repeat(3, axis=1).repeat(3, axis=2)
+    return images, images.repeat(4, axis=1).repeat(4, axis=2)
 
 
 def test_photos_that_are_small_enough_are_not_copied():
@@ -46,7 +46,7 @@ def test_means_grow_with_the_exposure_time_as_the_light_does(curve):
 
 def test_a_block_that_is_clipped_in_part_is_not_measured():
     images, large = draw_blocks(np.random.default_rng(4))
-    large[0, :3, :3] = 255
+    large[0, :4, :4] = 255
     large[1, 4, 4, 1] = 255
     small = make_overview(large, G, top=TOP, max_pixels=12 * 18)
     assert small.valid[0].all() and np.all(small.images[0, 0, 0] >= TOP)
@@ -56,7 +56,7 @@ def test_a_block_that_is_clipped_in_part_is_not_measured():
 def test_a_block_outside_of_a_photo_in_part_is_not_measured():
     _, large = draw_blocks(np.random.default_rng(5))
     shown = np.ones(large.shape[:3], bool)
-    shown[0, 7, 10] = False
+    shown[0, 8, 12] = False
     small = make_overview(large, G, top=TOP, valid=shown, max_pixels=12 * 18)
     assert np.argwhere(~small.valid).tolist() == [[0, 2, 3]]
 
