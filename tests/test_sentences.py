@@ -391,8 +391,8 @@ SENTENCES = {
         ),
     },
     "12": {
-        "will the error in the region shrink: two, five, or ten?": lambda n: (
-            8 < errors_shrink(n) < 12
+        "will the error in the region shrink: two, five, or fifteen?": lambda n: (
+            12 < errors_shrink(n) < 19
         ),
         "Once, where he stood in the reference photo": lambda n: len(n.result.references) == 1,
     },

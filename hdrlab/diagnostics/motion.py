@@ -44,8 +44,9 @@ MIN_MEASURED_FRACTION = 0.1
 # photo by photo 0.09, because its response changes, and then `radiance.deghosting.ghosts` finds
 # nothing to remove.
 MIN_MOVING_FRACTION = 0.015
-# From this fraction on, ghost removal looks closer: somebody far away is small.
-MIN_SUSPECT_FRACTION = 0.003
+# From this fraction on, ghost removal looks closer: somebody far away is small. In a still night
+# with saturated light, up to 0.0073 deviate, and ghost removal would take them for motion.
+MIN_SUSPECT_FRACTION = 0.01
 # stops of b; still scenes under steady light stay below 0.04
 MIN_BAND_STOPS = 0.055
 # Bands count if b is that many times what columns show; still scenes stay below 1.8.

@@ -143,7 +143,7 @@ def test_removing_ghosts_does_not_change_lamps_that_all_photos_show():
 
 def test_auto_removes_somebody_far_away():
     shape = (180, 270)
-    figure = movers.ball(shape, (120, 135), 7, np.array([0.5, 0.3, 0.2]), stripes=0)
+    figure = movers.ball(shape, (120, 135), 11, np.array([0.5, 0.3, 0.2]), stripes=0)
     taken = take_hall(shape, movers.path(5, (0, 25)), figure)
     cleaned = pipeline.assemble(taken, **KNOBS)
     assert 0 < np.mean(cleaned.moving > 0) < 0.1

@@ -32,8 +32,10 @@ MAX_BIAS = 0.25
 # no level is more certain than its rounding
 MIN_KAPPA = 1.0
 MAX_KAPPA = 8.0
-# loss of a clipped pixel that no frame can fill; the loss of others is at most 1
+# loss of a clipped pixel that is darker in all frames that measure it; that of others is at most 1
 UNFILLED_LOSS = 4.0
+# additional loss of a clipped pixel that another frame can fill: it may show another moment
+FILLED_LOSS = 0.25
 
 
 @dataclass(frozen=True)
@@ -152,46 +154,35 @@ def mean_losses(taken: Calibrated, labels: Labels) -> F64:
     """Return the mean loss of each frame in each region, (P, R).
 
     The loss of a level is the variance of its ln E, at most 1, and 1 where it measures nothing. A
-    pixel's loss is the mean over its channels, and 1 if any of them is clipped: it has no color. It
-    is UNFILLED_LOSS if no other frame can fill a clipped pixel, because all of them that measure it
-    are darker.
+    pixel's loss is the mean over its channels. A pixel that is clipped in any channel has no color.
+    The longest other frame that measures it and is not darker fills it. Then the loss is that of
+    this frame plus FILLED_LOSS, because it may show another moment. If all frames that measure the
+    pixel are darker, the loss is UNFILLED_LOSS. If none measures it, the loss is 1.
     """
     cost = np.minimum(taken.s2, 1.0).astype(np.float32)
     cost[..., 0] = 1
     cost[..., taken.top :] = 1
-    boxes = ndimage.find_objects(labels)
-    brightest = [_find_brightest(taken, box, labels[box] == r + 1) for r, box in enumerate(boxes)]
-    losses = np.ones((len(taken.images), len(boxes)))
-    for j, r in np.ndindex(*losses.shape):
-        box = boxes[r]
-        inside = labels[box] == r + 1
-        Z = taken.images[j][box][inside]
-        loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
-        is_clipped = Z >= taken.top
-        loss[is_clipped.any(axis=1)] = 1
-        bounds = np.where(is_clipped, taken.x[j, :, taken.top] - MAX_BIAS, -np.inf)
-        loss[(bounds > brightest[r]).any(axis=1)] = UNFILLED_LOSS
-        shown = True if taken.valid is None else taken.valid[j][box][inside]
-        losses[j, r] = np.where(shown, loss, 1).mean()
-    return losses
-
-
-def _find_brightest(taken: Calibrated, box: tuple[slice, ...], inside: Mask) -> F64:
-    """Return the highest ln E that a frame measures at each pixel (N, C) of a region.
-
-    It is inf where no frame measures a pixel.
-    """
     channels = np.arange(taken.images.shape[-1])
-    brightest = np.full((int(inside.sum()), len(channels)), -np.inf)
-    for j, image in enumerate(taken.images):
-        Z = image[box][inside]
-        measured = (Z < taken.top).all(axis=1)
+    order = np.argsort(taken.times)
+    losses = np.ones((len(taken.images), int(labels.max())))
+    for r, box in enumerate(ndimage.find_objects(labels)):
+        inside = labels[box] == r + 1
+        Z = taken.images[:, *box][:, inside]
+        shown = np.ones(Z.shape[:2], bool)
         if taken.valid is not None:
-            measured &= taken.valid[j][box][inside]
-        x = taken.x[j, channels, Z]
-        np.maximum(brightest, x, out=brightest, where=measured[:, None])
-    brightest[np.isneginf(brightest)] = np.inf
-    return brightest
+            shown = taken.valid[:, *box][:, inside]
+        pixel_costs = np.stack([cost[j, channels, Z[j]].mean(axis=-1) for j in range(len(Z))])
+        measures = shown & (Z < taken.top).all(axis=-1)
+        for j in range(len(Z)):
+            is_clipped = Z[j] >= taken.top
+            bounds = np.where(is_clipped, taken.x[j, :, taken.top] - MAX_BIAS, -np.inf)
+            loss = np.where(measures.any(axis=0), UNFILLED_LOSS, 1.0)
+            for k in order:
+                fills = measures[k] & (taken.x[k, channels, Z[k]] >= bounds).all(axis=-1)
+                loss[fills] = np.minimum(pixel_costs[k][fills] + FILLED_LOSS, 1)
+            loss = np.where(is_clipped.any(axis=-1), loss, pixel_costs[j])
+            losses[j, r] = np.where(shown[j], loss, 1).mean()
+    return losses
 
 
 def best_exposures(taken: Calibrated, labels: Labels) -> Indices:
