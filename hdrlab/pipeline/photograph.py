@@ -11,7 +11,7 @@ the display's range is kept for the brightest pixels. The a and b of the guided 
 on a coarse grid (He and Sun, Fast guided filter, 2015), from the means and variances of the grid's
 cells. The grid is centered in the image, so a mirrored image gets a mirrored picture. Where `share`
 is below 1, the picture can reverse gradients next to an edge of light, as with a bilateral filter:
-before an edge of three decades, it gets darker by about 5 of 255 pixel values.
+before an edge of three decades, it gets darker by 5 to 8 of 255 pixel values.
 """
 
 from collections.abc import Callable
@@ -65,6 +65,15 @@ BRIGHT_MAX_MEAN = 135.0
 # factor of the key from one trial to the next while the mean is too large, and number of trials
 KEY_STEP = 0.92
 MAX_KEY_STEPS = 20
+# display value of the largest channel from which a color is bleached: 252 of 255
+BLEACHED_VALUE = 0.97
+# largest fraction of the pixels that are bleached
+MAX_BLEACHED_FRACTION = 0.1
+# least share of the light's contrast to avoid that; less would reverse gradients visibly
+MIN_UNBLEACHED_SHARE = 0.6
+# factor of key and share from one trial to the next while too much is bleached, number of trials
+BLEACHED_STEP = 0.95
+MAX_BLEACHED_STEPS = 12
 # contrast of the picture relative to that of x
 CONTRAST = 1.25
 # fraction of the pixels that become white
@@ -141,10 +150,13 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
     pixel value is limited, which lowers the key further where a bright sky covers half of the image.
 
     share
-        The fraction of the light's contrast that remains, 1 where it spans at most DISPLAY_DECADES.
+        The fraction of the light's contrast that remains, 1 where it spans at most DISPLAY_DECADES
+        and colors are not bleached.
     key
         MIDDLE_KEY; up to twice that if most of the map is bright for its range, less than half of
-        it if most is dark.
+        it if most is dark. Key and share are lower if otherwise more than MAX_BLEACHED_FRACTION of
+        the pixels would have a channel at white: a bright sky keeps its clouds, and saturated light
+        keeps its color.
     white, black
         The scaled and the display luminance beyond which WHITE_FRACTION and BLACK_FRACTION of the
         pixels lie.
@@ -174,18 +186,27 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
     # Without an absolute luminance, the histogram decides.
     excess = min(0.0, skew - DARK_SKEW) if scene_ev is None else 0.0
     key = MIDDLE_KEY * 2 ** (skew + 2 * excess) * NIGHT_KEY_FRACTION**darkness
-    tones = _choose_tones(x, levels.mean, key, darkness)
-    if darkness > 0:
-        max_mean = BRIGHT_MAX_MEAN * (NIGHT_MAX_MEAN / BRIGHT_MAX_MEAN) ** darkness
-        for _ in range(MAX_KEY_STEPS):
-            if tones.mean_pixel_value <= max_mean:
-                break
-            tones = _choose_tones(x, levels.mean, KEY_STEP * tones.key, darkness)
     saturation = 1.0
     if E.ndim == 3 and L.any():
         colors = E[L > 0]
         purity = 1 - colors.min(axis=-1) / colors.max(axis=-1)
         saturation = 1.25 - 0.3 * float(np.median(purity))
+    peaks = _measure_peaks(E, L, saturation)
+    tones = _choose_tones(x, levels.mean, key, darkness, peaks)
+    if darkness > 0:
+        max_mean = BRIGHT_MAX_MEAN * (NIGHT_MAX_MEAN / BRIGHT_MAX_MEAN) ** darkness
+        for _ in range(MAX_KEY_STEPS):
+            if tones.mean_pixel_value <= max_mean:
+                break
+            tones = _choose_tones(x, levels.mean, KEY_STEP * tones.key, darkness, peaks)
+    for _ in range(MAX_BLEACHED_STEPS):
+        if tones.bleached_fraction <= MAX_BLEACHED_FRACTION:
+            break
+        if share > MIN_UNBLEACHED_SHARE:
+            share = max(MIN_UNBLEACHED_SHARE, BLEACHED_STEP * share)
+            x = compress_light(lL, share, light)
+            levels = find_levels(x)
+        tones = _choose_tones(x, levels.mean, BLEACHED_STEP * tones.key, darkness, peaks)
     return {
         "share": share,
         "key": tones.key,
@@ -197,28 +218,43 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
 
 @dataclass(frozen=True, kw_only=True)
 class _Tones:
-    """Key, white and black of a picture, and the mean pixel value that they give, of 255."""
+    """Key, white and black of a picture, and what they give.
+
+    mean_pixel_value : of the gray picture, of 255
+    bleached_fraction : of the pixels whose largest channel is above BLEACHED_VALUE
+    """
 
     key: float
     white: float
     black: float
     mean_pixel_value: float
+    bleached_fraction: float
 
 
-def _choose_tones(x: F32, mean: float, key: float, darkness: float) -> _Tones:
-    """Return white and black for a key, and the mean pixel value of the picture."""
+def _measure_peaks(E: F32, L: F32, saturation: float) -> F32:
+    """Return the largest channel of each pixel of a picture, relative to its luminance, (H, W)."""
+    if E.ndim == 2:
+        return np.ones_like(L)
+    ratio = np.divide(E.max(axis=-1), L, out=np.ones_like(L), where=L > 0)
+    return np.float32(1 - saturation) + np.float32(saturation) * ratio
+
+
+def _choose_tones(x: F32, mean: float, key: float, darkness: float, peaks: F32) -> _Tones:
+    """Return white and black for a key, and what they give; `peaks` is from `_measure_peaks`."""
     Lm = scale(x, mean, key)
     white = max(1.0, float(np.quantile(Lm, 1 - WHITE_FRACTION)))
     Ld = display(Lm, Lm, white)
     max_black = MAX_BLACK + darkness * (NIGHT_MAX_BLACK - MAX_BLACK)
     black_fraction = BLACK_FRACTION + darkness * (NIGHT_BLACK_FRACTION - BLACK_FRACTION)
     black = min(max_black, float(np.quantile(Ld, black_fraction)))
-    encoded = colour.encode_srgb(np.clip((Ld - black) / (1 - black), 0, 1))
+    shown = np.clip((Ld - black) / (1 - black), 0, 1)
+    encoded = colour.encode_srgb(shown)
     return _Tones(
         key=key,
         white=white,
         black=black,
         mean_pixel_value=255 * float(np.mean(encoded, dtype=np.float64)),
+        bleached_fraction=float(np.mean(shown * peaks > BLEACHED_VALUE)),
     )
 
 
