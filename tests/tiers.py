@@ -18,6 +18,7 @@ TIERS = {
     "grading": "attacks, kills, clusters, whole classes, similarity; how points are earned",
     "papers": "published experiments, real brackets, films, tethered cameras, 12 megapixels",
     "scenes": "the embedded scenes, rendered and computed again",
+    "wasm": "notebooks and checks in WebAssembly, as a browser runs them; where its test bed is",
     "wheel": "the wheel, installed elsewhere",
 }
 # Files with long tests begin first, in this order: begun last, one worker would be busy alone.

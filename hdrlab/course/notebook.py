@@ -18,7 +18,13 @@ from hdrlab.course.source_code import closure, names
 from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
 
-PRACTICE = plans.GradingOptions(tier=in_process.TIER if in_process.IS_BROWSER else "practice")
+# WebAssembly computes two to six times more slowly
+BROWSER_TIMEOUT_FACTOR = 3.0
+PRACTICE = plans.GradingOptions(tier="practice")
+if in_process.IS_BROWSER:
+    PRACTICE = plans.GradingOptions(
+        tier=in_process.TIER, timeout=BROWSER_TIMEOUT_FACTOR * plans.CALL_TIMEOUT_SECONDS
+    )
 
 # the latest result of each task in this kernel, for the bar of the homework
 _latest: dict[str, results.Result] = {}
