@@ -8,8 +8,7 @@
 # along a simulated response, veiling glare, assorted pixels, coded exposure, several sensors behind
 # one lens, video, the space of response curves, joining blends of light, finding a chart, the Detail
 # Brush, curves and operators, contrast, focus and skin as measures of what matters in a photo, and
-# the circle without vignetting. You write the core of
-# each.
+# the circle without vignetting. You write the core of each.
 #
 # {choice}
 #
@@ -881,7 +880,8 @@ print(
 # ## 26 · Skin by its distance from skin ({points})
 #
 # The skin locus says yes or no. A Gaussian says how far a color is from the colors of skin (Battiato
-# and others, 2008, equation 1.8). The chrominance of a pixel is $x = (C_b, C_r)$. With
+# and others, 2008, equation 1.8). The chrominance of a pixel is $x = (C_b, C_r)$. With its brightness
+# $Y$,
 #
 # $$Y = 0.299\, R + 0.587\, G + 0.114\, B$$
 #
