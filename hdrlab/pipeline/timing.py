@@ -177,7 +177,8 @@ def refine_times(
     Photos that are not aligned do not correct any times.
     """
     corrected = correct_times(state.bracket, response, stated_spread)
-    doubts = exposure_times.doubts(corrected.estimate)
+    # A warning about relative times has been given, and there are no stated ones to differ from.
+    doubts = exposure_times.doubts(corrected.estimate) if has_stated_times else ()
     relative: CorrectedTimes | None = None
     if corrected.spread > MIN_WORTHLESS_STOPS:
         rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
