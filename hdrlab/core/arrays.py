@@ -25,6 +25,9 @@ Labels = NDArray[np.int32]
 Indices = NDArray[np.intp]
 Image = NDArray[np.uint8] | NDArray[np.uint16]
 
+# exposure times, also relative ones, with which radiance stays within float32
+MIN_SECONDS = 1e-30
+MAX_SECONDS = 1e30
 # e^80 is close to the largest float32, the type of radiance maps
 MAX_LN_EXPOSURE = 80
 # the bits of infinity in float32; NaN and negative numbers have larger ones
@@ -59,9 +62,10 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
         raise InputError(
             f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}"
         )
-    if images.dtype not in (np.uint8, np.uint16) or np.ma.is_masked(images):
+    native = images.dtype.newbyteorder("=")
+    if native not in (np.uint8, np.uint16) or np.ma.is_masked(images):
         raise InputError(f"expected images of uint8 or uint16, got {describe(images)}")
-    return np.asarray(images)
+    return np.asarray(images) if images.dtype.isnative else np.asarray(images.astype(native))
 
 
 def _stack(images: Sequence[ArrayLike]) -> Array:
@@ -95,6 +99,11 @@ def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.f
     checked = np.asarray(times, dtype=np.float64)
     if not np.all(np.isfinite(checked) & (checked > 0)):
         raise InputError(f"expected positive exposure times in seconds, got {checked.tolist()}")
+    if checked.min() < MIN_SECONDS or checked.max() > MAX_SECONDS:
+        raise InputError(
+            f"expected exposure times from {MIN_SECONDS:g} to {MAX_SECONDS:g} seconds, beyond which "
+            f"radiance does not fit into float32, got {checked.tolist()}"
+        )
     if len(np.unique(checked)) < distinct:
         raise InputError(
             f"expected at least {distinct} different exposure times, got {checked.tolist()} s"

@@ -154,7 +154,7 @@ def _measure_moving_fraction(R: F32, W: F32, min_weight: float) -> float:
                 block_residuals -= np.median(block_residuals[block_weights > 0])
     deviation = np.sqrt((W * R**2).sum(axis=0) / weight_sums)
     is_measured = (W > 0).sum(axis=0) > 1
-    if not np.mean(is_measured) > MIN_MEASURED_FRACTION:
+    if not is_measured.sum() > MIN_MEASURED_FRACTION * is_measured.size:
         return 0.0
     # Of the blocks that deviate, those in a square of 2 x 2 count.
     deviates = np.pad(is_measured & (deviation > MAX_STILL_DEVIATION), 1)

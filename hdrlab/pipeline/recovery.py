@@ -219,7 +219,13 @@ def find_widest_gap(Z: ArrayLike) -> int:
 
 
 def measure_spread(method: Recover, fit: Bracket, held_out: Bracket) -> HeldOutSpread:
-    """Return the spread in stops that a method's response leaves in held-out pixels."""
+    """Return the spread in stops that a method's response leaves in held-out pixels.
+
+    It is infinite if the method finds no response, and for photos of a few rows, of which no pixel
+    is held out.
+    """
+    if not held_out.images.size:
+        return HeldOutSpread(typical=np.inf, rms=np.inf)
     try:
         g = method(fit.images, fit.times, valid=fit.valid)
     except InputError:
