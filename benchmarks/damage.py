@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.experiments import Experiment, Found, Skipped, at_most
+from benchmarks.fuzz import seeds
 from hdrlab.core.optional import OpenEXR, imagecodecs
 from hdrlab.errors import HdrlabError
 from hdrlab.io import photos, radiance
@@ -138,6 +139,14 @@ def _tiff(compression: str | None) -> bytes:
     return file.getvalue()
 
 
+def _dng(folder: Path) -> bytes:
+    if find_spec("rawpy") is None:
+        raise Skipped("rawpy is not installed")
+    path = folder / "sound.dng"
+    seeds.write_dng(path, 64 + 15 * RGB[..., 1].astype(np.uint16))
+    return path.read_bytes()
+
+
 def _heic() -> bytes:
     if find_spec("pillow_heif") is None:
         raise Skipped("pillow_heif is not installed")
@@ -219,6 +228,7 @@ FORMATS: dict[str, Format] = {
     "heic": Format(".heic", lambda _: _heic(), max_wrong=DAMAGES_THAT_KEEP_THE_LENGTH),
     "jxl": Format(".jxl", lambda _: imagecodecs.jpegxl_encode(RGB, distance=1.0)),
     "jxl-lossless": Format(".jxl", lambda _: imagecodecs.jpegxl_encode(RGB, lossless=True)),
+    "dng-plain": Format(".dng", _dng, max_wrong=DAMAGES_THAT_KEEP_THE_LENGTH),
     "hdr": Format(".hdr", lambda folder: _map(".hdr", folder), is_map=True, max_wrong=FLIPPED_BITS),
     "pfm": Format(
         ".pfm",

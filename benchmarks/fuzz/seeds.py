@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import tifffile
+from numpy.typing import NDArray
 from PIL import Image
 
 from hdrlab.core.optional import OpenEXR, imagecodecs
@@ -145,8 +146,12 @@ def photographs(folder: Path) -> None:
 
 def raw(folder: Path) -> None:
     """Write a small DNG."""
-    sensor = np.linspace(64, 4095, 32 * 32).reshape(32, 32).astype(np.uint16)
-    tifffile.imwrite(folder / "a.dng", sensor, photometric=32803, extratags=SENSOR, metadata=None)
+    write_dng(folder / "a.dng", np.linspace(64, 4095, 32 * 32).reshape(32, 32).astype(np.uint16))
+
+
+def write_dng(path: Path, sensor: NDArray[np.uint16]) -> None:
+    """Write values of a sensor (H, W) as an uncompressed DNG."""
+    tifffile.imwrite(path, sensor, photometric=32803, extratags=SENSOR, metadata=None)
 
 
 def films(folder: Path) -> None:
