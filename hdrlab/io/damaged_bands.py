@@ -6,7 +6,8 @@ of the file is missing: some rows become black or gray.
 The other photos tell what a photo should show. From the rows outside of the band, a table predicts
 its pixel values from those of another photo. A band of one constant value over the full width is
 damaged if every other photo that predicts it predicts other values. Clipped skies, black borders and
-letterboxes are constant, too, but they are predicted to be so.
+letterboxes are constant, too, but they are predicted to be so. For rows that are shifted, come from
+elsewhere or are noise, see `io.wrong_rows`.
 """
 
 from collections.abc import Sequence
@@ -15,10 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, Mask, to_256
+from hdrlab.io import wrong_rows
 
 # Rows and columns of a photo that are compared.
 MAX_ROWS = 512
 MAX_COLUMNS = 256
+# Rows of that sample in which other damage than a constant color is searched.
+MAX_SMALL_ROWS = 192
+# Brackets of more photos are searched only for constant bands.
+MAX_SEARCHED_PHOTOS = 32
 # Fewer photos could not do without one.
 MIN_PHOTOS = 3
 # Photos of similar brightness with which each photo is compared.
@@ -42,14 +48,17 @@ MIN_WRONG_FRACTION = 0.5
 
 @dataclass(frozen=True)
 class DamagedBand:
-    """A photo, and the first row of its damaged band and the row behind its last."""
+    """A photo, the first row of its damaged band, the row behind its last, and what it shows."""
 
     frame: int
     start: int
     stop: int
+    is_constant: bool = True
 
 
-def find_damaged_bands(images: Array, *, valid: Mask | None = None) -> list[DamagedBand]:
+def find_damaged_bands(
+    images: Array, *, valid: Mask | None = None, only_constant: bool = False
+) -> list[DamagedBand]:
     """Return the damaged bands of the photos of a bracket, at most one for each photo.
 
     Parameters
@@ -58,6 +67,9 @@ def find_damaged_bands(images: Array, *, valid: Mask | None = None) -> list[Dama
         The photos in any order; they need not be aligned.
     valid : (P, H, W) bool, optional
         False where a photo has no image. Such a bracket is not searched: its borders are bands.
+    only_constant : bool
+        Whether to search only for bands of one constant value, which is quicker. It is enough for
+        formats whose decoders find shifted or overwritten rows themselves.
 
     Returns
     -------
@@ -72,7 +84,7 @@ def find_damaged_bands(images: Array, *, valid: Mask | None = None) -> list[Dama
     []
     >>> images[1, 40:] = 0
     >>> find_damaged_bands(images)
-    [DamagedBand(frame=1, start=40, stop=64)]
+    [DamagedBand(frame=1, start=40, stop=64, is_constant=True)]
     """
     if len(images) < MIN_PHOTOS or valid is not None:
         return []
@@ -81,6 +93,10 @@ def find_damaged_bands(images: Array, *, valid: Mask | None = None) -> list[Dama
     sample = to_256(images[:, ::step, :: max(1, width // MAX_COLUMNS)])
     sample = sample.reshape(*sample.shape[:3], -1).astype(np.int16)
     by_brightness = np.argsort(sample.mean(axis=(1, 2, 3)), kind="stable")
+    further_step = -(-sample.shape[1] // MAX_SMALL_ROWS)
+    small = sample[:, ::further_step, ::further_step]
+    small_step = step * further_step
+    wrong_fractions: dict[tuple[int, int], F64] = {}
     found = []
     for frame in range(len(images)):
         others = _choose_neighbors(by_brightness, frame)
@@ -88,6 +104,15 @@ def find_damaged_bands(images: Array, *, valid: Mask | None = None) -> list[Dama
         if rows:
             start, stop = rows
             found.append(DamagedBand(frame, start * step, min(stop * step, height)))
+            continue
+        if only_constant or len(images) > MAX_SEARCHED_PHOTOS:
+            continue
+        rows = wrong_rows.find_wrong_rows(small, frame, others, wrong_fractions)
+        if rows:
+            start, stop = rows
+            found.append(
+                DamagedBand(frame, start * small_step, min(stop * small_step, height), False)
+            )
     return found
 
 

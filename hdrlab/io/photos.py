@@ -46,6 +46,8 @@ PICTURES: dict[str, dict[str, Any]] = {
 PNG_OPTIONS = {"level": 1, "strategy": 2, "filter": 128}
 # Every so many rows and columns of a photo serve to measure its brightness.
 BRIGHTNESS_STEP = 8
+# Formats whose decoders find shifted and overwritten rows.
+CHECKED_KINDS = frozenset({"JPEG", "PNG", "JXL"})
 
 
 def read_photo(path: str | Path) -> Array:
@@ -179,10 +181,14 @@ def read_bracket(
         for _ in progress([header.path for header in headers]):
             next(decoded)
     if not errors:
-        for band in damaged_bands.find_damaged_bands(images, valid=valid):
+        only_constant = all(header.kind in CHECKED_KINDS for header in headers)
+        for band in damaged_bands.find_damaged_bands(
+            images, valid=valid, only_constant=only_constant
+        ):
             path = headers[band.frame].path
+            shows = "have one color" if band.is_constant else "show something else"
             errors[band.frame] = FileFormatError(
-                f"{path}: its rows {band.start} to {band.stop - 1} have one color, unlike those of "
+                f"{path}: its rows {band.start} to {band.stop - 1} {shows}, unlike those of "
                 "the other photos, so the file is damaged"
             )
     sound = [j for j in range(len(headers)) if j not in errors]

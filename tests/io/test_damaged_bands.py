@@ -39,6 +39,41 @@ def test_missing_rows_are_found_with_wrong_times():
     assert [band.frame for band in find_damaged_bands(images)] == [1]
 
 
+@pytest.mark.parametrize("frame", range(4))
+def test_rows_that_are_shifted_or_noise_are_found_in_the_photo_that_has_them(frame):
+    rng = np.random.default_rng(2)
+    rows = slice(40, 76)
+    shifted = shoot(make_scene())
+    shifted[frame, rows] = np.roll(shifted[frame, rows], 31, axis=1)
+    noise = shoot(make_scene())
+    noise[frame, rows] = rng.integers(0, 256, noise[frame, rows].shape)
+    for images in (shifted, noise):
+        (band,) = find_damaged_bands(images)
+        assert band.frame == frame
+        assert abs(band.start - 40) <= 4
+        assert abs(band.stop - 76) <= 4
+
+
+def test_water_that_moves_in_all_photos_and_things_that_move_are_not_suspected():
+    rng = np.random.default_rng(3)
+    sea = []
+    for time in TIMES:
+        light = make_scene()
+        light[80:] *= np.exp(rng.normal(0, 0.7, (20, 80, 1))).repeat(2, axis=0).repeat(2, axis=1)
+        sea.append(shoot(light, [time])[0])
+    assert find_damaged_bands(np.stack(sea)) == []
+    images = shoot(make_scene())
+    images[1, 30:80, 20:100] = np.roll(images[1, 30:80, 20:100], 23, axis=1)
+    assert find_damaged_bands(images) == []
+
+
+def test_flicker_that_fades_from_row_to_row_is_not_suspected():
+    light = np.stack([make_scene()] * 4)
+    light[0] *= (1 + 0.5 * np.sin(np.arange(120) / 15))[:, None, None]
+    images = np.stack([shoot(light[j], TIMES[j : j + 1])[0] for j in range(4)])
+    assert find_damaged_bands(images) == []
+
+
 @pytest.mark.parametrize("times", [TIMES, TIMES * 16, TIMES / 16])
 def test_sound_photos_are_not_suspected(times):
     scene = make_scene()
@@ -74,3 +109,17 @@ def test_photo_with_missing_rows_is_left_out_with_a_warning(tmp_path):
     assert len(warnings) == 1
     assert "1.tif" in warnings[0]
     assert bracket.damaged == tuple(warnings)
+
+
+def test_photo_with_overwritten_rows_is_left_out_with_a_warning(tmp_path):
+    for j, image in enumerate(shoot(make_scene())):
+        tifffile.imwrite(tmp_path / f"{j}.tif", image, photometric="rgb")
+    data = bytearray((tmp_path / "2.tif").read_bytes())
+    start = len(data) // 3
+    stop = 2 * len(data) // 3
+    data[start:stop] = np.random.default_rng(1).bytes(stop - start)
+    (tmp_path / "2.tif").write_bytes(data)
+    warnings = []
+    bracket = read_bracket(tmp_path, list(TIMES), note=lambda text: None, warn=warnings.append)
+    assert bracket.names == ("0.tif", "1.tif", "3.tif")
+    assert "2.tif" in warnings[0]
