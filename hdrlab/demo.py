@@ -26,9 +26,6 @@ STEPS = 10
 
 CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
 
-# size of the real photos, (width, height)
-PHOTO_SIZE = (720, 540)
-
 # pixel values between which the summary measures the response
 DARK_LEVEL = 10
 BRIGHT_LEVEL = 250
@@ -69,9 +66,9 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
 
 def real_steps(out: Path) -> Iterator[str]:
     """Run the demo on real photos, whose true radiance is unknown."""
-    bracket = scenes.photographs(PHOTO_SIZE)
-    yield "scene      a small tripod in front of a window, taken with a phone"
-    yield f"bracket    {len(bracket.times)} photos, hand-held"
+    bracket = scenes.window()
+    yield "scene      a dark room with a window, by Axel Jacobs (CC BY-SA 2.0)"
+    yield f"bracket    {len(bracket.times)} photos, from a tripod, one stop apart"
     result = yield from _assemble_steps(out, bracket)
     recipe = {"tonemap": result.developed.settings}
     page = write_report(out, result.assembly, result.developed.picture, recipe=recipe)

@@ -20,7 +20,7 @@ HELP_WIDTH = 88
     "--out", type=common.INPUT_PATH, default="hdrlab-demo", help="Folder for the results."
 )
 @click.option("--seed", default=1, help="Seed of the noise and the camera shake.")
-@click.option("--real", is_flag=True, help="Use six real photos from a phone instead.")
+@click.option("--real", is_flag=True, help="Use twelve real photos of a room instead.")
 def demo(*, out: Path, seed: int, real: bool) -> None:
     """Simulate a bracket of a dark chapel, and assemble it."""
     from hdrlab import demo as demo_steps

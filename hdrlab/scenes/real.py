@@ -1,7 +1,7 @@
-"""What was photographed: a small tripod before a window, from the hand; and a studio, in all directions.
+"""Real photos: a room with a window, a small tripod by hand, and a studio in all directions.
 
-The first are Fran Murcia's, under the MIT licence: `tripod/README.md`. The studio is Poly Haven's, CC0:
-`probe/README.md`.
+The room is Axel Jacobs', under CC BY-SA 2.0: `window/README.md`. The tripod is Fran Murcia's, under
+the MIT license: `tripod/README.md`. The studio is Poly Haven's, CC0: `probe/README.md`.
 """
 
 from dataclasses import replace
@@ -12,6 +12,34 @@ from hdrlab.core.arrays import F32
 from hdrlab.core.bracket import Bracket
 from hdrlab.io import photos, radiance
 from hdrlab.scenes.places import FOLDER, Shape, resample
+
+
+def window(shape: Shape | None = None) -> Bracket:
+    """Return a real bracket of a dark room with a window: twelve photos from a tripod, a stop apart.
+
+    EXIF states the times, from 1/1000 s to 2 s. A map of them spans 9.6 stops, from the 0.1 % to
+    the 99.9 % quantile. Credit: Axel Jacobs, WebHDR, CC BY-SA 2.0.
+
+    Parameters
+    ----------
+    shape : (H, W), pixels, at most 864 x 1152, which is the default; a smaller one holds means of
+        pixel values over areas, see `hdrlab.scenes.layers`
+
+    Returns
+    -------
+    Bracket of (12, H, W, 3) uint8
+
+    Raises
+    ------
+    ValueError
+        For a shape that is not two numbers from 1 to the size of the photos.
+
+    Examples
+    --------
+    >>> window((96, 128)).images.shape
+    (12, 96, 128, 3)
+    """
+    return _resize(photos.read_bracket(FOLDER / "window"), shape)
 
 
 def photographs(shape: Shape | None = None) -> Bracket:
@@ -42,6 +70,11 @@ def photographs(shape: Shape | None = None) -> Bracket:
     (6, 100, 75, 3)
     """
     taken = photos.read_bracket(FOLDER / "tripod", FOLDER / "tripod/times.csv")
+    return _resize(taken, shape)
+
+
+def _resize(taken: Bracket, shape: Shape | None) -> Bracket:
+    """Return a bracket of smaller photos, or the same one for the shape None."""
     if shape is None:
         return taken
     levels = [np.rint(resample(image, shape)).astype(np.uint8) for image in taken.images]

@@ -1,7 +1,8 @@
-"""A question covers what follows it until the reader answers, wherever notebooks are read."""
+"""A question covers what follows it until the reader answers, in JupyterLab and in Notebook 7.
 
-import subprocess
-import sys
+The same on the site is tested in `test_site_in_a_browser`.
+"""
+
 from importlib.util import find_spec
 
 import nbformat
@@ -121,63 +122,23 @@ def test_in_jupyterlab_paper_shows_everything(in_lab):
     )
 
 
+def run_all_in_notebook_7(page):
+    page.get_by_role("menuitem", name="Run", exact=True).click()
+    page.get_by_text("Run All Cells", exact=True).click()
+
+
 @pytest.mark.skipif(find_spec("notebook") is None, reason="Notebook 7 is not installed")
 def test_in_notebook_7_a_question_covers_its_answer_after_run_all(lab, page):
     write_notebook(lab.folder / "covered.ipynb")
     page.goto(f"{lab.address}/notebooks/covered.ipynb?token={lab.token}")
-    page.get_by_role("menuitem", name="Run", exact=True).click()
-    page.get_by_text("Run All Cells", exact=True).click()
-    accept = page.locator(".jp-Dialog .jp-mod-accept")  # it asks for the kernel if that is slow
-    accept.or_(page.locator(".hdrlab").first).first.wait_for(timeout=PATIENCE)
+    run_all_in_notebook_7(page)
+    accept = page.locator(".jp-Dialog .jp-mod-accept")  # it asks for a kernel where that is slow
+    accept.or_(page.locator(".hdrlab")).first.wait_for(timeout=PATIENCE)
     if accept.is_visible():
         accept.click()
+        page.locator("[data-status=idle]").first.wait_for(timeout=PATIENCE)
+        run_all_in_notebook_7(page)
     try:
         assert_questions_cover(page)
     finally:
         lab.close()
-
-
-@pytest.fixture(scope="module")
-def site_page(tmp_path_factory):
-    """A page of a site that was made from one notebook."""
-    needed = ("sphinx", "myst_nb", "numpydoc", "ziamath")
-    if any(find_spec(name) is None for name in needed):
-        pytest.skip('the site needs pip install ".[site]"')
-    folder = tmp_path_factory.mktemp("covered")
-    write_notebook(folder / "covered.ipynb")
-    command = [sys.executable, "-m", "hdrlab", "site", "--notebooks", "covered.ipynb"]
-    made = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    assert made.returncode == 0, made.stderr
-    return (folder / "site" / "notebooks" / "covered.html").as_uri()
-
-
-def test_on_the_site_a_question_covers_its_answer_and_an_answer_survives_a_reload(page, site_page):
-    page.goto(site_page)
-    assert_questions_cover(page)
-    page.reload()
-    assert_shown(page, [*ALWAYS, *FIRST, *SECOND])
-    assert question(page, "Which is brighter?").get_by_role("radio", name="the sky").is_checked()
-    page.get_by_role("button", name="Ask me again").click()
-    assert_shown(page, ALWAYS, covered=[*FIRST, *SECOND])
-    assert page.problems == []
-
-
-def test_on_the_site_one_switch_uncovers_everything_and_is_remembered(page, site_page):
-    page.goto(site_page)
-    page.get_by_role("button", name="Show all answers").click()
-    assert_shown(page, [*ALWAYS, *FIRST, *SECOND])
-    page.reload()
-    assert_shown(page, [*ALWAYS, *FIRST, *SECOND])
-    page.get_by_role("button", name="Cover the answers").click()
-    assert_shown(page, ALWAYS, covered=[*FIRST, *SECOND])
-
-
-def test_on_the_site_everything_is_visible_on_paper_and_without_scripts(page, browser, site_page):
-    page.goto(site_page)
-    page.emulate_media(media="print")
-    assert_shown(page, [*ALWAYS, *FIRST, *SECOND])
-    context = browser.new_context(java_script_enabled=False)
-    plain = context.new_page()
-    plain.goto(site_page)
-    assert_shown(plain, [*ALWAYS, *FIRST, *SECOND])
-    context.close()

@@ -273,6 +273,63 @@ def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_
     assert page.locator("main details.hide[open]").count() == 0
 
 
+def are_shown(page, part):
+    """Return whether what the questions of the page cover is shown, one value for each cell."""
+    return page.locator(part).evaluate_all("(all) => all.map((el) => el.checkVisibility())")
+
+
+COVERED_OUTPUT = ".tag_covered .cell_output, details.covered"
+
+
+@pytest.fixture
+def asking(site, page):
+    """The first notebook's page, on which nothing has been answered."""
+    page.goto((site / "notebooks" / "00_welcome.html").as_uri())
+    return page
+
+
+def test_a_question_covers_what_follows_until_it_is_answered_by_keys_and_after_a_reload(asking):
+    page = asking
+    before = are_shown(page, COVERED_OUTPUT)
+    assert len(before) >= 6 and not any(before)
+    place = page.locator(".live[data-asks]").first
+    widget = open_widget(page, place)
+    widget.get_by_role("radio").first.press("Space")
+    widget.get_by_role("button", name="Check my answer").press("Enter")
+    assert widget.get_by_role("status").last.evaluate("(el) => el === document.activeElement")
+    left = are_shown(page, COVERED_OUTPUT)
+    assert 0 < len(left) < len(before) and not any(left)
+    page.reload()
+    assert len(are_shown(page, COVERED_OUTPUT)) == len(left)
+    widget = open_widget(page, place)
+    assert widget.get_by_role("radio").first.is_checked()
+    page.get_by_role("button", name="Ask me again").click()
+    page.wait_for_load_state()
+    assert are_shown(page, COVERED_OUTPUT) == before
+
+
+def test_one_switch_shows_all_answers_and_is_remembered_and_paper_shows_them_too(asking):
+    page = asking
+    page.emulate_media(media="print")
+    assert all(are_shown(page, COVERED_OUTPUT))
+    page.emulate_media(media="screen")
+    page.get_by_role("button", name="Show all answers").click()
+    assert all(are_shown(page, COVERED_OUTPUT))
+    page.reload()
+    assert all(are_shown(page, COVERED_OUTPUT))
+    page.get_by_role("button", name="Cover the answers").click()
+    assert not any(are_shown(page, COVERED_OUTPUT))
+
+
+def test_without_scripts_nothing_is_covered(site, browser):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto((site / "notebooks" / "00_welcome.html").as_uri())
+    parts = page.locator(COVERED_OUTPUT).all()
+    assert len(parts) >= 6 and all(part.is_visible() for part in parts)
+    context.close()
+
+
 def test_on_paper_answers_are_unfolded_and_no_line_is_cut(opened):
     page = opened("notebooks/04_response_gsolve", 700)
     folded = page.locator("main details:not(.hide):not([open])")

@@ -58,7 +58,7 @@ def test_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
 @pytest.mark.papers
 def test_demo_on_real_photos_has_the_same_steps_and_no_errors_section(tmp_path):
     lines = list(demo.real_steps(tmp_path / "new"))
-    assert len(lines) == demo.STEPS and lines[1].split()[:2] == ["bracket", "6"]
+    assert len(lines) == demo.STEPS and lines[1].split()[:2] == ["bracket", "12"]
     assert "the frames agree to 0.0" in lines[6]
     assert sorted(file.name for file in (tmp_path / "new").iterdir())[1:] == [
         "radiance.exr", "radiance.hdr", "radiance.pfm", "report.html",

@@ -126,3 +126,43 @@ def test_the_stated_times_put_the_points_ten_times_further_from_the_curve(shown)
         residuals = w[Z] * (g[Z] - lE[:, None] - np.log(times))
         off.append(np.sqrt(np.sum(residuals**2) / np.sum(w[Z] ** 2)))
     assert off[0] > 10 * off[1]
+
+
+# The room with a window
+
+
+@pytest.fixture(scope="module")
+def room():
+    return scenes.window((432, 576))
+
+
+@pytest.fixture(scope="module")
+def room_map(room):
+    return pipeline.assemble(room)
+
+
+def test_the_package_contains_twelve_photos_of_a_room_with_their_license_and_credit():
+    folder = FOLDER.parent / "window"
+    taken = scenes.window()
+    assert taken.images.shape == (12, 864, 1152, 3) and taken.images.dtype == np.uint8
+    assert sum(file.stat().st_size for file in folder.iterdir()) < 1.5e6
+    for name in ("LICENSE", "README.md"):
+        notice = (folder / name).read_text("utf8")
+        assert "Axel Jacobs" in notice and "CC BY-SA 2.0" in notice and "reduced" in notice
+
+
+def test_the_times_of_the_room_are_in_exif_and_one_stop_apart(room):
+    assert np.allclose(np.diff(np.log2(room.times)), 1, atol=0.1)
+    assert room.times[0] == pytest.approx(1 / 1000) and room.times[-1] == 2
+
+
+def test_the_map_of_the_room_spans_nearly_ten_stops_without_a_warning(room_map):
+    assert room_map.doubts == () and room_map.fallback == ""
+    assert 9.3 < scenes.decades(room_map.E) / np.log10(2) < 9.9 and room_map.spread < 0.03
+
+
+def test_the_sky_is_nine_stops_above_the_cushion_and_the_stand_one(room_map):
+    L = np.log2(luminance(room_map.E))
+    cushion = np.median(L[310:318, 340:346])
+    assert np.median(L[35:60, 230:320]) - cushion == pytest.approx(9.3, abs=0.3)
+    assert np.median(L[330:345, 119:124]) - cushion == pytest.approx(1, abs=0.3)
