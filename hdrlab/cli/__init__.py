@@ -62,20 +62,61 @@ COMMANDS = (
     viva.viva,
 )
 
+# the headings of `hdrlab --help`, and the commands below each of them
+SECTIONS = {
+    "Photographs": (
+        "assemble",
+        "tonemap",
+        "compare",
+        "info",
+        "convert",
+        "calibrate",
+        "correct",
+        "meter",
+        "plan",
+        "shoot",
+        "video",
+    ),
+    "Learn": ("demo", "lab", "check", "site"),
+    "Teach": ("course", "grade", "regrade", "viva", "doctor", "gallery"),
+    "Project": ("report", "submit"),
+}
+
 EXIT_BUG = 1
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
+
+# columns before and between the two columns of a list of commands
+HELP_INDENT = 6
 
 # the number of glibc's option M_ARENA_MAX, the number of memory pools
 MALLOPT_ARENA_MAX = -8
 
 
+class SectionedGroup(Group):
+    """The group of all commands, whose help lists them by what they are for."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands of each section, one line each."""
+        width = max(len(name) for name in self.commands)
+        for heading, names in SECTIONS.items():
+            limit = formatter.width - width - HELP_INDENT
+            rows = [(name, self.commands[name].get_short_help_str(limit)) for name in names]
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(width), text) for name, text in rows])
+
+
 @click.group(
-    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True}
+    cls=SectionedGroup,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
 @click.version_option(__version__, prog_name="hdrlab")
-def main() -> None:
+@click.pass_context
+def main(ctx: click.Context) -> None:
     """Make radiance maps and tone-mapped images from photos, and teach HDR imaging."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
 
 
 main.params.append(debug_option(hidden=False))

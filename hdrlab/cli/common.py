@@ -102,12 +102,29 @@ def debug_option(*, hidden: bool) -> click.Option:
     )
 
 
+def _require_existing(path: Path) -> None:
+    """Raise an error if a file or folder to read does not exist."""
+    if not path.exists():
+        raise InputError(f"{path} does not exist; pass a file or a folder that exists")
+
+
 class Command(click.Command):
     """A command that checks the names of its outputs, and never overwrites a file that it reads."""
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self.params.append(debug_option(hidden=True))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the words after the command; a path that does not exist is the first error."""
+        try:
+            return super().parse_args(ctx, args)
+        except click.MissingParameter:
+            for param in self.params:
+                if isinstance(param, click.Argument) and param.type is INPUT_PATH:
+                    for path in _paths(ctx.params.get(str(param.name))):
+                        _require_existing(path)
+            raise
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, or raise an error if it cannot write one of its outputs.

@@ -22,7 +22,11 @@ def course() -> None:
     help="Folder with the text of each homework.",
 )
 @click.option(
-    "--out", type=common.OUTPUT_PATH, default="assignments", help="Folder for the assignments."
+    "-o",
+    "--out",
+    type=common.OUTPUT_PATH,
+    default="assignments",
+    help="Folder for the assignments.",
 )
 @click.option(
     "--solutions",

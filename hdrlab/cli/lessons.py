@@ -17,7 +17,7 @@ HELP_WIDTH = 88
 
 @click.command(cls=common.Command)
 @click.option(
-    "--out", type=common.INPUT_PATH, default="hdrlab-demo", help="Folder for the results."
+    "-o", "--out", type=common.INPUT_PATH, default="hdrlab-demo", help="Folder for the results."
 )
 @click.option("--seed", default=1, help="Seed of the noise and the camera shake.")
 @click.option("--real", is_flag=True, help="Use twelve real photos of a room instead.")
@@ -38,8 +38,9 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
     help="Folder for your copy of the notebooks.",
 )
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks without starting JupyterLab.")
+@click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[-- JUPYTERLAB_OPTIONS]")
-def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
+def lab(*, folder: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on your own copy of the notebooks.
 
     hdrlab copies the notebooks and assignments to --folder, and opens the first notebook. It never
@@ -60,11 +61,14 @@ def lab(*, folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
         config_folders.append(own_folders)
     os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(config_folders)
     place = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"]
+    if no_browser:
+        place.append("--no-browser")
     LabApp.launch_instance([*place, *options])
 
 
 @click.command(cls=common.Command)
 @click.option(
+    "-o",
     "--out",
     type=common.OUTPUT_PATH,
     default="site",

@@ -1,6 +1,7 @@
 """The commands that start from a radiance map, `tonemap`, `compare` and `convert`, and `info`."""
 
 import inspect
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -243,12 +244,34 @@ def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
     click.echo(f"{target}: {common.describe_map(E)}")
 
 
+def _describe_light(path: Path) -> dict[str, str]:
+    """Return the range and the unit of a radiance map; nothing for photos and unreadable maps."""
+    from hdrlab.core.extremes import decades
+    from hdrlab.io import radiance
+
+    if path.suffix.lower() not in radiance.READ:
+        return {}
+    try:
+        E = radiance.read_radiance(path)
+        unit = radiance.read_luminance_of_unit(path)
+    except InputError:
+        return {}  # the header is described, and the other commands say what is wrong
+    light = {"range": "all black"}
+    if E.any():
+        span = decades(E)
+        stops = span / math.log10(2)
+        light["range"] = f"{stops:.1f} stops ({span:.1f} decades), 0.1 % to 99.9 %"
+    light["unit"] = "relative" if unit is None else f"{unit:.6g} cd/m^2"
+    return light
+
+
 @click.command(cls=common.Command)
 @click.argument("files", nargs=-1, required=True, type=common.INPUT_PATH)
 def info(*, files: tuple[Path, ...]) -> None:
     """Describe FILES, which are radiance maps, photos or folders of photos.
 
-    hdrlab prints the format, size, values and exposure of each file. For a folder, it prints a
+    hdrlab prints the format, size and values of each file, the range and the unit of a map, and
+    the exposure of a photo or that it states none. For a folder, it prints a
     table: the exposure of each photo, its exposure value (EV at ISO 100), the camera, and what the
     photo does not state. If the folder holds several brackets, each has its own table.
     """
@@ -261,7 +284,7 @@ def info(*, files: tuple[Path, ...]) -> None:
             for line in bracket_table.describe_folder(file):
                 click.echo(f"  {terminal.visible(line)}".rstrip())
             continue
-        description = describe_file(file)
+        description = describe_file(file) | _describe_light(file)
         click.echo(description.pop("file"))
         for key, value in description.items():
             click.echo(f"  {key:<12} {terminal.visible(value)}")

@@ -64,7 +64,8 @@ def _describe_photo(path: str | Path) -> dict[str, Any]:
     if header.comments:
         description["comments"] = header.comments
     exposure = header.exposure._asdict()
-    return description | {name: value for name, value in exposure.items() if value is not None}
+    stated = {name: value for name, value in exposure.items() if value is not None}
+    return description | (stated or {"exposure": "the file states none"})
 
 
 def _describe_rgbe(path: str | Path) -> dict[str, Any]:

@@ -1,9 +1,7 @@
-"""A question covers what follows it until the reader answers, in JupyterLab and in Notebook 7.
+"""A question covers what follows it until the reader answers, in JupyterLab.
 
 The same on the site is tested in `test_site_in_a_browser`.
 """
-
-from importlib.util import find_spec
 
 import nbformat
 import pytest
@@ -120,25 +118,3 @@ def test_in_jupyterlab_paper_shows_everything(in_lab):
     assert in_lab.locator(hidden).evaluate_all(
         "(all) => all.every((el) => getComputedStyle(el).display !== 'none')"
     )
-
-
-def run_all_in_notebook_7(page):
-    page.get_by_role("menuitem", name="Run", exact=True).click()
-    page.get_by_text("Run All Cells", exact=True).click()
-
-
-@pytest.mark.skipif(find_spec("notebook") is None, reason="Notebook 7 is not installed")
-def test_in_notebook_7_a_question_covers_its_answer_after_run_all(lab, page):
-    write_notebook(lab.folder / "covered.ipynb")
-    page.goto(f"{lab.address}/notebooks/covered.ipynb?token={lab.token}")
-    run_all_in_notebook_7(page)
-    accept = page.locator(".jp-Dialog .jp-mod-accept")  # it asks for a kernel where that is slow
-    accept.or_(page.locator(".hdrlab")).first.wait_for(timeout=PATIENCE)
-    if accept.is_visible():
-        accept.click()
-        page.locator("[data-status=idle]").first.wait_for(timeout=PATIENCE)
-        run_all_in_notebook_7(page)
-    try:
-        assert_questions_cover(page)
-    finally:
-        lab.close()

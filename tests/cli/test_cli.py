@@ -357,6 +357,7 @@ def test_times_in_the_wrong_order_are_rejected_with_advice_that_works(
     ("arguments", "expected"),
     [
         (["assemble", "nowhere", "-o", "x.hdr"], "nowhere"),
+        (["assemble", "nowhere"], "nowhere does not exist"),
         (["assemble", "nowhere", "-o", "x.bmp"], ".hdr"),
         (["tonemap", "nowhere.hdr", "-o", "x.png"], "nowhere.hdr"),
         (["convert", "nowhere.hdr", "x.exr"], "nowhere.hdr"),
@@ -457,6 +458,28 @@ def test_tonemap_offers_both_ways_for_out_of_gamut_colors(tmp_path, capsys):
         "tonemap", tmp_path / "blue.exr", "-o", tmp_path / "x.png", "--way", "lab", capsys=capsys
     )
     assert code == 2 and "'hue', 'ratio'" in complaint
+
+
+def test_info_states_range_size_and_unit_of_a_map_and_whether_a_photo_states_its_exposure(
+    photographs, tmp_path, capsys
+):
+    E = np.geomspace(1, 1024, 64 * 64).reshape(64, 64)
+    radiance.write_radiance(tmp_path / "known.hdr", E, luminance_of_unit=2.5)
+    radiance.write_radiance(tmp_path / "relative.pfm", E)
+    photo = min(path for path in photographs[0].iterdir() if path.suffix == ".png")
+    files = [tmp_path / "known.hdr", tmp_path / "relative.pfm", photo]
+    code, said, _ = hdrlab("info", *files, capsys=capsys)
+    assert code == 0 and said.count("10.0 stops") == 2 and "2.5 cd/m^2" in said
+    assert "relative\n" in said and "exposure     the file states none" in said
+
+
+def test_hdrlab_alone_prints_the_help_in_sections_with_every_command_once(capsys):
+    code, said, complaint = hdrlab(capsys=capsys)
+    assert code == 0 and complaint == ""
+    for heading in ("Photographs:", "Learn:", "Teach:", "Project:"):
+        assert heading in said
+    for name in cli.main.commands:
+        assert len(re.findall(rf"^  {name} ", said, re.M)) == 1, name
 
 
 def test_info_states_format_and_size(map_file, photographs, capsys):
