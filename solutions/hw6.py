@@ -736,7 +736,8 @@ pictures.picture(
 # - $P$ is the code of a display. Its display luminance is that of sRGB: $P / 12.92$ if $P \le
 #   0.04045$, and $((P + 0.055) / 1.055)^{2.4}$ otherwise.
 #
-# The checks accept an error of 0.025, so it does not matter how a pixel at the edge of a bin counts.
+# The checks accept an error of 0.025, so it does not matter how a pixel at the edge of a bin or
+# beyond an end counts, and $P^{2.2}$ is near enough.
 #
 # *Example*: half of the pixels have the luminance 1, the others 100, and `bins` = 2, `limit` = 2.
 # Both bins are 0.5, which is below $t = 1$. At the edge between them, $P = 0.5$ and the display

@@ -50,6 +50,20 @@ def test_the_circle_ends_where_the_second_photo_gets_darker(subject, rng):
         same_radius(subject, A, B, radius=part * OUTER)
 
 
+@points(2, needs="test_the_circle_ends_where_the_second_photo_gets_darker")
+def test_the_circle_also_ends_where_the_first_photo_gets_darker(subject, rng):
+    """The photos are exchanged. Is B now below or above its prediction in the corners?
+
+    Above. But they do not agree, so the circle ends here, too.
+
+    Compare the absolute value of the median with `tolerance`.
+    """
+    light, r = scene(rng)
+    part = rng.uniform(0.5, 0.7)
+    A, B = photos(light, np.where(r < part * OUTER, 1, 0.85))
+    same_radius(subject, B, A, radius=part * OUTER, what="the radius of exchanged photos")
+
+
 @points(3)
 def test_without_vignetting_the_circle_contains_the_image(subject, rng):
     """Both photos have the same aperture. How large is the circle?

@@ -75,6 +75,12 @@ def test_the_share_is_not_negative_and_needs_5000_pixels(subject, rng):
     share, agreement = answer(subject, F[:20], G[:20])
     same(share, 0, 0, what="the share in a small map")
     require(np.isposinf(numbers(agreement, what="the agreement")).all(), "the agreement is not inf")
+    for count, what in ((4990, "fewer than 5000"), (5010, "more than 5000")):
+        few = G.copy()
+        few.flat[count:] = 0
+        expected, _ = flare.lowest_ratio(F, few)
+        came = answer(subject, F, few)[0]
+        same(came, expected, 2e-3 * expected, what=f"the share for {what} pixels with G above 0")
     steep = F * np.where(rng.random(SHAPE) < 3e-4, 0.01, 1).astype(np.float32)
     steep.flat[:4] = 1e-4 * G.flat[:4]
     same(answer(subject, steep, G)[0], 0, 0, what="the share where the ratios rise steeply")

@@ -37,6 +37,9 @@ def test_the_values_beside_a_peak_are_no_peaks(subject, rng):
     """
     for count in (3, 6):
         c = drawn(rng)
+        row, column = rng.integers(8, 28), rng.integers(8, 40)
+        c[row, column] = 20
+        c[row, column + 3] = 19  # not among the 5 x 5 values around the other
         same(
             subject.peaks(c, count), cerman.peaks(c, count), 0, what=f"the shifts of {count} peaks"
         )

@@ -45,6 +45,10 @@ def test_no_radiance_is_negative(subject, rng):
     E = flare.subtract_glare(below, G, share)
     came = finite(subject.subtract_glare(below, G, share), E.shape, what="E").astype(float)
     same(came / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is below s G")
+    just_above = (share * G * 1.0004).astype(np.float32)
+    E = flare.subtract_glare(just_above, G, share)
+    came = finite(subject.subtract_glare(just_above, G, share), E.shape, what="E").astype(float)
+    same(came / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is just above s G")
     half_dark = np.where(rng.random(F.shape) < 0.5, below, F)
     same_map(subject, half_dark, G, share, what="E of a map with dark places")
 
