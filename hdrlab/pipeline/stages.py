@@ -263,7 +263,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     block_errors = blocks_task.result()
     contradictions = contradictions_task.result()
 
-    may_have_ghosts = not is_misaligned and measured_motion.fraction > motion.MIN_SUSPECT_FRACTION
+    may_have_ghosts = not is_misaligned and measured_motion.fraction > motion.MIN_MOVING_FRACTION
     removes_ghosts = options.ghosts in ("regions", "reference") or (
         options.ghosts == "auto" and may_have_ghosts
     )

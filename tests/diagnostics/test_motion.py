@@ -20,9 +20,11 @@ WALL = np.full((60, 90), 0.5, np.float32)
 G, W = responses.true_g("film"), np.ones(256)
 
 
+BALL = movers.ball((60, 90), (30, 45), 12, 0.1, stripes=0)
+
+
 def share(step, **change):
-    ball = movers.ball((60, 90), (30, 45), 12, 2.0)
-    taken = movers.shoot(WALL, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
+    taken = movers.shoot(WALL, BALL, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
     given = {"images": taken.images, "times": taken.times, "g": G, "w": W} | change
     return motion.measure_motion(**given).fraction
 
@@ -47,8 +49,7 @@ def test_a_larger_motion_has_a_larger_moving_fraction():
 
 @pytest.mark.quick
 def test_gray_photos_are_subsampled_like_color_photos(monkeypatch):
-    ball = movers.ball((60, 90), (30, 45), 12, 2.0)
-    gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
+    gray = movers.shoot(WALL, BALL, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
     wide = gray.repeat(2, axis=1).repeat(2, axis=2)
     monkeypatch.setattr(motion, "MAX_PIXELS", WALL.size)
     assert (
@@ -81,6 +82,13 @@ def test_moving_leaves_and_water_are_found_although_the_spread_is_small(ill, tmp
 
 def test_a_still_scene_after_sharpening_and_jpeg_is_not_motion(tmp_path):
     found = pipeline.assemble(brackets.shoot(brackets.plan(tmp_path, 3)), align="none")
+    assert found.moving is None and found.doubts == ()
+
+
+def test_bright_panes_beside_dark_walls_are_not_motion(tmp_path):
+    plan = brackets.plan(tmp_path, 12, sound="plain")
+    assert plan.scene == "chapel"
+    found = pipeline.assemble(brackets.shoot(plan), align="none")
     assert found.moving is None and found.doubts == ()
 
 
