@@ -54,6 +54,8 @@ MAX_PIXELS = 30_000
 PRIOR_STOPS = 4.0
 # stops; true times of real brackets stay within 0.24, and tints of one white balance within 0.16
 MIN_WRONG_STOPS = 0.25
+# stops of a tint that only the ranks of histograms show; one white balance stays within 0.3
+MIN_RANK_TINT_STOPS = 0.32
 # stops in the map, RMS; a smaller error does not harm it
 MIN_COST_STOPS = 0.05
 # stops; real brackets with one response stay within 0.08
@@ -197,6 +199,8 @@ def find_contradictions(
     )
     tints = np.zeros(len(B))
     tints[frames] = np.minimum(channel_stops.max(axis=0), -channel_stops.min(axis=0))
+    is_from_ranks = ~_find_photos_with_flat_patches(~has_few)
+    tints[is_from_ranks & (tints < MIN_RANK_TINT_STOPS)] = 0
     places = np.full((3, len(B) - 1), np.nan)
     places[:, pairs] = measure_disagreement(patches.of(frames), B_run, fit)
     regions, significance, corners = places
@@ -208,6 +212,18 @@ def find_contradictions(
         cost=measure_cost(stack, stops),
         tints=tints,
     )
+
+
+def _find_photos_with_flat_patches(has_flat: Mask) -> Mask:
+    """Return the photos (P,) that flat patches connect with a neighbor; has_flat is (P - 1,).
+
+    Ranks of whole histograms show the white balance less exactly: JPEG and sharpening change the
+    histograms of the channels differently where bright colored areas border on dark ones.
+    """
+    is_connected = np.zeros(len(has_flat) + 1, bool)
+    is_connected[:-1] |= has_flat
+    is_connected[1:] |= has_flat
+    return is_connected
 
 
 def _expand(found: Contradictions, chosen: Indices, count: int) -> Contradictions:
@@ -263,7 +279,8 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
 
     The first two rows say by how much a quarter of the tiles are off or more, in stops and in
     standard errors; 0 where few patches are flat. The third is the change from the center to the
-    corners in stops; 0 where the distance from the center does not explain most of it.
+    corners in stops; 0 where the distance from the center does not explain most of it, and NaN where
+    few patches are known.
     """
     height, width = patches.Z.shape[2:]
     y, x = np.indices((height, width)) // PATCHES_PER_TILE_SIDE
@@ -292,6 +309,8 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
         if has_flat:
             sizes = np.abs([medians, medians / errors])
             disagreement[:2, j] = np.quantile(sizes, 0.75, axis=1)
+        if len(residuals) < MIN_FLAT_PATCHES:
+            continue
         r2 = squared_radius[chosen]
         slope = np.polyfit(r2, residuals, 1)[0]
         is_radial = (slope * r2.std()) ** 2 > MIN_EXPLAINED_BY_RADIUS * residuals.var()

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hdrlab import scenes
+from benchmarks.verdicts import brackets
+from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.diagnostics import contradictions, exposure_times, flat_patches, plausibility
 from hdrlab.errors import CalibrationError
@@ -95,3 +96,12 @@ def test_a_response_that_the_photos_contradict_is_a_calibration_error(taken):
     g = np.log(np.maximum(np.arange(256), 0.25) / 128)
     with pytest.raises(CalibrationError, match="between"):
         plausibility.validate_response(g, taken.images, taken.times**8)
+
+
+@pytest.mark.papers
+@pytest.mark.parametrize(
+    ("sound", "number"), [("by hand, lamps, dark ground", 0), ("bright lamps", 12)]
+)
+def test_few_flat_patches_accuse_no_lens_and_no_white_balance(sound, number, tmp_path):
+    plan = brackets.plan(tmp_path, number, sound=sound, seed=2)
+    assert pipeline.assemble(brackets.shoot(plan)).doubts == ()
