@@ -366,14 +366,15 @@ def warn_of_contradictions(
     if len(corners) and np.median(corners) > MIN_SLIGHT_STOPS:
         return warning_text("corners", stops=np.median(corners))
     has_bands = band_stops > motion.MIN_BAND_STOPS
-    if found.local:
+    largest = float(np.abs(found.stops[list(found.wrong)]).max(initial=0.0))
+    # Wrong times also look a little like local changes, because they hit dark and bright parts unequally.
+    if found.local and np.nanmedian(found.regions) >= largest:
         text = _warn_of_local_changes(found, names, spread, band_stops if has_bands else 0.0)
         if text:
             return text
     if not found.wrong or spread < MAX_EXACT_SPREAD:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
-    largest = float(np.abs(found.stops[list(found.wrong)]).max())
     if has_bands and largest < UNDECIDED_FACTOR * MIN_WRONG_STOPS:
         return warning_text("flicker_or_times", bands=band_stops, off=off)
     if np.isfinite(found.stops).sum() == 3:
