@@ -1,7 +1,9 @@
-"""A question covers what follows it until the reader answers, in JupyterLab.
+"""A question covers what follows it until the reader answers, in JupyterLab and in Notebook 7.
 
 The same on the site is tested in `test_site_in_a_browser`.
 """
+
+from importlib.util import find_spec
 
 import nbformat
 import pytest
@@ -118,3 +120,19 @@ def test_in_jupyterlab_paper_shows_everything(in_lab):
     assert in_lab.locator(hidden).evaluate_all(
         "(all) => all.every((el) => getComputedStyle(el).display !== 'none')"
     )
+
+
+@pytest.mark.skipif(find_spec("notebook") is None, reason="Notebook 7 is not installed")
+def test_in_notebook_7_a_question_covers_its_answer_when_all_cells_have_run(lab, page):
+    write_notebook(lab.folder / "covered.ipynb")
+    page.goto(f"{lab.address}/notebooks/covered.ipynb?token={lab.token}")
+    page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(timeout=PATIENCE)
+    page.wait_for_timeout(4000)  # until the session is ready, else it asks for a kernel
+    page.locator(".jp-Cell").first.click()
+    try:
+        for _ in range(page.locator(".jp-Cell").count()):
+            page.keyboard.press("Shift+Enter")
+            page.wait_for_timeout(300)
+        assert_questions_cover(page)
+    finally:
+        lab.close()
