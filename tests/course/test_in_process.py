@@ -65,8 +65,8 @@ def test_an_answer_gets_the_outcomes_of_the_practice_tier(id):
 
 @pytest.mark.grading
 @pytest.mark.parametrize("id", sorted(TASKS))
-def test_all_answers_to_a_task_get_the_outcomes_of_the_practice_tier(id):
-    for text in [*right_answers(id)[:3], *wrong_answers(id)[:6]]:
+def test_a_right_and_a_wrong_answer_to_each_task_get_the_outcomes_of_the_practice_tier(id):
+    for text in [*right_answers(id)[:1], *wrong_answers(id)[:1]]:
         assert outcomes_of(id, text, in_process.TIER) == outcomes_of(id, text, "practice"), text
 
 
@@ -177,6 +177,27 @@ def test_nobody_can_pass_this(subject):
     subject.hat(256)
     raise TypeError("Cannot cast array data")
 """
+
+
+@pytest.mark.parametrize("tier", ["practice", in_process.TIER])
+def test_checks_that_cannot_be_imported_are_an_error_and_no_key_press(tier, tmp_path, monkeypatch):
+    monkeypatch.setattr(grader, "SPECIFICATION", tmp_path)
+    (tmp_path / "test_hat.py").write_text("import a_module_that_nobody_has\n")
+    homework, task = TASKS["hat"]
+    code = reader.SubmittedCode({"hat": "def hat(n=256):\n    return [0.0] * n\n"}, (), "")
+    with pytest.raises(InputError, match="a_module_that_nobody_has"):
+        last(grader.check_steps(code, homework._replace(tasks=(task,)), GradingOptions(tier=tier)))
+
+
+def test_a_key_press_ends_checks_in_the_same_interpreter(tmp_path, monkeypatch):
+    monkeypatch.setattr(grader, "SPECIFICATION", tmp_path)
+    pressed = BROKEN_CHECK.replace('TypeError("Cannot cast array data")', "KeyboardInterrupt")
+    (tmp_path / "test_hat.py").write_text(pressed)
+    homework, task = TASKS["hat"]
+    code = reader.SubmittedCode({"hat": "def hat(n=256):\n    return [0.0] * n\n"}, (), "")
+    options = GradingOptions(tier=in_process.TIER)
+    with pytest.raises(KeyboardInterrupt):
+        last(grader.check_steps(code, homework._replace(tasks=(task,)), options))
 
 
 @pytest.mark.parametrize("tier", ["practice", in_process.TIER])

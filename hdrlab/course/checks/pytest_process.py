@@ -13,14 +13,16 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hdrlab.course.checks import SPECIFICATION
 from hdrlab.course.sandbox.subprocess_runner import import_path
 from hdrlab.errors import InputError
 
+if TYPE_CHECKING:
+    import pytest
+
 POLL_SECONDS = 0.02
-INTERRUPTED_EXIT_CODE = 2
 # pytest's exit codes if all checks hold, and if some do not
 COMPLETED_EXIT_CODES = (0, 1)
 MAX_ERROR_LINES = 4
@@ -97,13 +99,27 @@ def run_pytest_here(folder: Path, job: Path, files: Sequence[Path]) -> Iterator[
         contextlib.redirect_stdout(output),
         contextlib.redirect_stderr(output),
     ):
-        exit_code = pytest.main(options)
-    if exit_code == INTERRUPTED_EXIT_CODE:
+        interrupts = _InterruptRecorder()
+        exit_code = pytest.main(options, plugins=[interrupts])
+    if interrupts.is_key_press:
         raise KeyboardInterrupt
     if exit_code not in COMPLETED_EXIT_CODES:
         raise _run_error(output.getvalue())
     for line in (folder / "lines").read_text(encoding="utf8").splitlines():
         yield json.loads(line)
+
+
+class _InterruptRecorder:
+    """A plugin that tells Ctrl-C from checks that cannot be imported: pytest calls both interrupts."""
+
+    def __init__(self) -> None:
+        self.is_key_press = False
+
+    def pytest_keyboard_interrupt(self, excinfo: "pytest.ExceptionInfo[BaseException]") -> None:
+        """Note what stopped the run. pytest calls this hook."""
+        import pytest
+
+        self.is_key_press = not isinstance(excinfo.value, pytest.Session.Interrupted)
 
 
 @contextlib.contextmanager
