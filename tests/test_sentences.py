@@ -363,9 +363,6 @@ SENTENCES = {
             mean_of_cut_counts(2, read_noise=6) > 1.5 * 2
         ),
         "The photos agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
-        "and six stops below the windows": lambda n: (
-            round(n.scenes.decades(n.real.E) / np.log10(2)) == 6
-        ),
         "the well holds four times as many electrons where the hat has its largest weight": lambda n: (
             round(float(np.exp(n.true_g[255])) / 2) == 4
         ),

@@ -27,7 +27,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy import ndimage
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
 from hdrlab.diagnostics.overview import make_overview
@@ -125,8 +124,7 @@ def measure_motion(
     R, W = _sum_residuals(Z, curves, times_s, relative_weights, np.asarray(is_seen))
     rows = measure_bands(R.sum(axis=2), W.sum(axis=2), channel_count * R.shape[2])
     columns = measure_bands(R.sum(axis=1), W.sum(axis=1), channel_count * R.shape[1])
-    square = (1, 2 * CLIPPING_REACH + 1, 2 * CLIPPING_REACH + 1)
-    is_clear = ndimage.minimum_filter(np.asarray(is_seen), square)
+    is_clear = minimum_around(np.asarray(is_seen), CLIPPING_REACH)
     R, W = _sum_residuals(Z, curves, times_s, relative_weights, is_clear)
     fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK_SIDE**2 * channel_count)
     band_stops = rows if rows > MIN_ROWS_OVER_COLUMNS * columns else 0.0
@@ -187,6 +185,24 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
         row_means -= powers @ cubic
     W[:, (W > 0).sum(axis=0) < 2] = 0
     return float(np.sqrt((W * b**2).sum() / max(W.sum(), 1e-9)) / np.log(2))
+
+
+def minimum_around(values: Array, reach: int) -> Array:
+    """Return the minimum of the elements at most `reach` away in each of the last two directions.
+
+    SciPy's filter does the same, but its import would take longer than all diagnostics of a small bracket.
+
+    Examples
+    --------
+    >>> minimum_around(np.array([[9, 9, 9, 9], [9, 9, 9, 0]]), 1).tolist()
+    [[9, 9, 0, 0], [9, 9, 0, 0]]
+    """
+    for axis in (-2, -1):
+        width = [(0, 0)] * values.ndim
+        width[axis] = (reach, reach)
+        padded = np.pad(values, width, mode="edge")
+        values = sliding_window_view(padded, 2 * reach + 1, axis).min(axis=-1)
+    return values
 
 
 def sum_blocks(values: Array) -> F32:

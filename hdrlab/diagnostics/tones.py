@@ -28,12 +28,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import ndimage
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Indices, Mask, as_mask, as_radiance
 from hdrlab.core.bracket import short_to_long
 from hdrlab.diagnostics.doubts import warning_text
-from hdrlab.diagnostics.motion import BLOCK_SIDE, sum_blocks
+from hdrlab.diagnostics.motion import BLOCK_SIDE, minimum_around, sum_blocks
 from hdrlab.errors import InputError
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
@@ -43,8 +42,8 @@ MIN_LEVEL = 16
 MIN_SHORTER_LEVEL = 30
 # fraction of the blocks that are the darkest ones, and that are the brightest ones
 TONE_FRACTION = 0.05
-# blocks along each side of the square in which the best photo of the middle one must clip nothing
-UNCLIPPED_SQUARE_SIDE = 3
+# blocks around one, in each direction, in which its best photo must clip nothing either
+UNCLIPPED_REACH = 1
 # tiles along each side of the image
 TILES_PER_SIDE = 4
 # blocks of a part, as a fraction of those that are compared, without which it has no median
@@ -208,7 +207,7 @@ def _find_blocks_far_from_clipping(best: Indices, order: Sequence[int] | Indices
     width = best.shape[1] // BLOCK_SIDE
     best_ranks = ranks[best[: height * BLOCK_SIDE, : width * BLOCK_SIDE]]
     blocks = best_ranks.reshape(height, BLOCK_SIDE, width, BLOCK_SIDE)
-    around = ndimage.minimum_filter(blocks.min(axis=(1, 3)), UNCLIPPED_SQUARE_SIDE)
+    around = minimum_around(blocks.min(axis=(1, 3)), UNCLIPPED_REACH)
     return around >= blocks.max(axis=(1, 3))
 
 
