@@ -197,6 +197,8 @@ def minimum_around(values: Array, reach: int) -> Array:
     >>> minimum_around(np.array([[9, 9, 9, 9], [9, 9, 9, 0]]), 1).tolist()
     [[9, 9, 0, 0], [9, 9, 0, 0]]
     """
+    if not values.size:
+        return values
     for axis in (-2, -1):
         width = [(0, 0)] * values.ndim
         width[axis] = (reach, reach)
