@@ -92,7 +92,7 @@ def make_overview(
     >>> images = np.array([[[10, 30, 200, 255]] * 2], np.uint8)
     >>> small = make_overview(images, g, top=250, max_pixels=2)
     >>> small.images.tolist(), small.valid.tolist(), small.column_edges.tolist()
-    ([[[20, 228]]], [[[True, False]]], [0, 2, 4])
+    ([[[20, 249]]], [[[True, False]]], [0, 2, 4])
     """
     height, width = images.shape[1:3]
     scale = np.sqrt(height * width / max_pixels)
