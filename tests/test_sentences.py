@@ -555,8 +555,13 @@ SENTENCES = {
         "Five stops down the shade has a handful of levels": lambda n: levels_in_shade(n, -5) < 10,
     },
     "20": {
-        "About a third, most of them by only a little": lambda n: (
+        "About a third, and half of these by more than 0.15, which is 38 levels": lambda n: (
             round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
+            and np.median(beyond(n.R)[beyond(n.R) > 0]) > 0.15
+            and round(255 * 0.15) == 38
+        ),
+        "In three quarters of the pixels one photo has more than 0.9 of the weight": lambda n: (
+            0.7 < np.mean(np.max(n.W, axis=0) > 0.9) < 0.8
         ),
         "few pairs of pixels that are two stops apart are in the wrong order": lambda n: (
             exchanged(n) < 0.01
@@ -780,6 +785,11 @@ def condition(n, smoothness):
     """Return the condition number of gsolve's matrix."""
     sigma = n.stiff(smoothness)
     return sigma[0] / sigma[-1]
+
+
+def beyond(R):
+    """Return how far each pixel of a fused image is outside 0 to 1, in its worst channel."""
+    return np.maximum(R - 1, -R).max(axis=-1)
 
 
 def exchanged(n):
