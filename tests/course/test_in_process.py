@@ -64,8 +64,8 @@ def test_an_answer_gets_the_outcomes_of_the_practice_tier(id):
 
 
 @pytest.mark.grading
-@pytest.mark.parametrize("id", sorted(TASKS))
-def test_a_right_and_a_wrong_answer_to_each_task_get_the_outcomes_of_the_practice_tier(id):
+@pytest.mark.parametrize("id", sorted(TASKS)[::4])
+def test_a_right_and_a_wrong_answer_to_every_fourth_task_get_the_outcomes_of_the_practice_tier(id):
     for text in [*right_answers(id)[:1], *wrong_answers(id)[:1]]:
         assert outcomes_of(id, text, in_process.TIER) == outcomes_of(id, text, "practice"), text
 
