@@ -67,10 +67,12 @@ def to_bytes(E):
 
 
 def from_bytes(data):
-    kind, size, scale = data.split(b"\n", 3)[:3]
-    W, H = (int(n) for n in size.split())
-    start = len(kind) + len(size) + len(scale) + 3
-    values = np.frombuffer(data, f32, offset=start)
+    import re
+
+    header = re.match(rb"(P[Ff])\s+(\d+)\s+(\d+)\s+(\S+)\s", data)
+    kind, W, H, scale = header.groups()
+    W, H = int(W), int(H)
+    values = np.frombuffer(data, f32, offset=header.end())
     if float(scale) > 0:
         values = values.byteswap()
     return np.flipud(

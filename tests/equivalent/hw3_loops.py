@@ -72,10 +72,12 @@ def from_bytes(data):
     words, at = [], 0
     while len(words) < 4:
         word = b""
+        while data[at : at + 1].isspace():
+            at += 1
         while not data[at : at + 1].isspace():
             word, at = word + data[at : at + 1], at + 1
         words.append(word)
-        at += 1
+    at += 1
     W, H, C = int(words[1]), int(words[2]), 3 if words[0] == b"PF" else 1
     order = "<" if float(words[3]) < 0 else ">"
     values = struct.unpack(f"{order}{W * H * C}f", data[at : at + 4 * W * H * C])

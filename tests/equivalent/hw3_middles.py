@@ -30,7 +30,9 @@ def to_pixels(E):
 def from_bytes(data):
     head, at = [], 0
     for _ in range(4):
-        end = min(i for i in (data.find(b"\n", at), data.find(b" ", at)) if i >= 0)
+        while data[at : at + 1].isspace():
+            at += 1
+        end = min(i for i in (data.find(gap, at) for gap in (b"\n", b" ", b"\t")) if i >= 0)
         head.append(data[at:end])
         at = end + 1
     rows = np.frombuffer(data[at:], ">f4" if float(head[3]) > 0 else "<f4").reshape(
