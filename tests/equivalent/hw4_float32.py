@@ -11,7 +11,8 @@ f32 = np.float32
 
 
 def log_average(L, *, delta=1e-6):
-    return np.exp(np.mean(np.log(L.astype(f32) + f32(delta)), dtype=f32))
+    seen = L[L > 0].astype(f32)
+    return np.exp(np.mean(np.log(seen + f32(delta) * np.median(seen)), dtype=f32))
 
 
 # %% task="display"

@@ -10,9 +10,11 @@ import numpy as np
 
 def log_average(L, *, delta=1e-6):
     total = 0.0
-    for value in np.ravel(L).tolist():
-        total += math.log(delta + value)
-    return math.exp(total / L.size)
+    seen = sorted(value for value in np.ravel(L).tolist() if value > 0)
+    middle = (seen[len(seen) // 2] + seen[(len(seen) - 1) // 2]) / 2
+    for value in seen:
+        total += math.log(delta * middle + value)
+    return math.exp(total / len(seen))
 
 
 # %% task="display"

@@ -156,7 +156,8 @@ def display(Lm, adaptation, white=None):
 
 
 def log_average(L, *, delta=1e-6):
-    return 2 ** np.log2(L.astype(float) + delta).mean()
+    seen = L[L > 0].astype(float)
+    return 2 ** np.log2(seen + delta * np.median(seen)).mean()
 
 
 # %% task="fix_uncertain"
