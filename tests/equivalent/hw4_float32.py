@@ -11,8 +11,9 @@ f32 = np.float32
 
 
 def log_average(L, *, delta=1e-6):
-    seen = L[L > 0].astype(f32)
-    return np.exp(np.mean(np.log(seen + f32(delta) * np.median(seen)), dtype=f32))
+    L = L.astype(f32)
+    black = f32(delta) * (np.median(L[L > 0]) if L.any() else f32(1))
+    return np.exp(np.mean(np.log(L + black), dtype=f32))
 
 
 # %% task="display"

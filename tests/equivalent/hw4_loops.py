@@ -11,10 +11,10 @@ import numpy as np
 def log_average(L, *, delta=1e-6):
     total = 0.0
     seen = sorted(value for value in np.ravel(L).tolist() if value > 0)
-    middle = (seen[len(seen) // 2] + seen[(len(seen) - 1) // 2]) / 2
-    for value in seen:
+    middle = (seen[len(seen) // 2] + seen[(len(seen) - 1) // 2]) / 2 if seen else 1.0
+    for value in np.ravel(L).tolist():
         total += math.log(delta * middle + value)
-    return math.exp(total / len(seen))
+    return math.exp(total / L.size)
 
 
 # %% task="display"

@@ -156,8 +156,9 @@ def display(Lm, adaptation, white=None):
 
 
 def log_average(L, *, delta=1e-6):
-    seen = L[L > 0].astype(float)
-    return 2 ** np.log2(seen + delta * np.median(seen)).mean()
+    L = L.astype(float)
+    unit = np.median(L[L > 0]) if np.any(L > 0) else 1.0
+    return 2 ** np.log2(L + delta * unit).mean()
 
 
 # %% task="fix_uncertain"
