@@ -114,6 +114,8 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
 
 def divergence(G):
     Gy, Gx = G.astype(f32)
+    Gy[-1] = 0
+    Gx[:, -1] = 0
     return np.diff(Gy, axis=0, prepend=f32(0)) + np.diff(Gx, axis=1, prepend=f32(0))
 
 
