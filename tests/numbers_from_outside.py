@@ -19,7 +19,7 @@ NUMBERS = {
     "08": {
         "2.8": "percent, the paper's example of a motion that is not linear",
         "0 %": "an error that no photo reaches",
-        "1 %": "the difference below which the paper calls a motion linear",
+        "1 %": "the difference that the paper's good example stays below",
     },
     "09": {"254": "second differences of 256 levels"},
     "10": {"eight times": "a burst of eight frames"},
