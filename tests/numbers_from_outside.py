@@ -25,8 +25,6 @@ NUMBERS = {
     "10": {"eight times": "a burst of eight frames"},
     "11": {
         "two degrees": "an example of a rotation",
-        "four times": "an image of a quarter of the size",
-        "five stops": "an example of a bracket",
     },
     "13": {
         "76": "decades between the exponents 1 and 255 of RGBE",
