@@ -457,7 +457,7 @@ SENTENCES = {
         "over 10 pixels, its detail falls by 0.71 decades": lambda n: (
             falls_of_detail(n, 10)[0] == 0.71 and falls_of_detail(n, 1)[0] == 0
         ),
-        "at edges of any width, by 0.09 to 0.16 decades": lambda n: (
+        "at all three edges, by 0.09 to 0.16 decades": lambda n: (
             sorted(falls_of_detail(n, width)[1] for width in (1, 10, 40)) == [0.09, 0.1, 0.16]
         ),
         "is 1.7 in decades, and 3.9 in natural logarithms": lambda n: (
