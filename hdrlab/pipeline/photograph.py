@@ -11,7 +11,7 @@ the display's range is kept for the brightest pixels. The a and b of the guided 
 on a coarse grid (He and Sun, Fast guided filter, 2015), from the means and variances of the grid's
 cells. The grid is centered in the image, so a mirrored image gets a mirrored picture. Where `share`
 is below 1, the picture can reverse gradients next to an edge of light, as with a bilateral filter:
-before an edge of three decades, it gets darker by 5 to 8 of 255 pixel values.
+before an edge of three decades, it gets darker by about 5 of 255 pixel values.
 """
 
 from collections.abc import Callable
@@ -71,9 +71,8 @@ BLEACHED_VALUE = 0.97
 MAX_BLEACHED_FRACTION = 0.1
 # least share of the light's contrast to avoid that; less would reverse gradients visibly
 MIN_UNBLEACHED_SHARE = 0.6
-# factor of key and share from one trial to the next while too much is bleached, number of trials
+# factor of key and share from one trial to the next while too much is bleached
 BLEACHED_STEP = 0.95
-MAX_BLEACHED_STEPS = 12
 # contrast of the picture relative to that of x
 CONTRAST = 1.25
 # fraction of the pixels that become white
@@ -156,7 +155,7 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
         MIDDLE_KEY; up to twice that if most of the map is bright for its range, less than half of
         it if most is dark. Key and share are lower if otherwise more than MAX_BLEACHED_FRACTION of
         the pixels would have a channel at white: a bright sky keeps its clouds, and saturated light
-        keeps its color.
+        keeps its color. The share falls no lower than MIN_UNBLEACHED_SHARE for that.
     white, black
         The scaled and the display luminance beyond which WHITE_FRACTION and BLACK_FRACTION of the
         pixels lie.
@@ -199,13 +198,10 @@ def choose_settings(E: ArrayLike, *, scene_ev: float | None = None) -> dict[str,
             if tones.mean_pixel_value <= max_mean:
                 break
             tones = _choose_tones(x, levels.mean, KEY_STEP * tones.key, darkness, peaks)
-    for _ in range(MAX_BLEACHED_STEPS):
-        if tones.bleached_fraction <= MAX_BLEACHED_FRACTION:
-            break
-        if share > MIN_UNBLEACHED_SHARE:
-            share = max(MIN_UNBLEACHED_SHARE, BLEACHED_STEP * share)
-            x = compress_light(lL, share, light)
-            levels = find_levels(x)
+    while tones.bleached_fraction > MAX_BLEACHED_FRACTION and share > MIN_UNBLEACHED_SHARE:
+        share = max(MIN_UNBLEACHED_SHARE, BLEACHED_STEP * share)
+        x = compress_light(lL, share, light)
+        levels = find_levels(x)
         tones = _choose_tones(x, levels.mean, BLEACHED_STEP * tones.key, darkness, peaks)
     return {
         "share": share,

@@ -131,7 +131,7 @@ def test_levels_fall_by_at_most_a_few_values_next_to_an_edge_that_rises(edge_wid
     edge = np.clip((x - 300) / edge_width + 0.5, 0, 1)
     E = np.tile(10 ** (0.3 * x / 600 + 3 * edge), (400, 1)).astype(np.float32)
     row = develop(E)[200].astype(int)
-    assert np.max(np.maximum.accumulate(row) - row) <= 8
+    assert np.max(np.maximum.accumulate(row) - row) <= 6
 
 
 def test_the_settings_are_reported_and_can_be_overridden():
