@@ -115,5 +115,9 @@ def test_right_answers_and_mistakes_get_the_same_outcomes_as_here(bed, tmp_path)
 
 
 def words_of(text):
-    """Return a text without its numbers, whose last digits may differ between machines."""
-    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", text)
+    """Return a text without its numbers, whose last digits may differ between machines.
+
+    pytest adds a line to the message of a plain assertion here, where it rewrites the checks.
+    """
+    said, _, _ = text.partition("\nassert ")
+    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", said)
