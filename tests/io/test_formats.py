@@ -69,7 +69,7 @@ def avif(bits):
 def gains():
     """Return an Ultra HDR picture as libultrahdr writes it."""
     light = np.dstack([E, np.ones_like(E[..., :1])]).astype(np.float16)
-    return imagecodecs.ultrahdr_encode(light)
+    return imagecodecs.ultrahdr_encode(light, gamut=imagecodecs.ULTRAHDR.CG.BT_709)
 
 
 def apples():
