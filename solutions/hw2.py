@@ -134,7 +134,7 @@ pictures.picture(
 # Yield the state of one channel before the first iteration and after each iteration.
 
 # %% [markdown] about="recover_steps"
-# **Predict.** Photos that are two stops apart leave something undetermined. Add a function of ln
+# **Think.** Photos that are two stops apart leave something undetermined. Add a function of ln
 # exposure with a period of two stops to $\ln f^{-1}$, and the same function to the $\ln E_i$: then
 # $f^{-1}(Z_{ij}) = E_i t_j$ holds as well as before. What will that look like in the curve?
 

@@ -148,8 +148,8 @@ def fuse(
     -------
     R : (H, W) or (H, W, 3) float32
         Encoded like the photographs, 1 = their top level. It is not clipped, and does leave [0, 1]
-        next to strong edges, where the details of one photograph stand on the light of another:
-        real brackets reach -0.5 and 1.8, often in a quarter of the pixels. Clip it for a display.
+        where the details of one photograph are added to the light of others: real brackets reach
+        -0.5 and 1.8, often in a quarter of the pixels. Clip it for a display.
 
     Raises
     ------

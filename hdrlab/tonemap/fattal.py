@@ -11,9 +11,10 @@ Ld      display luminance                  (H, W) in [0, 1]
 beta    power                              each level raises a slope to the power of beta
 
 Large contrasts have steep slopes at some level. Only slopes are attenuated, never single pixels. A
-larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta), about 0.79, so
-it becomes paler than a small copy of it. A central difference sees no slope in stripes that are one
-pixel wide, so a chart full of them is shown badly.
+larger picture has more levels. Each of them multiplies a slope of mean size by alpha^(1 - beta),
+about 0.79, and steeper ones by less, so a large picture becomes paler than a small copy of it. A
+central difference sees no slope in stripes that are one pixel wide, so a chart full of them is
+shown badly.
 """
 
 from collections.abc import Iterator
