@@ -122,11 +122,10 @@ def test_no_cell_that_shows_a_result_rebinds_a_name_of_a_solution(made, name):
     assert sorted(of_solutions & of_shown) == []
 
 
-def test_solutions_have_twenty_lines_per_task_on_average():
+def test_each_task_has_one_solution():
     cells = [cell for name in NAMES for cell in committed(SOURCES, name)["cells"]]
-    worked = [cell["source"] for cell in cells if "task" in cell["metadata"].get("hdrlab", {})]
+    worked = [cell for cell in cells if "task" in cell["metadata"].get("hdrlab", {})]
     assert len(worked) == sum(len(homework.tasks) for homework in PLAN.homeworks.values())
-    assert sum(len("".join(one).splitlines()) for one in worked) <= 20 * len(worked)
 
 
 @pytest.mark.parametrize("name", NAMES)
