@@ -186,15 +186,31 @@ def test_hidden_checks_count_and_students_see_only_their_outcome(graded, tmp_pat
     hidden.mkdir()
     (hidden / "test_hat.py").write_text(
         "import pytest\nfrom hdrlab.course.checks.compare import Different\n\n@pytest.mark.points(5)\n"
-        'def test_it_is_blue(subject):\n    """A secret hint."""\n    raise Different("the secret")\n'
+        'def test_it_is_blue(subject):\n    """A secret hint."""\n'
+        '    if len(subject.hat(12)) != 12:\n        raise Different("the secret")\n'
     )
-    found = graded(RIGHT, conditions=replace(PRACTICE, hidden=hidden))
+    at_least_20 = RIGHT.replace("np.arange(n)", "np.arange(max(n, 20))")
+    found = graded(at_least_20, conditions=replace(PRACTICE, hidden=hidden))
     (own,) = (one for one in found.checks if one.hidden)
     assert (
         own.outcome == "fails" and own.max_points > 0 and found.max_score == 10 and found.score < 10
     )
     for shown in (feedback.page(found), feedback.text(found), gradebook.gradescope(found).decode()):
         assert "secret" not in shown and "It is blue" in shown
+    assert "the secret" in feedback.text(found, private=True)
+
+
+def test_of_a_hidden_check_that_breaks_students_see_no_detail_and_lose_no_points(graded, tmp_path):
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    (hidden / "test_hat.py").write_text(
+        "import pytest\n\n@pytest.mark.points(5)\n"
+        'def test_it_is_blue(subject):\n    raise TypeError("the secret")\n'
+    )
+    found = graded(RIGHT, conditions=replace(PRACTICE, hidden=hidden))
+    assert found.score == found.max_score
+    for shown in (feedback.page(found), feedback.text(found), gradebook.gradescope(found).decode()):
+        assert "secret" not in shown
     assert "the secret" in feedback.text(found, private=True)
 
 
