@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hdrlab.core.arrays import F64
     from hdrlab.core.bracket import Bracket
 
-TIMES_KEYWORDS = ("exif", "stated", "estimate")
+TIMES_KEYWORDS = ("exif", "estimate")
 CURVE_SUFFIXES = ".csv or .m (pfstools)"
 
 

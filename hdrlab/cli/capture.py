@@ -300,13 +300,13 @@ def _parse_place(text: str) -> tuple[float, float]:
 @common.choice_option(
     "--by", ["auto", "skin", "blocks"], help="Region to expose correctly, see above."
 )
-@common.choice_option("--way", ["chrominance", "locus"], help="Method that finds skin.")
+@common.choice_option("--skin", ["chrominance", "locus"], help="Method that finds skin.")
 @click.option(
     "--target",
     default=128.0,
     help="Mean pixel value of that region after the correction, 1 to 254.",
 )
-def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
+def correct(photo: Path, out: Path, by: str, skin: str, target: float) -> None:
     """Correct the exposure of PHOTO.
 
     hdrlab changes the brightness so that the important region is well exposed. --by skin selects
@@ -317,11 +317,12 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     always has 8 bits per channel.
     """
     from hdrlab.core.arrays import to_256
-    from hdrlab.enhance import battiato, skin
+    from hdrlab.enhance import battiato
+    from hdrlab.enhance.skin import FINDERS
     from hdrlab.io import photos
 
     Z = to_256(photos.read_photo(photo))
-    correction = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
+    correction = battiato.correct(Z, by=by, find_skin=FINDERS[skin], target=target)
     photos.write_picture(out, correction.picture, is_result=True)
     fraction = correction.relevant.mean()
     click.echo(

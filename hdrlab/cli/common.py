@@ -72,6 +72,18 @@ EXISTING_FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 OPERATORS = ["photograph", *catalogue.names("tonemap")]
 MAP_SUFFIXES = ".hdr, .exr, .pfm or .tif"
 
+# options that had another name before, by command, and what to use instead
+REPLACEMENTS = {
+    ("assemble", "--tonemap"): "--operator",
+    ("tonemap", "--way"): "--gamut",
+    ("compare", "--way"): "--gamut",
+    ("calibrate", "--estimate-times"): "--correct-times",
+    ("correct", "--way"): "--skin",
+    ("check", "--page"): "--report",
+    ("lab", "--folder"): "-o",
+    ("new-task", "--folder"): "-o",
+}
+
 # the decades of a radiance map are measured on an even grid of at most so many pixels
 MAX_SAMPLED_PIXELS = 400_000
 
@@ -119,6 +131,11 @@ class Command(click.Command):
         """Parse the words after the command; a path that does not exist is the first error."""
         try:
             return super().parse_args(ctx, args)
+        except click.NoSuchOption as error:
+            replacement = REPLACEMENTS.get((str(self.name), error.option_name))
+            if replacement is None:
+                raise
+            raise InputError(f"{error.option_name} has a new name: use {replacement}") from None
         except click.MissingParameter:
             for param in self.params:
                 if isinstance(param, click.Argument) and param.type is INPUT_PATH:
@@ -188,16 +205,12 @@ def choice_option(
     return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
 
 
-def operator_option(name: str) -> Decorator:
-    """Return an option that names a tone mapping operator."""
-    return choice_option(
-        name,
-        OPERATORS,
-        help="Tone-mapping operator. photograph adapts its settings to the map. The others use "
-        "the settings of their papers.",
-    )
-
-
+operator_option = choice_option(
+    "--operator",
+    OPERATORS,
+    help="Tone-mapping operator. photograph adapts its settings to the map. The others use the "
+    "settings of their papers.",
+)
 mask_option = click.option(
     "--mask",
     metavar="RRGGBB",

@@ -136,21 +136,22 @@ def export(
 @course.command("new-task")
 @click.argument("task")
 @click.option(
-    "--folder",
+    "-o",
+    "--out",
     type=common.INPUT_PATH,
     default="our-tasks",
     help="Folder for the task, outside hdrlab.",
 )
 @click.option("--homework", default="extra", help="Homework that the task belongs to.")
-def new_task(*, task: str, folder: Path, homework: str) -> None:
+def new_task(*, task: str, out: Path, homework: str) -> None:
     """Create a task of your own, from a complete example.
 
     The example works. Change it file by file.
     """
     from hdrlab.course.authoring import own_task
 
-    common.echo_paths(own_task.write(folder, task, homework))
-    click.echo(f"to try it: python -m pytest {folder}")
+    common.echo_paths(own_task.write(out, task, homework))
+    click.echo(f"to try it: python -m pytest {out}")
 
 
 @course.command()

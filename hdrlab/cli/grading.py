@@ -28,7 +28,7 @@ jobs_option = click.option(
     help="Show up to N hints for each failed check.",
 )
 @click.option(
-    "--page", type=common.OUTPUT_FILE, help="Page to write, with results and figures: .html."
+    "--report", type=common.OUTPUT_FILE, help="Page to write, with results and figures: .html."
 )
 @assignments.plan_option
 def check(
@@ -37,7 +37,7 @@ def check(
     homework: str | None,
     task: str | None,
     hints: int,
-    page: Path | None,
+    report: Path | None,
     plan: Path | None,
 ) -> None:
     """Check SUBMISSION, a notebook or a Python file.
@@ -56,11 +56,11 @@ def check(
         if task not in tasks:
             raise InputError(f"there is no task {task!r}; pass --task, one of {', '.join(tasks)}")
         assignment = assignment._replace(tasks=(tasks[task],))
-    conditions = plans.GradingOptions(tier="practice", draw=page is not None)
+    conditions = plans.GradingOptions(tier="practice", draw=report is not None)
     result = assignments.grade_submission(submission, assignment, conditions)
     click.echo(feedback.text(result, hints=hints))
-    if page is not None:
-        click.echo(write(page, feedback.page(result)))
+    if report is not None:
+        click.echo(write(report, feedback.page(result)))
 
 
 @click.command(cls=common.Command)

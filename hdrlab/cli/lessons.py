@@ -32,7 +32,8 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
 
 @click.command(cls=common.Command)
 @click.option(
-    "--folder",
+    "-o",
+    "--out",
     type=common.INPUT_PATH,
     default="hdrlab-course",
     help="Folder for your copy of the notebooks.",
@@ -40,17 +41,17 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks without starting JupyterLab.")
 @click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[-- JUPYTERLAB_OPTIONS]")
-def lab(*, folder: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...]) -> None:
+def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on your own copy of the notebooks.
 
-    hdrlab copies the notebooks and assignments to --folder, and opens the first notebook. It never
-    overwrites files in that folder. JupyterLab saves the state of the widgets, unless your own
-    settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
+    hdrlab copies the notebooks and assignments to the folder of --out, and opens the first
+    notebook. It never overwrites files in that folder. JupyterLab saves the state of the widgets,
+    unless your own settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
     """
     from hdrlab.course import materials
 
-    new = materials.copy_course(folder)
-    click.echo(f"{folder}: {len(new)} new notebooks")
+    new = materials.copy_course(out)
+    click.echo(f"{out}: {len(new)} new notebooks")
     if copy_only:
         return
     from jupyterlab.labapp import LabApp
@@ -60,7 +61,7 @@ def lab(*, folder: Path, copy_only: bool, no_browser: bool, options: tuple[str, 
     if own_folders:
         config_folders.append(own_folders)
     os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(config_folders)
-    place = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"]
+    place = [f"--notebook-dir={out}", f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"]
     if no_browser:
         place.append("--no-browser")
     LabApp.launch_instance([*place, *options])

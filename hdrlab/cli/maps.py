@@ -28,7 +28,7 @@ SUFFIXES_BY_KIND = {
 }
 
 gamut_option = common.choice_option(
-    "--way", ["hue", "ratio"], help="Method for colors that the display cannot show."
+    "--gamut", ["hue", "ratio"], help="Method for colors outside of the gamut of the display."
 )
 
 
@@ -52,7 +52,7 @@ gamut_option = common.choice_option(
     help="Peak brightness of the HDR screen, as a multiple of white.",
 )
 @common.choice_option("--primaries", ["bt2020", "p3"], help="Color primaries for png and avif.")
-@common.operator_option("--operator")
+@common.operator_option
 @click.option(
     "--set",
     "settings",
@@ -77,13 +77,13 @@ def tonemap(
     operator: str,
     settings: tuple[str, ...],
     saturation: float | None,
-    way: str,
+    gamut: str,
     clean: bool,
 ) -> None:
     """Tone-map the radiance map SOURCE to an image.
 
-    A bright color may exceed the range of a display in one channel. --way hue keeps its hue and
-    makes it a little darker and paler. --way ratio clips the channel: the image stays more
+    A bright color may exceed the range of a display in one channel. --gamut hue keeps its hue and
+    makes it a little darker and paler. --gamut ratio clips the channel: the image stays more
     colorful, but a bright blue turns toward cyan.
 
     --to ultrahdr writes an Ultra HDR .jpg (ISO 21496-1). Every program can show it. On an HDR
@@ -114,7 +114,7 @@ def tonemap(
             E,
             operator,
             saturation=saturation,
-            way=way,
+            way=gamut,
             luminance_of_unit=radiance.read_luminance_of_unit(source),
             **knobs,
         )
@@ -196,7 +196,7 @@ def check_settings(
 @gamut_option
 @common.clean_option
 def compare(
-    *, source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool
+    *, source: Path, out: Path, operators: str | None, size: int, gamut: str, clean: bool
 ) -> None:
     """Show the radiance map SOURCE with every tone-mapping operator.
 
@@ -204,7 +204,7 @@ def compare(
     operator.
 
     hdrlab first reduces the map to --size pixels along its longer side. Times and quality indices
-    are for that size. `hdrlab tonemap --help` explains --way.
+    are for that size. `hdrlab tonemap --help` explains --gamut.
     """
     from hdrlab.io import radiance
     from hdrlab.show.pages import contact, sheet
@@ -214,7 +214,7 @@ def compare(
     names = operators.replace(" ", "").split(",") if operators else common.OPERATORS
     E = figures.fit(common.read_map(source, clean), size)
     unit = radiance.read_luminance_of_unit(source)
-    steps = contact.entry_steps(E, names, way=way, luminance_of_unit=unit)
+    steps = contact.entry_steps(E, names, way=gamut, luminance_of_unit=unit)
     entries = common.one_by_one(steps, names)
     description = common.describe_map(E)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {description}"))
@@ -223,25 +223,28 @@ def compare(
 
 @click.command(cls=common.Command)
 @click.argument("source", type=common.INPUT_PATH)
-@click.argument("target", type=common.OUTPUT_MAP)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=common.OUTPUT_MAP,
+    help=f"Radiance map to write: {common.MAP_SUFFIXES}.",
+)
 @click.option(
     "--half",
     is_flag=True,
     help="Write half-precision floats to .exr, with half the size and values up to 65504.",
 )
 @common.clean_option
-def convert(*, source: Path, target: Path, half: bool, clean: bool) -> None:
-    """Convert the radiance map SOURCE to another format.
-
-    The suffix of TARGET selects the format: .hdr, .exr, .pfm or .tif.
-    """
+def convert(*, source: Path, out: Path, half: bool, clean: bool) -> None:
+    """Convert the radiance map SOURCE to the format that the name of the output states."""
     from hdrlab.io import radiance
 
-    radiance.require_writable(target, half=half)
+    radiance.require_writable(out, half=half)
     E = common.read_map(source, clean)
     unit = radiance.read_luminance_of_unit(source)
-    radiance.write_radiance(target, E, half=half, luminance_of_unit=unit)
-    click.echo(f"{target}: {common.describe_map(E)}")
+    radiance.write_radiance(out, E, half=half, luminance_of_unit=unit)
+    click.echo(f"{out}: {common.describe_map(E)}")
 
 
 def _describe_light(path: Path) -> dict[str, str]:

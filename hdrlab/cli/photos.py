@@ -39,11 +39,15 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
 )
 @click.option(
     "--times",
-    metavar="exif|stated|estimate|FILE",
+    metavar="exif|estimate|FILE",
     default="exif",
     help="Source of the exposure times, see above.",
 )
-@click.option("--keep-times", is_flag=True, help="Like --times stated, for the times of a FILE.")
+@click.option(
+    "--keep-times",
+    is_flag=True,
+    help="Use the times of EXIF or FILE as they are, even if the pixels contradict them.",
+)
 @click.option(
     "--stops",
     type=click.FloatRange(0, min_open=True),
@@ -79,7 +83,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     metavar="X,Y=CD",
     help="Scale the map so that the pixel X,Y has CD cd/m^2, as read from a light meter.",
 )
-@common.operator_option("--tonemap")
+@common.operator_option
 @click.option(
     "--picture",
     type=common.OUTPUT_PICTURE,
@@ -127,7 +131,7 @@ def assemble(
     ghosts: str,
     flare: str,
     calibrate: str | None,
-    tonemap: str,
+    operator: str,
     picture: Path | None,
     report: Path | None,
     uncertainty: Path | None,
@@ -143,9 +147,8 @@ def assemble(
 
     --times exif (the default) reads time, ISO and f-number from EXIF. If EXIF has no times, hdrlab
     looks in the folder for a list with lines such as `a.jpg 1/60`. --times FILE reads such a list.
-    In both cases, hdrlab corrects times that the pixels contradict. --times stated reads the
-    times as exif does, but never corrects them. --times estimate computes all times from the
-    pixels.
+    In both cases, hdrlab corrects times that the pixels contradict, unless you pass --keep-times.
+    --times estimate computes all times from the pixels.
 
     --align mtb shifts the photos onto each other. --align cerman also rotates them, and --align
     homography also corrects perspective. --align auto starts with mtb and uses the other methods
@@ -167,6 +170,8 @@ def assemble(
     from hdrlab.io.maps import layers
 
     # bad options are reported before the work starts
+    if times == "stated":
+        raise InputError("--times stated has a new name: use --keep-times")
     if stops and times not in brackets.TIMES_KEYWORDS:
         raise InputError(f"--stops and --times {times} exclude each other; pass one of them")
     recover = brackets.saved_curve(response) if isinstance(response, Path) else response
@@ -194,7 +199,7 @@ def assemble(
     times_mode = "correct"
     if times == "estimate":
         times_mode = "estimate"
-    elif keep_times or times == "stated":
+    elif keep_times:
         times_mode = "stated"
     steps = pipeline.assemble_steps(
         bracket,
@@ -233,7 +238,7 @@ def assemble(
             radiance.write_radiance, out, assembly.E, comments=comments, luminance_of_unit=unit
         )
         description = executor.submit(common.describe_map, assembly.E)
-        developed = _develop(assembly, tonemap) if picture or report else None
+        developed = _develop(assembly, operator) if picture or report else None
         if uncertainty and assembly.s is not None:
             both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
             unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
@@ -258,7 +263,7 @@ def assemble(
         writing.result()
     outputs = [f"{out} ({description.result()})"]
     if picture:
-        outputs.append(_describe_picture(picture, assembly, tonemap))
+        outputs.append(_describe_picture(picture, assembly, operator))
     if uncertainty:
         outputs.append(_describe_uncertainty(uncertainty, assembly))
     if report:
@@ -325,7 +330,7 @@ def _run_steps(steps: "Iterable[Assembly]", count: int, align: str) -> "Assembly
     return last(common.progress(steps, "assembling", count))
 
 
-def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
+def _develop(assembly: "Assembly", operator: str) -> "Developed":
     """Return the tone-mapped image of a map, or a fusion of the photos if the map is not usable."""
     import numpy as np
 
@@ -333,7 +338,7 @@ def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
 
     if not assembly.fallback:
         return pictures.develop_and_describe(
-            assembly.E, tonemap, luminance_of_unit=assembly.bracket.luminance_of_unit
+            assembly.E, operator, luminance_of_unit=assembly.bracket.luminance_of_unit
         )
     from hdrlab.fast import mertens
 
@@ -369,13 +374,13 @@ def _summarize(assembly: "Assembly", outputs: list[str]) -> str:
     return f"{verdict}: {', '.join(outputs)}; {agreement}"
 
 
-def _describe_picture(picture: Path, assembly: "Assembly", tonemap: str) -> str:
+def _describe_picture(picture: Path, assembly: "Assembly", operator: str) -> str:
     """Return the name of the tone-mapped image, and that it was kept dark if the scene was dark."""
     from hdrlab.pipeline.photograph import BRIGHT_SCENE_EV, measure_scene_ev
     from hdrlab.pipeline.pictures import AUTO
 
     unit = assembly.bracket.luminance_of_unit
-    if unit is None or assembly.fallback or tonemap != AUTO:
+    if unit is None or assembly.fallback or operator != AUTO:
         return str(picture)
     scene_ev = measure_scene_ev(assembly.E, unit)
     if scene_ev >= BRIGHT_SCENE_EV:
@@ -417,7 +422,7 @@ def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
     help="Source of the times: EXIF, an estimate from the pixels, or a list in a FILE.",
 )
 @click.option(
-    "--estimate-times", is_flag=True, help="Use the pixels to correct the times from EXIF or FILE."
+    "--correct-times", is_flag=True, help="Use the pixels to correct the times of EXIF or FILE."
 )
 @common.mask_option
 @common.choice_option("--align", ALIGN_METHODS, "mtb", help="Alignment method, as in assemble.")
@@ -434,7 +439,7 @@ def calibrate(
     photos: tuple[Path, ...],
     out: tuple[Path, ...],
     times: str,
-    estimate_times: bool,
+    correct_times: bool,
     mask: str | None,
     align: str,
     response: str,
@@ -463,7 +468,7 @@ def calibrate(
     )
     last_stage = "align"
     times_mode = "stated"
-    if estimate_times or times == "estimate":
+    if correct_times or times == "estimate":
         last_stage = "times"
         times_mode = "estimate"
     steps = pipeline.assemble_steps(bracket, align=align, response=response, times=times_mode)

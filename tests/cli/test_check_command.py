@@ -46,7 +46,7 @@ def test_check_gives_as_many_hints_as_are_asked_for(typed):
 
 
 def test_check_writes_a_page_with_pictures(typed, tmp_path):
-    _, out, _ = typed("check", "hw2.py", "--plan", "plan.toml", "--page", "found.html")
+    _, out, _ = typed("check", "hw2.py", "--plan", "plan.toml", "--report", "found.html")
     page = (tmp_path / "found.html").read_text()
     assert "found.html" in out and 'src="data:image/webp' in page and "For practice" in page
 

@@ -360,7 +360,7 @@ def test_times_in_the_wrong_order_are_rejected_with_advice_that_works(
         (["assemble", "nowhere"], "nowhere does not exist"),
         (["assemble", "nowhere", "-o", "x.bmp"], ".hdr"),
         (["tonemap", "nowhere.hdr", "-o", "x.png"], "nowhere.hdr"),
-        (["convert", "nowhere.hdr", "x.exr"], "nowhere.hdr"),
+        (["convert", "nowhere.hdr", "-o", "x.exr"], "nowhere.hdr"),
         (["info", "nowhere.jpg"], "nowhere.jpg"),
         (["assemble", "nowhere", "-o", "x.hdr", "--mask", "blue"], "RRGGBB"),
         (["tonemap"], "Missing argument"),
@@ -397,7 +397,7 @@ def test_set_rejects_unknown_settings(setting, expected, map_file, tmp_path, cap
 
 @pytest.mark.parametrize("suffix", [".pfm", ".exr"])
 def test_convert_is_lossless_between_float_formats(suffix, map_file, tmp_path):
-    assert hdrlab("convert", map_file, tmp_path / f"b{suffix}") == 0
+    assert hdrlab("convert", map_file, "-o", tmp_path / f"b{suffix}") == 0
     assert np.array_equal(
         radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file)
     )
@@ -416,14 +416,16 @@ def test_invalid_values_of_a_map_are_repaired_with_a_note(tmp_path, capsys):
     pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
     write_pfm(file, pixels)
     counts = ("1 unknown", "1 infinite", "1 pixels with a negative channel", "1 pixels below black")
-    for command in (["tonemap", file, "-o", out], ["convert", file, tmp_path / "y.exr"]):
+    for command in (["tonemap", file, "-o", out], ["convert", file, "-o", tmp_path / "y.exr"]):
         code, _, note = hdrlab(*command, capsys=capsys)
         assert code == 0
         assert note.startswith(f"note: {file}") and note.count("\n") == 1
         assert all(count in note for count in counts)
     assert out.exists() and np.isfinite(radiance.read_radiance(tmp_path / "y.exr")).all()
-    assert hdrlab("convert", tmp_path / "y.exr", file, capsys=capsys)[2] == ""
-    assert "nothing" in hdrlab("convert", tmp_path / "y.exr", file, "--clean", capsys=capsys)[1]
+    assert hdrlab("convert", tmp_path / "y.exr", "-o", file, capsys=capsys)[2] == ""
+    assert (
+        "nothing" in hdrlab("convert", tmp_path / "y.exr", "-o", file, "--clean", capsys=capsys)[1]
+    )
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
@@ -432,11 +434,11 @@ def test_mostly_invalid_map_is_rejected_without_clean(value, tmp_path, capsys):
     pixels = np.ones((4, 5, 3))
     pixels[:2] = value
     write_pfm(file, pixels)
-    code, _, complaint = hdrlab("convert", file, out, capsys=capsys)
+    code, _, complaint = hdrlab("convert", file, "-o", out, capsys=capsys)
     assert (
         code == 2 and str(file) in complaint and "20 pixels" in complaint and "--clean" in complaint
     )
-    assert not out.exists() and hdrlab("convert", file, out, "--clean") == 0
+    assert not out.exists() and hdrlab("convert", file, "-o", out, "--clean") == 0
     assert np.isfinite(radiance.read_radiance(out)).all()
 
 
@@ -448,14 +450,14 @@ def test_tonemap_offers_both_ways_for_out_of_gamut_colors(tmp_path, capsys):
     pictures = {}
     for way in ("ratio", "hue"):
         out = tmp_path / f"{way}.png"
-        assert hdrlab("tonemap", tmp_path / "blue.exr", "-o", out, "--way", way) == 0
+        assert hdrlab("tonemap", tmp_path / "blue.exr", "-o", out, "--gamut", way) == 0
         pictures[way] = read_photo(out).astype(int)
     brightest = {way: picture[-1, -1] for way, picture in pictures.items()}
     assert brightest["ratio"][2] == 255 > brightest["ratio"][0] + 20
     cyan = {way: levels[1] - levels[0] for way, levels in brightest.items()}
     assert cyan["hue"] < cyan["ratio"] / 2, "clipped, a blue turns"
     code, _, complaint = hdrlab(
-        "tonemap", tmp_path / "blue.exr", "-o", tmp_path / "x.png", "--way", "lab", capsys=capsys
+        "tonemap", tmp_path / "blue.exr", "-o", tmp_path / "x.png", "--gamut", "lab", capsys=capsys
     )
     assert code == 2 and "'hue', 'ratio'" in complaint
 
@@ -594,11 +596,11 @@ def test_debug_shows_the_traceback_of_bad_input(words, monkeypatch, tmp_path, ca
 
 def test_lab_copies_notebooks_and_keeps_the_readers_changes(tmp_path, capsys):
     copy = tmp_path / "mine"
-    assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
+    assert hdrlab("lab", "-o", copy, "--copy-only") == 0
     mine = [copy / "notebooks/04_response_gsolve.ipynb", copy / "assignments/hw2.ipynb"]
     for notebook in mine:
         notebook.write_text("mine")
-    code, said, _ = hdrlab("lab", "--folder", copy, "--copy-only", capsys=capsys)
+    code, said, _ = hdrlab("lab", "-o", copy, "--copy-only", capsys=capsys)
     assert code == 0 and "0 new" in said
     assert [notebook.read_text() for notebook in mine] == ["mine", "mine"]
 
@@ -608,7 +610,7 @@ def test_lab_opens_the_first_notebook(tmp_path, monkeypatch):
     called = []
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", "")  # which the command sets
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", called.append)
-    assert hdrlab("lab", "--folder", tmp_path / "mine", "--", "--port", "9000") == 0
+    assert hdrlab("lab", "-o", tmp_path / "mine", "--", "--port", "9000") == 0
     first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
     assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()
     assert called[0][-2:] == ["--port", "9000"]
@@ -618,7 +620,7 @@ def test_lab_saves_widget_state_and_disables_news(tmp_path, monkeypatch):
     server = pytest.importorskip("jupyterlab_server.config")
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", str(tmp_path / "own"))
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", lambda options: None)
-    assert hdrlab("lab", "--folder", tmp_path / "mine") == 0
+    assert hdrlab("lab", "-o", tmp_path / "mine") == 0
     found = server.ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")
     assert found["@jupyter-widgets/jupyterlab-manager:plugin"] == {"saveState": True}
     assert found["@jupyterlab/apputils-extension:notification"]["fetchNews"] == "false"
@@ -636,7 +638,7 @@ def test_tonemap_keeps_a_night_dark_that_its_map_states(tmp_path, suffix):
     E = scenes.room((96, 144))
     radiance.write_radiance(night, E, luminance_of_unit=1e-4)
     radiance.write_radiance(day, E)
-    assert hdrlab("convert", night, converted) == 0
+    assert hdrlab("convert", night, "-o", converted) == 0
     pictures_of_maps = []
     for source in (night, converted, day):
         assert hdrlab("tonemap", source, "-o", tmp_path / "x.png") == 0
@@ -698,3 +700,25 @@ def test_invalid_meter_readings_are_rejected_and_nothing_is_written(
     ]
     code, _, said = hdrlab(*arguments, capsys=capsys)
     assert code == 2 and expected in said and not (tmp_path / "a.exr").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "new_name"),
+    [
+        (["assemble", "x.jpg", "-o", "x.hdr", "--tonemap", "ward"], "--operator"),
+        (["assemble", "x.jpg", "-o", "x.hdr", "--times", "stated"], "--keep-times"),
+        (["tonemap", "x.hdr", "-o", "x.png", "--way", "hue"], "--gamut"),
+        (["calibrate", "x.jpg", "--estimate-times"], "--correct-times"),
+        (["correct", "x.jpg", "-o", "y.jpg", "--way", "locus"], "--skin"),
+        (["check", "hw2.py", "--page", "x.html"], "--report"),
+        (["lab", "--folder", "x"], "-o"),
+        (["convert", "x.hdr", "x.exr"], "'-o'"),
+        (["course", "new-task", "tint", "--folder", "x"], "-o"),
+    ],
+)
+def test_an_option_with_a_new_name_says_so(arguments, new_name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name in ("x.jpg", "x.hdr"):
+        (tmp_path / name).write_bytes(b"")
+    code, _, complaint = hdrlab(*arguments, capsys=capsys)
+    assert code == 2 and new_name in complaint

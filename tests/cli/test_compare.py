@@ -57,7 +57,7 @@ def test_compare_reduces_a_large_map_to_the_given_size(map_file, tmp_path):
         (["--operators", "reinhard,magic"], "magic"),
         (["--operators", "reinhard,"], "got ''"),
         (["--size", "1"], "--size"),
-        (["--way", "best"], "--way"),
+        (["--gamut", "best"], "--gamut"),
         (["-o", "sheet.jpg"], ".png"),
         (["-o", "missing/sheet.png"], "missing"),
     ],

@@ -25,10 +25,10 @@ ADDRESS = "https://vote.example.edu"
 LINKS = f"gallery links DISK/g -o DISK/links.csv --address {ADDRESS}"
 # by name, the commands that come before the disk fails, and the one that meets the failure
 COMMANDS = {
-    "convert to .hdr": ([], "convert map.exr DISK/a.hdr"),
-    "convert to .exr": ([], "convert map.exr DISK/a.exr"),
-    "convert to .pfm": ([], "convert map.exr DISK/a.pfm"),
-    "convert to .tif": ([], "convert map.exr DISK/a.tif"),
+    "convert to .hdr": ([], "convert map.exr -o DISK/a.hdr"),
+    "convert to .exr": ([], "convert map.exr -o DISK/a.exr"),
+    "convert to .pfm": ([], "convert map.exr -o DISK/a.pfm"),
+    "convert to .tif": ([], "convert map.exr -o DISK/a.tif"),
     "tonemap to .png": ([], "tonemap map.exr -o DISK/a.png"),
     "tonemap to .jpg": ([], "tonemap map.exr -o DISK/a.jpg"),
     "tonemap to .tif": ([], "tonemap map.exr -o DISK/a.tif"),

@@ -536,8 +536,8 @@ def rough(taken, tmp_path, monkeypatch):
     return [f"{j}.jpg" for j in range(5)]
 
 
-WAYS = [["estimate"], ["times.csv"], ["times.csv", "--estimate-times"]]
-KEPT = [["stated"], ["times.csv", "--keep-times"]]
+WAYS = [["estimate"], ["times.csv"], ["times.csv", "--correct-times"]]
+KEPT = [["exif", "--keep-times"], ["times.csv", "--keep-times"]]
 
 
 @pytest.mark.parametrize("arguments", [["exif"], ["estimate"], ["times.csv"], *KEPT])

@@ -114,7 +114,7 @@ def test_messages_contain_no_control_characters_and_are_short(tmp_path, capsys):
 def test_convert_accepts_an_all_black_map(tmp_path, capsys, suffix):
     radiance.write_radiance(tmp_path / "black.pfm", np.zeros((20, 30, 3)))
     with pytest.raises(SystemExit) as stop:
-        cli.run(["convert", str(tmp_path / "black.pfm"), str(tmp_path / f"out{suffix}")])
+        cli.run(["convert", str(tmp_path / "black.pfm"), "-o", str(tmp_path / f"out{suffix}")])
     assert not stop.value.code and "30 x 20, all black" in capsys.readouterr().out
 
 

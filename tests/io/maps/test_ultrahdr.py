@@ -204,7 +204,7 @@ def test_tonemap_writes_ultra_hdr_and_reads_it_as_a_map(tmp_path, capsys):
         "tonemap", tmp_path / "map.exr", "-o", out, "--to", "ultrahdr", "--headroom", 4
     ) == (0, "")
     assert told("tonemap", out, "-o", tmp_path / "again.png") == (0, "")
-    assert told("convert", out, tmp_path / "back.exr") == (0, "")
+    assert told("convert", out, "-o", tmp_path / "back.exr") == (0, "")
     assert np.array_equal(
         radiance.read_radiance(tmp_path / "back.exr"), radiance.read_radiance(out)
     )
@@ -214,7 +214,7 @@ def test_tonemap_writes_ultra_hdr_and_reads_it_as_a_map(tmp_path, capsys):
     assert (
         code == 2 and "no.png" in said and "ultrahdr" in said and not (tmp_path / "no.png").exists()
     )
-    code, said = told("convert", tmp_path / "map.exr", tmp_path / "no.jpg")
+    code, said = told("convert", tmp_path / "map.exr", "-o", tmp_path / "no.jpg")
     assert code == 2 and "no.jpg" in said and not (tmp_path / "no.jpg").exists()
     write_picture(tmp_path / "plain.jpg", np.zeros((8, 8, 3), np.uint8))
     code, said = told("tonemap", tmp_path / "plain.jpg", "-o", tmp_path / "no.png")
