@@ -33,6 +33,7 @@ class ClassOptions:
     tier, timeout, hidden, secret_file : the conditions of each check
     student : used by submissions of one student only, and recorded here
     roster, received, before : CSV files: the class, when files came in, earlier gradebooks
+    file_times : whether the files' own times tell who is late
     moodle : the assignment's grading worksheet
     plan : the course plan, or None for the package's
     """
@@ -49,6 +50,7 @@ class ClassOptions:
     before: tuple[Path, ...]
     moodle: Path | None
     plan: Path | None
+    file_times: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,13 @@ class RunOptions:
     regrade: bool = False
     jobs: int | None = None
     cluster: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None and self.jobs is not None:
+            raise InputError(
+                "--jobs and --cluster exclude each other; "
+                "with a cluster, set the threads of its workers"
+            )
 
 
 @dataclass(frozen=True)
@@ -104,7 +113,9 @@ def load_class(
         before=marks.read(options.before),
     )
     times = class_folder.read_times(options.received) if options.received else {}
-    scan = class_folder.find(options.submissions, course.roster, times)
+    scan = class_folder.find(
+        options.submissions, course.roster, times, file_times=options.file_times
+    )
     jobs = run.make_jobs(scan.submissions, homework, conditions)
     return GradedClass(course, scan, jobs, options, run_options)
 
@@ -116,11 +127,11 @@ def grade_class(graded_class: GradedClass) -> None:
     course = graded_class.course
     out = graded_class.run.out
     submissions = graded_class.scan.submissions
-    common.echo_notes(graded_class.scan.notes)
     since = graded_class.run.since
     if since is not None:
         since = since.replace(tzinfo=UTC)
     selected = run.select_submissions(submissions, course.roster, graded_class.run.only, since)
+    common.echo_notes([*graded_class.scan.notes, _describe_lateness(graded_class)])
     with grading_jobs.lock_folder(out):
         grading_jobs.write_private_file(out / OPTIONS_FILE, _options_to_json(graded_class.options))
         jobs = [job for job in graded_class.jobs if job.owner in selected]
@@ -131,6 +142,21 @@ def grade_class(graded_class: GradedClass) -> None:
         _compare(out, course, submissions)
     fresh = sum(result.is_new for result in results if result.path)
     click.echo(f"{page}: {graded_count} of {len(submissions)} graded, {fresh} of them now")
+
+
+def _describe_lateness(graded_class: GradedClass) -> str:
+    """Return who is late, by which times, before anybody is graded."""
+    from hdrlab.course.classroom import marks
+
+    options = graded_class.options
+    if options.received is None and not options.file_times:
+        return (
+            "no times of the submissions, so nobody is late; "
+            "to count late days, pass --received FILE or --file-times"
+        )
+    source = "the files' modification times" if options.received is None else str(options.received)
+    late = marks.describe_late(graded_class.course, graded_class.scan.submissions)
+    return f"by {source}, {late or 'nobody is late'}"
 
 
 def describe_failures(results: "Sequence[JobResult]") -> list[str]:
@@ -215,10 +241,6 @@ def _executor(course: "GradingContext", options: RunOptions) -> "Executor":
         if not examination.works:
             raise common.tier_error(examination.details)
         return processes.Processes(grader.grade, options.jobs)
-    if options.jobs is not None:
-        raise InputError(
-            "--jobs and --cluster exclude each other; with a cluster, set the threads of its workers"
-        )
     common.require_modules("cluster", ["dask", "distributed"])
     from hdrlab.course.classroom.executors import cluster
 
@@ -272,6 +294,8 @@ def _read_options(results: Path) -> ClassOptions:
             before=tuple(Path(path) for path in values["before"]),
             moodle=_path_or_none(values["moodle"]),
             plan=_path_or_none(values["plan"]),
+            # options without this entry are of a class that was graded by the files' times
+            file_times=values.get("file_times", True),
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(

@@ -96,8 +96,13 @@ def check(
 @click.option(
     "--received",
     type=common.EXISTING_FILE,
-    help="Times of the submissions: a CSV file with the columns file and received.  "
-    "[default: the files' modification times]",
+    help="Times of the submissions: a CSV file with the columns file and received. Without it, "
+    "nobody is late.",
+)
+@click.option(
+    "--file-times",
+    is_flag=True,
+    help="Use the files' modification times to see who is late. Copies are often newer.",
 )
 @click.option(
     "--before",
@@ -142,6 +147,7 @@ def grade(
     timeout: float,
     roster: Path | None,
     received: Path | None,
+    file_times: bool,
     before: tuple[Path, ...],
     moodle: Path | None,
     only: tuple[str, ...],
@@ -181,6 +187,7 @@ def grade(
     class_options = {
         "--roster": roster,
         "--received": received,
+        "--file-times": file_times,
         "--before": before,
         "--moodle": moodle,
         "--only": only,
@@ -210,6 +217,7 @@ def grade(
             timeout=timeout,
             roster=roster,
             received=received,
+            file_times=file_times,
             before=before,
             moodle=moodle,
             plan=plan,

@@ -1,6 +1,7 @@
 """A class's gradebook and page, and a whole run of `hdrlab grade` on a folder."""
 
 import csv
+import os
 import pickle
 import zipfile
 from dataclasses import replace
@@ -249,7 +250,8 @@ WORDS = [
     "-o",
     "out",
 ]
-WORDS += ["--roster", "roster.csv", "--received", "times.csv"]
+WORDS_WITHOUT_TIMES = [*WORDS, "--roster", "roster.csv"]
+WORDS = [*WORDS_WITHOUT_TIMES, "--received", "times.csv"]
 
 
 @pytest.fixture
@@ -329,6 +331,27 @@ def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade)
         (("b2",), 0),
         (("b3",), 3),
     ]
+
+
+@pytest.mark.grading
+@pytest.mark.parametrize(
+    ("words", "late", "said"),
+    [
+        (["--received", "times.csv"], "3", "by times.csv, 1 of 4 students are late: b3 3 days"),
+        (["--file-times"], "3", "by the files' modification times, 1 of 4"),
+        ([], "0", "nobody is late; to count late days, pass --received FILE or --file-times"),
+    ],
+)
+def test_before_grading_it_is_said_who_is_late_by_which_times(words, late, said, folder, capsys):
+    on_time = datetime.fromisoformat("2026-10-23T12:00+00:00").timestamp()
+    days_later = datetime.fromisoformat("2026-10-26T12:00+00:00").timestamp()
+    os.utime(folder / "in" / "t_hw2.py", (on_time, on_time))
+    os.utime(folder / "in" / "b3.zip", (days_later, days_later))
+    with pytest.raises(SystemExit):
+        cli.run([*WORDS_WITHOUT_TIMES, *words])
+    assert said in capsys.readouterr().err
+    rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
+    assert rows["b1"]["late"] == "0" and rows["b3"]["late"] == late
 
 
 @pytest.mark.parametrize(

@@ -192,3 +192,12 @@ def test_an_ungradable_file_does_not_hide_an_earlier_valid_one(find, tmp_path):
         and found.refused == {}
         and len(found.notes) == 1
     )
+
+
+def test_a_file_without_a_received_time_cannot_be_late_unless_file_times_count(tmp_path):
+    (tmp_path / "b05.py").write_text("x")
+    for file_times in (False, True):
+        found = class_folder.find(tmp_path, ROSTER, file_times=file_times)
+        assert found.submissions["b05"].can_be_late == file_times
+    timed = class_folder.find(tmp_path, ROSTER, {"b05.py": NOON})
+    assert timed.submissions["b05"].can_be_late

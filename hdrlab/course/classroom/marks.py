@@ -25,6 +25,7 @@ from hdrlab.errors import InputError
 
 NOT_GRADED = "not graded"
 NOT_HANDED_IN = "not handed in"
+MAX_LATE_SHOWN = 10  # students who are named before grading
 MAX_GRADEBOOK_BYTES = 128 * 2**20  # enough for a class of any size
 
 
@@ -101,7 +102,7 @@ def gradebook_rows(
     homework = context.homework
     records = list(context.before)
     for team, submission in submissions.items():
-        late = days_late(homework.due, submission.received)
+        late = days_late(homework.due, submission.received) if submission.can_be_late else 0
         team_points = points.get(team, 0.0)
         records.append(LateRecord(homework.name, late, submission.students, team_points))
     charges = list(
@@ -151,6 +152,27 @@ def gradebook_rows(
             )
         )
     return rows
+
+
+def describe_late(context: GradingContext, submissions: Mapping[str, Submission]) -> str:
+    """Return who is late, by how many days, and what it costs at most; "" if nobody is."""
+    full_points = dict.fromkeys(submissions, context.homework.points)
+    rows = gradebook_rows(context, submissions, full_points)
+    late = [row for row in rows if row.late]
+    if not late:
+        return ""
+    described = [
+        f"{row.student} {_count(row.late, 'day')} ({row.excused} free, "
+        f"{_count(row.penalty, 'point')} off)"
+        for row in late[:MAX_LATE_SHOWN]
+    ]
+    if len(late) > MAX_LATE_SHOWN:
+        described.append(f"and {len(late) - MAX_LATE_SHOWN} more")
+    return f"{len(late)} of {len(rows)} students are late: {', '.join(described)}"
+
+
+def _count(number: float, what: str) -> str:
+    return f"{number:g} {what}" if number == 1 else f"{number:g} {what}s"
 
 
 def what_if_table(

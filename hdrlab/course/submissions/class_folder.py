@@ -25,7 +25,8 @@ SUFFIXES = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
 MAX_FILE_MEGABYTES = 256  # as much as an archive may unpack to
 MAX_FILES_PER_FOLDER = 1000
 MAX_NAME_LENGTH = 80
-NOT_IN_TABLE = "not in the table of times, so its modification time counts"
+NOT_IN_TABLE = "not in the table of times, so it is not late"
+FILE_TIME = "not in the table of times, so its modification time counts"
 
 
 @dataclass(frozen=True)
@@ -36,9 +37,10 @@ class Submission:
     ----------
     team, students : whose it is
     path : the file
-    received : when it was received
+    received : when it was received, or last modified if that is unknown
     digest : SHA-256 of its bytes
     note : what the gradebook says about it
+    can_be_late : whether late days are counted from `received`
     """
 
     team: str
@@ -47,6 +49,7 @@ class Submission:
     received: datetime
     digest: str
     note: str = ""
+    can_be_late: bool = True
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,11 @@ class SubmissionScan:
 
 
 def find(
-    folder: str | Path, roster: Roster, received: Mapping[str, datetime] | None = None
+    folder: str | Path,
+    roster: Roster,
+    received: Mapping[str, datetime] | None = None,
+    *,
+    file_times: bool = False,
 ) -> SubmissionScan:
     """Find the submissions of a class in a folder and its subfolders. Links are not followed.
 
@@ -74,8 +81,10 @@ def find(
     ----------
     folder : contains the files, or a folder for each team or student
     roster : the class
-    received : when each file was received, by its path in the folder; the modification time of the
-        file counts where there is no entry
+    received : when each file was received, by its path in the folder
+    file_times : whether the modification time of a file without an entry tells whether it is late;
+        a copy of a file is often as new as the download, so by default nobody is late by it. Which
+        file of a team counts is told by it in any case
 
     Raises
     ------
@@ -85,7 +94,7 @@ def find(
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"{folder}: expected a folder with submissions")
-    scanner = _Scanner(folder, roster, received or {})
+    scanner = _Scanner(folder, roster, received or {}, file_times)
     for path, problem in _list_files(folder):
         scanner.add(path, problem)
     return scanner.finish()
@@ -94,11 +103,14 @@ def find(
 class _Scanner:
     """Collects the files of a folder, and decides which count."""
 
-    def __init__(self, folder: Path, roster: Roster, received: Mapping[str, datetime]) -> None:
+    def __init__(
+        self, folder: Path, roster: Roster, received: Mapping[str, datetime], file_times: bool
+    ) -> None:
         self._folder = folder
         self._roster = roster
         self._teams = roster.teams()
         self._has_table = bool(received)
+        self._file_times = file_times
         self._unused_times = dict(received)
         self._submissions: dict[str, Submission] = {}
         self._notes: list[str] = []
@@ -120,13 +132,17 @@ class _Scanner:
         if received is None:
             received = self._received_by_bare_name(path, team)
         note = ""
+        can_be_late = received is not None or self._file_times
         if received is None:
             received = datetime.fromtimestamp(path.stat().st_mtime, UTC)
             if self._has_table:
-                note = NOT_IN_TABLE
+                note = FILE_TIME if self._file_times else NOT_IN_TABLE
                 self._note(name, note)
         students = tuple(student.id for student in self._teams[team])
-        self._keep_later(Submission(team, students, path, received, digest="", note=note))
+        submission = Submission(
+            team, students, path, received, digest="", note=note, can_be_late=can_be_late
+        )
+        self._keep_later(submission)
 
     def finish(self) -> SubmissionScan:
         """Return what was found."""
