@@ -95,7 +95,7 @@ def load_class(
     conditions: plans.GradingOptions, options: ClassOptions, run_options: RunOptions
 ) -> GradedClass:
     """Read the roster, the plan and the submissions of a class."""
-    from hdrlab.course.classroom import marks, run
+    from hdrlab.course.classroom import marks, moodle, run
     from hdrlab.course.students import roster
     from hdrlab.course.submissions import class_folder
 
@@ -113,8 +113,15 @@ def load_class(
         before=marks.read(options.before),
     )
     times = class_folder.read_times(options.received) if options.received else {}
+    teams_by_number = {}
+    if options.moodle is not None:
+        teams_by_number = moodle.find_teams_by_number(options.moodle, course.roster, homework)
     scan = class_folder.find(
-        options.submissions, course.roster, times, file_times=options.file_times
+        options.submissions,
+        course.roster,
+        times,
+        file_times=options.file_times,
+        teams_by_number=teams_by_number,
     )
     jobs = run.make_jobs(scan.submissions, homework, conditions)
     return GradedClass(course, scan, jobs, options, run_options)

@@ -126,3 +126,12 @@ def test_a_worksheet_with_other_points_or_other_columns_is_refused(write):
         write([row(4711, "Ada", "b1", most="10.00")])
     with pytest.raises(ValueError, match="identifier"):
         write([("4711", "90")], header=("ID", "Bewertung"))
+
+
+def test_a_worksheet_may_have_decimal_commas(write):
+    write([row(4711, "Ada", "b1", grade="12,50", most="100,00")])
+
+
+def test_an_unreadable_maximum_is_named_by_line_and_column(write):
+    with pytest.raises(ValueError, match="line 3.*'maximum grade'.*'many'"):
+        write([row(4711, "Ada", "b1"), row(4712, "Bo", "b2", most="many")])

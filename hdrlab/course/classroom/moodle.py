@@ -15,7 +15,7 @@ from hdrlab.course.classroom import jobs
 from hdrlab.course.classroom.marks import MAX_GRADEBOOK_BYTES, NOT_GRADED, GradebookRow
 from hdrlab.course.plan import Homework
 from hdrlab.course.students import csv_tables
-from hdrlab.course.students.roster import Roster, fold
+from hdrlab.course.students.roster import Roster, Student, fold
 from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 
@@ -52,17 +52,14 @@ def write(
         For a file that is no grading worksheet, or whose maximum grade differs from the points of
         the homework.
     """
-    rows_by_name: dict[str, GradebookRow] = {}
-    for row, student in zip(rows, roster.students, strict=True):
-        for name in (student.id, student.email):
-            if name:
-                rows_by_name[fold(name)] = row
+    rows_by_student = {row.student: row for row in rows}
+    students = _students_by_name(roster)
     lines: list[list[csv_tables.Cell]] = []
     feedback_files: dict[str, bytes] = {}
     notes = []
-    for line in csv_tables.read_csv(worksheet, max_bytes=MAX_GRADEBOOK_BYTES):
-        _check_line(worksheet, line, homework)
-        found_row = _find_row(line, rows_by_name)
+    for line in read_worksheet(worksheet, homework):
+        student = _find_student(line, students)
+        found_row = None if student is None else rows_by_student[student.id]
         full_name = line.get("full name", "")
         grade: csv_tables.Cell = line["grade"]
         if found_row is None:
@@ -70,35 +67,86 @@ def write(
         elif found_row.received and not found_row.note.startswith(NOT_GRADED):
             grade = found_row.score
             page = out / "feedback" / found_row.team / "feedback.html"
-            number = re.search(r"\d+$", line["identifier"])
+            number = _participant_number(line)
             if number and page.is_file():
-                feedback_files[FEEDBACK_NAME.format(number[0])] = page.read_bytes()
+                feedback_files[FEEDBACK_NAME.format(number)] = page.read_bytes()
         lines.append([line["identifier"], full_name, grade, line["last modified (grade)"]])
     csv_tables.write_csv(out / "moodle_worksheet.csv", WORKSHEET_COLUMNS, lines, private=True)
     jobs.write_private_file(out / "moodle_feedback.zip", make_zip(feedback_files))
     return notes
 
 
-def _check_line(worksheet: Path, line: dict[str, str], homework: Homework) -> None:
+def read_worksheet(worksheet: Path, homework: Homework) -> list[dict[str, str]]:
+    """Return the lines of an assignment's grading worksheet, by the lower-case names of its columns.
+
+    Raises
+    ------
+    InputError
+        For a file that is no grading worksheet, or whose maximum grade differs from the points of
+        the homework.
+    """
+    lines = csv_tables.read_csv(worksheet, max_bytes=MAX_GRADEBOOK_BYTES)
+    for number, line in enumerate(lines, 2):
+        _check_line(f"{worksheet}, line {number}", line, homework)
+    return lines
+
+
+def find_teams_by_number(worksheet: Path, roster: Roster, homework: Homework) -> dict[str, str]:
+    """Return the team of each participant in a worksheet whom the roster has, by the number."""
+    teams = {}
+    students = _students_by_name(roster)
+    for line in read_worksheet(worksheet, homework):
+        student = _find_student(line, students)
+        number = _participant_number(line)
+        if student is not None and number:
+            teams[number] = student.team
+    return teams
+
+
+def _check_line(place: str, line: dict[str, str], homework: Homework) -> None:
     """Raise InputError for a line that is not of the worksheet of this homework."""
     for column in REQUIRED_COLUMNS:
         if column not in line:
             raise InputError(
-                f"{worksheet}: expected a Moodle grading worksheet in English, "
+                f"{place}: expected a Moodle grading worksheet in English, "
                 f"but it has no column {column!r}"
             )
     max_grade = line["maximum grade"]
-    if max_grade and float(max_grade) != homework.points:
+    if not max_grade:
+        return
+    try:
+        points = float(max_grade.replace(",", "."))  # some languages write 100,00
+    except ValueError:
         raise InputError(
-            f"{worksheet}: expected a maximum grade of {homework.points:g} points, as "
+            f"{place}: expected a number in the column 'maximum grade', got {max_grade!r}"
+        ) from None
+    if points != homework.points:
+        raise InputError(
+            f"{place}: expected a maximum grade of {homework.points:g} points, as "
             f"{homework.name} gives, got {max_grade}; set it in the assignment"
         )
 
 
-def _find_row(line: dict[str, str], rows_by_name: dict[str, GradebookRow]) -> GradebookRow | None:
-    """Return the row of the student in a line of the worksheet, or None for an unknown one."""
+def _participant_number(line: dict[str, str]) -> str:
+    """Return the number of the participant in a line of the worksheet, or ""."""
+    number = re.search(r"\d+$", line["identifier"])
+    return number[0] if number else ""
+
+
+def _students_by_name(roster: Roster) -> dict[str, Student]:
+    """Return the students by their ids and their email addresses."""
+    students = {}
+    for student in roster.students:
+        for name in (student.id, student.email):
+            if name:
+                students[fold(name)] = student
+    return students
+
+
+def _find_student(line: dict[str, str], students: dict[str, Student]) -> Student | None:
+    """Return the student in a line of the worksheet, or None for one who is not in the roster."""
     for column in ID_COLUMNS:
-        row = rows_by_name.get(fold(line.get(column, "")))
-        if row is not None:
-            return row
+        student = students.get(fold(line.get(column, "")))
+        if student is not None:
+            return student
     return None

@@ -3,7 +3,8 @@
 A file or folder belongs to a team if its name starts with the team's name or a student's id,
 followed by nothing or by a character other than a letter or digit: b0123.ipynb, b0123_hw2.py,
 team7-hw2.zip. A file in a folder belongs to the team that the folder's name gives, whatever the
-file's own name. If a team has several files, the one that was received last counts.
+file's own name. Names that Moodle or Canvas give to the files of a download are known too, see
+`platform_names`. If a team has several files, the one that was received last counts.
 """
 
 import hashlib
@@ -15,10 +16,12 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
+from types import MappingProxyType
 
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students import csv_tables
 from hdrlab.course.students.roster import Roster
+from hdrlab.course.submissions.platform_names import PlatformNames
 from hdrlab.errors import InputError
 
 SUFFIXES = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
@@ -74,6 +77,7 @@ def find(
     received: Mapping[str, datetime] | None = None,
     *,
     file_times: bool = False,
+    teams_by_number: Mapping[str, str] = MappingProxyType({}),
 ) -> SubmissionScan:
     """Find the submissions of a class in a folder and its subfolders. Links are not followed.
 
@@ -85,6 +89,8 @@ def find(
     file_times : whether the modification time of a file without an entry tells whether it is late;
         a copy of a file is often as new as the download, so by default nobody is late by it. Which
         file of a team counts is told by it in any case
+    teams_by_number : the team of each participant of a Moodle assignment, by the number in the
+        names of its files
 
     Raises
     ------
@@ -94,7 +100,7 @@ def find(
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"{folder}: expected a folder with submissions")
-    scanner = _Scanner(folder, roster, received or {}, file_times)
+    scanner = _Scanner(folder, roster, received or {}, file_times, teams_by_number)
     for path, problem in _list_files(folder):
         scanner.add(path, problem)
     return scanner.finish()
@@ -104,13 +110,19 @@ class _Scanner:
     """Collects the files of a folder, and decides which count."""
 
     def __init__(
-        self, folder: Path, roster: Roster, received: Mapping[str, datetime], file_times: bool
+        self,
+        folder: Path,
+        roster: Roster,
+        received: Mapping[str, datetime],
+        file_times: bool,
+        teams_by_number: Mapping[str, str],
     ) -> None:
         self._folder = folder
         self._roster = roster
         self._teams = roster.teams()
         self._has_table = bool(received)
         self._file_times = file_times
+        self._platform_names = PlatformNames(roster, teams_by_number)
         self._unused_times = dict(received)
         self._submissions: dict[str, Submission] = {}
         self._notes: list[str] = []
@@ -119,12 +131,12 @@ class _Scanner:
     def add(self, path: Path, problem: str) -> None:
         """Take a file as the submission of its team, or note why it does not count."""
         name = path.relative_to(self._folder).as_posix()
-        team = self._roster.owner(name.partition("/")[0])
+        team, doubt = self._find_team(name.partition("/")[0])
         received = self._unused_times.pop(_table_key(name), None)
         if team is None and not name.lower().endswith(SUFFIXES):
             return
         if team is None:
-            self._note(name, problem or "no student or team of the roster has this name")
+            self._note(name, problem or doubt or "no student or team of the roster has this name")
             return
         if problem:
             self._refused[team] = self._note(name, problem)
@@ -143,6 +155,17 @@ class _Scanner:
             team, students, path, received, digest="", note=note, can_be_late=can_be_late
         )
         self._keep_later(submission)
+
+    def _find_team(self, name: str) -> tuple[str | None, str]:
+        """Return the team of a file or folder, or None and why it is not clear, or None and ""."""
+        teams = self._platform_names.find_teams(name)
+        owner = self._roster.owner(name)
+        if owner is not None:
+            teams.add(owner)
+        if len(teams) > 1:
+            choices = " or ".join(sorted(teams))
+            return None, f"could be of {choices}; begin its name with the student's id"
+        return (teams.pop() if teams else None), ""
 
     def finish(self) -> SubmissionScan:
         """Return what was found."""
