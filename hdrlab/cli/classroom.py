@@ -35,6 +35,7 @@ class ClassOptions:
     roster, received, before : CSV files: the class, when files came in, earlier gradebooks
     file_times : whether the files' own times tell who is late
     moodle : the assignment's grading worksheet
+    adjustments : the instructor's decisions about students, a CSV file
     plan : the course plan, or None for the package's
     """
 
@@ -51,6 +52,7 @@ class ClassOptions:
     moodle: Path | None
     plan: Path | None
     file_times: bool = False
+    adjustments: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ def load_class(
 ) -> GradedClass:
     """Read the roster, the plan and the submissions of a class."""
     from hdrlab.course.classroom import marks, moodle, run
-    from hdrlab.course.students import roster
+    from hdrlab.course.students import adjustments, roster
     from hdrlab.course.submissions import class_folder
 
     if options.roster is None:
@@ -105,12 +107,16 @@ def load_class(
             "pass the class list with --roster"
         )
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
+    plan = plans.read(options.plan)
+    students = roster.read(options.roster, team_size=plan.team_size)
+    decisions = adjustments.read(options.adjustments, students) if options.adjustments else {}
     course = run.GradingContext(
-        roster=roster.read(options.roster),
+        roster=students,
         homework=homework,
         conditions=conditions,
-        late=plans.read(options.plan).late,
+        late=plan.late,
         before=marks.read(options.before),
+        adjustments=decisions,
     )
     times = class_folder.read_times(options.received) if options.received else {}
     teams_by_number = {}
@@ -303,6 +309,7 @@ def _read_options(results: Path) -> ClassOptions:
             plan=_path_or_none(values["plan"]),
             # options without this entry are of a class that was graded by the files' times
             file_times=values.get("file_times", True),
+            adjustments=_path_or_none(values.get("adjustments")),
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(

@@ -79,7 +79,7 @@ def build(
                     "--variants needs --secret-file: the secret determines each team's variants"
                 )
             assignments.echo_secret_note(note)
-            teams = roster.read(variants).teams()
+            teams = roster.read(variants, team_size=course_plan.team_size).teams()
             written = solved.build_for_teams_steps(
                 course_plan, sources, teams, secret, out, solutions
             )

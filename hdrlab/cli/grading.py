@@ -116,6 +116,12 @@ def check(
     help="Moodle's grading worksheet of the assignment. hdrlab writes a copy with the scores.",
 )
 @click.option(
+    "--adjustments",
+    type=common.EXISTING_FILE,
+    help="Your own decisions: a CSV file with the column student and any of extension (days), "
+    "points, comment and hold.",
+)
+@click.option(
     "--only",
     metavar="WHO",
     multiple=True,
@@ -150,6 +156,7 @@ def grade(
     file_times: bool,
     before: tuple[Path, ...],
     moodle: Path | None,
+    adjustments: Path | None,
     only: tuple[str, ...],
     since: datetime | None,
     regrade: bool,
@@ -190,6 +197,7 @@ def grade(
         "--file-times": file_times,
         "--before": before,
         "--moodle": moodle,
+        "--adjustments": adjustments,
         "--only": only,
         "--since": since,
         "--regrade": regrade,
@@ -220,6 +228,7 @@ def grade(
             file_times=file_times,
             before=before,
             moodle=moodle,
+            adjustments=adjustments,
             plan=plan,
         )
         run_options = classroom.RunOptions(

@@ -28,6 +28,7 @@ PLAN = Path(__file__).with_name("plan.toml")
 # for one call of a student's function, by default; `checks.subject` and `grading.grader` derive or state
 # the limits of a check, of a submission and of all checks, and SECURITY.md adds them up
 CALL_TIMEOUT_SECONDS = 10.0
+TEAM_SIZE = 2  # students in a team at most, unless the plan says otherwise
 
 
 class Task(NamedTuple):
@@ -96,10 +97,11 @@ class Late(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """The course's homeworks by name, and its late-day rule."""
+    """The course's homeworks by name, its late-day rule, and how many students a team may have."""
 
     homeworks: dict[str, Homework]
     late: Late = Late()
+    team_size: int = TEAM_SIZE
 
     def task(self, id: str) -> Task:
         """Return the task with an id; raise a KeyError that lists all tasks if there is none."""
@@ -154,7 +156,13 @@ def read(path: str | Path | None = None) -> Plan:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
-    plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
+    team_size = sheets.pop("team_size", TEAM_SIZE)
+    if not isinstance(team_size, int) or team_size < 1:
+        raise InputError(
+            f"{path}: expected team_size as a number of students, got {team_size!s:.80}"
+        )
+    homeworks = {name: _homework(name, sheet, path) for name, sheet in sheets.items()}
+    plan = Plan(homeworks, late, team_size)
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     if not ids:
         raise InputError(f"{path}: expected tasks, got none")

@@ -26,6 +26,13 @@ def test_a_roster_has_students_and_teams(listed):
     assert found.find(" B2 ").name == "Bo" and found.find_team("b2") == "7"
 
 
+def test_a_team_may_have_as_many_students_as_the_plan_says(tmp_path):
+    path = tmp_path / "roster.csv"
+    path.write_text("student,team\nb1,7\nb2,7\nb3,7\n")
+    (members,) = roster.read(path, team_size=3).teams().values()
+    assert len(members) == 3
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

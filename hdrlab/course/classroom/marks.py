@@ -12,6 +12,7 @@ from types import MappingProxyType
 from hdrlab.course.classroom.run import GradingContext
 from hdrlab.course.plan import Homework
 from hdrlab.course.students import csv_tables
+from hdrlab.course.students.adjustments import Adjustment
 from hdrlab.course.students.late_days import (
     WHAT_IF_DAYS,
     LateDayCharge,
@@ -41,9 +42,12 @@ class GradebookRow:
     work : points before the penalty
     of : points that the homework can give
     penalty : points taken off for late days
-    score : points after the penalty
+    by_hand : points that the instructor added
+    score : points after the penalty, with those by hand
     left : free late days that remain
     note : what went wrong, if anything
+    comment : the instructor's sentence to the student
+    hold : whether the score is not published yet
     """
 
     student: str
@@ -56,14 +60,18 @@ class GradebookRow:
     work: float
     of: float
     penalty: float
+    by_hand: float
     score: float
     left: int
     note: str = ""
+    comment: str = ""
+    hold: bool = False
 
     @property
     def cells(self) -> list[csv_tables.Cell]:
         """The row as it is written to gradebook.csv, in the order of `COLUMNS`."""
-        return [getattr(self, field.name) for field in fields(self)]
+        cells: list[csv_tables.Cell] = [getattr(self, field.name) for field in fields(self)]
+        return [*cells[:-1], "yes" if self.hold else ""]
 
 
 # As the fields of GradebookRow, in words.
@@ -78,9 +86,12 @@ COLUMNS = (
     "work",
     "of",
     "penalty",
+    "by hand",
     "score",
     "grace left",
     "note",
+    "comment",
+    "hold",
 )
 
 
@@ -102,9 +113,12 @@ def gradebook_rows(
     homework = context.homework
     records = list(context.before)
     for team, submission in submissions.items():
-        late = days_late(homework.due, submission.received) if submission.can_be_late else 0
+        days = days_late(homework.due, submission.received) if submission.can_be_late else 0
         team_points = points.get(team, 0.0)
-        records.append(LateRecord(homework.name, late, submission.students, team_points))
+        for student_id in submission.students:
+            adjustment = context.adjustments.get(student_id, Adjustment())
+            late = max(0, days - adjustment.extension)
+            records.append(LateRecord(homework.name, late, (student_id,), team_points))
     charges = list(
         charge_late_days(records, grace=context.late.free_days, per_day=context.late.points_a_day)
     )
@@ -134,6 +148,9 @@ def gradebook_rows(
             notes = ["" if student.team in points else NOT_GRADED, submission.note]
             work = points.get(student.team, 0.0)
         notes.append(remarks.get(student.team, ""))
+        adjustment = context.adjustments.get(student.id, Adjustment())
+        if adjustment.extension:
+            notes.append(f"extension of {_count(adjustment.extension, 'day')}")
         rows.append(
             GradebookRow(
                 student=student.id,
@@ -146,9 +163,12 @@ def gradebook_rows(
                 work=work,
                 of=homework.points,
                 penalty=charge.penalty,
-                score=charge.score,
+                by_hand=adjustment.points,
+                score=max(0.0, charge.score + adjustment.points),
                 left=charge.left,
                 note="; ".join(note for note in notes if note),
+                comment=adjustment.comment,
+                hold=adjustment.hold,
             )
         )
     return rows
@@ -242,10 +262,13 @@ def canvas_table(
 ) -> tuple[list[str], list[list[csv_tables.Cell]]]:
     """Return header and rows of the table that Canvas imports.
 
-    The first row holds the points that are possible.
+    The first row holds the points that are possible. A score that is held back is left empty.
     """
     title = f"{homework.name}: {homework.title}"
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title]
     table: list[list[csv_tables.Cell]] = [["    Points Possible", "", "", "", "", homework.points]]
-    table.extend([row.name, "", row.student, row.student, "", row.score] for row in rows)
+    table.extend(
+        [row.name, "", row.student, row.student, "", None if row.hold else row.score]
+        for row in rows
+    )
     return header, table

@@ -4,7 +4,8 @@ Moodle's gradebook imports any table whose columns are then mapped [Moodle Docs,
 assignment knows students only by its own numbers, which are in the grading worksheet that it
 exports. So hdrlab fills in that worksheet and names the feedback files by it [Moodle Docs, Using
 Assignment; the names in the archive as in assignfeedback_file_zip_importer]. The filled worksheet
-has no column of comments, so an import leaves a teacher's comments as they are.
+has a column of comments only if the instructor has written some for hdrlab; otherwise an import
+leaves the comments in Moodle as they are.
 """
 
 import re
@@ -23,16 +24,21 @@ from hdrlab.errors import InputError
 ID_COLUMNS = ("id number", "username", "email address")
 REQUIRED_COLUMNS = ("identifier", "grade", "maximum grade", "last modified (grade)")
 WORKSHEET_COLUMNS = ("Identifier", "Full name", "Grade", "Last modified (grade)")
+COMMENT_COLUMN = "Feedback comments"
 FEEDBACK_NAME = "Participant_{}_assignsubmission_file_feedback.html"
 
 
 def gradebook(
     rows: Sequence[GradebookRow], roster: Roster, homework: Homework
 ) -> tuple[list[str], list[list[csv_tables.Cell]]]:
-    """Return header and rows of the table that Moodle's gradebook imports."""
+    """Return header and rows of the table that Moodle's gradebook imports, without held scores."""
     header = ["ID number", "Username", "Email address", f"{homework.name}: {homework.title}"]
     emails = {student.id: student.email for student in roster.students}
-    return header, [[row.student, row.student, emails[row.student], row.score] for row in rows]
+    table: list[list[csv_tables.Cell]] = []
+    for row in rows:
+        score = None if row.hold else row.score
+        table.append([row.student, row.student, emails[row.student], score])
+    return header, table
 
 
 def write(
@@ -44,7 +50,8 @@ def write(
 ) -> list[str]:
     """Write moodle_worksheet.csv and moodle_feedback.zip; return a note for each unknown student.
 
-    A student whose work has not been graded keeps the grade that the worksheet has.
+    A student whose work has not been graded, or whose score is held back, keeps the grade that the
+    worksheet has.
 
     Raises
     ------
@@ -53,6 +60,7 @@ def write(
         the homework.
     """
     rows_by_student = {row.student: row for row in rows}
+    has_comments = any(row.comment for row in rows)
     students = _students_by_name(roster)
     lines: list[list[csv_tables.Cell]] = []
     feedback_files: dict[str, bytes] = {}
@@ -64,14 +72,26 @@ def write(
         grade: csv_tables.Cell = line["grade"]
         if found_row is None:
             notes.append(f"{worksheet.name}: {full_name!r} is not in the roster")
-        elif found_row.received and not found_row.note.startswith(NOT_GRADED):
+        elif (
+            found_row.received and not found_row.hold and not found_row.note.startswith(NOT_GRADED)
+        ):
             grade = found_row.score
             page = out / "feedback" / found_row.team / "feedback.html"
             number = _participant_number(line)
             if number and page.is_file():
                 feedback_files[FEEDBACK_NAME.format(number)] = page.read_bytes()
-        lines.append([line["identifier"], full_name, grade, line["last modified (grade)"]])
-    csv_tables.write_csv(out / "moodle_worksheet.csv", WORKSHEET_COLUMNS, lines, private=True)
+        cells: list[csv_tables.Cell] = [
+            line["identifier"],
+            full_name,
+            grade,
+            line["last modified (grade)"],
+        ]
+        if has_comments:
+            comment = found_row.comment if found_row and not found_row.hold else ""
+            cells.append(comment or line.get(COMMENT_COLUMN.lower(), ""))
+        lines.append(cells)
+    columns = [*WORKSHEET_COLUMNS, COMMENT_COLUMN] if has_comments else WORKSHEET_COLUMNS
+    csv_tables.write_csv(out / "moodle_worksheet.csv", columns, lines, private=True)
     jobs.write_private_file(out / "moodle_feedback.zip", make_zip(feedback_files))
     return notes
 

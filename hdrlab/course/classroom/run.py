@@ -9,7 +9,7 @@ RESULTS/
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from hdrlab.course.plan import GradingOptions, Homework, Late
 from hdrlab.course.reports import gradebook
 from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.sanitize import sanitize_line
+from hdrlab.course.students.adjustments import Adjustment
 from hdrlab.course.students.late_days import LateRecord
 from hdrlab.course.students.roster import Roster
 from hdrlab.course.submissions.class_folder import Submission
@@ -42,6 +43,7 @@ class GradingContext:
     homework, conditions : what is checked, and with which options
     late : the rule for late submissions
     before : late records of earlier homeworks, in the order of their due dates
+    adjustments : the instructor's own decisions, by student
     """
 
     roster: Roster
@@ -49,6 +51,7 @@ class GradingContext:
     conditions: GradingOptions
     late: Late = Late()
     before: Sequence[LateRecord] = ()
+    adjustments: Mapping[str, Adjustment] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

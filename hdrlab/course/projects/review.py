@@ -38,7 +38,6 @@ from hdrlab.course.submissions.archives.members import (
 from hdrlab.errors import InputError
 from hdrlab.io import decode, radiance
 
-MAX_TEAM_SIZE = 2  # students
 EXTERNAL_RESOURCE = re.compile(
     r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)"""
 )
@@ -95,11 +94,6 @@ def check_students(project: Project) -> PartReview:
         return PartReview(
             problems=(f"Write a file {ABOUT_FILE} with your names:\n{EXAMPLE_ABOUT}",)
         )
-    if len(students) > MAX_TEAM_SIZE:
-        problem = (
-            f"A team has at most {MAX_TEAM_SIZE} students, {ABOUT_FILE} names {len(students)}."
-        )
-        return PartReview(problems=(problem,))
     return PartReview(" and ".join(students))
 
 

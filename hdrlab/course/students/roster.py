@@ -1,4 +1,4 @@
-"""Read the roster: the students of a class and their teams. Students work alone or in teams of two.
+"""Read the roster: the students of a class and their teams. Students work alone or in teams.
 
 The roster is a CSV file with the column `student` (the number or name at the university) and
 optionally `name`, `email` and `team`. A student without a team works alone.
@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from hdrlab.course.plan import TEAM_SIZE
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students import csv_tables
 from hdrlab.errors import InputError
 
-MAX_TEAM_SIZE = 2
 MAX_NAME_LENGTH = 80
 MAX_EMAIL_LENGTH = 200
 # an id or a team names files, so these must not occur in it
@@ -125,14 +125,14 @@ class Roster(NamedTuple):
         return team
 
 
-def read(path: str | Path) -> Roster:
-    """Read a roster.
+def read(path: str | Path, *, team_size: int = TEAM_SIZE) -> Roster:
+    """Read a roster, in which a team has at most `team_size` students.
 
     Raises
     ------
     InputError
-        If an id or a team cannot name a file, a team has more than two members, or two names could
-        be confused; the message has both lines.
+        If an id or a team cannot name a file, a team has too many members, or two names could be
+        confused; the message has both lines.
     """
     rows = csv_tables.read_csv(path)
     if not rows or "student" not in rows[0]:
@@ -153,10 +153,11 @@ def read(path: str | Path) -> Roster:
         students.append(Student(id=id, name=name or id, team=team or id, email=email))
     _check_names(path, names)
     sizes = Counter(student.team for student in students)
-    large = [team for team, size in sizes.items() if size > MAX_TEAM_SIZE]
+    large = [team for team, size in sizes.items() if size > team_size]
     if large:
         raise InputError(
-            f"{path}: expected teams of at most {MAX_TEAM_SIZE} students, got more in {', '.join(large)}"
+            f"{path}: expected teams of at most {team_size} students, got more in "
+            f"{', '.join(large)}; team_size in the course plan allows larger teams"
         )
     return Roster(tuple(students))
 

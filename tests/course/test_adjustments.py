@@ -1,0 +1,117 @@
+"""An instructor's own decisions: extensions, points by hand, comments and held scores."""
+
+import csv
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from hdrlab.course.classroom import marks, moodle, run as classroom
+from hdrlab.course.plan import GradingOptions, Homework, Late, Task
+from hdrlab.course.students import adjustments, csv_tables
+from hdrlab.course.students.roster import Roster, Student
+from hdrlab.course.submissions.class_folder import Submission
+
+DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
+HOMEWORK = Homework("hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 100),))
+ROSTER = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
+SUBMISSIONS = {
+    "t": Submission("t", ("b1", "b2"), None, DUE + timedelta(days=3), "digest"),
+    "b3": Submission("b3", ("b3",), None, DUE, "digest"),
+}
+POINTS = {"t": 80.0, "b3": 95.0}
+
+
+@pytest.fixture
+def read(tmp_path):
+    def adjustments_of(text):
+        path = tmp_path / "adjustments.csv"
+        path.write_text(text, encoding="utf8")
+        return adjustments.read(path, ROSTER)
+
+    return adjustments_of
+
+
+@pytest.fixture
+def rows(read):
+    """rows(text) -> the gradebook's rows by student, with the adjustments of a table."""
+
+    def with_adjustments(text):
+        course = classroom.GradingContext(
+            ROSTER, HOMEWORK, GradingOptions(), Late(0, 10.0), adjustments=read(text)
+        )
+        found = marks.gradebook_rows(course, SUBMISSIONS, POINTS)
+        return {row.student: row for row in found}
+
+    return with_adjustments
+
+
+def test_an_extension_moves_the_due_date_of_one_student_only(rows):
+    found = rows("student,extension\nb1,2\n")
+    assert [(found[who].late, found[who].score) for who in ("b1", "b2")] == [(1, 70), (3, 50)]
+    assert "extension of 2 days" in found["b1"].note and not found["b2"].note
+
+
+def test_points_by_hand_are_added_after_the_penalty_and_may_be_extra_credit(rows):
+    found = rows("student,points\nb1,5\nb2,-60\nb3,12.5\n")
+    assert [found[who].score for who in ("b1", "b2", "b3")] == [55, 0, 107.5]
+    assert found["b3"].by_hand == 12.5
+
+
+def test_a_held_score_is_in_the_gradebook_and_in_no_table_for_a_platform(rows):
+    found = rows("student,hold\nB3,yes\n")
+    assert found["b3"].score == 95
+    lines = list(found.values())
+    _, canvas = marks.canvas_table(lines, HOMEWORK)
+    _, table = moodle.gradebook(lines, ROSTER, HOMEWORK)
+    assert [row[-1] for row in canvas[1:]] == [row[-1] for row in table] == [50, 50, None]
+
+
+def test_a_comment_reaches_its_student_in_moodle_and_no_other_comment_is_lost(rows, tmp_path):
+    found = rows("student,comment,hold\nb1,Good curve.,\nb3,Talk to me.,yes\n")
+    header = (
+        *("Identifier", "ID number", "Grade", "Maximum grade", "Last modified (grade)"),
+        "Feedback comments",
+    )
+    lines = [
+        (f"Participant {number}", who, "", "100.00", "-", "Earlier.")
+        for number, who in enumerate(("b1", "b2", "b3"), 1)
+    ]
+    csv_tables.write_csv(tmp_path / "sheet.csv", header, lines)
+    moodle.write(tmp_path, tmp_path / "sheet.csv", list(found.values()), ROSTER, HOMEWORK)
+    with open(tmp_path / "moodle_worksheet.csv", encoding="utf-8-sig", newline="") as file:
+        written = list(csv.DictReader(file))
+    assert [row["Feedback comments"] for row in written] == ["Good curve.", "Earlier.", "Earlier."]
+    assert [row["Grade"] for row in written] == ["50.0", "50.0", ""]
+
+
+def test_the_gradebook_can_be_read_as_that_of_an_earlier_homework(rows, tmp_path):
+    found = rows("student,extension,points,comment,hold\nb1,2,5,Good.,yes\n")
+    cells = [row.cells for row in found.values()]
+    csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, cells)
+    records = marks.read([tmp_path / "gradebook.csv"])
+    assert [(one.students, one.late, one.points) for one in records] == [
+        (("b1",), 1, 80),
+        (("b2",), 3, 80),
+        (("b3",), 0, 95),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("student,grade\nb1,3\n", "expected the column student and any of"),
+        ("student,points\nb9,3\n", "line 2.*'b9'"),
+        ("student,points\nb1,3\nb1,4\n", "line 3.*b1 twice"),
+        ("student,points\nb1,many\n", "line 2.*'points'.*'many'"),
+        ("student,extension\nb1,1.5\n", "line 2.*'extension'"),
+        ("student,extension\nb1,-1\n", "line 2.*'extension'"),
+        ("student,hold\nb1,maybe\n", "line 2.*'hold'.*'maybe'"),
+    ],
+)
+def test_an_error_names_the_line_and_the_column(text, said, read):
+    with pytest.raises(ValueError, match=said):
+        read(text)
+
+
+def test_points_may_have_a_decimal_comma(read):
+    assert read('student,points\nb1,"2,5"\n')["b1"].points == 2.5
