@@ -21,13 +21,13 @@ def find_stuck(shortest: Array, longest: Array) -> Mask:
     """Return the single pixels that do not follow the exposure, (H, W) bool, from two frames (H, W, C).
 
     The level of such a pixel differs by less than 1/32 of the range between the frames. And it is
-    above all its eight neighbours in the shortest frame by a quarter of the range (hot), or below
-    them in the longest frame (dead).
+    above all its eight neighbours in the shortest frame by a quarter of the range (stuck at white),
+    or below them in the longest frame (dead).
 
     Examples
     --------
     >>> shortest, longest = np.zeros((2, 3, 3, 1), np.uint8)
-    >>> shortest[1, 1] = longest[1, 1] = 250  # a hot pixel: bright in the dark, and no brighter in the light
+    >>> shortest[1, 1] = longest[1, 1] = 250  # stuck: bright in the dark, and no brighter in the light
     >>> int(find_stuck(shortest, longest).sum())
     1
     """
