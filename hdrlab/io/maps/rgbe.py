@@ -5,9 +5,9 @@ e   the exponent that the three share   (H, W), 0 to 255
 E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 128), and 0 where e = 0
 
 Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio
-and most others decode m / 256, the lower end, and so does hdrlab: a file read and written again is
-then unchanged. imagecodecs codes run-length scanlines quickly; without it, and for the other files,
-the equations below do.
+and most others decode m / 256, the lower end, and so does hdrlab: numbers that fit into the
+mantissa, such as 1, are then exact. imagecodecs codes run-length scanlines quickly; without it, and
+for the other files, the equations below do.
 
 Values of E have the primaries of the header's PRIMARIES line. Without one, Radiance means
 `RADIANCE_PRIMARIES`, but most other programs, and hdrlab, take those of sRGB.
