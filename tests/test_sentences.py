@@ -128,6 +128,9 @@ SENTENCES = {
             0.8 < np.divide(*(n.both(28)[way][0].sum() for way in ("noise", "stops"))) < 1.2
         ),
         "Alignment fails for one of the five photos": lambda n: n.shaken(12).wrong == 1,
+        "at ISO 800 the converter reaches its top level when the well is only an eighth full": (
+            lambda n: n.MAKER.speeds[0] / n.MAKER.speeds[1] == 1 / 8
+        ),
     },
     "03": {
         "you would compare whole bitmaps 16 129 times": lambda n: 127**2 == 16_129,
@@ -319,6 +322,12 @@ SENTENCES = {
         "at 0.05 it is already off by a percent": lambda n: (
             round(off(*n.with_noise(0.05, "mix"))) == 1
         ),
+        "at 0.5, three patches hardly move the curve away from the mean of the family": lambda n: (
+            all(
+                np.abs(n.drawn(3, name, 0.5)["MAP"] - n.tones.mean).mean() < 0.02
+                for name in n.CAMERAS
+            )
+        ),
     },
     "10": {
         "gives level 254 more than a third of its largest weight": lambda n: (
@@ -347,6 +356,12 @@ SENTENCES = {
             np.ptp([errors_of(n, name) for name in n.METHODS], axis=0).max() < 1
         ),
         "So its standard deviation is twice that of the one before": lambda n: 4**0.5 == 2,
+        "contributes about three quarters of $\\sum 1 / V$": lambda n: (
+            round(4 * np.median(longest_shares(n))) == 3
+        ),
+        "in the middle it is 63 electrons, and a step has 31": lambda n: (
+            [round(4000**0.5), round(n.SENSOR["full_well"] / 255)] == [63, 31]
+        ),
         "The fourth photo seems to be off by half a stop": lambda n: (
             round(2 * n.with_wrong_time(2.0)[3]) == 1
         ),
@@ -414,6 +429,9 @@ SENTENCES = {
         "numbers end at 65504, and one of 65520 or more becomes infinity": lambda n: (
             [as_half(65519), as_half(65520)] == [65504, np.inf]
         ),
+        "Either way, a file does not change when it is read and written again": lambda n: all(
+            same_after_decoding(n, part) for part in (0.0, 0.5)
+        ),
         "here the 6 bytes of a pixel in halves became about four": lambda n: (
             round(n.each["half .exr"]) == 4
         ),
@@ -448,6 +466,9 @@ SENTENCES = {
         ),
         "10 pixels from it at $s = 10.5$, and 20 pixels from it at $s = 26.8$": lambda n: (
             [light_arrives(n, away) for away in (10, 20)] == ["10.5", "26.8"]
+        ),
+        "it is far above $L_{white}$, so it is white in both images": lambda n: all(
+            np.all(Ld[n.Lm > 100] == 1) for Ld in n.both.values()
         ),
         "it leaves the band at 10.5 pixels, and is back at 16.8": lambda n: (
             np.flatnonzero(np.abs(n.three["95 %"]) < 0.05).tolist() == [0, 1, 2, 3, 4, 6]
@@ -583,8 +604,14 @@ SENTENCES = {
             1 + np.argmin(np.abs(n.short["mean of short photos"] - n.short["one coded photo"])) == 9
         ),
         "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
-        "In the dark the same error takes twice the light, so the loss is 0.3 decades": lambda n: (
+        "In the dark an error of 10 % takes twice the light, so the loss is 0.3 decades": lambda n: (
             round(light_for_error(n, "assorted", 10) - light_for_error(n, "plain", 10), 1) == 0.3
+        ),
+        "two and a half times the light": lambda n: (
+            round(light_for_error(n, "assorted", 3) - light_for_error(n, "plain", 3), 1) == 0.4
+        ),
+        "points of a grid in steps of 0.16 decades": lambda n: (
+            round(float(np.log10(n.light[1] / n.light[0])), 2) == 0.16
         ),
         "In weak light three quarters of the wave turn into the coarse one, and a fifth remains": (
             lambda n: waves_left(n, 112) == [0.76, 0.21]
@@ -732,6 +759,29 @@ def levels_in_shade(n, stops):
     shade = n.subjects.backlight((256, 384)).mask
     darker = n.colour.to_8bit(np.minimum(n.linear * 2.0**stops, 1))
     return len(np.unique(darker[shade][:, 1]))
+
+
+def longest_shares(n):
+    """Return which share of sum 1 / V the longest photo has that is not clipped, on page 10."""
+    shares = []
+    for light in np.exp(n.true_g[255]) * n.chapel[::16, ::16, 1].ravel():
+        X = light * n.inside.times
+        X = X[np.exp(n.true_g[250]) > X]
+        if not X.size:
+            continue
+        D = np.interp(X, n.exp_g, n.D)
+        # 1 / V is t^2 / variance, and t is proportional to X
+        information = X**2 / n.variance(X, D, n.N, n.R)
+        shares.append(information[-1] / information.sum())
+    return shares
+
+
+def same_after_decoding(n, part):
+    """Return whether a .hdr file is written again as it was, decoded at this part of a mantissa's step."""
+    pixels = n.rgbe.to_pixels(n.E)
+    mantissas, exponent = pixels[..., :3], pixels[..., 3:].astype(float)
+    decoded = ((mantissas + part) / 256 * 2 ** (exponent - 128)).astype(np.float32)
+    return np.array_equal(n.rgbe.to_pixels(decoded), pixels)
 
 
 def light_for_error(n, sensor, percent):
