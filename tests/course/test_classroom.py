@@ -78,6 +78,22 @@ def test_late_days_are_read_back_from_a_gradebook(tmp_path):
         marks.read([tmp_path / "other.csv"])
 
 
+def test_an_id_with_an_apostrophe_keeps_its_own_late_days(tmp_path):
+    students = tuple(Student(id, id, id) for id in ("b1", "'b1", "=b1", "'=b1"))
+    course = replace(COURSE, roster=Roster(students))
+    came = {one.id: handin(one.id, (one.id,), days) for days, one in enumerate(students)}
+    rows = marks.gradebook_rows(course, came, {})
+    rows = [replace(row, note="") for row in rows]
+    csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, [row.cells for row in rows])
+    read = marks.read([tmp_path / "gradebook.csv"])
+    assert [(one.students, one.late) for one in read] == [
+        (("b1",), 0),
+        (("'b1",), 1),
+        (("=b1",), 2),
+        (("'=b1",), 3),
+    ]
+
+
 def test_the_canvas_table_has_points_possible_and_no_formulas():
     rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
     lines = list(csv.reader(csv_tables.csv_text(*marks.canvas_table(rows, HOMEWORK)).splitlines()))

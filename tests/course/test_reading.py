@@ -253,6 +253,14 @@ def test_a_notebook_with_wrong_types_in_its_cells_is_read():
     assert reader.cells_of(json.dumps(old).encode(), "a.ipynb") == ([found[0]], [])
 
 
+def test_half_a_character_in_a_comment_loses_no_cell():
+    source = "# a broken \ud83d comment, a whole \U0001f600\ndef hat(n): return n\n"
+    cell = {"cell_type": "code", "source": source}
+    ((found,), problems) = reader.cells_of(json.dumps({"cells": [cell]}).encode(), "a.ipynb")
+    assert problems == [] and "def hat" in found.text and "\U0001f600" in found.text
+    assert found.text.encode("utf8")
+
+
 @pytest.mark.parametrize("content", [{"cells": {}}, {"worksheets": 1}, {}])
 def test_a_json_file_without_a_list_of_cells_is_no_notebook(content):
     cells, (problem,) = reader.cells_of(json.dumps(content).encode(), "a.ipynb")

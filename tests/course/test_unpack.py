@@ -1,5 +1,8 @@
 """Archives of students: plain ones are unpacked, and every trap is refused with one line."""
 
+import bz2
+import gzip
+import lzma
 import stat
 from contextlib import nullcontext
 from dataclasses import replace
@@ -53,6 +56,28 @@ def test_a_plain_archive_is_unpacked_byte_by_byte(mode, tmp_path):
         name: len(data) for name, data in FILES.items()
     }
     assert {name: (tmp_path / "new" / name).read_bytes() for name in FILES} == FILES
+
+
+@pytest.mark.parametrize("module", [gzip, bz2, lzma])
+def test_a_notebook_that_is_compressed_alone_is_unpacked(module, tmp_path):
+    archive = tmp_path / "hw2.ipynb.packed"
+    archive.write_bytes(module.compress(b'{"cells": []}'))
+    assert unpack(archive, tmp_path / "new") == [Member(PurePosixPath("hw2.ipynb"), 13)]
+    assert (tmp_path / "new" / "hw2.ipynb").read_bytes() == b'{"cells": []}'
+
+
+def test_a_compressed_file_that_is_no_code_is_refused(tmp_path):
+    archive = tmp_path / "photo.jpg.gz"
+    archive.write_bytes(gzip.compress(b"no tar" * 200))
+    with pytest.raises(ArchiveRejected, match="not a .zip or .tar archive"):
+        unpack(archive, tmp_path / "new")
+
+
+def test_a_notebook_that_is_compressed_alone_must_not_unpack_to_many_times_its_size(tmp_path):
+    archive = tmp_path / "hw2.ipynb.gz"
+    archive.write_bytes(gzip.compress(bytes(300_000_000)))
+    with pytest.raises(ArchiveRejected, match="times its size"):
+        unpack(archive, tmp_path / "new")
 
 
 def test_file_permissions_of_an_archive_are_ignored(tmp_path):

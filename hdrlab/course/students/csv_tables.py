@@ -35,19 +35,27 @@ def escape_cell(cell: Cell) -> str:
     if cell is None:
         return ""
     text = CONTROL_CHARACTERS.sub(" ", str(cell)).strip()
-    is_formula = FORMULA.match(text) and not NUMBER.match(text)
-    return ESCAPE + text if is_formula else text
+    return ESCAPE + text if _is_escaped(text) else text
+
+
+def _is_escaped(text: str) -> bool:
+    """Return whether a text gets an apostrophe: a formula, or an apostrophe before such a text."""
+    formula = text.lstrip(ESCAPE)
+    return bool(FORMULA.match(formula) and not NUMBER.match(formula))
 
 
 def unescape_cell(text: str) -> str:
     """Return the text of a cell that `escape_cell` wrote.
 
+    An apostrophe that belongs to the text stays.
+
     Examples
     --------
-    >>> unescape_cell("'=b2"), unescape_cell("b2")
-    ('=b2', 'b2')
+    >>> unescape_cell("'=b2"), unescape_cell("b2"), unescape_cell("'b2")
+    ('=b2', 'b2', "'b2")
     """
-    return text.removeprefix(ESCAPE)
+    is_escaped = text.startswith(ESCAPE) and _is_escaped(text)
+    return text.removeprefix(ESCAPE) if is_escaped else text
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:

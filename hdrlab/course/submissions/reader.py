@@ -308,6 +308,8 @@ def _code_cell(number: int, cell: dict[str, Any]) -> closure.Cell:
     source = cell.get("source", cell.get("input", ""))  # version 3 has "input"
     lines = source if isinstance(source, list) else [source]
     text = "".join(line for line in lines if isinstance(line, str))
+    # JSON may hold half of a character, which no Python file can; in a comment it does no harm
+    text = text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
     metadata = cell.get("metadata")
     marks = metadata.get("hdrlab") if isinstance(metadata, dict) else None
     if not isinstance(marks, dict):

@@ -1,4 +1,7 @@
-"""Unpack tar archives, compressed or not, and check their headers before tarfile reads them."""
+"""Unpack tar archives, compressed or not, and check their headers before tarfile reads them.
+
+A compressed notebook or Python file, such as hw2.ipynb.gz, is taken for an archive of this file.
+"""
 
 import bz2
 import gzip
@@ -34,6 +37,8 @@ def _open_xz(path: Path, mode: str) -> Any:
 # by the first bytes of a compressed archive
 OPENERS: dict[bytes, Any] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\0": _open_xz}
 MAX_MAGIC_BYTES = 6
+# files that may be compressed alone
+SINGLE_FILE_SUFFIXES = (".ipynb", ".py")
 
 # Extended headers, which change the members after them: their types are x for the next member, g
 # for all, and X for the next one by Solaris.
@@ -61,6 +66,8 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits) -> list[Member]:
     packed_bytes = archive.stat().st_size
     with tempfile.TemporaryFile(dir=folder.parent) as plain_tar:
         _decompress(archive, plain_tar, packed_bytes, limits)
+        if _is_single_file(plain_tar, archive):
+            return _write_single_file(plain_tar, archive, folder, limits)
         _check_headers(plain_tar, limits)
         plain_tar.seek(0)
         with closing(tarfile.open(fileobj=plain_tar, mode="r:")) as tar:
@@ -76,6 +83,25 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits) -> list[Member]:
                 assert source is not None
                 members.write_member(source, folder / file.path, file.size)
     return files
+
+
+def _is_single_file(file: IO[bytes], archive: Path) -> bool:
+    """Return whether the unpacked content of hw2.ipynb.gz is this notebook, and no tar archive."""
+    file.seek(0)
+    has_header = file.read(tarfile.BLOCKSIZE)[MAGIC_FIELD] == MAGIC
+    is_compressed = _find_opener(archive) is not open
+    return is_compressed and not has_header and archive.stem.lower().endswith(SINGLE_FILE_SUFFIXES)
+
+
+def _write_single_file(
+    file: IO[bytes], archive: Path, folder: Path, limits: ArchiveLimits
+) -> list[Member]:
+    """Write a file that was compressed alone, under the name of the archive without its suffix."""
+    (path,) = members.check_names([archive.stem], limits)
+    size = file.seek(0, os.SEEK_END)
+    file.seek(0)
+    members.write_member(file, folder / path, size)
+    return [Member(path, size)]
 
 
 def _check_kind(info: tarfile.TarInfo) -> None:
