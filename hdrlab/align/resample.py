@@ -68,13 +68,15 @@ def photographs(
     masks = as_mask(valid, images)
     shown = warp.common_rectangle(H, images.shape[1:3])
     table = _light_table(g, levels(images), images[0, 0, 0].size)
-    moved = [
-        move_image(image, image_H, shown, table) for image, image_H in zip(images, H, strict=True)
-    ]
+    rows, columns = shown
+    size = (rows.stop - rows.start, columns.stop - columns.start)
+    moved = np.empty((len(images), *size, *images.shape[3:]), images.dtype)
+    for j, image in enumerate(images):
+        moved[j] = move_image(image, H[j], shown, table)
     if masks is None:
-        return np.stack(moved), None
+        return moved, None
     moved_masks = [_move_mask(mask, mask_H, shown) for mask, mask_H in zip(masks, H, strict=True)]
-    return np.stack(moved), np.stack(moved_masks)
+    return moved, np.stack(moved_masks)
 
 
 def move_image(image: Array, H: F64, shown: tuple[slice, slice], table: F64) -> Array:

@@ -33,13 +33,18 @@ def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     """
     stack = as_stack(images)
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / _MAX_RANKED_PIXELS)))
-    pixels = to_256(stack[:, ::step, ::step]).reshape(len(stack), -1, *stack.shape[3:])
+    shown = None
     if valid is not None:
         shown = _shown_in_all(valid, stack)[::step, ::step]
-        pixels = pixels[:, shown.ravel()]
-    ranked = np.sort(np.ascontiguousarray(np.moveaxis(pixels, 1, -1)), kind="stable")
-    rank = ((np.arange(count) + 0.5) / count * ranked.shape[-1]).astype(int)
-    return np.moveaxis(ranked[..., rank], -1, 0).astype(np.intp)
+    Z = np.empty((count, len(stack), *stack.shape[3:]), np.intp)
+    # frame by frame, because a sorted copy of all frames would double the memory
+    for j, image in enumerate(stack):
+        pixels = to_256(image[::step, ::step])
+        pixels = pixels[shown] if shown is not None else pixels.reshape(-1, *stack.shape[3:])
+        ranked = np.sort(np.ascontiguousarray(pixels.T), kind="stable")
+        rank = ((np.arange(count) + 0.5) / count * len(pixels)).astype(int)
+        Z[:, j] = ranked[..., rank].T
+    return Z
 
 
 def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:

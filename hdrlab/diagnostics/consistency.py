@@ -64,19 +64,23 @@ def measure_level_exposures(
         raise InputError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     rows, columns = choose_grid(E.shape)
     channel_count = 1 if E.ndim == 2 else E.shape[-1]
-    sample = arrays.to_256(stack[:, rows, columns]).reshape(len(stack), -1, channel_count)
-    Z = np.moveaxis(sample, -1, 0).copy()
-    is_measured: Mask = np.all(Z <= MAX_LEVEL, axis=0)
-    if mask is not None:
-        is_measured &= mask[:, rows, columns].reshape(len(stack), -1)
-    np.copyto(Z, 255, where=~is_measured)  # a level beyond MAX_LEVEL, which has no median
-    medians = np.empty((len(stack), channel_count, 256))
-    for c, radiance in enumerate(E[rows, columns].reshape(-1, channel_count).T):
+    orders = []
+    log_radiances = []
+    for radiance in E[rows, columns].reshape(-1, channel_count).T:
         # sort once for all frames, without the pixels that are 0
         ascending = np.argsort(radiance)[np.count_nonzero(radiance == 0) :]
-        lE = np.log2(radiance.take(ascending))
-        for j, levels in enumerate(Z[c]):
-            medians[j, c] = _median_per_level(levels.take(ascending), lE) + np.log2(times[j])
+        orders.append(ascending)
+        log_radiances.append(np.log2(radiance.take(ascending)))
+    medians = np.empty((len(stack), channel_count, 256))
+    for j, image in enumerate(stack):
+        Z = arrays.to_256(image[rows, columns]).reshape(-1, channel_count).T.copy()
+        is_measured: Mask = np.all(Z <= MAX_LEVEL, axis=0)
+        if mask is not None:
+            is_measured &= mask[j, rows, columns].ravel()
+        np.copyto(Z, 255, where=~is_measured)  # a level beyond MAX_LEVEL, which has no median
+        for c, levels in enumerate(Z):
+            median = _median_per_level(levels.take(orders[c]), log_radiances[c])
+            medians[j, c] = median + np.log2(times[j])
     medians[..., MAX_LEVEL + 1 :] = np.nan
     return medians
 

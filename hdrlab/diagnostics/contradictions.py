@@ -173,7 +173,8 @@ def find_contradictions(
         # Values of equal rank take the place of flat patches [Grossberg03].
         ranks = flat_patches.rank_levels(stack, valid=valid)
         all_ranks = np.ones(ranks.shape[2:], bool)
-        H[has_few] = flat_patches.count_pairs(ranks, all_ranks)[has_few]
+        for pair in np.flatnonzero(has_few):
+            H[pair] = flat_patches.count_pairs(ranks[pair : pair + 2], all_ranks)[0]
     unknown = Contradictions(
         stops=np.full(len(B), np.nan),
         regions=np.full(len(B) - 1, np.nan),

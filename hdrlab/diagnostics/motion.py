@@ -29,11 +29,14 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
+from hdrlab.diagnostics.frame_choice import choose_spread_frames
 from hdrlab.diagnostics.overview import make_overview
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 
 # pixels of the overview that is compared
 MAX_PIXELS = 180_000
+# photos, spread over the exposure times, that are compared
+MAX_COMPARED_PHOTOS = 64
 # side of a block, in pixels of the overview
 BLOCK_SIDE = 4
 # pixels of the overview, across and along, within which a clipped pixel changes its neighbors
@@ -90,7 +93,8 @@ def measure_motion(
     -------
     fraction, band_stops : float
         The fraction is that of the blocks that two photos measure; 0 where these are few, or where
-        flickering lamps explain it. Above MIN_MOVING_FRACTION, something moved. The bands are the
+        flickering lamps explain it. Above MIN_MOVING_FRACTION, something moved. Of more than
+        MAX_COMPARED_PHOTOS photos, so many are compared. The bands are the
         RMS of b in stops, 0 unless it is MIN_ROWS_OVER_COLUMNS times that of columns. Above
         MIN_BAND_STOPS, lamps flicker.
 
@@ -114,8 +118,11 @@ def measure_motion(
     """
     stack, times_s, w, curves, top = as_tables(images, times, g, w, "log", CLIPPING_LEVEL)
     mask = as_mask(valid, stack)
+    by_time = np.argsort(times_s, kind="stable")
+    frames = by_time[choose_spread_frames(times_s[by_time], MAX_COMPARED_PHOTOS)]
+    times_s = times_s[frames]
     channel_count = curves.shape[1]
-    small = make_overview(stack, curves, top=top, valid=mask, max_pixels=MAX_PIXELS)
+    small = make_overview(stack, curves, top=top, valid=mask, max_pixels=MAX_PIXELS, frames=frames)
     Z = np.moveaxis(small.images.reshape(*small.images.shape[:3], -1), -1, 0).copy()
     is_seen = (Z < top).all(axis=0)
     if small.valid is not None:

@@ -70,7 +70,13 @@ class Overview:
 
 
 def make_overview(
-    images: Array, g: Array, *, top: int, valid: Mask | None = None, max_pixels: int = MAX_PIXELS
+    images: Array,
+    g: Array,
+    *,
+    top: int,
+    valid: Mask | None = None,
+    max_pixels: int = MAX_PIXELS,
+    frames: Indices | None = None,
 ) -> Overview:
     """Return the bracket with at most about `max_pixels` pixels for each photo.
 
@@ -85,6 +91,8 @@ def make_overview(
         False where a photo shows nothing of the scene.
     max_pixels : int
         Photos with fewer pixels stay as they are.
+    frames : (F,) int, optional
+        The photos of the copy, all by default.
 
     Examples
     --------
@@ -96,7 +104,13 @@ def make_overview(
     """
     height, width = images.shape[1:3]
     scale = np.sqrt(height * width / max_pixels)
+    all_frames = np.arange(len(images))
+    if frames is None:
+        frames = all_frames
     if scale <= 1:
+        if not np.array_equal(frames, all_frames):
+            images = images[frames]
+            valid = None if valid is None else valid[frames]
         return Overview(
             images=images,
             valid=valid,
@@ -107,19 +121,19 @@ def make_overview(
     rows = _divide(height, step, scale)
     columns = _divide(width, step, scale)
     channel_count = images[0].size // (height * width)
-    sampled = images[:, ::step, ::step]
-    sampled = sampled.reshape(*sampled.shape[:3], channel_count)
     curves = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), channel_count))
-    small = np.empty((len(images), len(rows) - 1, len(columns) - 1, channel_count), images.dtype)
+    small = np.empty((len(frames), len(rows) - 1, len(columns) - 1, channel_count), images.dtype)
     is_valid = np.ones(small.shape[:3], bool)
-    for j, photo in enumerate(sampled):
+    for j, frame in enumerate(frames):
+        photo = images[frame, ::step, ::step]
+        photo = photo.reshape(*photo.shape[:2], channel_count)
         for c in range(channel_count):
             channel = np.ascontiguousarray(photo[..., c])
             levels, is_whole = _average_channel(channel, curves[:, c], rows, columns, top)
             small[j, ..., c] = levels
             is_valid[j] &= is_whole
         if valid is not None:
-            is_valid[j] &= _reduce(np.logical_and, valid[j, ::step, ::step], rows, columns)
+            is_valid[j] &= _reduce(np.logical_and, valid[frame, ::step, ::step], rows, columns)
     return Overview(
         images=small.reshape(*small.shape[:3], *images.shape[3:]),
         valid=is_valid,

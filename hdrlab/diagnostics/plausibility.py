@@ -72,17 +72,20 @@ def neighbour_errors(Z: Indices, t: F64, g: F64) -> tuple[F64, F64]:
     ranks between the levels 10 and 250, or the same time.
     """
     channels = np.arange(Z.shape[-1])
-    in_range = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
-    in_both = in_range[:, 1:] & in_range[:, :-1] & (np.diff(t) > 0)[:, None]
-    g_steps = np.diff(g[Z, channels], axis=1)
-    stops = np.abs(g_steps - np.diff(np.log(t))[:, None]) / np.log(2)
-    is_darker = np.diff(Z, axis=1) < -RANK_NOISE
-    is_measured = in_both.sum(axis=(0, 2)) >= MIN_COMMON_RANKS
-    error = np.full(len(is_measured), np.nan)
-    darker_fraction = np.full(len(is_measured), np.nan)
-    for j in np.flatnonzero(is_measured):
-        error[j] = np.median(stops[:, j][in_both[:, j]])
-        darker_fraction[j] = np.mean(is_darker[:, j][in_both[:, j]])
+    time_steps = np.diff(np.log(t))
+    error = np.full(len(time_steps), np.nan)
+    darker_fraction = np.full(len(time_steps), np.nan)
+    for j in np.flatnonzero(time_steps > 0):
+        pair = Z[:, j : j + 2]
+        in_range = (pair >= metrics.LOW_LEVEL) & (pair <= metrics.HIGH_LEVEL)
+        in_both = in_range.all(axis=1)
+        if in_both.sum() < MIN_COMMON_RANKS:
+            continue
+        g_steps = np.diff(g[pair, channels], axis=1)[:, 0]
+        stops = np.abs(g_steps - time_steps[j]) / np.log(2)
+        is_darker = np.diff(pair, axis=1)[:, 0] < -RANK_NOISE
+        error[j] = np.median(stops[in_both])
+        darker_fraction[j] = np.mean(is_darker[in_both])
     return error, darker_fraction
 
 

@@ -91,7 +91,7 @@ def find_damaged_bands(
     height, width = images.shape[1:3]
     step = max(1, height // MAX_ROWS)
     sample = to_256(images[:, ::step, :: max(1, width // MAX_COLUMNS)])
-    sample = sample.reshape(*sample.shape[:3], -1).astype(np.int16)
+    sample = sample.reshape(*sample.shape[:3], -1)
     by_brightness = np.argsort(sample.mean(axis=(1, 2, 3)), kind="stable")
     further_step = -(-sample.shape[1] // MAX_SMALL_ROWS)
     small = sample[:, ::further_step, ::further_step]

@@ -14,11 +14,14 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, Array, Labels, Mask
 from hdrlab.core.bracket import Bracket
+from hdrlab.diagnostics.frame_choice import choose_spread_frames
 from hdrlab.diagnostics.overview import make_overview
 from hdrlab.radiance.deghosting import ghosts, regions
 from hdrlab.radiance.deghosting.ghosts import Ghosts
 from hdrlab.radiance.merge import CLIPPING_LEVEL, Merged, as_tables
 
+# photos, spread over the exposure times, from which regions are taken; the others do not count there
+MAX_COMPARED_PHOTOS = 64
 # width of the seam between a region and the map around it, in pixels of the small copy
 SEAM_WIDTH = 2
 # rows of the small copy that are merged at once
@@ -52,7 +55,8 @@ def remove_ghosts(
         `fast.merge.merge_with_quality` as it made that map.
     fixed : int, optional
         Number of the reference photo of all regions. By default, each has the one that exposes it
-        best.
+        best. Of more than MAX_COMPARED_PHOTOS photos, so many are compared, and the nearest one of
+        these is the reference.
 
     Returns
     -------
@@ -63,9 +67,17 @@ def remove_ghosts(
     images = bracket.images
     times = bracket.times
     top = as_tables(images, times, g, pixel_weights, "log", CLIPPING_LEVEL)[4]
-    small = make_overview(images, g, top=top, valid=bracket.valid)
+    compared = choose_spread_frames(times, MAX_COMPARED_PHOTOS)
+    small = make_overview(images, g, top=top, valid=bracket.valid, frames=compared)
+    times = times[compared]
     found = ghosts.remove_ghosts(
-        small.images, times, g, pixel_weights, fixed=fixed, valid=small.valid, merge=merge
+        small.images,
+        times,
+        g,
+        pixel_weights,
+        fixed=None if fixed is None else int(np.argmin(np.abs(compared - fixed))),
+        valid=small.valid,
+        merge=merge,
     )
     labels = small.enlarge(found.labels)
     used = np.ones(images.shape[:3], bool) if bracket.valid is None else bracket.valid.copy()
@@ -73,14 +85,14 @@ def remove_ghosts(
         return replace(found, E=merged.E, quality=merged.quality, labels=labels, used=used)
     references = _map_references(found)
     # A block that is clipped in part has no mean, but its other pixels are those of the reference.
-    chosen = found.used | (np.arange(len(images))[:, None, None] == references)
+    chosen = found.used | (np.arange(len(compared))[:, None, None] == references)
     seams = regions.feather(found.labels, SEAM_WIDTH)
     E = merged.E.copy()
     quality = merged.quality.copy()
     for box in _divide_into_bands(found.labels):
         y, x = small.enlarge_box(box)
-        photos = images[:, y, x]
-        shown = used[:, y, x].copy()
+        photos = np.stack([images[frame, y, x] for frame in compared])
+        shown = np.stack([used[frame, y, x] for frame in compared])
         frames = np.stack([small.enlarge(photo, box) for photo in chosen]) & shown
         reference = small.enlarge(references, box)
         filled = _fill_pixels(photos, times, g, frames, shown, reference, top)
@@ -96,8 +108,10 @@ def remove_ghosts(
         E[y, x][changed] = still.E[changed]
         E[y, x][seam] = blended[0]
         quality[y, x][changed] = still.quality[changed]
-        used[:, y, x][:, changed] = frames[:, changed]
-    return Ghosts(E, quality, labels, found.references, used, found.score)
+        used[:, y, x][:, changed] = False
+        for frame, is_merged in zip(compared, frames, strict=True):
+            used[frame, y, x][changed] = is_merged[changed]
+    return Ghosts(E, quality, labels, compared[found.references], used, found.score)
 
 
 def _map_references(found: Ghosts) -> Labels:

@@ -37,6 +37,8 @@ Recover = Callable[..., F64]
 MAX_PIXELS = 2**16
 # photos, spread over the exposure times, from which a response is recovered
 MAX_FITTED_PHOTOS = 32
+# photos whose held-out pixels are compared
+MAX_HELD_OUT_PHOTOS = 64
 # stripes of rows in a photo; every other one is held out
 STRIPE_COUNT = 20
 # How much more RMS spread a method that ties the channels more may leave, relative to the best.
@@ -181,12 +183,12 @@ def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
     return take_rows(rows[~is_held_out]), take_rows(rows[is_held_out])
 
 
-def thin_photos(bracket: Bracket) -> Bracket:
-    """Return a bracket with at most MAX_FITTED_PHOTOS of its photos, spread over the exposure times.
+def thin_photos(bracket: Bracket, count: int = MAX_FITTED_PHOTOS) -> Bracket:
+    """Return a bracket with at most `count` of its photos, spread over the exposure times.
 
     More photos hardly change the response, and each of them is compared with each.
     """
-    chosen = choose_spread_frames(bracket.times, MAX_FITTED_PHOTOS)
+    chosen = choose_spread_frames(bracket.times, count)
     if len(chosen) == len(bracket.times):
         return bracket
     return replace(
@@ -251,7 +253,7 @@ def choose_response(response: Method, bracket: Bracket) -> ResponseChoice:
     Debevec's method is not a candidate where smoothness alone would connect its pixel values. If no
     method can be compared, it is used all the same.
     """
-    fit, held_out = split_stripes(bracket)
+    fit, held_out = split_stripes(thin_photos(bracket, MAX_HELD_OUT_PHOTOS))
     fit = thin_photos(fit)
     if response != "auto" or bracket.linear:
         method = find_validated_method("linear" if response == "auto" else response)

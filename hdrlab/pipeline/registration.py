@@ -137,6 +137,8 @@ def find_provisional_response(bracket: Bracket, response: Method) -> F64 | None:
         method = recovery.find_validated_method("linear")
     else:
         method = recovery.find_validated_method("debevec")
+    if not callable(response):
+        bracket = recovery.thin_photos(bracket)
     try:
         g = method(bracket.images, bracket.times, valid=bracket.valid)
     except InputError:

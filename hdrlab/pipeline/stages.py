@@ -236,7 +236,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     merge = partial(merge_with_quality, method=options.merge)
     # A sample is merged and checked first, because the merge of all pixels may free the photos.
     grid = np.s_[:, *consistency.choose_grid(images.shape[1:3])]
-    sample = images[grid].copy()
+    sample = images[grid]
+    if sample.shape != images.shape:
+        sample = sample.copy()  # contiguous, because it is read several times
     sample_valid = None if valid is None else valid[grid]
     sample_map = merge(sample, times, response.g, pixel_weights, valid=sample_valid, repair=False).E
     motion_task = run_in_background(

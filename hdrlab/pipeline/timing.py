@@ -30,6 +30,8 @@ MIN_SPAN_STOPS = 0.3
 MAX_CONSISTENT_STOPS = 0.01
 # photos whose times are refined; of more, each matters little, and the work grows with their square
 MAX_REFINED_PHOTOS = 64
+# photos whose histograms are compared at a time
+MAX_RANKED_PHOTOS = 64
 # pixels of a photo, on an even grid
 MAX_PIXELS = 400_000
 
@@ -139,10 +141,16 @@ def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
 
 def _find_falling(bracket: Bracket) -> arrays.Indices:
     """Return the photos that are brighter than the next one, which has a longer time."""
-    Z = plausibility.ranks(bracket.images, bracket.valid)
-    no_response = np.zeros((256, Z.shape[-1]))
-    darker_fraction = plausibility.neighbour_errors(Z, bracket.times, no_response)[1]
-    return np.flatnonzero(darker_fraction > 0.5)
+    darker_fractions = []
+    # a few photos at a time, because the ranks of a thousand need more memory than small photos
+    for start in range(0, len(bracket.times) - 1, MAX_RANKED_PHOTOS - 1):
+        photos = slice(start, start + MAX_RANKED_PHOTOS)
+        valid = None if bracket.valid is None else bracket.valid[photos]
+        Z = plausibility.ranks(bracket.images[photos], valid)
+        no_response = np.zeros((256, Z.shape[-1]))
+        errors = plausibility.neighbour_errors(Z, bracket.times[photos], no_response)
+        darker_fractions.append(errors[1])
+    return np.flatnonzero(np.concatenate(darker_fractions) > 0.5)
 
 
 def describe_relative_times(times: arrays.F64) -> str:

@@ -1,4 +1,7 @@
-"""Brackets of many photos: the work for the checks grows no faster than the number of photos."""
+"""Brackets of many photos: work grows no faster than their number, and memory as their pixels."""
+
+import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,8 +10,11 @@ from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.diagnostics.contradictions import find_contradictions
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
+from hdrlab.diagnostics.motion import MIN_MOVING_FRACTION, measure_motion
 from hdrlab.diagnostics.outlying_frames import find_outlying_frames
+from hdrlab.fast import merge as fast_merge
 from hdrlab.pipeline import assemble
+from hdrlab.radiance import merge as lesson_merge
 
 SHAPE = (96, 144)
 
@@ -64,3 +70,55 @@ def test_photo_of_another_scene_among_many_is_found():
     images[9] = images[9, ::-1, ::-1]
     outliers, _ = find_outlying_frames(images, many.times)
     assert outliers == (9,)
+
+
+def measure_peak_bytes(taken):
+    tracemalloc.start()
+    assembly = assemble(taken, align="none")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert not assembly.doubts
+    return peak
+
+
+def test_more_photos_need_no_more_memory_than_their_pixels():
+    some = shoot(100)
+    many = shoot(300)
+    growth = measure_peak_bytes(many) - measure_peak_bytes(some)
+    assert growth < many.images.nbytes - some.images.nbytes
+
+
+@pytest.mark.parametrize("method", ["log", "likelihood", "mean", "shot"])
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_merge_of_many_photos_is_that_of_the_lesson(method, dtype):
+    rng = np.random.default_rng(3)
+    levels = np.iinfo(dtype).max + 1
+    times = 2 ** np.linspace(-4, 4, 45)
+    light = np.geomspace(0.01, 20, 11 * 13 * 3).reshape(11, 13, 3)
+    exposures = light * times[:, None, None, None] * levels / 4
+    images = (exposures + rng.normal(0, 2, exposures.shape)).clip(0, levels - 1).astype(dtype)
+    images[:, 0, 0] = 0
+    images[:, 0, 1] = levels - 1
+    valid = rng.random(images.shape[:3]) > 0.2
+    g = np.log((np.arange(levels) + 0.5) / levels)
+    order = rng.permutation(len(times))
+    options = {"method": method, "valid": valid[order]}
+    given = (images[order], times[order], g)
+    expected = lesson_merge.merge_with_quality(*given, **options)
+    merged = fast_merge.merge_with_quality(*given, **options)
+    np.testing.assert_allclose(merged.E, expected.E, rtol=1e-4)
+    assert np.array_equal(merged.quality, expected.quality)
+
+
+def test_something_that_moved_through_many_photos_is_found_and_removed():
+    many = shoot(80)
+    images = many.images.copy()
+    y, x = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    for j, image in enumerate(images):
+        is_ball = (y - 50) ** 2 + (x - 50 - 20 * (j // 40)) ** 2 < 9**2
+        image[is_ball] = image[np.roll(is_ball, 40, axis=1)]
+    g = assemble(many, align="none").g
+    motion = measure_motion(images, many.times, g, np.ones(256))
+    assert motion.fraction > MIN_MOVING_FRACTION
+    moved = assemble(replace(many, images=images), align="none", ghosts="regions")
+    assert moved.moving[50, 50] or moved.moving[50, 70]
