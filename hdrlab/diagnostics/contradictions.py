@@ -47,6 +47,8 @@ MIN_PATCHES_PER_TILE = 10
 MIN_FLAT_PATCHES = 50
 # photos, spread over the exposure times, that are compared
 MAX_COMPARED_PHOTOS = 64
+# wrong photos that a warning names
+MAX_NAMED_PHOTOS = 10
 # pixels of a photo, on an even grid, that are used to measure the cost
 MAX_PIXELS = 30_000
 # stops; prior of a time's error. It is wide, for the question is what is wrong and not what is
@@ -375,7 +377,10 @@ def warn_of_contradictions(
             return text
     if not found.wrong or spread < MAX_EXACT_SPREAD:
         return ""
-    off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
+    named = sorted(found.wrong, key=lambda j: -abs(found.stops[j]))[:MAX_NAMED_PHOTOS]
+    off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in sorted(named))
+    if len(found.wrong) > len(named):
+        off += f" and {len(found.wrong) - len(named)} more"
     if has_bands and largest < UNDECIDED_FACTOR * MIN_WRONG_STOPS:
         return warning_text("flicker_or_times", bands=band_stops, off=off)
     if np.isfinite(found.stops).sum() == 3:

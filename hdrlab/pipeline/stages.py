@@ -82,8 +82,9 @@ def assemble(
     times : {"correct", "stated", "estimate"}
         "correct" refines rough exposure times by the pixels, if held-out pixels confirm it. It
         replaces times that are all equal, or that contradict the pixels everywhere, by relative
-        times, see `pipeline.timing`. "stated" keeps the times. "estimate" also replaces times that
-        fall while the photos get brighter.
+        times, with a warning, and so it does with times that fall while the photos get brighter,
+        see `pipeline.timing`. "stated" keeps the times. "estimate" replaces the same times as
+        "correct", without a warning.
     ghosts : {"auto", "none", "regions", "reference"}
         How to show things that moved. "none" leaves them half transparent. "regions" takes each
         moving region from the photo that exposes it best, "reference" takes all of them from the
@@ -108,7 +109,7 @@ def assemble(
     ------
     InputError
         If the bracket has fewer than two different exposures, if no pixel is well exposed in two
-        photos, if the times are in the wrong order, or if an option has an unknown value.
+        photos, if times that are to be kept are in the wrong order, or if an option has an unknown value.
 
     Examples
     --------

@@ -30,6 +30,8 @@ MIN_SPAN_STOPS = 0.3
 MAX_CONSISTENT_STOPS = 0.01
 # photos whose times are refined; of more, each matters little, and the work grows with their square
 MAX_REFINED_PHOTOS = 64
+# steps between photos that a sentence lists one by one
+MAX_LISTED_STEPS = 12
 # photos whose histograms are compared at a time
 MAX_RANKED_PHOTOS = 64
 # pixels of a photo, on an even grid
@@ -106,24 +108,27 @@ class CompletedTimes:
 def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
     """Return the bracket with usable times, and a note or a warning if they are relative.
 
-    Relative times are a warning where nobody asked for them. `times` is the option of `assemble`.
+    They are relative where all times are equal, which is also how missing times are written, and
+    where the times fall while the photos get brighter. That is a warning where nobody asked for an
+    estimate. `times` is the option of `assemble`.
 
     Raises
     ------
     InputError
-        If all photos have one exposure, if the times fall while the photos get brighter (unless
-        they are to be estimated), or if all times are equal and to be used as stated.
+        If all photos have one exposure, or if the times are to be used as stated, but all are equal
+        or fall while the photos get brighter.
     """
     seconds = bracket.times
     names = bracket.names
     all_equal = np.ptp(seconds) == 0
+    pair = ""
     if not all_equal:
         falling = _find_falling(bracket)
         if not len(falling):
             return CompletedTimes(bracket=bracket)
-        if times != "estimate":
-            j = int(falling[0])
-            pair = f"{names[j]} ({seconds[j]:.4g} s) and {names[j + 1]} ({seconds[j + 1]:.4g} s)"
+        j = int(falling[0])
+        pair = f"{names[j]} ({seconds[j]:.4g} s) and {names[j + 1]} ({seconds[j + 1]:.4g} s)"
+        if times == "stated":
             raise InputError(warning_text("order", pair=pair))
     relative = estimate_relative_times(bracket)
     is_one_exposure = len(seconds) < 2 or np.log2(relative.times[-1]) < MIN_SPAN_STOPS
@@ -135,7 +140,10 @@ def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
     sentence = describe_relative_times(relative.times)
     if times == "estimate":
         return CompletedTimes(bracket=relative, are_relative=True, notes=(sentence,))
-    doubt = warning_text("no_times", relative=sentence)
+    if all_equal:
+        doubt = warning_text("no_times", relative=sentence)
+    else:
+        doubt = warning_text("contradictory_times", pair=pair, relative=sentence)
     return CompletedTimes(bracket=relative, are_relative=True, doubts=(doubt,))
 
 
@@ -155,8 +163,12 @@ def _find_falling(bracket: Bracket) -> arrays.Indices:
 
 def describe_relative_times(times: arrays.F64) -> str:
     """Return a sentence on relative times: how they were found, and how far to trust them."""
-    steps = ", ".join(f"{step:.1f}" for step in np.diff(np.log2(times)))
-    return warning_text("relative", steps=steps)
+    steps = np.diff(np.log2(times))
+    if len(steps) > MAX_LISTED_STEPS:
+        text = f"{steps.min():.1f} to {steps.max():.1f}"
+    else:
+        text = ", ".join(f"{step:.1f}" for step in steps)
+    return warning_text("relative", steps=text)
 
 
 @dataclass(frozen=True, kw_only=True)

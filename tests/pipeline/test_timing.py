@@ -8,6 +8,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
+from hdrlab.errors import InputError
 from hdrlab.pipeline import registration, stages
 from hdrlab.pipeline.timing import (
     complete_times,
@@ -92,14 +93,24 @@ def test_a_burst_of_one_exposure_raises_an_error(room):
         pipeline.assemble(burst)
 
 
-def test_times_in_the_wrong_order_raise_an_error_unless_they_are_estimated(taken):
-    reversed_ = bracket(taken.images, taken.times[::-1])
-    with pytest.raises(ValueError, match="frame 5 .* and frame 4 .*darker photo.*--times estimate"):
-        complete_times(reversed_, "correct")
-    found = complete_times(reversed_, "estimate")
-    assert np.array_equal(found.bracket.images, taken.images)
-    assert "relative" in found.notes[0]
-    assert not found.doubts
+@pytest.mark.parametrize("order", [[4, 3, 2, 1, 0], [2, 0, 4, 1, 3], [1, 0, 2, 3, 4]])
+def test_times_in_the_wrong_order_are_estimated_with_a_warning_unless_they_are_to_be_kept(
+    taken, order
+):
+    shuffled = bracket(taken.images, taken.times[order])
+    with pytest.raises(InputError, match="frame . .* and frame .*--times estimate"):
+        complete_times(shuffled, "stated")
+    corrected = complete_times(shuffled, "correct")
+    estimated = complete_times(shuffled, "estimate")
+    for found in (corrected, estimated):
+        assert np.array_equal(found.bracket.images, taken.images)
+        assert found.bracket.has_relative_times
+    assert "relative" in corrected.doubts[0]
+    assert "relative" in estimated.notes[0]
+    assert not estimated.doubts
+    assembly = pipeline.assemble(shuffled, align="none")
+    assert assembly.doubts
+    assert assembly.spread < 0.1
 
 
 def test_true_times_are_not_changed_and_give_no_note(taken):
