@@ -32,6 +32,23 @@ def worst(g, truth, low=5, high=250):
     return np.abs(g - truth)[low : high + 1].max() / np.log(2)
 
 
+def misfit_of_times(n, ln_times):
+    """Return how far samples of notebook 04 lie from their curve with these times, as a share of a step."""
+    Z = n.sampling.by_grid(n.frames, 400)
+    g, lE = n.fast.gsolve(Z, ln_times, 30, n.weights.hat())
+    residual = np.abs(g[Z] - lE[:, None] - ln_times)[(Z > 20) & (Z < 235)]
+    return np.median(residual) / np.mean(np.diff(ln_times))
+
+
+def share_of_period(n, g, period):
+    """Return which share of the variance of g's error repeats with a period in stops."""
+    stops = n.responses.true_g()[10:246] / np.log(2)
+    error = g[10:246] / np.log(2) - stops
+    phase = np.digitize(stops % period, np.linspace(0, period, 11))
+    repeated = np.array([error[phase == k].mean() for k in phase])
+    return 1 - np.var(error - repeated) / np.var(error)
+
+
 def differ(n, width):
     """Return which share of the bits differ where levels within a width of the median are left out."""
     return (n.b[0] ^ n.b[1])[(n.far[0] > width) & (n.far[1] > width)].mean()
@@ -163,6 +180,13 @@ SENTENCES = {
         "becomes a staircase, half a stop off at its steps": lambda n: (
             0.4 < worst(n.solve(smoothness=0.1)[1].g, n.responses.true_g(), 2, 253) < 0.6
         ),
+        "the points show whether all steps are equal, but not how large they are": lambda n: (
+            misfit_of_times(n, n.B) < 0.5 * misfit_of_times(n, n.B + 0.1 * (np.arange(7) % 2))
+            and misfit_of_times(n, 1.3 * n.B) < 1.5 * misfit_of_times(n, n.B)
+        ),
+        "so an error of $g$ that repeats every two stops fits as well": lambda n: (
+            share_of_period(n, n.solve(smoothness=0.1)[1].g, 2) > 0.5
+        ),
         "it reaches level 128 in a hundredth of a second": lambda n: (
             round(float(np.exp(-brightest_spot(n))), 2) == 0.01
         ),
@@ -211,8 +235,18 @@ SENTENCES = {
             np.abs(n.R ** (np.log(n.true).sum() / np.log(n.R).sum()) - n.true).max() < 0.0025
         ),
         "the estimated ratios are all a little low": lambda n: np.all(n.R < n.true),
-        "the camera stated five stops for the whole bracket, and it was 4.8": lambda n: np.allclose(
+        "The camera stated five stops for the whole bracket, and it was 4.8": lambda n: np.allclose(
             -np.log2([n.stated.prod(), n.true.prod()]), [5, 4.8], atol=0.05
+        ),
+        "which explains a power of 1.04": lambda n: (
+            round(float(np.log(n.stated.prod()) / np.log(n.true.prod())), 2) == 1.04
+        ),
+        "on average they are the truth to the power of about 1.1": lambda n: all(
+            round(np.polyfit(n.truth[20:241], g[20:241], 1)[0], 1) == 1.1 for g in n.green.values()
+        ),
+        "self-calibration ends at 5.3 stops": lambda n: (
+            round(-np.log2(n.self_calibration.calibrate(n.frames, n.bracket.times).R.prod()), 1)
+            == 5.3
         ),
         "fewer than 10 iterations": lambda n: len(n.iterations) < 10,
         "below level 13 it is off by more than a stop": lambda n: (

@@ -111,7 +111,7 @@ def bundle(x: ArrayLike, curves: ArrayLike, *, label: str, across: str, up: str)
 
 
 def quotients(M: ArrayLike, fM: ArrayLike, R: ArrayLike) -> Axes:
-    """Draw f(M_q) / f(M_q+1) over M_q+1, and the ratio R_q as a line [Mitsunaga99 eq. 5].
+    """Draw f^-1(M_q) / f^-1(M_q+1) over M_q+1, and the ratio R_q as a line [Mitsunaga99 eq. 5].
 
     Samples that are NaN, because one of the two frames is clipped, are left out.
     """
@@ -131,7 +131,7 @@ def quotients(M: ArrayLike, fM: ArrayLike, R: ArrayLike) -> Axes:
         ax.plot([0, 1], [R[q], R[q]], color=color, linewidth=1.4, label=label)
     ax.set(
         xlabel="brightness of the longer exposure, M",
-        ylabel="quotient of exposures, f(M) / f(M)",
+        ylabel="quotient of exposures, f⁻¹(M) / f⁻¹(M)",
         xlim=(0, 1),
         ylim=(0, 1),
     )
