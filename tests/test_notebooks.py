@@ -9,6 +9,8 @@ import folds
 import nbformat
 import pytest
 
+from hdrlab.course.site import pages
+
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip")}
 PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "brush")}
@@ -108,6 +110,14 @@ def test_a_prediction_binds_no_name_that_a_function_reads_from_another_cell(path
             assert [cells[j].id for j in asks if name in binds[j] and j != meant] == [], (
                 f"{cells[k].id}: {name}"
             )
+
+
+def test_a_notebook_says_how_long_it_takes_and_what_one_can_do_afterwards(path):
+    lesson = pages.describe_lesson(nbformat.read(path, 4))
+    assert 10 <= lesson.minutes <= 90 and lesson.goal.endswith(".")
+    assert not re.search(r"[$`\[]", lesson.goal), (
+        "the first page of the site shows it as plain text"
+    )
 
 
 def test_a_question_stands_before_each_picture(path):

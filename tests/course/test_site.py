@@ -192,7 +192,12 @@ def test_a_page_says_what_it_is_to_who_shows_a_link_to_it(made):
     assert len(told["description"]) > 40
     assert told["og:image"] == f"{ADDRESS}/_static/preview.jpg"
     preview = decode_picture((site / "_static" / "preview.jpg").read_bytes())
-    assert preview.shape[1] >= 600 and preview[:, :200].mean() < preview[:, -200:].mean()
+    middle = preview.shape[1] // 2
+    above = preview[int(0.08 * len(preview)) : int(0.2 * len(preview))]
+    sky = above[:, middle - 60 : middle - 10], above[:, middle + 10 : middle + 60]
+    assert preview.shape[1] >= 600
+    assert sky[0].mean() > 245, "the photo at the left is clipped in the window"
+    assert sky[1][..., 0].mean() < 215, "the image at the right shows a blue sky"
     for page in ("verdicts", "commands", "reference/tonemap.chiu"):
         told = Addresses((site / f"{page}.html").read_text("utf-8")).told
         assert 40 < len(told["description"]) <= 200, page

@@ -37,7 +37,16 @@ SENTENCES_ON_RUNNING = re.compile(
     r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |\s+You cannot break anything:.*?Enter\)\."
 )
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
+# what stands below the title of each notebook
+LESSON = re.compile(r"(?s)\*(?P<minutes>\d+) minutes\..*?Afterwards you can\s(?P<goal>.*?)\*\n")
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
+
+
+class Lesson(NamedTuple):
+    """How long a notebook takes, and what readers can do afterwards; 0 and "" if it does not say so."""
+
+    minutes: int = 0
+    goal: str = ""
 
 
 class Site(NamedTuple):
@@ -139,7 +148,12 @@ def _build(
     _, hero = next(live.widgets(nbformat.read(front.executed, 4), "front"))
     live.write_widget(hero, html / WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
-    first = {"hero": Markup(hero.as_html(WIDGETS)), "titles": titles, "handouts": headings}
+    first = {
+        "hero": Markup(hero.as_html(WIDGETS)),
+        "titles": titles,
+        "lessons": {name: describe_lesson(notebook) for name, notebook in notebooks.items()},
+        "handouts": headings,
+    }
     texts["index.md"] = render_page(PAGES, "index.md", **first)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
     for page in guides:
@@ -165,6 +179,15 @@ def _title(notebook: Any) -> str:
     """Return a notebook's title, its first heading."""
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
+
+
+def describe_lesson(notebook: Any) -> Lesson:
+    """Return the minutes of a notebook and what readers learn, from the text below its title."""
+    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    stated = LESSON.search(text)
+    if stated is None:
+        return Lesson()
+    return Lesson(int(stated["minutes"]), " ".join(stated["goal"].split()))
 
 
 def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
