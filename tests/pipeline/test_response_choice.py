@@ -133,6 +133,18 @@ def test_without_ties_each_channel_gets_its_own_curve():
     assert np.abs(tied - separate)[20:240].max() < 0.05
 
 
+def test_channels_do_not_drift_apart_where_noise_hides_the_dark_values():
+    E = scenes.room((128, 192))
+    gray = E.mean(axis=-1, keepdims=True)
+    is_dark = gray < np.median(gray)
+    night = np.where(is_dark, gray, E * [1.5, 1, 0.5]).astype(np.float32)
+    sensor = camera.Camera(response="film", full_well=3_000, read_noise=12)
+    taken = camera.shoot(night, camera.times_around(night, 5, middle=0.1 / 16), sensor, rng=1)
+    tied = tied_curves.recover(taken.images, taken.times, departure=0.5)
+    drift_stops = np.ptp(tied[2:8], axis=1).max() / np.log(2)
+    assert drift_stops < 0.25
+
+
 @pytest.mark.parametrize("departure", [0, -1, np.inf])
 def test_a_departure_that_is_not_positive_raises_an_error(three, departure):
     with pytest.raises(InputError, match="departure"):
