@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, F64
+from hdrlab.core.arrays import F32, F64, ArrayLike
 from hdrlab.diagnostics import outlying_frames
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.pipeline import dark_pixels
@@ -85,12 +85,13 @@ def remove_ghosts(
     merge: Callable[..., Merged],
     *,
     certainty: F32 | None = None,
+    neutral: ArrayLike = (1, 1, 1),
 ) -> Assembly:
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
-    With "auto", nothing changes if nothing moved. Pixels without a color fade to gray, see
-    `dark_pixels.measure_color_certainty`.
+    With "auto", nothing changes if nothing moved. Pixels without a color fade to `neutral`, see
+    `dark_pixels.measure_color_certainty` and `dark_pixels.measure_neutral`.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
     from hdrlab.pipeline import deghosting
@@ -110,7 +111,7 @@ def remove_ghosts(
     E = result.E
     if certainty is not None:
         is_new = np.reshape(state.E != E, (*E.shape[:2], -1)).any(axis=-1)
-        E = dark_pixels.fade_to_neutral(E, np.where(is_new, certainty, 1))
+        E = dark_pixels.fade_to_neutral(E, np.where(is_new, certainty, 1), neutral=neutral)
     state = replace(state, stage="ghosts", E=E, quality=result.quality, moving=result.labels)
     percent = 100 * np.mean(result.labels > 0)
     if percent >= ghosts.WIDESPREAD:

@@ -3,11 +3,16 @@
 Z   pixel values of a photo   (H, W, 3) uint8 or uint16
 s   noise, in pixel values
 c   color certainty           (H, W): 0 where no photo measures the color, 1 where one does
+n   neutral color             (3,): of the unmeasured pixels, 1 in luminance
 
 The ratios of three pixel values near 0 are noise, and the response of these values is hardly known.
 So a night sky gets blue or violet blotches. The longest photo shows how well a dark pixel is
 measured: its brightest channel over the noise. With less certainty, the pixel fades to gray of the
 same luminance.
+
+If all measured pixels have nearly one color, the gray has it, too. Photos of a gray wall whose white
+balance is a little blue show blue gray, and sepia photos show brown. Next to these, a pixel with
+equal channels would have another color.
 """
 
 import numpy as np
@@ -30,6 +35,12 @@ WINDOW_SIDE = 5
 DEVIATION_PER_MAD = 1.4826
 # below this certainty a pixel counts as black in every photo
 MAX_BLACK_CERTAINTY = 0.25
+# Spread of the measured colors, in stops: up to the first one, they are one color, and the gray has
+# it; from the second one on, the gray has equal channels.
+ONE_COLOR_STOPS = 0.15
+MANY_COLORS_STOPS = 0.3
+# measured pixels, on an even grid, whose colors are compared
+MAX_COLOR_SAMPLES = 2**16
 # fraction of black pixels from which a longer exposure is missing
 MIN_BLACK_FRACTION = 0.05
 
@@ -68,7 +79,7 @@ def measure_color_certainty(
     mask = as_mask(valid, stack)
     longest = int(np.argmax(np.asarray(times)))
     image = stack[longest].reshape(*stack.shape[1:3], -1)
-    noise = _measure_dark_noise(image)
+    noise = measure_noise(image)
     full_level = FULL_SIGNAL_TO_NOISE * noise
     is_dark = image.max(axis=2) < full_level
     if mask is not None:
@@ -107,7 +118,53 @@ def measure_black_fraction(certainty: ArrayLike) -> float:
     return float(np.mean(np.asarray(certainty) < MAX_BLACK_CERTAINTY))
 
 
-def fade_to_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
+def measure_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
+    """Return the color (3,) of the measured pixels, if they have one, else that of equal channels.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3)
+        Radiance.
+    certainty : (H, W)
+        See `measure_color_certainty`.
+
+    Returns
+    -------
+    (3,) float32
+        Its luminance is 1.
+
+    Raises
+    ------
+    InputError
+        If E is no radiance map.
+
+    Examples
+    --------
+    >>> sepia = np.geomspace(1, 100, 64).reshape(8, 8, 1) * [1.2, 1, 0.8]
+    >>> neutral = measure_neutral(sepia, np.ones((8, 8)))
+    >>> (neutral / neutral[1]).round(2).tolist()
+    [1.2000000476837158, 1.0, 0.800000011920929]
+    """
+    radiance = as_radiance(E)
+    equal_channels = np.ones(3, np.float32)
+    if radiance.ndim == 2:
+        return equal_channels
+    step = max(1, int(np.sqrt(radiance[..., 0].size / MAX_COLOR_SAMPLES)))
+    sample = radiance[::step, ::step]
+    is_certain = np.asarray(certainty)[::step, ::step] == 1
+    measured = sample[is_certain & np.all(sample > 0, axis=-1)]
+    if not len(measured):
+        return equal_channels
+    log_ratios = np.log2(measured / measured[:, 1:2])
+    low, median, high = np.percentile(log_ratios, [16, 50, 84], axis=0)
+    spread = float(np.max(high - low)) / 2
+    span = MANY_COLORS_STOPS - ONE_COLOR_STOPS
+    color_weight = np.clip((MANY_COLORS_STOPS - spread) / span, 0, 1)
+    color = (2 ** (color_weight * median)).astype(np.float32)
+    return color / luminance(color[None, None])[0, 0]
+
+
+def fade_to_neutral(E: ArrayLike, certainty: ArrayLike, *, neutral: ArrayLike = (1, 1, 1)) -> F32:
     """Return the map in which uncertain pixels are gray, with the same luminance.
 
     Parameters
@@ -116,6 +173,8 @@ def fade_to_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
         Radiance.
     certainty : (H, W)
         See `measure_color_certainty`.
+    neutral : (3,)
+        Color of gray, with a luminance of 1; see `measure_neutral`.
 
     Returns
     -------
@@ -140,14 +199,25 @@ def fade_to_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
         return radiance
     faded = radiance.copy()
     colored = radiance[is_uncertain]
-    gray = luminance(colored[None])[0][:, None]
+    gray = luminance(colored[None])[0][:, None] * np.asarray(neutral, np.float32)
     color_weight = np.asarray(certainty, np.float32)[is_uncertain][:, None]
     faded[is_uncertain] = gray + color_weight * (colored - gray)
     return faded
 
 
-def _measure_dark_noise(image: np.ndarray) -> float:
-    """Return the noise of the dark pixels of a photo (H, W, C), in pixel values."""
+def measure_noise(image: ArrayLike) -> float:
+    """Return the noise of the dark pixels of a photo, in pixel values.
+
+    Parameters
+    ----------
+    image : (H, W) or (H, W, C) uint8 or uint16
+
+    Examples
+    --------
+    >>> measure_noise(np.full((4, 6, 3), 200, np.uint8))  # no dark pixels
+    1.0
+    """
+    image = np.asarray(image)
     is_byte = image.dtype == np.uint8
     dark_level = MAX_DARK_LEVEL if is_byte else 257 * MAX_DARK_LEVEL
     left = image[:, :-1].astype(np.int32)

@@ -18,10 +18,11 @@ from hdrlab.core.threads import run_in_background
 from hdrlab.diagnostics import consistency, motion, tones
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import InputError
-from hdrlab.fast.merge import Expendable, merge_with_quality
+from hdrlab.fast.merge import Expendable
 from hdrlab.pipeline import checks, corrections, dark_pixels, recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.checks import MAX_EXPLAINED_SPREAD
+from hdrlab.pipeline.merging import merge_photos
 from hdrlab.pipeline.options import FLARE, GHOSTS, MERGES, TIMES, WEIGHTS, Options
 from hdrlab.radiance import scales
 
@@ -234,7 +235,8 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     times = state.bracket.times
     valid = state.bracket.valid
     pixel_weights = WEIGHTS[options.weight](response.g)
-    merge = partial(merge_with_quality, method=options.merge)
+    noise = dark_pixels.measure_noise(images[np.argmax(times)])
+    merge = partial(merge_photos, method=options.merge, noise=noise)
     # A sample is merged and checked first, because the merge of all pixels may free the photos.
     grid = np.s_[:, *consistency.choose_grid(images.shape[1:3])]
     sample = images[grid]
@@ -278,8 +280,10 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     certainty = dark_pixels.measure_color_certainty(images, times, valid=valid)
     merged = merge(images, times, response.g, pixel_weights, valid=valid)
     state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
+    neutral = np.ones(3, np.float32)
     if certainty is not None:
-        state = replace(state, E=dark_pixels.fade_to_neutral(state.E, certainty))
+        neutral = dark_pixels.measure_neutral(state.E, certainty)
+        state = replace(state, E=dark_pixels.fade_to_neutral(state.E, certainty, neutral=neutral))
         black_fraction = dark_pixels.measure_black_fraction(certainty)
         if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
             state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
@@ -287,7 +291,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
 
     if removes_ghosts:
         state = corrections.remove_ghosts(
-            state, options.ghosts, pixel_weights, merge, certainty=certainty
+            state, options.ghosts, pixel_weights, merge, certainty=certainty, neutral=neutral
         )
         if state.moving is not None:
             yield state

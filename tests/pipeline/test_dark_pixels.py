@@ -1,9 +1,12 @@
 """What is black in every photo has no color, and what a photo measures keeps its color."""
 
 import numpy as np
+import pytest
 
 from hdrlab.capture import camera
+from hdrlab.capture.responses import true_g
 from hdrlab.core.bracket import bracket
+from hdrlab.io.photos import read_bracket
 from hdrlab.pipeline import dark_pixels, stages
 
 BLACK = np.s_[:, 130:180]
@@ -63,3 +66,50 @@ def test_what_is_bright_in_another_photo_keeps_its_color():
     certainty = dark_pixels.measure_color_certainty(images, [1, 2])
     assert np.all(certainty[5:15, 5:15] == 1)
     assert certainty[0, 0] == 0
+
+
+# white balance of gray photos that is a little blue
+CAST = np.array([0.9, 1, 1.05])
+
+
+def measure_ratios_by_tone(E):
+    """Return log2 of red and blue over green in ten parts of a map, from dark to bright, (10, 2)."""
+    light = E.mean(axis=-1)
+    edges = np.quantile(light, np.linspace(0, 1, 11))
+    return np.array(
+        [
+            measure_log_ratios(E[(light >= low) & (light <= high)][None])
+            for low, high in zip(edges[:-1], edges[1:], strict=True)
+        ]
+    )
+
+
+def test_gray_photos_with_a_color_cast_have_it_in_every_tone():
+    ramp = np.geomspace(2e-4, 1, 300)[None, :, None]
+    E = (ramp * CAST * np.ones((200, 1, 1))).astype(np.float32)
+    sensor = camera.Camera(response="srgb", full_well=20_000, read_noise=8)
+    taken = camera.shoot(E, 2.0 ** np.arange(-6, 1), sensor, rng=1)
+    found = stages.assemble(taken, align="none")
+    errors = measure_ratios_by_tone(found.E) - np.log2(CAST[[0, 2]])
+    assert np.abs(errors).max() < 0.1
+
+
+def test_black_stays_neutral_next_to_many_colors():
+    assembly = stages.assemble(photograph_night(), align="none")
+    assert np.abs(np.log2(assembly.E[BLACK] / assembly.E[BLACK][..., :1])).max() < 0.3
+    colors = np.random.default_rng(1).uniform(0.1, 1, (20, 20, 3))
+    neutral = dark_pixels.measure_neutral(colors, np.ones((20, 20)))
+    assert neutral == pytest.approx(1)
+
+
+def test_the_gray_case_has_the_color_of_its_photos_in_every_tone(shared):
+    folder = shared("cases") / "gray_dark"
+    taken = read_bracket(sorted(folder.glob("*.jpg")))
+    # The photos are sRGB, so what a well exposed pixel of them shows does not need the response.
+    well_exposed = taken.images[-1][
+        np.all(np.abs(taken.images[-1].astype(int) - 140) < 60, axis=-1)
+    ]
+    exposures = np.exp(true_g("srgb"))[well_exposed]
+    photo_ratios = measure_log_ratios(exposures[None])
+    found = stages.assemble(taken)
+    assert np.abs(measure_ratios_by_tone(found.E) - photo_ratios).max() < 0.1

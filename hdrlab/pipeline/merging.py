@@ -1,0 +1,117 @@
+"""Merge photos, and let the longest one limit what is dark in all of them.
+
+Z      pixel values of the longest photo      (H, W, C) uint8 or uint16
+delta  how far noise may lift a pixel value   in pixel values
+E      radiance                               (H, W, C), at most exp(g(Z + delta)) / t
+
+A merge weights a pixel by its value. In a dark part that is wrong: a short photo in which noise or
+compression lifted a pixel from 0 to 3 counts more than one without noise, and it claims the radiance
+of a bright pixel. If the longest photo shows 0 there, it has no weight at all, although it says
+most: the pixel is darker than the smallest value in the longest time. So a dark wall got bright dots,
+and dark colors turned gray. The longest photo collected the most light. Up to its noise, it is an
+upper limit.
+"""
+
+import numpy as np
+
+from hdrlab.core.arrays import Array, ArrayLike, Mask, as_mask, as_response, as_stack, levels
+from hdrlab.fast.merge import merge_with_quality
+from hdrlab.radiance.merge import Merged, Quality
+
+# pixel values of 8-bit photos below which noise decides what a short photo shows
+MAX_DARK_LEVEL = 16
+# how far noise may lift a pixel value, in standard deviations
+NOISE_DEVIATIONS = 2.0
+# photos whose times are within this factor of the longest one count as longest, too
+LONGEST_FACTOR = 1.2
+# methods of the merge that know that a long exposure measures dark pixels better
+LIMITED_METHODS = ("shot", "likelihood")
+
+
+def merge_photos(
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike | None = None,
+    *,
+    method: str,
+    noise: float,
+    valid: ArrayLike | None = None,
+    repair: bool = True,
+) -> Merged:
+    """Return the radiance map and the quality flags of its pixels.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Aligned photos. The memory of `fast.merge.Expendable` photos is given back.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3)
+        Response, ln exposure of each pixel value.
+    w : (n,), optional
+        Weights of the pixel values.
+    method : {"log", "likelihood", "mean", "shot"}
+        See `radiance.merge`. With "log" and "mean", which do not look at the exposure times, the
+        longest photo is no limit.
+    noise : float
+        Standard deviation of dark pixels in the longest photo, in pixel values; see
+        `dark_pixels.measure_noise`.
+    valid : (P, H, W) bool, optional
+        False where a photo shows nothing of the scene.
+    repair : bool
+        Whether to repair stuck pixels.
+
+    Raises
+    ------
+    InputError
+        If the arrays do not fit together, or the method is unknown.
+
+    Examples
+    --------
+    >>> g = np.log(np.maximum(np.arange(256), 0.5))  # a linear camera
+    >>> images = np.array([[[3, 40]], [[0, 160]]], np.uint8)  # the first pixel of 3 is noise
+    >>> merge_photos(images, [1, 4], g, method="shot", noise=1).E.tolist()
+    [[0.5, 40.0]]
+    """
+    if method not in LIMITED_METHODS:
+        return merge_with_quality(images, times, g, w, method=method, repair=repair, valid=valid)
+    stack = as_stack(images)
+    mask = as_mask(valid, stack)
+    # The dark pixels are found first, because the merge may free the photos.
+    is_dark, dark_levels, time = _find_dark(stack, np.asarray(times, np.float64), mask)
+    merged = merge_with_quality(images, times, g, w, method=method, repair=repair, valid=valid)
+    if not len(dark_levels):
+        return merged
+    E = merged.E.reshape(is_dark.shape)
+    curves = as_response(g, levels(stack), is_dark.shape[-1])
+    delta = max(1, round(NOISE_DEVIATIONS * noise))
+    limits = np.exp(curves[delta:]).astype(np.float32) / np.float32(time)
+    channels = np.nonzero(is_dark)[-1]
+    limited = np.minimum(E[is_dark], limits[dark_levels, channels])
+    is_stuck = (merged.quality & Quality.STUCK > 0)[..., None] & is_dark
+    E[is_dark] = np.where(is_stuck[is_dark], E[is_dark], limited)
+    return merged
+
+
+def _find_dark(stack: Array, times: Array, mask: Mask | None) -> tuple[Mask, Array, float]:
+    """Return which values (H, W, C) are dark in all photos, those of the longest, and its time.
+
+    A pixel that is dark only in the longest photo moved, or the photo is damaged.
+    """
+    dark_level = MAX_DARK_LEVEL if stack.dtype == np.uint8 else 257 * MAX_DARK_LEVEL
+    values = stack.reshape(*stack.shape[:3], -1)
+    is_longest = times * LONGEST_FACTOR >= times.max()
+    time = float(times[is_longest].min())
+    longest = np.flatnonzero(is_longest)
+    if mask is None:
+        brightest = values.max(axis=0)
+        is_dark = brightest < dark_level
+    else:
+        brightest = values.max(axis=0, where=mask[..., None], initial=0)
+        is_shown = mask[longest].all(axis=0)
+        is_dark = (brightest < dark_level) & is_shown[..., None]
+    dark_levels = values[longest[0]][is_dark]
+    for j in longest[1:]:
+        np.maximum(dark_levels, values[j][is_dark], out=dark_levels)
+    return is_dark, dark_levels, time
