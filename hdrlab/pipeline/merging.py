@@ -109,7 +109,7 @@ def _find_dark(stack: Array, times: Array, mask: Mask | None) -> tuple[Mask, Arr
         is_dark = brightest < dark_level
     else:
         brightest = values.max(axis=0, where=mask[..., None], initial=0)
-        is_shown = mask[longest].all(axis=0)
+        is_shown = np.asarray(mask[longest].all(axis=0))
         is_dark = (brightest < dark_level) & is_shown[..., None]
     dark_levels = values[longest[0]][is_dark]
     for j in longest[1:]:
