@@ -33,6 +33,7 @@ BELOW["__init__"] = set()
 # the parts of the course: each imports only those before it; the extras may be left out
 COURSE_PARTS = (
     "sanitize",
+    "limits",
     "scratch",
     "materials",
     "source_code",

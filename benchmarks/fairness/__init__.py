@@ -37,6 +37,7 @@ from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Outcome
+from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.plan import Homework
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.source_code.names import imported_numpy_modules
@@ -98,7 +99,7 @@ def graded(item: tuple[Homework, dict[str, tuple[str, str]], int]) -> list[Score
     sources = {task: source for task, (_, source) in chosen.items()}
     modules = tuple(imported_numpy_modules(sources.values()))
     with Subject(
-        sources, tiers.choose("practice"), plan.CALL_TIMEOUT_SECONDS * seeds, modules
+        sources, tiers.choose("practice"), CALL_TIMEOUT_SECONDS * seeds, modules
     ) as subject:
         return [
             score(subject, task, chosen[task.id][0], f"student {k}")

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common
-from hdrlab.course import plan as plans
 from hdrlab.errors import InputError
 
 if TYPE_CHECKING:
+    from hdrlab.course import plan as plans
     from hdrlab.course.grading.results import Result
 
 TIERS = ["strict", "container", "practice"]
@@ -37,8 +37,10 @@ tier_option = common.choice_option(
 )
 
 
-def find_homework(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
+def find_homework(submission: Path, name: str | None, plan: Path | None) -> "plans.Homework":
     """Return the homework of a name, or the one whose name occurs in the submission's file name."""
+    from hdrlab.course import plan as plans
+
     homeworks = plans.read(plan).homeworks
     names = ", ".join(homeworks)
     if name is None:
@@ -56,6 +58,8 @@ def find_homework(submission: Path, name: str | None, plan: Path | None) -> plan
 
 def read_secret(file: Path | None) -> tuple[str, str]:
     """Return the course's secret, and a note for the instructor, "" if there is nothing to note."""
+    from hdrlab.course import plan as plans
+
     if file is None:
         return "", "for practice only: without --secret-file, anybody can compute the inputs"
     secret, is_new = plans.read_secret(file)
@@ -71,7 +75,7 @@ def echo_secret_note(note: str) -> None:
 
 
 def grade_submission(
-    submission: Path, homework: plans.Homework, conditions: plans.GradingOptions
+    submission: Path, homework: "plans.Homework", conditions: "plans.GradingOptions"
 ) -> "Result":
     """Return the result of a submission, while a terminal shows how many checks are done."""
     from hdrlab.core.steps import last

@@ -1,6 +1,5 @@
 """The commands about exposure: plan a bracket, take it, meter a photo, correct a photo."""
 
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -155,6 +154,8 @@ def _scene_range(source: Path) -> tuple[float, float]:
 
 def _read_camera(file: Path, known: tuple[str, ...]) -> dict[str, Any]:
     """Return the values of a camera's noise model in a TOML file, by name."""
+    import tomllib
+
     expected = f"{file}: expected a list of speeds and numbers for the rest of {', '.join(known)}"
     try:
         table = tomllib.loads(file.read_text(encoding="utf8"))

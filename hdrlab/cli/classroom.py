@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import assignments, common
-from hdrlab.course import plan as plans
 from hdrlab.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
+    from hdrlab.course import plan as plans
     from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
     from hdrlab.course.classroom.run import GradingContext
     from hdrlab.course.submissions.class_folder import Submission, SubmissionScan
@@ -94,9 +94,10 @@ class GradedClass:
 
 
 def load_class(
-    conditions: plans.GradingOptions, options: ClassOptions, run_options: RunOptions
+    conditions: "plans.GradingOptions", options: ClassOptions, run_options: RunOptions
 ) -> GradedClass:
     """Read the roster, the plan and the submissions of a class."""
+    from hdrlab.course import plan as plans
     from hdrlab.course.classroom import marks, moodle, run
     from hdrlab.course.students import adjustments, roster
     from hdrlab.course.submissions import class_folder
@@ -265,6 +266,8 @@ def load_graded_class(results: Path, run_options: RunOptions, homework: str | No
 
     A homework that is given replaces the recorded one.
     """
+    from hdrlab.course import plan as plans
+
     options = _read_options(results)
     if homework is not None:
         options = replace(options, homework=homework)

@@ -5,7 +5,6 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import assignments, common
-from hdrlab.course import plan as plans
 from hdrlab.errors import InputError
 
 
@@ -64,6 +63,7 @@ def build(
     With --variants, hdrlab makes a folder for each team, with the team's own variants of the tasks.
     The plan lists the parameters that vary. The secret of --secret-file determines their values.
     """
+    from hdrlab.course import plan as plans
     from hdrlab.course.authoring import execute, handouts, solutions as solved
     from hdrlab.course.students import roster
 
@@ -114,6 +114,7 @@ def export(
     plan: Path | None,
 ) -> None:
     """Export the course to nbgrader or Gradescope."""
+    from hdrlab.course import plan as plans
     from hdrlab.course.authoring.export import (
         gradescope as gradescope_export,
         nbgrader as nbgrader_export,
@@ -162,6 +163,7 @@ def pack(*, folder: Path, plan: Path | None) -> None:
 
     hdrlab solves each homework with the library's functions.
     """
+    from hdrlab.course import plan as plans
     from hdrlab.course.authoring import solutions
 
     common.echo_paths(solutions.write(plans.read(plan), folder))

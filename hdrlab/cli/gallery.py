@@ -8,9 +8,6 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
-from hdrlab.course.gallery import store
-from hdrlab.course.sanitize import sanitize_line
-from hdrlab.course.students import csv_tables, roster as rosters
 from hdrlab.errors import HdrlabError, InputError
 
 SERVER_MODULES = ("starlette", "uvicorn")
@@ -39,6 +36,9 @@ def gallery() -> None:
 )
 def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
     """Create a gallery in FOLDER."""
+    from hdrlab.course.gallery import store
+    from hdrlab.course.sanitize import sanitize_line
+
     try:
         end = datetime.fromisoformat(closes)
     except ValueError:
@@ -70,7 +70,8 @@ def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
     and a caption below. Archives of `hdrlab submit` contain both. hdrlab lists the artifacts that
     it cannot add, and adds the others.
     """
-    from hdrlab.course.gallery import collect
+    from hdrlab.course.gallery import collect, store
+    from hdrlab.course.students import roster as rosters
 
     students = rosters.read(roster)
     added = 0
@@ -99,11 +100,15 @@ def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
 
 def _echo_note(text: str) -> None:
     """Print a note that contains text from a submission, without control characters."""
+    from hdrlab.course.sanitize import sanitize_line
+
     common.echo_notes([sanitize_line(text, MAX_NOTE_LENGTH)])
 
 
 def _require_no_gallery_file(folder: Path, out: Path) -> None:
     """Raise an InputError if an output would replace a file of the gallery itself."""
+    from hdrlab.course.gallery import store
+
     target = out.resolve()
     home = folder.resolve()
     is_database = target.parent == home and target.name.startswith(store.DATABASE)
@@ -151,7 +156,8 @@ def links(
     hdrlab stores the links nowhere else, so keep the file. Students who have a link keep it, unless
     --renew or --all-anew replaces it.
     """
-    from hdrlab.course.gallery import tokens
+    from hdrlab.course.gallery import store, tokens
+    from hdrlab.course.students import csv_tables, roster as rosters
 
     if renew and all_anew:
         raise InputError("--renew and --all-anew exclude each other; pass one of them")
@@ -210,6 +216,8 @@ def serve(*, folder: Path, host: str, port: int, address: str | None, behind_pro
 @folder_argument
 def close(*, folder: Path) -> None:
     """End the vote now, even while the gallery is being served."""
+    from hdrlab.course.gallery import store
+
     with store.writing(folder) as db:
         now = datetime.now().astimezone()
         if not store.settings(db).is_open(now.timestamp()):
@@ -228,7 +236,8 @@ def results(*, folder: Path, out: Path) -> None:
 
     For each student, the CSV file shows whether they voted, and how many votes their image got.
     """
-    from hdrlab.course.gallery import ballots
+    from hdrlab.course.gallery import ballots, store
+    from hdrlab.course.students import csv_tables
 
     _require_no_gallery_file(folder, out)
     with closing(store.connect(folder)) as db:

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import assignments, classroom, common
-from hdrlab.course import plan as plans
+from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.errors import InputError
 
 jobs_option = click.option(
@@ -47,6 +47,7 @@ def check(
     hdrlab runs the functions in a separate process, but not in a sandbox. So check only code that
     you trust.
     """
+    from hdrlab.course import plan as plans
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
 
@@ -85,7 +86,7 @@ def check(
 @click.option(
     "--timeout",
     type=click.FloatRange(0.1),
-    default=plans.CALL_TIMEOUT_SECONDS,
+    default=CALL_TIMEOUT_SECONDS,
     help="Time limit for one call of a function, in seconds, see above.",
 )
 @click.option(
@@ -179,6 +180,7 @@ def grade(
     the rest. The options from --roster to --cluster apply only to a folder, which requires
     --roster.
     """
+    from hdrlab.course import plan as plans
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 

@@ -1,6 +1,5 @@
 """The commands that start from photos: `assemble` and `calibrate`."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -164,6 +163,8 @@ def assemble(
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
     file repeat them. If nothing is wrong, hdrlab prints one line that begins with OK.
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     from hdrlab import pipeline
     from hdrlab.io import photos as photo_files, radiance
     from hdrlab.io.files import require_folder_name, require_suffix

@@ -6,7 +6,6 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import assignments, common
-from hdrlab.course import plan as plans
 
 # the examiner that runs in the sandbox, module:class
 EXAMINER = "hdrlab.course.viva.examining:Examining"
@@ -67,7 +66,7 @@ def viva(
     hdrlab writes the questions to viva.html, quiz.html (to print) and oral.html (for the
     conversation), the answers to examiner.html, and a practice notebook, viva.ipynb.
     """
-    from hdrlab.course import scratch
+    from hdrlab.course import plan as plans, scratch
     from hdrlab.course.grading import grader
     from hdrlab.course.sandbox.session import Unavailable
     from hdrlab.course.viva import pages

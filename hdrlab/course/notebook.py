@@ -12,6 +12,7 @@ from pathlib import Path
 
 from hdrlab.course import plan as plans
 from hdrlab.course.grading import grader, results
+from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.reports import feedback
 from hdrlab.course.sandbox import in_process
 from hdrlab.course.source_code import closure, names
@@ -23,7 +24,7 @@ BROWSER_TIMEOUT_FACTOR = 3.0
 PRACTICE = plans.GradingOptions(tier="practice")
 if in_process.IS_BROWSER:
     PRACTICE = plans.GradingOptions(
-        tier=in_process.TIER, timeout=BROWSER_TIMEOUT_FACTOR * plans.CALL_TIMEOUT_SECONDS
+        tier=in_process.TIER, timeout=BROWSER_TIMEOUT_FACTOR * CALL_TIMEOUT_SECONDS
     )
 
 # the latest result of each task in this kernel, for the bar of the homework

@@ -21,13 +21,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.variants import rewording
 from hdrlab.errors import FileFormatError, InputError
 
 PLAN = Path(__file__).with_name("plan.toml")
-# for one call of a student's function, by default; `checks.subject` and `grading.grader` derive or state
-# the limits of a check, of a submission and of all checks, and SECURITY.md adds them up
-CALL_TIMEOUT_SECONDS = 10.0
 TEAM_SIZE = 2  # students in a team at most, unless the plan says otherwise
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, NoReturn, Self
 
 from hdrlab.course import sanitize
 from hdrlab.course.checks import compare
-from hdrlab.course.plan import CALL_TIMEOUT_SECONDS
+from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.sandbox import in_process
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.session import Sandbox, SandboxSession
