@@ -40,6 +40,21 @@ def photos_compared_directly(A, B, tolerance=1.0, rings=40):
 
 
 @mistake(
+    "circle_one_factor",
+    says="You multiply A by one factor to predict B. The response is curved, so the factor differs "
+    "from value to value. Learn from the middle which value of B belongs to each value of A.",
+)
+def one_factor(A, B, tolerance=1.0, rings=40):
+    a = np.asarray(A, np.float64)
+    b = np.asarray(B, np.float64)
+    r = radius(a.shape)
+    usable = (a > 4) & (a < 250) & (b > 4) & (b < 250)
+    middle = usable & (r < r.max() / 4)
+    factor = b[middle].mean() / a[middle].mean()
+    return find_end(b - factor * a, usable, r, rings, tolerance)
+
+
+@mistake(
     "circle_clipped_pixels_count",
     says="You count clipped pixels, of which B says nothing. Use values from 5 to 249 in both photos.",
 )

@@ -14,20 +14,26 @@ TOLERANCE = 2 * RING
 
 
 def scene(rng):
-    """Return the light of a scene that has all values everywhere, and each pixel's radius."""
+    """Return the light of a scene, darker toward the corners, and each pixel's radius."""
     y, x = np.indices(SHAPE)
     waves = (
         np.sin(x / rng.uniform(5, 7)) + np.sin(y / rng.uniform(5, 7)) + rng.normal(0, 0.3, SHAPE)
     )
-    light = 0.35 + 0.11 * waves
-    return np.clip(light, 0.05, 0.75), selection.radius(SHAPE)
+    r = selection.radius(SHAPE)
+    light = 0.38 + 0.11 * waves - 0.1 * r / OUTER
+    return np.clip(light, 0.05, 0.75), r
+
+
+def respond(light):
+    """Return the pixel values of a camera with a shoulder, so that no factor relates two photos."""
+    steepness = 2.2
+    values = 255 * (1 - np.exp(-steepness * light)) / (1 - np.exp(-steepness))
+    return np.rint(values).clip(0, 255).astype(np.uint8)
 
 
 def photos(light, falloff, ratio=1.3):
     """Return two photos, the second with more light and with vignetting."""
-    A = np.rint(255 * np.clip(light, 0, 1) ** 0.6)
-    B = np.rint(255 * np.clip(ratio * light * falloff, 0, 1) ** 0.6)
-    return A.astype(np.uint8), B.astype(np.uint8)
+    return respond(light), respond(ratio * light * falloff)
 
 
 def same_radius(subject, A, B, *, radius, what="the radius", **knobs):
@@ -91,6 +97,16 @@ def test_clipped_pixels_do_not_count(subject, rng):
     A[is_lamp] = rng.integers(120, 200, SHAPE)[is_lamp]
     B[is_lamp] = 255
     same_radius(subject, A, B, radius=part * OUTER, what="the radius with clipped pixels")
+    bright = B.copy()
+    dim = A.copy()
+    is_lamp = rng.random(SHAPE) < 0.6
+    bright[is_lamp] = 255
+    dim[is_lamp] = np.where(r < 0.3 * OUTER, 170, 220)[is_lamp]
+    what = "the radius with pixels that are clipped in the first photo"
+    same_radius(subject, bright, dim, radius=part * OUTER, what=what)
+    A, B = photos(light, np.where(r < part * OUTER, 1, 0.85))
+    B[r > 0.9 * OUTER] = 0
+    same_radius(subject, A, B, radius=part * OUTER, what="the radius with black corners")
 
 
 @points(2)

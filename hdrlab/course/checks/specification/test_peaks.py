@@ -54,8 +54,12 @@ def test_a_peak_may_lie_at_the_edge(subject, rng):
     Do not leave out the first or the last two rows and columns.
     """
     c = drawn(rng)
-    c[0, int(rng.integers(5, 45))] = 30
-    c[int(rng.integers(5, 30)), -2] = 25
+    column = int(rng.integers(5, 45))
+    c[0, column] = 30
+    c[-1, column + 1] = 28  # the opposite edge is far away
+    row = int(rng.integers(5, 30))
+    c[row, -2] = 25
+    c[row, 0] = 22
     same(subject.peaks(c, 4), cerman.peaks(c, 4), 0, what="the shifts of 4 peaks")
 
 
