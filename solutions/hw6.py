@@ -30,7 +30,8 @@
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what
 # differs. Inside a task, use NumPy, SciPy and what this assignment gives you: hdrlab cannot be
 # imported when your work is graded. All numbers are float unless the text says otherwise, and you
-# may return float32 or float64.
+# may return float32 or float64. Papers reuse letters: if a task explains a symbol of its own, this
+# meaning holds in that task.
 
 # %%
 import numpy as np
@@ -725,9 +726,9 @@ pictures.picture(
 # Now put the Detail Brush together. `L` (H, W) is the luminance of a window of at most 10,000
 # pixels, above 0, in any linear unit. Return its display luminance (H, W), from 0 to 1:
 #
-# - `low` and `high` are the second smallest and the second largest value of `L`, because one pixel
-#   may be defective. If `high` < 2 `low`, the window is flat. Then divide `low` and multiply `high`
-#   by the same factor, so that `high` becomes 2 `low`.
+# - Sort the values of all pixels. `low` is the second one and `high` the second last one, because
+#   one pixel may be defective. If `high` < 2 `low`, the window is flat. Then divide `low` and
+#   multiply `high` by the same factor, so that `high` becomes 2 `low`.
 # - Divide $\ln L$ from $\ln$ `low` to $\ln$ `high` into `bins` bins of equal width. The histogram is
 #   the fraction of the pixels in each bin. A pixel beyond an end belongs to the bin at that end.
 # - Clip the histogram at `limit`, as in the task above.
@@ -881,12 +882,12 @@ print(
 # ## 26 · Skin by its distance from skin ({points})
 #
 # The skin locus says yes or no. A Gaussian says how far a color is from the colors of skin (Battiato
-# and others, 2008, equation 1.8). The chrominance of a pixel is $x = (C_b, C_r)$. With its brightness
-# $Y$,
+# and others, 2008, equation 1.8). The brightness $Y$ of a pixel is
 #
-# $$Y = 0.299\, R + 0.587\, G + 0.114\, B$$
+# $$Y = 0.299\, R + 0.587\, G + 0.114\, B.$$
 #
-# it is, brought to the brightness 128 so that skin in the shade is skin, too,
+# Skin in the shade is skin, too. So bring each pixel to the brightness 128 first, and then compute
+# its chrominance $x = (C_b, C_r)$:
 #
 # $$C_b = \frac{128}{\max(Y, 1)} (-0.168736\, R - 0.331264\, G + 0.5\, B), \qquad
 #   C_r = \frac{128}{\max(Y, 1)} (0.5\, R - 0.418688\, G - 0.081312\, B).$$
