@@ -14,6 +14,7 @@ import pytest
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
 from benchmarks import __main__ as command, brackets, experiments, measure, peers, table
+from benchmarks.align import brackets as align_brackets, who
 from benchmarks.experiments import Experiment, Skipped, at_least, at_most, near
 from benchmarks.rows import (
     OURS,
@@ -28,6 +29,7 @@ from benchmarks.rows import (
     smaller,
     within,
 )
+from hdrlab.core.filters import warp
 
 RESULTS = {
     OURS: Figures(0.1, 0.05, 20, 0.5),
@@ -387,3 +389,19 @@ def test_a_peer_that_is_missing_says_what_to_install(monkeypatch):
     assert list(runs) == ["there"]
     assert "pip install opencv-contrib-python-headless" in missing["cv2"]
     assert "no pfsin" in missing["pfs"]
+
+
+def test_hugin_finds_a_shift_and_a_rotation_about_the_middle_of_an_image():
+    """Its default field of view would explain the shift by a turn that bends the image."""
+    taken = align_brackets.shoot_bracket("street", 0.3)
+    dark, bright = np.argsort(taken.taken.times)[1:3]
+    try:
+        found, has_warning = who.by_hugin(
+            taken.taken.images[[dark, bright]], taken.taken.times[[dark, bright]]
+        )
+    except peers.Missing as reason:
+        pytest.skip(str(reason))
+    truth = np.linalg.inv(taken.truth[bright]) @ taken.truth[dark]
+    shape = taken.taken.images.shape[1:3]
+    assert not has_warning
+    assert warp.corner_distance(found, truth, shape) < 0.5
