@@ -172,8 +172,11 @@ def test_a_figure_before_a_bright_wall_gets_no_color_of_clipped_pixel_values():
     taken = movers.shoot(wall, figure, movers.path(4, (0, 30)), times, rng=3)
     cleaned = pipeline.assemble(taken.bracket, **KNOBS)
     assert cleaned.moving.any()
+    # Nothing is known of the wall where it is clipped in each photo that the figure does not hide.
+    is_clipped = taken.bracket.images.max(axis=-1) >= 250
+    is_shown = np.any(~taken.hidden & ~is_clipped, axis=0)
     known = cleaned.quality == 0
-    assert known[cleaned.moving > 0].mean() > 0.97
+    assert known[(cleaned.moving > 0) & is_shown].mean() > 0.99
     clipped = cleaned.E[(cleaned.moving > 0) & ~known]
     assert np.allclose(clipped.min(axis=-1), clipped.max(axis=-1), rtol=0.01)
     ratio = np.log2(cleaned.E[None] / np.concatenate([taken.moments, wall[None]]))
