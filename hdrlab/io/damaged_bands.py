@@ -94,9 +94,11 @@ def find_damaged_bands(
     sample = sample.reshape(*sample.shape[:3], -1)
     by_brightness = np.argsort(sample.mean(axis=(1, 2, 3)), kind="stable")
     further_step = -(-sample.shape[1] // MAX_SMALL_ROWS)
-    small = sample[:, ::further_step, ::further_step]
     small_step = step * further_step
-    wrong_fractions: dict[tuple[int, int], F64] = {}
+    column_step = max(1, width // MAX_COLUMNS) * further_step
+    comparison = wrong_rows.PhotoComparison(
+        images.reshape(*images.shape[:3], -1), small_step, column_step
+    )
     found = []
     for frame in range(len(images)):
         others = _choose_neighbors(by_brightness, frame)
@@ -107,7 +109,7 @@ def find_damaged_bands(
             continue
         if only_constant or len(images) > MAX_SEARCHED_PHOTOS:
             continue
-        rows = wrong_rows.find_wrong_rows(small, frame, others, wrong_fractions)
+        rows = wrong_rows.find_wrong_rows(comparison, frame, others)
         if rows:
             start, stop = rows
             found.append(

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hdrlab.core.arrays import F64, Array, Mask
+from hdrlab.core.arrays import F64, Array, Mask, to_256
+from hdrlab.io.band_shifts import measure_shift
 
 # columns of the image in which the prediction is judged one by one
 SECTIONS = 8
@@ -46,25 +47,81 @@ MIN_COMMON_FRACTION = 0.7
 MIN_WITNESSES = 2
 
 
+class PhotoComparison:
+    """The photos of a bracket, each predicted from others, in a small sample.
+
+    A camera in the hand moves from photo to photo, so each photo is shifted onto the one that it
+    predicts. What is known of a pair is computed once.
+
+    Parameters
+    ----------
+    images : (P, H, W, C) uint8 or uint16
+    step, column_step : int
+        Every `step`-th row and every `column_step`-th column is compared.
+    """
+
+    def __init__(self, images: Array, step: int, column_step: int) -> None:
+        self.images = images
+        self.step = step
+        self.column_step = column_step
+        self._shifts: dict[tuple[int, int], tuple[int, int]] = {}
+        self._wrong_fractions: dict[tuple[int, int], F64] = {}
+
+    def get_shift(self, source: int, target: int) -> tuple[int, int]:
+        """Return (dy, dx) in pixels by which `source` must move to lie on `target`."""
+        key = (source, target)
+        if key not in self._shifts:
+            green = min(1, self.images.shape[-1] - 1)
+            moving = to_256(self.images[source, ..., green])
+            dy, dx = measure_shift(moving, to_256(self.images[target, ..., green]))
+            self._shifts[key] = (dy, dx)
+            self._shifts[target, source] = (-dy, -dx)
+        return self._shifts[key]
+
+    def get_wrong_fractions(self, source: int, target: int) -> F64:
+        """Return the fraction of wrong pixels (h, SECTIONS); NaN where too little is predicted."""
+        key = (source, target)
+        if key not in self._wrong_fractions:
+            shift = self.get_shift(source, target)
+            given = self._take_sample(source, shift)
+            shown = self._take_sample(target, (0, 0))
+            self._wrong_fractions[key] = _measure_wrong_fractions(given, shown)
+        return self._wrong_fractions[key]
+
+    def _take_sample(self, frame: int, shift: tuple[int, int]) -> Array:
+        """Return a photo that is shifted, (h, w, C) in levels of 256; 0 where it shows nothing."""
+        image = self.images[frame]
+        height, width = image.shape[:2]
+        y = np.arange(0, height, self.step) - shift[0]
+        x = np.arange(0, width, self.column_step) - shift[1]
+        rows = np.flatnonzero((y >= 0) & (y < height))
+        columns = np.flatnonzero((x >= 0) & (x < width))
+        sample = np.zeros((len(y), len(x), image.shape[2]), np.uint8)
+        sample[np.ix_(rows, columns)] = to_256(image[np.ix_(y[rows], x[columns])])
+        return sample
+
+    def move_rows(self, rows: slice, source: int, target: int) -> slice:
+        """Return the rows of the sample of `target` that show what `rows` of `source` show."""
+        down = round(self.get_shift(source, target)[0] / self.step)
+        return slice(max(rows.start + down, 0), max(rows.stop + down, 0))
+
+
 def find_wrong_rows(
-    sample: Array, frame: int, others: Sequence[int], cache: dict[tuple[int, int], F64]
+    photos: PhotoComparison, frame: int, others: Sequence[int]
 ) -> tuple[int, int] | None:
     """Return the first row of a band that shows something else, and the row behind it, or None.
 
     Parameters
     ----------
-    sample : (P, h, w, C) int
-        Photos in levels of 256.
+    photos : PhotoComparison
     frame : int
         The photo that is searched.
     others : sequence of int
         The photos that predict it.
-    cache : dict
-        The fractions of wrong pixels of pairs of photos; this function adds to it.
     """
     bands = {}
     for other in others:
-        band = _find_band(_get_wrong_fractions(sample, other, frame, cache))
+        band = _find_band(photos.get_wrong_fractions(other, frame))
         if band is not None:
             bands[other] = band
     if len(bands) < MIN_WITNESSES:
@@ -75,29 +132,29 @@ def find_wrong_rows(
     if stop - start < MIN_COMMON_FRACTION * longest:
         return None
     for other in others:
-        wrong = _get_wrong_fractions(sample, other, frame, cache)[start:stop]
+        wrong = photos.get_wrong_fractions(other, frame)[start:stop]
         is_known = np.isfinite(wrong)
         if is_known.any() and wrong[is_known].mean() < MIN_WRONG_FRACTION:
             return None  # this photo finds the rows right
-    witnesses = list(bands)
-    for first in witnesses:
-        for second in witnesses:
-            if first != second:
-                wrong = _get_wrong_fractions(sample, first, second, cache)[start:stop]
-                is_known = np.isfinite(wrong)
-                if is_known.any() and wrong[is_known].mean() <= MAX_WRONG_OUTSIDE:
-                    return start, stop
-    return None
-
-
-def _get_wrong_fractions(
-    sample: Array, source: int, target: int, cache: dict[tuple[int, int], F64]
-) -> F64:
-    """Return the fraction of wrong pixels (h, SECTIONS); NaN where too little is predicted."""
-    key = (source, target)
-    if key not in cache:
-        cache[key] = _measure_wrong_fractions(sample[source], sample[target])
-    return cache[key]
+    # Clouds and water change in all photos: then the others contradict each other, too.
+    has_agreement = False
+    for first in others:
+        for second in others:
+            if first == second:
+                continue
+            rows = photos.move_rows(slice(start, stop), frame, second)
+            wrong = photos.get_wrong_fractions(first, second)
+            inside = wrong[rows]
+            outside = np.delete(wrong, rows, axis=0)
+            if not np.isfinite(inside).any():
+                continue
+            wrong_fraction = np.nanmean(inside)
+            predicts_others = np.isfinite(outside).any() and np.nanmean(outside) < MAX_WRONG_OUTSIDE
+            if wrong_fraction >= MIN_WRONG_FRACTION and predicts_others:
+                return None
+            is_witness = first in bands and second in bands
+            has_agreement |= bool(is_witness and wrong_fraction <= MAX_WRONG_OUTSIDE)
+    return (start, stop) if has_agreement else None
 
 
 def _measure_wrong_fractions(given: Array, shown: Array) -> F64:

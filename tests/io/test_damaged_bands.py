@@ -54,6 +54,45 @@ def test_rows_that_are_shifted_or_noise_are_found_in_the_photo_that_has_them(fra
         assert abs(band.stop - 76) <= 4
 
 
+def move_camera(images):
+    """Return photos of a camera in the hand, (P, h, w, 3)."""
+    offsets = [(0, 0), (3, -2), (-2, 4), (4, 3)]
+    return np.stack(
+        [
+            np.roll(image, offset, axis=(0, 1))[6:-6, 6:-6]
+            for image, offset in zip(images, offsets, strict=True)
+        ]
+    )
+
+
+@pytest.mark.parametrize("frame", [0, 2, 3])
+def test_damaged_rows_are_found_also_where_the_camera_moved(frame):
+    rng = np.random.default_rng(5)
+    rows = slice(40, 76)
+    sound = move_camera(shoot(make_scene()))
+    assert find_damaged_bands(sound) == []
+    shifted = sound.copy()
+    shifted[frame, rows] = np.roll(shifted[frame, rows], 31, axis=1)
+    noise = sound.copy()
+    noise[frame, rows] = rng.integers(0, 256, noise[frame, rows].shape)
+    for images in (shifted, noise):
+        (band,) = find_damaged_bands(images)
+        assert band.frame == frame
+        assert abs(band.start - 40) <= 4
+        assert abs(band.stop - 76) <= 4
+
+
+@pytest.mark.parametrize("move", [np.asarray, move_camera])
+def test_clouds_above_a_straight_horizon_are_not_suspected(move):
+    rng = np.random.default_rng(6)
+    images = shoot(make_scene())
+    for image in images:
+        clouds = rng.uniform(0.4, 1.0, (10, 20, 1)).repeat(5, axis=0)
+        clouds = clouds.repeat(-(-image.shape[1] // 20), axis=1)[:, : image.shape[1]]
+        image[:50] = image[:50] * clouds
+    assert find_damaged_bands(move(images)) == []
+
+
 def test_water_that_moves_in_all_photos_and_things_that_move_are_not_suspected():
     rng = np.random.default_rng(3)
     sea = []
