@@ -129,6 +129,19 @@ def move_brush(page, widget):
     )
 
 
+def move_pixel(page, widget):
+    canvas = widget.locator("canvas")
+    before = canvas.get_attribute("aria-label")
+    widget.get_by_role("application").press("ArrowLeft")
+    page.wait_for_function(
+        "([canvas, before]) => canvas.getAttribute('aria-label') !== before",
+        arg=[canvas.element_handle(), before],
+        timeout=PATIENCE,
+        polling=LOOK,
+    )
+    changed_by(page, widget, widget.get_by_role("button").first.click)
+
+
 def move_predict(page, widget):
     """Ask for the truth: the answers themselves are given in `test_predict_without_a_kernel`."""
     widget.get_by_role("button", name="Show", exact=True).click()
@@ -141,6 +154,7 @@ MOVES = {
     "wipe": move_wipe,
     "blink": move_blink,
     "brush": move_brush,
+    "pixel": move_pixel,
 }
 MOVES |= {"predict": move_predict}
 

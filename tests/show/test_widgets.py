@@ -13,7 +13,7 @@ import threadpoolctl
 from halves import decoded
 from matplotlib.figure import Figure
 
-from hdrlab import scenes
+from hdrlab import errors, scenes
 from hdrlab.io import web
 from hdrlab.show import plots, widgets
 from hdrlab.show.pictures import render
@@ -96,7 +96,9 @@ def test_every_frame_has_its_own_alt_text():
 def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
-    for widget in (widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush):
+    kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
+    kinds.append(widgets.PixelMean)
+    for widget in kinds:
         script = widget._esm
         assert str(script).count("export default") == 1 and "http" not in str(script)
         assert "import " not in str(script) and "import(" not in str(script)
@@ -738,3 +740,19 @@ def test_still_pictures_of_large_comparisons_are_small():
     frame = re.search(r"base64,([^\"]+)", data["text/html"]).group(1)
     height, width, _ = web.decode_picture(base64.b64decode(frame)).shape
     assert width <= 1000 and width / height == pytest.approx(1960 / 1200, rel=0.01)
+
+
+def test_a_pixels_mean_rejects_what_it_cannot_show():
+    images = np.full((2, 4, 6), [[[40]], [[80]]], np.uint8)
+    g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    for changed in ({"images": images.astype(np.uint16)}, {"at": (0.5, 1.0)}, {"alt": ""}):
+        arguments = {"images": images, "times": [1, 2], "g": g, "alt": "Gray"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.pixel_mean(**arguments)
+
+
+def test_a_pixels_mean_falls_back_to_a_plot_with_alt_text():
+    images = np.full((2, 4, 6), [[[40]], [[80]]], np.uint8)
+    g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    html, text = widgets.pixel_mean(images, [1, 2], g, alt="A gray wall").fallback()
+    assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"

@@ -6,6 +6,7 @@ wipe     two pictures with a movable edge between them: `show.widgets.compared`
 blink    pictures that blink at one place: `show.widgets.compared`
 predict  a question to answer before the result is shown: `show.widgets.predict`
 brush    the Detail Brush over a radiance map: `show.widgets.lens`
+pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
 `play` and `tune` work with every algorithm: `states` is any iterable (the library's
 `<verb>_steps`, or your own generator), `f` is any function, and `draw` returns a uint8 image (H, W)
@@ -38,9 +39,23 @@ from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.lens import Brush, brush
+from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
 from hdrlab.show.widgets.scripts import Widget, script
 
-__all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]
+__all__ = [
+    "Blinker",
+    "Brush",
+    "PixelMean",
+    "Player",
+    "Tuner",
+    "Wiper",
+    "blink",
+    "brush",
+    "pixel_mean",
+    "play",
+    "tune",
+    "wipe",
+]
 
 State = TypeVar("State")
 
