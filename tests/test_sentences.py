@@ -49,6 +49,12 @@ def share_of_period(n, g, period):
     return 1 - np.var(error - repeated) / np.var(error)
 
 
+def walls_over_glass(n, Ld):
+    """Return how bright the walls of the tone-mapped chapel are, as a share of its brightest 3 %."""
+    walls = np.median(Ld[np.quantile(n.L, 0.9) > n.L])
+    return walls / np.median(Ld[np.quantile(n.L, 0.97) < n.L])
+
+
 def differ(n, width):
     """Return which share of the bits differ where levels within a width of the median are left out."""
     return (n.b[0] ^ n.b[1])[(n.far[0] > width) & (n.far[1] > width)].mean()
@@ -539,6 +545,9 @@ SENTENCES = {
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
         ),
         "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
+        "at 0.8 they are half as bright as the glass": lambda n: (
+            round(walls_over_glass(n, n.tonemapped(0.8)[0]), 1) == 0.5
+        ),
         "a ramp of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
         "A pattern of 0.1 nats becomes three times as strong with $\\alpha = 0.5$": lambda n: (
             round((0.92 * 0.1) ** 0.5 / 0.1) == 3
@@ -599,6 +608,9 @@ SENTENCES = {
                 (n.srgb >= 20) & (n.srgb <= 200)
             ].max()
             < 4
+        ),
+        "medium levels move furthest": lambda n: all(
+            80 < np.argmax(n.relight.curve(delta) - np.arange(256)) < 170 for delta in (1, 2, 3)
         ),
         "three stops up": lambda n: round(n.corrected().delta) == 3,
         "The mean of those blocks was 110 before": lambda n: (

@@ -3,11 +3,12 @@
 FD     luminance of a display           cd/m2, 0 to 10,000; any shape
 E      light of the scene               0 to 1, 1 = the brightest that is coded; any shape
 v      signal, E' in BT.2100            0 to 1, the code over the largest code; same shape
-peak   L_W, the display's white         cd/m2
+peak   L_W, the largest luminance      cd/m2, of a display
 
-PQ is absolute: a code stands for a luminance in cd/m2, and each step is just below the threshold of
-vision. HLG is relative: up to v = 1/2 it is a square root, similar to a gamma, so that a display
-without HDR can show it; above that it is a logarithm. Each display scales E to its own white.
+PQ is absolute: a code stands for a luminance in cd/m2, and with 12 bits each step is just below the
+threshold of vision. HLG is relative: up to v = 1/2 it is a square root, similar to a gamma, so that
+a display without HDR can show it; above that it is a logarithm. Each display scales E to its own
+peak.
 """
 
 from collections.abc import Callable
@@ -106,7 +107,7 @@ def system_gamma(peak: float) -> float:
     [0.85, 1.2, 1.7]
     """
     if not 0 < peak < np.inf:
-        raise InputError(f"expected the display's white in cd/m2, above 0, got {peak}")
+        raise InputError(f"expected the display's peak in cd/m2, above 0, got {peak}")
     lowest, highest = LINE_PEAKS
     if lowest <= peak <= highest:
         return float(1.2 + 0.42 * np.log10(peak / 1000))
