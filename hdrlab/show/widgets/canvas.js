@@ -7,6 +7,8 @@ function element(parent, tag, properties = {}) {
     if (name.includes("-") || name === "role") node.setAttribute(name, value);
     else node[name] = value;
   }
+  // JupyterLite asks the element with the focus itself whether its keys are shortcuts of the page
+  if (tag === "input") node.setAttribute("data-lm-suppress-shortcuts", "true");
   parent.append(node);
   return node;
 }
