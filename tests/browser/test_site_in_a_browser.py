@@ -94,6 +94,9 @@ def move(page, widget):
     kind = widget.get_attribute("data-kind")
     if kind == "blink":
         return widget.get_by_role("radio").last.check()
+    if kind == "pixel":
+        widget.get_by_role("application").press("Shift+ArrowRight")
+        return
     slider = widget.get_by_role("slider").first
     at_end = slider.input_value() == slider.get_attribute("max")
     slider.press("Home" if at_end else "End")
