@@ -57,7 +57,9 @@ def notebooks():
 
 
 def plan_of_the_course():
-    return tomllib.loads((ROOT / "hdrlab/course/plan.toml").read_text(encoding="utf8"))
+    """Return the tables of the plan: the homeworks, the project and the rule for late days."""
+    plan = tomllib.loads((ROOT / "hdrlab/course/plan.toml").read_text(encoding="utf8"))
+    return {name: table for name, table in plan.items() if isinstance(table, dict)}
 
 
 @cache

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from functools import partial
 from html.parser import HTMLParser
 from importlib.util import find_spec
 from pathlib import Path
@@ -583,7 +584,7 @@ def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_pat
     said = {
         "one photograph": lambda: refusal(read_bracket, tmp_path / "frame1.jpg"),
         "times the other way round": lambda: refusal(
-            pipeline.assemble, read_bracket(tmp_path, stated[::-1])
+            partial(pipeline.assemble, times="stated"), read_bracket(tmp_path, stated[::-1])
         ),
         "two sizes": lambda: refusal(read_bracket, tmp_path, stated),
     }[what]()

@@ -68,4 +68,4 @@ def test_photos_that_get_darker_with_longer_times_are_named():
     ramp = np.linspace(20, 240, 400).reshape(20, 20)
     images = np.stack([ramp * share for share in (0.5, 0.7, 1, 0.6, 0.8)]).astype(np.uint8)
     with pytest.raises(ValueError, match=r"c \(3 s\) and d \(4 s\)"):
-        timing.complete_times(replace(TAKEN, images=images), "correct")
+        timing.complete_times(replace(TAKEN, images=images), "stated")
