@@ -7,6 +7,9 @@ A table of pixel values predicts each photo from another one. In a damaged band 
 over the full width, in one photo alone, and from one row to the next. A thing that moves rarely is
 as wide as the image, and has no straight edges; water moves in all photos; light that flickers
 fades from row to row.
+
+A camera in the hand moves, so photos are shifted onto each other first. Shifted rows stay unnoticed
+where the next photo is largely clipped: then the rows seem to be what moved.
 """
 
 from collections.abc import Sequence

@@ -39,19 +39,35 @@ def test_missing_rows_are_found_with_wrong_times():
     assert [band.frame for band in find_damaged_bands(images)] == [1]
 
 
+DAMAGED_ROWS = slice(40, 76)
+
+
+def shift_rows(images, frame):
+    """Return photos of which one has rows that are shifted to the side."""
+    shifted = images.copy()
+    shifted[frame, DAMAGED_ROWS] = np.roll(shifted[frame, DAMAGED_ROWS], 31, axis=1)
+    return shifted
+
+
+def overwrite_rows(images, frame):
+    """Return photos of which one has rows of noise."""
+    noise = images.copy()
+    shape = noise[frame, DAMAGED_ROWS].shape
+    noise[frame, DAMAGED_ROWS] = np.random.default_rng(2).integers(0, 256, shape)
+    return noise
+
+
+def assert_damage_is_found(images, frame):
+    (band,) = find_damaged_bands(images)
+    assert band.frame == frame
+    assert abs(band.start - DAMAGED_ROWS.start) <= 4
+    assert abs(band.stop - DAMAGED_ROWS.stop) <= 4
+
+
 @pytest.mark.parametrize("frame", range(4))
-def test_rows_that_are_shifted_or_noise_are_found_in_the_photo_that_has_them(frame):
-    rng = np.random.default_rng(2)
-    rows = slice(40, 76)
-    shifted = shoot(make_scene())
-    shifted[frame, rows] = np.roll(shifted[frame, rows], 31, axis=1)
-    noise = shoot(make_scene())
-    noise[frame, rows] = rng.integers(0, 256, noise[frame, rows].shape)
-    for images in (shifted, noise):
-        (band,) = find_damaged_bands(images)
-        assert band.frame == frame
-        assert abs(band.start - 40) <= 4
-        assert abs(band.stop - 76) <= 4
+@pytest.mark.parametrize("damage", [shift_rows, overwrite_rows])
+def test_rows_that_are_shifted_or_noise_are_found_in_the_photo_that_has_them(damage, frame):
+    assert_damage_is_found(damage(shoot(make_scene()), frame), frame)
 
 
 def move_camera(images):
@@ -65,21 +81,15 @@ def move_camera(images):
     )
 
 
-@pytest.mark.parametrize("frame", [0, 2, 3])
-def test_damaged_rows_are_found_also_where_the_camera_moved(frame):
-    rng = np.random.default_rng(5)
-    rows = slice(40, 76)
+# Shifted rows in photo 1 are not found: its neighbor is half clipped, and seems to have moved with them.
+@pytest.mark.parametrize(
+    ("damage", "frame"),
+    [*((shift_rows, frame) for frame in (0, 2, 3)), *((overwrite_rows, j) for j in range(4))],
+)
+def test_damaged_rows_are_found_also_where_the_camera_moved(damage, frame):
     sound = move_camera(shoot(make_scene()))
     assert find_damaged_bands(sound) == []
-    shifted = sound.copy()
-    shifted[frame, rows] = np.roll(shifted[frame, rows], 31, axis=1)
-    noise = sound.copy()
-    noise[frame, rows] = rng.integers(0, 256, noise[frame, rows].shape)
-    for images in (shifted, noise):
-        (band,) = find_damaged_bands(images)
-        assert band.frame == frame
-        assert abs(band.start - 40) <= 4
-        assert abs(band.stop - 76) <= 4
+    assert_damage_is_found(damage(sound, frame), frame)
 
 
 @pytest.mark.parametrize("move", [np.asarray, move_camera])
