@@ -84,6 +84,19 @@ def test_a_comment_reaches_its_student_in_moodle_and_no_other_comment_is_lost(ro
     assert [row["Grade"] for row in written] == ["50.0", "50.0", ""]
 
 
+def test_points_by_hand_reach_moodle_also_without_a_submission(read, tmp_path):
+    course = classroom.GradingContext(
+        ROSTER, HOMEWORK, GradingOptions(), adjustments=read("student,points\nb3,40\n")
+    )
+    rows = marks.gradebook_rows(course, {}, {})
+    header = ("Identifier", "ID number", "Grade", "Maximum grade", "Last modified (grade)")
+    lines = [(f"Participant {who}", who, "7.00", "100.00", "-") for who in ("b1", "b2", "b3")]
+    csv_tables.write_csv(tmp_path / "sheet.csv", header, lines)
+    moodle.write(tmp_path, tmp_path / "sheet.csv", rows, ROSTER, HOMEWORK)
+    written = csv_tables.read_csv(tmp_path / "moodle_worksheet.csv")
+    assert [row["grade"] for row in written] == ["7.00", "7.00", "40.0"]
+
+
 def test_the_gradebook_can_be_read_as_that_of_an_earlier_homework(rows, tmp_path):
     found = rows("student,extension,points,comment,hold\nb1,2,5,Good.,yes\n")
     cells = [row.cells for row in found.values()]

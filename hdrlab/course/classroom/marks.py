@@ -4,7 +4,7 @@ A gradebook holds what the gradebook of the next homework needs, so that late da
 term.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
@@ -111,14 +111,7 @@ def gradebook_rows(
     remarks : more for the notes, by team, such as why a file was refused
     """
     homework = context.homework
-    records = list(context.before)
-    for team, submission in submissions.items():
-        days = days_late(homework.due, submission.received) if submission.can_be_late else 0
-        team_points = points.get(team, 0.0)
-        for student_id in submission.students:
-            adjustment = context.adjustments.get(student_id, Adjustment())
-            late = max(0, days - adjustment.extension)
-            records.append(LateRecord(homework.name, late, (student_id,), team_points))
+    records = [*context.before, *_late_records(context, submissions, points)]
     charges = list(
         charge_late_days(records, grace=context.late.free_days, per_day=context.late.points_a_day)
     )
@@ -172,6 +165,19 @@ def gradebook_rows(
             )
         )
     return rows
+
+
+def _late_records(
+    context: GradingContext, submissions: Mapping[str, Submission], points: Mapping[str, float]
+) -> Iterator[LateRecord]:
+    """Yield how late each student of a submission is, after the student's own extension."""
+    homework = context.homework
+    for team, submission in submissions.items():
+        days = days_late(homework.due, submission.received) if submission.can_be_late else 0
+        for student in submission.students:
+            adjustment = context.adjustments.get(student, Adjustment())
+            late = max(0, days - adjustment.extension)
+            yield LateRecord(homework.name, late, (student,), points.get(team, 0.0))
 
 
 def describe_late(context: GradingContext, submissions: Mapping[str, Submission]) -> str:

@@ -72,9 +72,7 @@ def write(
         grade: csv_tables.Cell = line["grade"]
         if found_row is None:
             notes.append(f"{worksheet.name}: {full_name!r} is not in the roster")
-        elif (
-            found_row.received and not found_row.hold and not found_row.note.startswith(NOT_GRADED)
-        ):
+        elif _is_published(found_row):
             grade = found_row.score
             page = out / "feedback" / found_row.team / "feedback.html"
             number = _participant_number(line)
@@ -145,6 +143,12 @@ def _check_line(place: str, line: dict[str, str], homework: Homework) -> None:
             f"{place}: expected a maximum grade of {homework.points:g} points, as "
             f"{homework.name} gives, got {max_grade}; set it in the assignment"
         )
+
+
+def _is_published(row: GradebookRow) -> bool:
+    """Return whether a student gets the score: for graded work, or for points by hand alone."""
+    is_graded = bool(row.received) and not row.note.startswith(NOT_GRADED)
+    return not row.hold and (is_graded or row.by_hand != 0)
 
 
 def _participant_number(line: dict[str, str]) -> str:
