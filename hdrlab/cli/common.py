@@ -205,6 +205,13 @@ def choice_option(
     return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
 
 
+map_output_option = click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=OUTPUT_MAP,
+    help=f"Radiance map to write: {MAP_SUFFIXES}.",
+)
 operator_option = choice_option(
     "--operator",
     OPERATORS,

@@ -223,13 +223,7 @@ def compare(
 
 @click.command(cls=common.Command)
 @click.argument("source", type=common.INPUT_PATH)
-@click.option(
-    "-o",
-    "--out",
-    required=True,
-    type=common.OUTPUT_MAP,
-    help=f"Radiance map to write: {common.MAP_SUFFIXES}.",
-)
+@common.map_output_option
 @click.option(
     "--half",
     is_flag=True,

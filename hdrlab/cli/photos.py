@@ -29,13 +29,7 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
 
 @click.command(cls=common.Command)
 @click.argument("photos", nargs=-1, required=True, type=common.INPUT_PATH)
-@click.option(
-    "-o",
-    "--out",
-    required=True,
-    type=common.OUTPUT_MAP,
-    help=f"Radiance map to write: {common.MAP_SUFFIXES}.",
-)
+@common.map_output_option
 @click.option(
     "--times",
     metavar="exif|estimate|FILE",
