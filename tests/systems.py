@@ -66,6 +66,15 @@ def code_of(number, heading):
     return code
 
 
+# the pages for instructors that explain parts of the course, which the reference leaves out
+COURSE_PAGES = {
+    "course.plan": "homework.md",
+    "course.classroom": "grading.md",
+    "course.projects": "vote.md",
+    "course.gallery": "vote.md",
+}
+
+
 def find(place):
     """Return the module of a place in the library, and what the place names."""
     try:
@@ -79,7 +88,7 @@ def find(place):
 
 def link(place, modules):
     name = find(place)[0].__name__
-    page = f"reference/{reference.short(name)}.rst" if name in modules else "instructors.md"
+    page = f"reference/{reference.short(name)}.rst" if name in modules else COURSE_PAGES[place]
     return f"[`{place}`]({page})"
 
 
