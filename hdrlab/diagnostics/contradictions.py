@@ -31,6 +31,7 @@ warning says that the pixels do not show which is true.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
@@ -78,6 +79,8 @@ MAX_EXACT_SPREAD = 0.015
 # Flicker and another cause are equally good explanations if the other one's evidence is between its
 # limit divided and multiplied by this factor.
 UNDECIDED_FACTOR = 2.0
+
+TimesSource = Literal["kept", "corrected", "relative"]
 
 
 def _no_values() -> F64:
@@ -349,6 +352,7 @@ def warn_of_contradictions(
     spread: float = np.inf,
     *,
     band_stops: float = 0.0,
+    times: TimesSource = "kept",
 ) -> str:
     """Return the warning about what is wrong, in which photo and by how much; "" if nothing is.
 
@@ -361,6 +365,9 @@ def warn_of_contradictions(
         The map's spread in stops. If it is small, only wrong times and large differences matter.
     band_stops : float
         Stops by which the light changes in horizontal bands, see `motion.measure_motion`.
+    times : {"kept", "corrected", "relative"}
+        Whether the times stayed as stated, whether hdrlab tried to correct them from the pixels, or
+        whether they are relative. The advice depends on it.
     """
     if found.tints.max() > MIN_WRONG_STOPS:
         frame = names[int(found.tints.argmax())]
@@ -385,7 +392,9 @@ def warn_of_contradictions(
         return warning_text("flicker_or_times", bands=band_stops, off=off)
     if np.isfinite(found.stops).sum() == 3:
         off += warning_text("of_three")
-    return warning_text("times", off=off)
+    if times == "relative":
+        return warning_text("relative_times", off=off)
+    return warning_text("times", off=off, advice=warning_text(f"{times}_times_advice"))
 
 
 def _warn_of_local_changes(

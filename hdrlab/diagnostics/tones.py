@@ -54,6 +54,8 @@ MIN_PART_BLOCKS = 10
 MAX_DARK_STOPS = 1.0
 # stops by which the map or two photos may differ in another part; sound real brackets stay below 0.46
 MAX_PART_STOPS = 0.5
+# merges that weight a photo by its exposure time, so that a long one decides in the dark
+MERGES_BY_TIME = ("shot", "likelihood")
 CHANNEL_NAMES = ("red", "green", "blue")
 ROW_NAMES = ("top", "upper middle", "lower middle", "bottom")
 COLUMN_NAMES = ("left", "middle left", "middle right", "right")
@@ -301,23 +303,35 @@ def _measure_medians(
                 )
 
 
-def warn_of_dark_parts(parts: Sequence[PartError]) -> str:
-    """Return the warning that the darkest parts of the map contradict the longest photo, or ""."""
+def warn_of_dark_parts(parts: Sequence[PartError], *, merge: str = "log") -> str:
+    """Return the warning that the darkest parts of the map contradict the longest photo, or "".
+
+    `merge` is the method of the map. The warning recommends another one if that would help.
+    """
     worst = _find_worst(
         part for part in parts if part.kind == "dark" and not part.is_between_photos
     )
     if worst is None or abs(worst.stops) < MAX_DARK_STOPS:
         return ""
-    return warning_text("dark_parts", stops=worst.stops)
+    advice = "" if merge in MERGES_BY_TIME else warning_text("dark_parts_advice")
+    return warning_text("dark_parts", stops=worst.stops, advice=advice)
 
 
-def warn_of_parts(parts: Sequence[PartError], names: Sequence[str]) -> str:
-    """Return the warning about a part where the map or a photo contradicts the best photo, or ""."""
+def warn_of_parts(
+    parts: Sequence[PartError], names: Sequence[str], *, alternatives: Sequence[str] = ()
+) -> str:
+    """Return the warning about a part where the map or a photo contradicts the best photo, or "".
+
+    `alternatives` are options of the command line that would make another map to compare with.
+    """
     worst = _find_worst(
         part for part in parts if part.kind != "dark" and not part.is_between_photos
     )
     if worst is not None and abs(worst.stops) >= MAX_PART_STOPS:
-        return warning_text("parts", stops=worst.stops, place=_describe_place(worst, names))
+        text = warning_text("parts", stops=worst.stops, place=_describe_place(worst, names))
+        if alternatives:
+            text += warning_text("parts_advice", options=" and ".join(alternatives))
+        return text
     worst = _find_worst(part for part in parts if part.is_between_photos)
     if worst is not None and abs(worst.stops) >= MAX_PART_STOPS:
         place = _describe_place(worst, names)

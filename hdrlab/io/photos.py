@@ -22,7 +22,7 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import album, damaged_bands, files, raw, white_level
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
-from hdrlab.io.exif_exposure import HINT, Exposure, fill_missing, luminance_of_unit
+from hdrlab.io.exif_exposure import Exposure, fill_missing, luminance_of_unit
 from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
 from hdrlab.io.times import (
     Times,
@@ -266,7 +266,7 @@ def _describe_missing_times(names: list[str], exposures: list[Exposure]) -> str:
     ]
     return (
         f"no exposure time in EXIF of {', '.join(without_time)}; hdrlab estimates all times from the "
-        f"pixels. If you know the times, {HINT}"
+        "pixels. If you know the times, pass --times FILE (times= in Python), or --stops 2"
     )
 
 

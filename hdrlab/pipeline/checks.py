@@ -10,10 +10,11 @@ from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import Task, run_in_background
 from hdrlab.diagnostics import consistency, contradictions, motion, tones
-from hdrlab.diagnostics.contradictions import Contradictions
+from hdrlab.diagnostics.contradictions import Contradictions, TimesSource
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.tones import PartError
 from hdrlab.pipeline.assembly import Assembly
+from hdrlab.pipeline.options import Options
 
 # stops of spread; brackets with true times stay below 0.2, those of scanned film included
 MAX_EXPLAINED_SPREAD = 0.25
@@ -46,6 +47,8 @@ def check_map(
     moving_fraction: float,
     band_stops: float,
     part_errors: Sequence[PartError] = (),
+    *,
+    options: Options,
 ) -> Assembly:
     """Return the Assembly with `medians`, and with warnings and notes from what the checks found.
 
@@ -63,6 +66,8 @@ def check_map(
         Stops by which the light changes in horizontal bands.
     part_errors : sequence of PartError
         Errors in parts of the image, see `diagnostics.tones.measure_part_errors`.
+    options : Options
+        How the map was made. No warning recommends an option that was used.
     """
     state = replace(state, stage="compare", medians=medians)
     spread = state.spread
@@ -72,15 +77,16 @@ def check_map(
     if is_worthless(medians) and not state.fallback:
         reason = f"the photos contradict each other by {spread:.2f} stops"
         state = replace(state, fallback=reason)
-    dark_text = "" if state.fallback else tones.warn_of_dark_parts(part_errors)
+    dark_text = "" if state.fallback else tones.warn_of_dark_parts(part_errors, merge=options.merge)
     if dark_text:
         state = state.with_doubt(dark_text)
-    text = _describe_problem(state, found, moving_fraction, band_stops)
+    text = _describe_problem(state, found, moving_fraction, band_stops, options)
     if text:
         return state.with_doubt(text)
     names = state.bracket.names
     if not state.fallback and not dark_text:
-        text = tones.warn_of_parts(part_errors, names)
+        alternatives = _find_alternatives(state, options)
+        text = tones.warn_of_parts(part_errors, names, alternatives=alternatives)
         if text:
             return state.with_doubt(text)
     unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
@@ -89,6 +95,16 @@ def check_map(
             f"the pixels could not confirm the exposure times of {_list_names(unchecked)}"
         )
     return state
+
+
+def _find_alternatives(state: Assembly, options: Options) -> list[str]:
+    """Return the options that would make a map to compare with this one."""
+    alternatives = []
+    if options.merge not in tones.MERGES_BY_TIME:
+        alternatives.append("--merge shot")
+    if state.moving is not None:
+        alternatives.append("--ghosts none")
+    return alternatives
 
 
 def _list_names(names: Sequence[str]) -> str:
@@ -100,12 +116,21 @@ def _list_names(names: Sequence[str]) -> str:
 
 
 def _describe_problem(
-    state: Assembly, found: Contradictions, moving_fraction: float, band_stops: float
+    state: Assembly,
+    found: Contradictions,
+    moving_fraction: float,
+    band_stops: float,
+    options: Options,
 ) -> str:
     """Return the warning about the most likely cause of contradictions, or ""."""
     names = state.bracket.names
     spread = state.spread
-    text = contradictions.warn_of_contradictions(found, names, spread, band_stops=band_stops)
+    times: TimesSource = "kept" if options.times == "stated" else "corrected"
+    if state.bracket.has_relative_times:
+        times = "relative"
+    text = contradictions.warn_of_contradictions(
+        found, names, spread, band_stops=band_stops, times=times
+    )
     if text:
         return text
     if moving_fraction > motion.MIN_MOVING_FRACTION:

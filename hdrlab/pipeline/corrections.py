@@ -115,7 +115,10 @@ def remove_ghosts(
     state = replace(state, stage="ghosts", E=E, quality=result.quality, moving=result.labels)
     percent = 100 * np.mean(result.labels > 0)
     if percent >= ghosts.WIDESPREAD:
-        state = state.with_doubt(warning_text("widespread", percent=percent))
+        text = warning_text("widespread", percent=percent)
+        if mode != "reference":
+            text += warning_text("widespread_advice")
+        state = state.with_doubt(text)
     text = ghosts.note(result, bracket.names)
     return state.with_note(text) if len(result.references) else state.with_detail(text)
 

@@ -313,6 +313,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         measured_motion.fraction,
         measured_motion.band_stops,
         part_errors,
+        options=options,
     )
     if is_misaligned:
         checked = replace(checked, doubts=state.doubts)

@@ -555,6 +555,10 @@ UNEXPLAINED = {
     "of_three",
     "relative",
     "replaced_immeasurable",
+    "kept_times_advice",
+    "parts_advice",
+    "dark_parts_advice",
+    "widespread_advice",
 }
 
 

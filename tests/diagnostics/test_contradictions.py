@@ -105,3 +105,15 @@ def test_a_response_that_the_photos_contradict_is_a_calibration_error(taken):
 def test_few_flat_patches_accuse_no_lens_and_no_white_balance(sound, number, tmp_path):
     plan = brackets.plan(tmp_path, number, sound=sound, seed=2)
     assert pipeline.assemble(brackets.shoot(plan)).doubts == ()
+
+
+@pytest.mark.parametrize(
+    ("times", "recommends_estimate"), [("kept", True), ("corrected", False), ("relative", False)]
+)
+def test_an_estimate_of_the_times_is_recommended_only_where_none_was_made(
+    found, times, recommends_estimate
+):
+    text = contradictions.warn_of_contradictions(found, "abcde", times=times)
+    assert "c by" in text
+    assert ("--times estimate" in text) == recommends_estimate
+    assert ("--stops" in text) == (times == "relative")

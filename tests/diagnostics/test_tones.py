@@ -164,3 +164,16 @@ def test_the_spread_of_a_scan_hides_what_its_darkest_twentieth_shows(room):
     dark = [part.stops for part in tones.measure_part_errors(blocks) if part.kind == "dark"]
     assert consistency.measure_spread(medians) < 0.25
     assert max(dark) > 1
+
+
+@pytest.mark.parametrize("merge", ["log", "mean", "likelihood", "shot"])
+def test_a_warning_about_dark_parts_recommends_another_merge_only_where_that_helps(merge):
+    dark = tones.PartError(kind="dark", index=0, channel=0, stops=1.5, is_between_photos=False)
+    text = tones.warn_of_dark_parts([dark], merge=merge)
+    assert ("--merge shot" in text) == (merge in ("log", "mean"))
+
+
+def test_a_warning_about_a_part_names_the_maps_to_compare_with_if_there_are_any():
+    tile = tones.PartError(kind="tile", index=3, channel=1, stops=0.7, is_between_photos=False)
+    assert "--ghosts none" in tones.warn_of_parts([tile], "ab", alternatives=["--ghosts none"])
+    assert "compare" not in tones.warn_of_parts([tile], "ab")
