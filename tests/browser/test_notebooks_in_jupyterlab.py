@@ -142,6 +142,10 @@ def move_pixel(page, widget):
     changed_by(page, widget, widget.get_by_role("button").first.click)
 
 
+def move_shutter(page, widget):
+    changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowLeft"))
+
+
 def move_predict(page, widget):
     """Ask for the truth: the answers themselves are given in `test_predict_without_a_kernel`."""
     widget.get_by_role("button", name="Show", exact=True).click()
@@ -155,6 +159,7 @@ MOVES = {
     "blink": move_blink,
     "brush": move_brush,
     "pixel": move_pixel,
+    "exposure": move_shutter,
 }
 MOVES |= {"predict": move_predict}
 # It asks nothing of Python; `test_pressed_pixels` presses it, and the tier of all notebooks opens its own.

@@ -14,6 +14,7 @@ from halves import decoded
 from matplotlib.figure import Figure
 
 from hdrlab import errors, scenes
+from hdrlab.capture.sensor import Sensor
 from hdrlab.io import web
 from hdrlab.show import plots, widgets
 from hdrlab.show.pictures import render
@@ -97,7 +98,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
-    kinds.append(widgets.PixelMean)
+    kinds += [widgets.PixelMean, widgets.ExposureWindow]
     for widget in kinds:
         script = widget._esm
         assert str(script).count("export default") == 1 and "http" not in str(script)
@@ -756,3 +757,16 @@ def test_a_pixels_mean_falls_back_to_a_plot_with_alt_text():
     g = np.log(np.maximum(np.arange(256), 0.5) / 128)
     html, text = widgets.pixel_mean(images, [1, 2], g, alt="A gray wall").fallback()
     assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"
+
+
+def test_an_exposure_window_rejects_what_it_cannot_show():
+    for changed in ({"E": np.zeros((4, 6))}, {"time": 0.0}, {"alt": ""}):
+        arguments = {"E": np.ones((4, 6)), "time": 0.1, "alt": "Gray"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.exposure_window(arguments.pop("E"), Sensor(), **arguments)
+
+
+def test_an_exposure_window_falls_back_to_a_photo_and_a_plot_with_alt_text():
+    E = np.geomspace(1, 2.0**16, 60)[None] * np.ones((40, 1))
+    html, _ = widgets.exposure_window(E, Sensor(), alt="A wedge", time=1e-3).fallback()
+    assert html.count("<img") == 2 and 'alt="A wedge"' in html

@@ -1,12 +1,13 @@
 // Shared by the figures whose object itself is dragged.
 
-// Let a pointer and the arrow keys move what `surface` shows. `moveTo` gets shares of its width and height,
-// `stepBy` gets steps (right, down), of which Shift makes 8.
-function draggable(frame, surface, { moveTo, stepBy }) {
+// Let a pointer and the arrow keys move what `surface` shows. `grab` and then `moveTo` get shares of its width and
+// height, `stepBy` gets steps (right, down), of which Shift makes `farStep`.
+function draggable(frame, surface, { grab = () => {}, moveTo, stepBy, farStep = 8 }) {
   const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   frame.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     frame.setPointerCapture(event.pointerId);
+    grab(place(event, surface));
     moveTo(place(event, surface));
   });
   frame.addEventListener("pointermove", (event) => {
@@ -16,7 +17,7 @@ function draggable(frame, surface, { moveTo, stepBy }) {
     const step = steps[event.key];
     if (!step) return;
     event.preventDefault();
-    const length = event.shiftKey ? 8 : 1;
+    const length = event.shiftKey ? farStep : 1;
     stepBy(step[0] * length, step[1] * length);
   });
 }

@@ -1,0 +1,47 @@
+// Shared by the figures in which something is dragged along the histogram of a scene, whose axis is log2 of luminance.
+
+const BINS_PER_STOP = 3;
+const STOPS_PER_LABEL = 4;
+
+// Luminances of radiance, as core/colour.py computes them.
+function luminances(E, channels) {
+  if (channels === 1) return E;
+  const red = (i) => 3 * i;
+  return Float32Array.from({ length: E.length / 3 }, (_, i) =>
+    0.2126 * E[red(i)] + 0.7152 * E[red(i) + 1] + 0.0722 * E[red(i) + 2]);
+}
+
+// A histogram as an element whose shape is the bars, so that a change of its background colors them.
+function histogram(parent, L, [low, high]) {
+  const counts = new Float64Array((high - low) * BINS_PER_STOP);
+  for (const each of L) {
+    const bin = each > 0 ? Math.floor((Math.log2(each) - low) * BINS_PER_STOP) : 0;
+    counts[clamp(bin, 0, counts.length - 1)]++;
+  }
+  const largest = Math.max(...counts);
+  const corners = ["0% 100%"];
+  counts.forEach((count, k) => {
+    const top = `${100 * (1 - count / largest)}%`;
+    corners.push(`${(100 * k) / counts.length}% ${top}`, `${(100 * (k + 1)) / counts.length}% ${top}`);
+  });
+  const bars = element(parent, "div", { className: "hdrlab-histogram" });
+  bars.style.clipPath = `polygon(${corners.join(", ")}, 100% 100%)`;
+  return bars;
+}
+
+// A ruler with a mark at each stop, and a label at every fourth: `label` turns log2 of luminance into text.
+function ruler(parent, [low, high], label) {
+  const line = element(parent, "div", { className: "hdrlab-ruler", "aria-hidden": "true" });
+  line.style.setProperty("--stop", `${100 / (high - low)}%`);
+  const first = Math.ceil(low / STOPS_PER_LABEL) * STOPS_PER_LABEL;
+  for (let stop = first; stop <= high; stop += STOPS_PER_LABEL) {
+    const text = element(line, "span", { textContent: label(stop) });
+    text.style.left = `${(100 * (stop - low)) / (high - low)}%`;
+  }
+}
+
+// A fraction in percent, as a reader writes it.
+function percent(fraction) {
+  const digits = fraction > 0 && fraction < 0.0995 ? 1 : 0;
+  return `${(100 * fraction).toFixed(digits)}\u00a0%`;
+}
