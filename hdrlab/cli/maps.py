@@ -116,6 +116,7 @@ def tonemap(
             saturation=saturation,
             way=gamut,
             luminance_of_unit=radiance.read_luminance_of_unit(source),
+            max_luminance_of_unit=radiance.read_max_luminance_of_unit(source),
             **knobs,
         )
         _write_image(out, to, developed.picture, E, headroom=headroom, primaries=primaries)
@@ -214,6 +215,8 @@ def compare(
     names = operators.replace(" ", "").split(",") if operators else common.OPERATORS
     E = figures.fit(common.read_map(source, clean), size)
     unit = radiance.read_luminance_of_unit(source)
+    if unit is None:
+        unit = radiance.read_max_luminance_of_unit(source)
     steps = contact.entry_steps(E, names, way=gamut, luminance_of_unit=unit)
     entries = common.one_by_one(steps, names)
     description = common.describe_map(E)
@@ -236,8 +239,13 @@ def convert(*, source: Path, out: Path, half: bool, clean: bool) -> None:
 
     radiance.require_writable(out, half=half)
     E = common.read_map(source, clean)
-    unit = radiance.read_luminance_of_unit(source)
-    radiance.write_radiance(out, E, half=half, luminance_of_unit=unit)
+    radiance.write_radiance(
+        out,
+        E,
+        half=half,
+        luminance_of_unit=radiance.read_luminance_of_unit(source),
+        max_luminance_of_unit=radiance.read_max_luminance_of_unit(source),
+    )
     click.echo(f"{out}: {common.describe_map(E)}")
 
 

@@ -152,7 +152,8 @@ def assemble(
     --ghosts reference takes all moving objects from the middle photo.
 
     If EXIF states time, ISO and f-number, hdrlab knows how bright the scene was, and the image of a
-    night stays dark.
+    night stays dark. If ISO or f-number is missing, hdrlab assumes the brightest scene that the
+    times allow, with ISO 100 and f/11.
 
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
     file repeat them. If nothing is wrong, hdrlab prints one line that begins with OK.
@@ -227,10 +228,16 @@ def assemble(
 
     comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
     unit = assembly.bracket.luminance_of_unit
+    max_unit = assembly.bracket.max_luminance_of_unit
     # the map is written while the image is made, and also if making the image fails
     with ThreadPoolExecutor(1) as executor:
         writing = executor.submit(
-            radiance.write_radiance, out, assembly.E, comments=comments, luminance_of_unit=unit
+            radiance.write_radiance,
+            out,
+            assembly.E,
+            comments=comments,
+            luminance_of_unit=unit,
+            max_luminance_of_unit=max_unit,
         )
         description = executor.submit(common.describe_map, assembly.E)
         developed = _develop(assembly, operator) if picture or report else None
@@ -333,7 +340,10 @@ def _develop(assembly: "Assembly", operator: str) -> "Developed":
 
     if not assembly.fallback:
         return pictures.develop_and_describe(
-            assembly.E, operator, luminance_of_unit=assembly.bracket.luminance_of_unit
+            assembly.E,
+            operator,
+            luminance_of_unit=assembly.bracket.luminance_of_unit,
+            max_luminance_of_unit=assembly.bracket.max_luminance_of_unit,
         )
     from hdrlab.fast import mertens
 
@@ -374,13 +384,20 @@ def _describe_picture(picture: Path, assembly: "Assembly", operator: str) -> str
     from hdrlab.pipeline.photograph import BRIGHT_SCENE_EV, measure_scene_ev
     from hdrlab.pipeline.pictures import AUTO
 
+    is_bound = assembly.bracket.luminance_of_unit is None
     unit = assembly.bracket.luminance_of_unit
+    if is_bound:
+        unit = assembly.bracket.max_luminance_of_unit
     if unit is None or assembly.fallback or operator != AUTO:
         return str(picture)
     scene_ev = measure_scene_ev(assembly.E, unit)
     if scene_ev >= BRIGHT_SCENE_EV:
         return str(picture)
-    return f"{picture} (kept dark, because the scene had EV {scene_ev:z.0f})"
+    if is_bound:
+        reason = f"the exposure times show that the scene had at most EV {scene_ev:z.0f}"
+    else:
+        reason = f"the scene had EV {scene_ev:z.0f}"
+    return f"{picture} (kept dark, because {reason})"
 
 
 def _describe_uncertainty(path: Path, assembly: "Assembly") -> str:

@@ -30,6 +30,8 @@ class Bracket:
         to recover
     luminance_of_unit : cd/m^2 of a surface with E = 1 in the radiance map, by the formula of
         exposure meters; None where the photographs do not state time, ISO and f-number
+    max_luminance_of_unit : an upper bound of it where the photographs state a time, but no f-number
+        or no ISO; else None
     damaged : sentences that name the photographs that were left out because they are damaged
     has_relative_times : True where only the ratios of the times are known, not their seconds
     """
@@ -40,6 +42,7 @@ class Bracket:
     valid: Mask | None = None
     linear: bool = False
     luminance_of_unit: float | None = None
+    max_luminance_of_unit: float | None = None
     damaged: tuple[str, ...] = ()
     has_relative_times: bool = False
 
@@ -74,6 +77,7 @@ def bracket(
     valid: ArrayLike | None = None,
     linear: bool = False,
     luminance_of_unit: float | None = None,
+    max_luminance_of_unit: float | None = None,
     damaged: Sequence[str] = (),
 ) -> Bracket:
     """Return the Bracket of `images` and `times`, checked and sorted from short to long.
@@ -116,6 +120,7 @@ def bracket(
         valid=mask,
         linear=linear,
         luminance_of_unit=luminance_of_unit,
+        max_luminance_of_unit=max_luminance_of_unit,
         damaged=tuple(damaged),
     )
 

@@ -31,6 +31,10 @@ UNKNOWN_ISO = 65535
 MAX_APEX = 40
 # cd/m^2: the calibration constant K of exposure meters for reflected light, ISO 2720
 METER_CONSTANT = 12.5
+# An upper bound of a scene's luminance assumes these where EXIF states no f-number or no ISO speed:
+# smaller apertures blur by diffraction, and few cameras have a lower speed.
+MAX_USUAL_F_NUMBER = 11.0
+MIN_USUAL_ISO = 100.0
 MIN_VALUE = 1e-12
 MAX_VALUE = 1e12
 
@@ -138,6 +142,29 @@ def luminance_of_unit(exposures: Sequence[Exposure]) -> float | None:
     iso = _first_known([exposure.iso for exposure in exposures])
     if f_number is None or iso is None:
         return None
+    return METER_CONSTANT * f_number**2 / iso
+
+
+def max_luminance_of_unit(exposures: Sequence[Exposure]) -> float | None:
+    """Return an upper bound of `luminance_of_unit` in cd/m^2 where N or S is unknown, or None.
+
+    A photo of 30 seconds that is not white does not show a daylight scene, whatever its f-number and
+    ISO speed are. An unknown f-number is at most MAX_USUAL_F_NUMBER, and an unknown speed at least
+    MIN_USUAL_ISO. The result is None if `luminance_of_unit` is known.
+
+    Examples
+    --------
+    >>> max_luminance_of_unit([Exposure(1 / 2, 4, None), Exposure(8, 4, None)])
+    2.0
+    """
+    if luminance_of_unit(exposures) is not None:
+        return None
+    f_number = _first_known([exposure.f_number for exposure in exposures])
+    iso = _first_known([exposure.iso for exposure in exposures])
+    if f_number is None:
+        f_number = MAX_USUAL_F_NUMBER
+    if iso is None:
+        iso = MIN_USUAL_ISO
     return METER_CONSTANT * f_number**2 / iso
 
 

@@ -22,7 +22,12 @@ from hdrlab.core.threads import map_in_threads
 from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io import album, damaged_bands, files, raw, white_level
 from hdrlab.io.decode import PhotoHeader, decode_photo, read_header
-from hdrlab.io.exif_exposure import Exposure, fill_missing, luminance_of_unit
+from hdrlab.io.exif_exposure import (
+    Exposure,
+    fill_missing,
+    luminance_of_unit,
+    max_luminance_of_unit,
+)
 from hdrlab.io.own_pictures import SOFTWARE, make_exif, mark_png
 from hdrlab.io.times import (
     Times,
@@ -154,6 +159,7 @@ def read_bracket(
         (detail or note)(_describe_missing_times(names, exposures))
     seconds, inverse = bracket_times(names, exposures, times_source)
     luminance = luminance_of_unit(exposures) if times_source is None else None
+    max_luminance = max_luminance_of_unit(exposures) if times_source is None else None
     order = np.argsort(seconds, kind="stable")
     headers = [headers[j] for j in order]
     names = [header.path.name for header in headers]
@@ -218,6 +224,7 @@ def read_bracket(
         valid=valid,
         linear=is_raw,
         luminance_of_unit=luminance,
+        max_luminance_of_unit=max_luminance,
         damaged=warnings_of_damage,
     )
 

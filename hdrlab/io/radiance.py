@@ -32,6 +32,7 @@ SUFFIXES: dict[str, ModuleType] = {
 MIN_PRIMARIES_DETERMINANT = 1e-3
 # The sentence in the header of a map that states its unit; without a number, it is 1 cd/m^2.
 UNIT_SENTENCE = re.compile(r"unit: (?:(\d[-+.\de]{0,30}) )?cd/m\^2")
+MAX_UNIT_SENTENCE = re.compile(r"unit: at most (\d[-+.\de]{0,30}) cd/m\^2")
 # Ultra HDR files need a picture as well as a radiance map, so `write_radiance` cannot write them.
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
@@ -150,23 +151,36 @@ def read_luminance_of_unit(path: str | Path) -> float | None:
     >>> read_luminance_of_unit(path)
     0.25
     """
-    form = format_of(path, READ)
-    comments: Sequence[str] = ()
-    if form is exr:
-        attributes = exr.read_header(path).attributes
-        stated = attributes.get("whiteLuminance")
+    if format_of(path, READ) is exr:
+        stated = exr.read_header(path).attributes.get("whiteLuminance")
         if isinstance(stated, int | float) and 0 < stated < math.inf:
             return float(stated)
-        comments = str(attributes.get("comments", "")).splitlines()
-    elif form is rgbe:
-        comments = [line.removeprefix("# ") for line in rgbe.read_header(path).lines]
-    elif form is tiff:
-        comments = decode.read_header(path, samples="floating").comments
-    for comment in comments:
+    for comment in _read_comments(path):
         match = UNIT_SENTENCE.fullmatch(comment)
         if match:
             return _parse_unit(match[1])
     return None
+
+
+def read_max_luminance_of_unit(path: str | Path) -> float | None:
+    """Return the upper bound of `read_luminance_of_unit` that hdrlab wrote into a map, or None."""
+    for comment in _read_comments(path):
+        match = MAX_UNIT_SENTENCE.fullmatch(comment)
+        if match:
+            return _parse_unit(match[1])
+    return None
+
+
+def _read_comments(path: str | Path) -> Sequence[str]:
+    """Return the comments in the header of a radiance map, line by line."""
+    form = format_of(path, READ)
+    if form is exr:
+        return str(exr.read_header(path).attributes.get("comments", "")).splitlines()
+    if form is rgbe:
+        return [line.removeprefix("# ") for line in rgbe.read_header(path).lines]
+    if form is tiff:
+        return decode.read_header(path, samples="floating").comments
+    return ()
 
 
 def _parse_unit(text: str | None) -> float | None:
@@ -187,6 +201,7 @@ def write_radiance(
     half: bool = False,
     comments: Sequence[str] = (),
     luminance_of_unit: float | None = None,
+    max_luminance_of_unit: float | None = None,
 ) -> None:
     """Write a radiance map, in the format that the file's suffix names, completely or not at all.
 
@@ -198,6 +213,7 @@ def write_radiance(
     comments : sentences for the header of the file; they are dropped for .pfm, whose header has no
         place for them
     luminance_of_unit : cd/m^2 of a white surface with E = 1, if it is known; it is dropped for .pfm
+    max_luminance_of_unit : an upper bound of it, if only that is known; it is dropped for .pfm
 
     Raises
     ------
@@ -215,6 +231,8 @@ def write_radiance(
     form = require_writable(path, half=half)
     if luminance_of_unit is not None:
         comments = [describe_unit(luminance_of_unit), *comments]
+    elif max_luminance_of_unit is not None:
+        comments = [f"unit: at most {max_luminance_of_unit:.6g} cd/m^2", *comments]
     if form is pfm:
         pfm.write(path, E)
     elif form is exr:

@@ -42,6 +42,7 @@ def develop(
     saturation: float | None = None,
     way: str = "hue",
     luminance_of_unit: float | None = None,
+    max_luminance_of_unit: float | None = None,
     **knobs: Any,
 ) -> NDArray[np.uint8]:
     """Tone-map a radiance map to a picture, sRGB in 8 bits.
@@ -61,6 +62,8 @@ def develop(
         makes them a little darker and paler, "ratio" clips a channel; see `core.colour`.
     luminance_of_unit : float, optional
         cd/m^2 of a surface with E = 1. With it, "photograph" knows a night and keeps it dark.
+    max_luminance_of_unit : float, optional
+        An upper bound of it, which serves the same purpose where `luminance_of_unit` is unknown.
     **knobs
         Settings of the operator; for "photograph" share, key, white and black, instead of what it
         chooses.
@@ -75,7 +78,13 @@ def develop(
         If the radiance is not finite or is negative, or a setting is out of its range.
     """
     return develop_and_describe(
-        E, tonemap, saturation=saturation, way=way, luminance_of_unit=luminance_of_unit, **knobs
+        E,
+        tonemap,
+        saturation=saturation,
+        way=way,
+        luminance_of_unit=luminance_of_unit,
+        max_luminance_of_unit=max_luminance_of_unit,
+        **knobs,
     ).picture
 
 
@@ -86,6 +95,7 @@ def develop_and_describe(
     saturation: float | None = None,
     way: str = "hue",
     luminance_of_unit: float | None = None,
+    max_luminance_of_unit: float | None = None,
     **knobs: Any,
 ) -> Developed:
     """Return the picture of `develop`, and its settings in words for a report; same parameters.
@@ -100,9 +110,11 @@ def develop_and_describe(
     """
     operator = find_operator(tonemap)
     E, scale = scale_into_range(E)
-    if luminance_of_unit is not None:
-        luminance_of_unit = luminance_of_unit / scale
-    settings, default_saturation = resolve_settings(operator, E, knobs, luminance_of_unit)
+    is_bound = luminance_of_unit is None
+    unit = max_luminance_of_unit if is_bound else luminance_of_unit
+    if unit is not None:
+        unit = unit / scale
+    settings, default_saturation = resolve_settings(operator, E, knobs, unit)
     if saturation is None:
         saturation = default_saturation
     L = colour.luminance(E)
@@ -113,8 +125,9 @@ def develop_and_describe(
     name = _name_operator(tonemap)
     described = settings | {"saturation": float(saturation)}
     parts = [name, *(_describe_setting(knob, value) for knob, value in described.items())]
-    if operator is photograph and luminance_of_unit is not None:
-        parts.append(f"for a scene of EV {measure_scene_ev(E, luminance_of_unit):z.0f}")
+    if operator is photograph and unit is not None:
+        at_most = " at most" if is_bound else ""
+        parts.append(f"for a scene of EV {measure_scene_ev(E, unit):z.0f}{at_most}")
     return Developed(picture, ", ".join(parts))
 
 

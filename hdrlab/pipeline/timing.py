@@ -206,7 +206,12 @@ def refine_times(
         relative = correct_times(replace(rising.bracket, times=relative_times), response)
         if relative.spread < MIN_WORTHLESS_STOPS / 2:
             # relative times do not tell how bright the scene was
-            unscaled = replace(rising.bracket, luminance_of_unit=None, has_relative_times=True)
+            unscaled = replace(
+                rising.bracket,
+                luminance_of_unit=None,
+                max_luminance_of_unit=None,
+                has_relative_times=True,
+            )
             state = replace(rising, bracket=unscaled)
             corrected = relative
             has_stated_times = False

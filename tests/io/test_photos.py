@@ -200,7 +200,22 @@ def test_the_luminance_of_a_unit_is_what_an_exposure_meter_reads(tmp_path):
     save(tmp_path / "b.jpg", RGB8, seconds=0.5, f_number=4.0, iso=200)
     bracket = read_bracket(tmp_path)
     assert bracket.luminance_of_unit == pytest.approx(12.5 * 8**2 / 100)
+    assert bracket.max_luminance_of_unit is None
     assert read_bracket(tmp_path, [1, 2]).luminance_of_unit is None
+
+
+@pytest.mark.parametrize(("f_number", "iso"), [(4.0, None), (None, 400), (None, None)])
+def test_the_luminance_of_a_unit_has_an_upper_bound_if_iso_or_f_number_is_missing(
+    tmp_path, f_number, iso
+):
+    """Cameras at ISO 100 or more with f/11 or less, by the same formula."""
+    bracket_of(tmp_path, f_number=f_number, iso=iso)
+    bracket = read_bracket(tmp_path)
+    assert bracket.luminance_of_unit is None
+    largest = 12.5 * (f_number or 11) ** 2 / (iso or 100)
+    assert bracket.max_luminance_of_unit == pytest.approx(largest)
+    # a list may have relative times, such as 1, 2 and 4
+    assert read_bracket(tmp_path, [1, 2, 4]).max_luminance_of_unit is None
 
 
 @pytest.mark.parametrize("f_number", [0.0, None])

@@ -215,6 +215,16 @@ def test_a_bright_scene_gets_the_same_picture_whether_its_luminance_is_known_or_
     assert np.array_equal(known, develop(E))
 
 
+def test_a_scene_of_unknown_luminance_is_kept_dark_if_it_has_an_upper_bound(E):
+    bound = with_scene_ev(E, 0)
+    known = develop_and_describe(E, luminance_of_unit=bound)
+    bounded = develop_and_describe(E, max_luminance_of_unit=bound)
+    assert np.array_equal(known.picture, bounded.picture)
+    assert "at most" in bounded.settings and "at most" not in known.settings
+    bright = develop(E, max_luminance_of_unit=with_scene_ev(E, 10))
+    assert np.array_equal(bright, develop(E))
+
+
 def test_a_night_does_not_depend_on_the_unit_of_its_map(E):
     night = develop(E, luminance_of_unit=0.01)
     scaled = develop(8 * E, luminance_of_unit=0.01 / 8)
