@@ -1,5 +1,6 @@
-"""The commands that build the course: `course build`, `export`, `new-task`, `pack` and `toy`."""
+"""The commands that build the course: `course build`, `export`, `move`, `new-task`, `pack` and `toy`."""
 
+from datetime import datetime
 from pathlib import Path
 
 import click
@@ -132,6 +133,46 @@ def export(
             course_plan, gradescope, hidden=hidden, plan_file=plan, secret=secret
         )
         common.echo_paths(written)
+
+
+@course.command()
+@click.argument("first_day", type=click.DateTime(["%Y-%m-%d"]), metavar="DATE")
+@click.option(
+    "-o",
+    "--out",
+    type=common.OUTPUT_PATH,
+    required=True,
+    help="The new plan, such as our-plan.toml.",
+)
+@click.option(
+    "--holidays",
+    type=common.EXISTING_FILE,
+    help="Dates, one a line: the weeks of these days have no class.",
+)
+@assignments.plan_option
+def move(*, first_day: datetime, out: Path, holidays: Path | None, plan: Path | None) -> None:
+    """Move all due dates to a term that begins on DATE.
+
+    Each date keeps its week of the course, its weekday and its time. hdrlab writes a new plan, which
+    you pass to the other commands with --plan.
+    """
+    from hdrlab.course import plan as plans
+    from hdrlab.course.authoring import term
+    from hdrlab.io import files
+
+    plan_path = plans.PLAN if plan is None else plan
+    files.require_other([out], [plan_path, *([holidays] if holidays else [])])
+    old_plan = plans.read(plan_path)
+    moved = term.move(
+        plan_path.read_text(encoding="utf8"),
+        first_day.date(),
+        term.read_holidays(holidays) if holidays else (),
+    )
+    files.write(out, moved.text)
+    for name, homework in plans.read(out).homeworks.items():
+        old_due = old_plan.homeworks[name].due
+        click.echo(f"{name}: {old_due:%a %d %b %Y} -> {homework.due:%a %d %b %Y}")
+    click.echo(f"{out}; to write the assignments: hdrlab course build --plan {out} -o our-sheets")
 
 
 @course.command("new-task")

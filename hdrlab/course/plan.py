@@ -16,7 +16,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -95,11 +95,20 @@ class Late(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """The course's homeworks by name, its late-day rule, and how many students a team may have."""
+    """A course.
+
+    Attributes
+    ----------
+    homeworks : by name
+    late : the late-day rule
+    team_size : students in a team at most
+    first_day : the first day of the first week, or None; `hdrlab course move` counts weeks from it
+    """
 
     homeworks: dict[str, Homework]
     late: Late = Late()
     team_size: int = TEAM_SIZE
+    first_day: date | None = None
 
     def task(self, id: str) -> Task:
         """Return the task with an id; raise a KeyError that lists all tasks if there is none."""
@@ -159,8 +168,13 @@ def read(path: str | Path | None = None) -> Plan:
         raise InputError(
             f"{path}: expected team_size as a number of students, got {team_size!s:.80}"
         )
+    first_day = sheets.pop("first_day", None)
+    if first_day is not None and type(first_day) is not date:
+        raise InputError(
+            f"{path}: expected first_day as a date such as 2026-09-21, got {first_day!s:.80}"
+        )
     homeworks = {name: _homework(name, sheet, path) for name, sheet in sheets.items()}
-    plan = Plan(homeworks, late, team_size)
+    plan = Plan(homeworks, late, team_size, first_day)
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     if not ids:
         raise InputError(f"{path}: expected tasks, got none")
