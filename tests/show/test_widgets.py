@@ -770,3 +770,24 @@ def test_an_exposure_window_falls_back_to_a_photo_and_a_plot_with_alt_text():
     E = np.geomspace(1, 2.0**16, 60)[None] * np.ones((40, 1))
     html, _ = widgets.exposure_window(E, Sensor(), alt="A wedge", time=1e-3).fallback()
     assert html.count("<img") == 2 and 'alt="A wedge"' in html
+
+
+def test_a_bitmap_difference_rejects_photos_that_it_cannot_compare():
+    photo = np.tile(np.array([20, 200], np.uint8), (32, 16))
+    wrong = (
+        {"moving": photo[1:]},
+        {"moving": photo / 255},
+        {"max_offset": 0},
+        {"alt": ""},
+        {"fixed": np.zeros((8, 641), np.uint8), "moving": np.zeros((8, 641), np.uint8)},
+    )
+    for changed in wrong:
+        arguments = {"fixed": photo, "moving": photo, "alt": "Stripes"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.bitmap_difference(**arguments)
+
+
+def test_a_bitmap_difference_falls_back_to_a_picture_with_alt_text():
+    photo = np.tile(np.array([20, 200], np.uint8), (32, 16))
+    html, text = widgets.bitmap_difference(photo, photo, alt="Stripes").fallback()
+    assert "<img" in html and 'alt="Stripes"' in html and text == "Stripes"

@@ -7,6 +7,7 @@ blink    pictures that blink at one place: `show.widgets.compared`
 predict  a question to answer before the result is shown: `show.widgets.predict`
 brush    the Detail Brush over a radiance map: `show.widgets.lens`
 exposure_window  drag the range of a photo along a histogram: `show.widgets.exposure`
+bitmap_difference  drag one bitmap over another, count the bits that differ: `show.widgets.bitmaps`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
 `play` and `tune` work with every algorithm: `states` is any iterable (the library's
@@ -38,6 +39,7 @@ from hdrlab.show.pictures import (
 )
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
+from hdrlab.show.widgets.bitmaps import BitmapDifference, bitmap_difference
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.exposure import ExposureWindow, exposure_window
 from hdrlab.show.widgets.lens import Brush, brush
@@ -45,6 +47,7 @@ from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
 from hdrlab.show.widgets.scripts import Widget, script
 
 __all__ = [
+    "BitmapDifference",
     "Blinker",
     "Brush",
     "ExposureWindow",
@@ -52,6 +55,7 @@ __all__ = [
     "Player",
     "Tuner",
     "Wiper",
+    "bitmap_difference",
     "blink",
     "brush",
     "exposure_window",

@@ -22,10 +22,15 @@ function draggable(frame, surface, { grab = () => {}, moveTo, stepBy, farStep = 
   });
 }
 
+// Bytes as Python's zlib.compress wrote them.
+async function unzip(view) {
+  const packed = new Blob([view]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(packed).arrayBuffer());
+}
+
 // Bytes as `pixel.deflate` wrote them: the differences of neighbours in a row.
 async function inflate(view, width) {
-  const packed = new Blob([view]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
+  const bytes = await unzip(view);
   for (let i = 0; i < bytes.length; i++) if (i % width) bytes[i] += bytes[i - 1];
   return bytes;
 }
