@@ -29,9 +29,11 @@ def subjects() -> list[str]:
 
 
 def chosen(subject: str, names: str | None) -> list[Row | Experiment]:
-    """Return the rows of a subject: all, or those of these names, separated by commas."""
+    """Return the rows of a subject with these names, separated by commas, or those of a whole run."""
     rows: list[Row | Experiment] = list(rows_of(subject))
-    return rows if names is None else [row for row in rows if row.name in names.split(",")]
+    if names is None:
+        return [row for row in rows if not getattr(row, "only_by_name", False)]
+    return [row for row in rows if row.name in names.split(",")]
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -63,7 +65,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
         parser.error(
             f"expected subjects out of {', '.join(subjects())}, got {', '.join(sorted(unknown))}"
         )
-    known = [row.name for subject in options.subjects for row in chosen(subject, None)]
+    known = [row.name for subject in options.subjects for row in rows_of(subject)]
     if options.rows and (unknown := set(options.rows.split(",")) - set(known)):
         parser.error(f"expected rows out of {', '.join(known)}, got {', '.join(sorted(unknown))}")
     return options

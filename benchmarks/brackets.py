@@ -1,6 +1,6 @@
 """Radiance maps of simulated brackets, by hdrlab and by other programs.
 
-    python -m benchmarks brackets [--seed N]
+    python -m benchmarks brackets [--rows brackets-street,brackets-room] [--seed N]
 
 Each program gets the same JPEG files with their times in EXIF and makes a radiance map with its
 defaults: the four embedded scenes, three responses and two levels of noise, 24 brackets in all. The
@@ -16,7 +16,9 @@ color      95th percentile of the size of the error of log2 R/G and log2 B/G, st
 CPU        processor time of the whole command, s
 memory     peak memory of the largest process of the command, MB
 
-The first row of a program has the medians over the brackets, the second row the worst bracket.
+Each line is printed as soon as a program is done with a bracket. In the summary, the first row of a
+program has the medians over the brackets, the second row the worst bracket. Ctrl-C prints the summary
+of the brackets that every program has done. The rows of one scene run only where `--rows` names them.
 """
 
 import itertools
@@ -25,16 +27,16 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import ExifTags, Image
 from PIL.TiffImagePlugin import IFDRational
-from tqdm import tqdm
 
 from benchmarks import peer_maps, peers
-from benchmarks.experiments import Experiment, at_most, one_thread
+from benchmarks.experiments import Experiment, at_most, listed, one_thread
 from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Usage
 from hdrlab import scenes
@@ -48,6 +50,7 @@ SCENES = (*scenes.PLACES, "room")
 RESPONSES = ("film", "srgb", "gamma")
 # Full well and read noise in electrons: a large sensor, and a small one at a high ISO.
 SENSORS = ((20_000.0, 5.0), (3_000.0, 12.0))
+BRACKETS = tuple(itertools.product(SCENES, RESPONSES, SENSORS))
 FRAME_COUNT = 5
 STEP_STOPS = 2.0
 JPEG_QUALITY = 95
@@ -59,8 +62,11 @@ HIGHEST_LEVEL = 250
 DARK_FRACTION = 0.05
 MISSING_STOPS = 10.0
 LUMINANCE_HDR = "Luminance HDR"
+AGAINST_BEST = "hdrlab / best of the others"
+FIGURES = "EV median, EV 95 %, dark, color, CPU s, memory MB"
 Float = NDArray[np.float64]
 Command = Callable[[list[Path], Path], list[str]]
+Figures = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -92,28 +98,66 @@ class Program:
     suffix: str
 
 
-def compare(folder: Path, *, seed: int = 0) -> Mapping[str, ArrayLike]:
-    """Return errors, CPU time and memory of each program: medians over the brackets, and worst."""
+def compare(
+    folder: Path, *, seed: int = 0, places: tuple[str, ...] = SCENES
+) -> Mapping[str, ArrayLike]:
+    """Return errors, CPU time and memory of each program: medians over the brackets, and worst.
+
+    Each line is printed as soon as it is measured.
+    """
     programs, missing = find_programs(folder)
     for name, reason in missing.items():
         print(f"  {name}: missing, {reason}", flush=True)
-    figures: dict[str, list[tuple[float, ...]]] = {name: [] for name in programs}
-    places = list(itertools.product(SCENES, RESPONSES, SENSORS))
-    for number, (scene, response, sensor) in enumerate(tqdm(places, leave=False, disable=None)):
-        rng = np.random.default_rng((seed, number))
-        simulated = simulate(folder, scene, response, sensor, rng)
-        for name, program in programs.items():
-            usage, errors = run_program(name, program, simulated, folder)
-            figures[name].append((*astuple(errors), usage.cpu_seconds, usage.megabytes))
-    medians = {name: np.nanmedian(rows, axis=0) for name, rows in figures.items()}
-    found: dict[str, ArrayLike] = {}
-    for name, rows in figures.items():
-        found[name] = medians[name]
-        found[f"{name}, worst"] = np.nanmax(rows, axis=0)
-    rivals = [medians[name] for name in programs if name != OURS]
-    if rivals:
-        found["hdrlab / best of the others"] = medians[OURS] / np.min(rivals, axis=0)
-    return found
+    rows: list[dict[str, Figures]] = []
+    try:
+        for number, (scene, response, sensor) in enumerate(BRACKETS):
+            if scene not in places:
+                continue
+            rng = np.random.default_rng((seed, number))
+            simulated = simulate(folder, scene, response, sensor, rng)
+            print(f"{simulated.name}: {FIGURES}", flush=True)
+            rows.append(measure_programs(programs, simulated, folder))
+    except KeyboardInterrupt:
+        print(f"Stopped. Complete brackets: {len(rows)}. {FIGURES}")
+        for what, values in summarize(rows).items():
+            print_line(what, values)
+        raise
+    return summarize(rows)
+
+
+def measure_programs(
+    programs: Mapping[str, Program], simulated: SimulatedBracket, folder: Path
+) -> dict[str, Figures]:
+    """Return the figures of each program on a bracket, and print them as they come."""
+    figures: dict[str, Figures] = {}
+    for name, program in programs.items():
+        usage, errors = run_program(name, program, simulated, folder)
+        figures[name] = (*astuple(errors), usage.cpu_seconds, usage.megabytes)
+        print_line(name, figures[name])
+    return figures
+
+
+def print_line(what: str, values: Figures) -> None:
+    """Print the figures of a program."""
+    print(f"  {what:<30} {listed(values)}", flush=True)
+
+
+def summarize(rows: list[dict[str, Figures]]) -> dict[str, Figures]:
+    """Return the medians and the worst of each program, and how hdrlab compares with the best peer."""
+    summary: dict[str, Figures] = {}
+    if not rows:
+        return summary
+    medians = {}
+    for name in rows[0]:
+        figures = np.array([row[name] for row in rows])
+        medians[name] = np.nanmedian(figures, axis=0)
+        summary[name] = tuple(medians[name].tolist())
+        summary[f"{name}, worst"] = tuple(np.nanmax(figures, axis=0).tolist())
+    peer_medians = [medians[name] for name in medians if name != OURS]
+    if peer_medians:
+        ratios = medians[OURS] / np.min(peer_medians, axis=0)
+        summary[AGAINST_BEST] = tuple(ratios.tolist())
+    return summary
 
 
 def simulate(
@@ -268,12 +312,24 @@ def measure_errors(E: Float, simulated: SimulatedBracket) -> MapErrors:
     )
 
 
+HOLD = at_most(AGAINST_BEST, 1, 1, 1, 1, np.inf, np.inf)
 ROWS = (
     Experiment(
         "brackets-peers",
-        "maps of 24 simulated brackets; EV median, EV 95 %, dark, color, CPU s, memory MB",
+        f"maps of {len(BRACKETS)} simulated brackets; {FIGURES}",
         compare,
-        (at_most("hdrlab / best of the others", 1, 1, 1, 1, np.inf, np.inf),),
+        (HOLD,),
         has_seed=True,
+    ),
+    *(
+        Experiment(
+            f"brackets-{scene}",
+            f"maps of the {len(BRACKETS) // len(SCENES)} brackets of one scene; {FIGURES}",
+            partial(compare, places=(scene,)),
+            (HOLD,),
+            has_seed=True,
+            only_by_name=True,
+        )
+        for scene in SCENES
     ),
 )

@@ -56,7 +56,8 @@ class Experiment(NamedTuple):
     """A published experiment: `run` reads its data from a folder, and returns what it finds, by name.
 
     `published` has what was published of figures without a hold. A row that draws at random
-    (`has_seed`) gets the seed of the command line: `run(folder, seed=seed)`.
+    (`has_seed`) gets the seed of the command line: `run(folder, seed=seed)`. A row that repeats a
+    part of another row runs only where `--rows` names it (`only_by_name`).
     """
 
     name: str
@@ -65,6 +66,7 @@ class Experiment(NamedTuple):
     holds: tuple[Hold, ...]
     published: Mapping[str, str] = MappingProxyType({})
     has_seed: bool = False
+    only_by_name: bool = False
 
 
 def at_most(what: str, *limits: float, published: str = "-") -> Hold:

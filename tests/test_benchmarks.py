@@ -276,6 +276,39 @@ def test_photos_of_a_simulated_bracket_state_their_times(simulated):
     np.testing.assert_allclose(read, simulated.times, rtol=1e-4)
 
 
+def test_each_bracket_is_printed_when_it_is_measured_and_ctrl_c_prints_their_medians(
+    tmp_path, monkeypatch, capsys
+):
+    """Time limits and Ctrl-C end a long run; what it measured until then is not lost."""
+    monkeypatch.setattr(brackets, "SHAPE", (48, 80))
+    monkeypatch.setattr(
+        brackets, "find_programs", lambda folder: ({OURS: None, "peer": None}, {"other": "absent"})
+    )
+    printed = []
+
+    def measure(name, program, simulated, folder):
+        printed.append(capsys.readouterr().out)
+        if len(printed) == 4:
+            raise KeyboardInterrupt
+        return Usage(1, 50, 3), brackets.MapErrors(0.25, 0.5, 0.125, 1)
+
+    monkeypatch.setattr(brackets, "run_program", measure)
+    with pytest.raises(KeyboardInterrupt):
+        brackets.compare(tmp_path, places=("street",))
+    assert "street-film-20000" in printed[0] and "other" in printed[0]
+    figures = "0.25, 0.5, 0.125, 1, 3, 50"
+    assert [text.count(figures) for text in printed] == [0, 1, 1, 1]
+    summary = capsys.readouterr().out
+    assert "Complete brackets: 1" in summary and summary.count(figures) == 4
+    assert brackets.AGAINST_BEST in summary
+
+
+def test_a_row_that_repeats_a_part_of_another_runs_only_by_its_name():
+    assert [row.name for row in command.chosen("brackets", None)] == ["brackets-peers"]
+    assert [row.name for row in command.chosen("brackets", "brackets-room")] == ["brackets-room"]
+    assert command.parse(["brackets", "--rows", "brackets-room"]).rows == "brackets-room"
+
+
 @pytest.mark.parametrize("processes", [1, 2])
 def test_work_along_many_items_keeps_their_order(processes, monkeypatch):
     monkeypatch.setattr(experiments, "PROCESSES", processes)
