@@ -33,7 +33,8 @@ NUMBERS = {
     },
     "14": {
         "2.5": "percent of the sum, in the paper and in the program `pcond`",
-        "1.6": "percent of the image's width, read off the figures of the paper",
+        "15": "pixels, the width of the blur in Battiato and others, 2008",
+        "1.6": "percent of the image's width, read off their figure",
         "8 %": "of the longer side, the default width of the library",
         "two levels": "the lowest and the highest one",
         "50": "half of the ratio 1 : 100, see 50.5",

@@ -487,6 +487,9 @@ SENTENCES = {
         "With $k = 8$ there is room for three stops above the neighborhood": lambda n: (
             np.log2(8) == 3
         ),
+        "A display of 10000 : 1 lacks about one stop": lambda n: (
+            round(float(np.log2(n.high / n.low / 10000))) == 1
+        ),
         "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
     },
     "16": {

@@ -116,7 +116,7 @@ def trims(
         ax.axhline(
             ceiling, color="#D55E00", linestyle="--", linewidth=1.6, label="ceiling of this trim"
         )
-    ax.set(xlabel="brightness b = ln L", ylabel="foveal pixels f(b)", xlim=(b[0], b[-1]))
+    ax.set(xlabel="brightness b = ln L", ylabel="foveal pixels h(b)", xlim=(b[0], b[-1]))
     ax.set_ylim(0, top or 1.02 * whole.max(initial=1))
     return with_legend(ax, "upper right")
 
