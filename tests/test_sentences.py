@@ -55,6 +55,12 @@ def walls_over_glass(n, Ld):
     return walls / np.median(Ld[np.quantile(n.L, 0.97) < n.L])
 
 
+def ripple_kept(n, sigma_r):
+    """Return which share of the ripple of notebook 15 the bilateral filter leaves in the base."""
+    flat = slice(20, 80)
+    return float(n.smoothed(sigma_r=sigma_r)["bilateral"][flat].std() / n.step[25, flat].std())
+
+
 def differ(n, width):
     """Return which share of the bits differ where levels within a width of the median are left out."""
     return (n.b[0] ^ n.b[1])[(n.far[0] > width) & (n.far[1] > width)].mean()
@@ -518,6 +524,9 @@ SENTENCES = {
         ),
     },
     "15": {
+        "it smooths only a fifth of the ripple": lambda n: (
+            round(1 - ripple_kept(n, sigma_r=0.05), 1) == 0.2
+        ),
         "over 10 pixels, its detail falls by 0.71 decades": lambda n: (
             falls_of_detail(n, 10)[0] == 0.71 and falls_of_detail(n, 1)[0] == 0
         ),
