@@ -61,6 +61,13 @@ def ripple_kept(n, sigma_r):
     return float(n.smoothed(sigma_r=sigma_r)["bilateral"][flat].std() / n.step[25, flat].std())
 
 
+def filled_from_reference_alone(n):
+    """Return which share of the moving pixels that the reference of notebook 24 lacks nothing else fills."""
+    result = n.ghosts.remove_ghosts(n.three, n.times, n.g, fixed=1)
+    lacking = (result.labels > 0) & (n.alpha() < 0.01)
+    return np.mean(result.used.sum(axis=0)[lacking] == 1)
+
+
 def differ(n, width):
     """Return which share of the bits differ where levels within a width of the median are left out."""
     return (n.b[0] ^ n.b[1])[(n.far[0] > width) & (n.far[1] > width)].mean()
@@ -717,6 +724,9 @@ SENTENCES = {
         "it is 7.7 stops larger": lambda n: round(np.log2(n.shares[0] / n.shares[2]), 1) == 7.7,
     },
     "24": {
+        "at more than half of these pixels nothing does": lambda n: (
+            filled_from_reference_alone(n) > 0.5
+        ),
         "`ghosts` is about as good here": lambda n: (
             abs(
                 np.diff(
