@@ -80,8 +80,12 @@ def quality(n, name):
 SENTENCES = {
     "00": {
         "Sky and corners lie about sixteen stops apart": lambda n: round(float(n.stops)) == 16,
+        "differs from the ratio above by less than a percent": lambda n: (
+            abs(n.high / n.low / 2**n.stops - 1) < 0.01
+        ),
     },
     "01": {
+        "8, 12 or 17?": lambda n: round(float(np.log2(n.L.max() / n.L.min()))) == 17,
         "With 10 bits a level is 21 electrons wide, and its rounding error of 6 electrons": lambda n: (
             round(20_000 / (2**10 - 1 - 2**6)) == 21 and round(21 / 12**0.5) == 6
         ),
@@ -181,6 +185,9 @@ SENTENCES = {
         "By up to eight pixels to the side, and by one up or down": lambda n: (
             np.abs(n.mtb.align(n.real)).max(axis=0).tolist() == [1, 8]
         ),
+        "Below you will see that this is enough here": lambda n: (
+            (n.mtb.align(n.images) == n.shaken).all() and np.median(n.Y[-1]) == 255
+        ),
         "It returns $(-63, -63)$, as far as it can go": lambda n: n.corner == (-63, -63),
         "at half a degree a corner is off by 2.4 pixels": lambda n: (
             round(280 * np.deg2rad(0.5), 1) == 2.4
@@ -232,6 +239,10 @@ SENTENCES = {
         "at three stops they reach beyond half a stop": lambda n: scallops(n, 3) > 0.5,
         "A smoothness of 100 removes nearly all of them at two stops": lambda n: (
             scallops(n, 2, 100) < 0.1 * scallops(n, 2)
+        ),
+        "but not at three": lambda n: scallops(n, 3, 100) > 0.2 * scallops(n, 3),
+        "a step multiplies every level by $4^{1/2.2} = 1.88$": lambda n: (
+            round(4 ** (1 / 2.2), 2) == 1.88
         ),
         "At 1000 there is a new error": lambda n: scallops(n, 2, 1000) > 2 * scallops(n, 2, 100),
         "with `cut` the error stays near zero": lambda n: off(n.weighted("cut"), n.truth) < 0.2,

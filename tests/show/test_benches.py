@@ -100,12 +100,13 @@ def test_mark_lost_makes_full_pixels_orange_and_noisy_ones_blue_and_keeps_the_re
     assert np.all(shown[0, 1:] == 90) and np.all(gray == 90)
 
 
-def test_window_states_the_fraction_of_held_pixels():
+def test_window_states_the_fraction_of_recorded_pixels():
     held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     ax = sensors.window(L, held)
     said = [text.get_text() for text in ax.get_legend().get_texts()]
     assert (
-        said[1] == f"held: {(~held.full & ~held.noise).mean():.0%}" and "cd/m²" in ax.get_xlabel()
+        said[1] == f"recorded: {(~held.full & ~held.noise).mean():.0%}"
+        and "cd/m²" in ax.get_xlabel()
     )
 
 

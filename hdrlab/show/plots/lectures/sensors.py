@@ -31,10 +31,10 @@ NOISE = "#0072B2"
 HELD_COLOR = "#B8B8B8"
 FULL_RGB = np.array([213, 94, 0], np.uint8)
 NOISE_RGB = np.array([0, 114, 178], np.uint8)
-# Label, color and hatching of the pixels that are lost in noise, held, and full.
+# Label, color and hatching of the pixels that are lost in noise, recorded, and full.
 PIXEL_KINDS = (
     ("lost in noise", NOISE, "///"),
-    ("held", HELD_COLOR, ""),
+    ("recorded", HELD_COLOR, ""),
     ("full", FULL, "..."),
 )
 BIN_COUNT = 60
