@@ -146,6 +146,11 @@ def move_shutter(page, widget):
     changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowLeft"))
 
 
+def move_zones(page, widget):
+    for handle in widget.get_by_role("slider").all():
+        changed_by(page, widget, lambda handle=handle: handle.press("Shift+ArrowLeft"))
+
+
 def move_predict(page, widget):
     """Ask for the truth: the answers themselves are given in `test_predict_without_a_kernel`."""
     widget.get_by_role("button", name="Show", exact=True).click()
@@ -160,6 +165,7 @@ MOVES = {
     "brush": move_brush,
     "pixel": move_pixel,
     "exposure": move_shutter,
+    "zones": move_zones,
 }
 MOVES |= {"predict": move_predict}
 # It asks nothing of Python; `test_pressed_pixels` presses it, and the tier of all notebooks opens its own.

@@ -98,7 +98,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
-    kinds += [widgets.PixelMean, widgets.ExposureWindow]
+    kinds += [widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
     for widget in kinds:
         script = widget._esm
         assert str(script).count("export default") == 1 and "http" not in str(script)
@@ -791,3 +791,15 @@ def test_a_bitmap_difference_falls_back_to_a_picture_with_alt_text():
     photo = np.tile(np.array([20, 200], np.uint8), (32, 16))
     html, text = widgets.bitmap_difference(photo, photo, alt="Stripes").fallback()
     assert "<img" in html and 'alt="Stripes"' in html and text == "Stripes"
+
+
+def test_a_zone_scale_rejects_what_it_cannot_show():
+    for changed in ({"E": np.zeros((4, 6))}, {"key": 0.0}, {"white": -1.0}, {"alt": ""}):
+        arguments = {"E": np.ones((4, 6)), "alt": "Gray"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.zone_scale(arguments.pop("E"), **arguments)
+
+
+def test_a_zone_scale_falls_back_to_a_picture_with_alt_text():
+    html, text = widgets.zone_scale(np.ones((4, 6)), alt="A gray wall").fallback()
+    assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"

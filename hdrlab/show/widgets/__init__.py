@@ -8,6 +8,7 @@ predict  a question to answer before the result is shown: `show.widgets.predict`
 brush    the Detail Brush over a radiance map: `show.widgets.lens`
 exposure_window  drag the range of a photo along a histogram: `show.widgets.exposure`
 bitmap_difference  drag one bitmap over another, count the bits that differ: `show.widgets.bitmaps`
+zone_scale  drag Reinhard's key and white point along the zones: `show.widgets.zones`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
 `play` and `tune` work with every algorithm: `states` is any iterable (the library's
@@ -45,6 +46,7 @@ from hdrlab.show.widgets.exposure import ExposureWindow, exposure_window
 from hdrlab.show.widgets.lens import Brush, brush
 from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
 from hdrlab.show.widgets.scripts import Widget, script
+from hdrlab.show.widgets.zones import ZoneScale, zone_scale
 
 __all__ = [
     "BitmapDifference",
@@ -55,6 +57,7 @@ __all__ = [
     "Player",
     "Tuner",
     "Wiper",
+    "ZoneScale",
     "bitmap_difference",
     "blink",
     "brush",
@@ -63,6 +66,7 @@ __all__ = [
     "play",
     "tune",
     "wipe",
+    "zone_scale",
 ]
 
 State = TypeVar("State")

@@ -8,9 +8,6 @@ const FINE = 65535; // steps of ln L over the whole map, to find a rank without 
 const [NEAR, FAR] = [16, 64]; // pixels that an arrow key moves the brush, alone and with Shift
 const LIMITS = [1, 2, 4, 8, 16];
 
-const decodeSrgb = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
-const encodeSrgb = (c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055);
-const CODES = Uint8Array.from({ length: 65536 }, (_, k) => Math.floor(255 * encodeSrgb(k / 65535) + 0.5));
 
 // What does not change while the brush moves: ln L, its step from dark to bright, and E / L of each channel.
 function prepare(bits, scale, channels) {
@@ -95,9 +92,6 @@ function curve(f) {
   Ld[f.length + 1] = Ld[f.length]; // beyond the last edge the curve is level
   return Ld;
 }
-
-// The code of a channel: light is in units of the table, 1 / 65535 of white.
-const code = (light) => CODES[light < 65535 ? (light + 0.5) | 0 : 65535];
 
 // equalise() and recolour() of an area, written into the pixels of an ImageData, 32 bits each: A B G R.
 function equalise(map, area, width, { bins, limit }, pixels) {

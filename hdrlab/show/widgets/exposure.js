@@ -44,7 +44,8 @@ async function render({ model, el }) {
   const bars = histogram(scale, L, [low, high]);
   const held = element(scale, "div", { className: "hdrlab-window" });
   const shutter = element(held, "b", { className: "hdrlab-is-t" });
-  ruler(right, [low, high], (stop) => (stop < 0 ? `1/${2 ** -stop}` : 2 ** stop));
+  const luminanceText = (stop) => (stop < 0 ? `1/${2 ** -stop}` : 2 ** stop);
+  ruler(right, [low, high], everyFew([low, high], 4).map((stop) => [stop, luminanceText(stop)]));
   element(right, "p", { className: "hdrlab-axis", textContent: "luminance, cd/m²; one mark is one stop" });
   const parts = element(right, "div", { className: "hdrlab-parts" });
   const [noisePart, heldPart, fullPart] = ["noise", "held", "full"].map((kind) => {

@@ -1,7 +1,6 @@
 // Shared by the figures in which something is dragged along the histogram of a scene, whose axis is log2 of luminance.
 
 const BINS_PER_STOP = 3;
-const STOPS_PER_LABEL = 4;
 
 // Luminances of radiance, as core/colour.py computes them.
 function luminances(E, channels) {
@@ -11,11 +10,12 @@ function luminances(E, channels) {
     0.2126 * E[red(i)] + 0.7152 * E[red(i) + 1] + 0.0722 * E[red(i) + 2]);
 }
 
-// A histogram as an element whose shape is the bars, so that a change of its background colors them.
-function histogram(parent, L, [low, high]) {
+// A histogram as an element whose shape is the bars, so that a change of its background colors them. `toStops` gives
+// the place of a luminance on the axis.
+function histogram(parent, L, [low, high], toStops = Math.log2) {
   const counts = new Float64Array((high - low) * BINS_PER_STOP);
   for (const each of L) {
-    const bin = each > 0 ? Math.floor((Math.log2(each) - low) * BINS_PER_STOP) : 0;
+    const bin = each > 0 ? Math.floor((toStops(each) - low) * BINS_PER_STOP) : 0;
     counts[clamp(bin, 0, counts.length - 1)]++;
   }
   const largest = Math.max(...counts);
@@ -29,15 +29,20 @@ function histogram(parent, L, [low, high]) {
   return bars;
 }
 
-// A ruler with a mark at each stop, and a label at every fourth: `label` turns log2 of luminance into text.
-function ruler(parent, [low, high], label) {
+// A ruler with a mark at each stop, and these labels: pairs of a stop and a text.
+function ruler(parent, [low, high], labels) {
   const line = element(parent, "div", { className: "hdrlab-ruler", "aria-hidden": "true" });
   line.style.setProperty("--stop", `${100 / (high - low)}%`);
-  const first = Math.ceil(low / STOPS_PER_LABEL) * STOPS_PER_LABEL;
-  for (let stop = first; stop <= high; stop += STOPS_PER_LABEL) {
-    const text = element(line, "span", { textContent: label(stop) });
+  for (const [stop, textContent] of labels) {
+    const text = element(line, "span", { textContent });
     text.style.left = `${(100 * (stop - low)) / (high - low)}%`;
   }
+}
+
+// The stops of an axis that are multiples of this many.
+function everyFew([low, high], stops) {
+  const first = Math.ceil(low / stops);
+  return Array.from({ length: Math.floor(high / stops) - first + 1 }, (_, k) => (first + k) * stops);
 }
 
 // A fraction in percent, as a reader writes it.

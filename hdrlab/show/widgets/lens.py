@@ -27,7 +27,7 @@ LIMIT_RANGE = (1, 16)
 class Brush(Widget):
     """A radiance map, the picture that surrounds the brush, and the place of the brush."""
 
-    _esm = script("half.js", "brush.js")
+    _esm = script("half.js", "srgb.js", "brush.js")
     radiance = traitlets.Bytes().tag(sync=True)  # half floats (H, W, channels)
     scale = traitlets.Float(1.0).tag(sync=True)
     shape = traitlets.List(traitlets.Int()).tag(sync=True)
