@@ -3,7 +3,7 @@
 "mtb" shifts by whole pixels. So does "auto", but it checks each pair by light: where the photos are
 still displaced by more than MAX_DISPLACEMENT pixels, it shifts by fractions of pixels and rotates, see
 `pipeline.rigid_motion` and `pipeline.tile_motion`. Where that does not align a pair either, it tries
-"cerman", and then "homography". A pair that stays unconfirmed is reported.
+"cerman", and then "homography". Both report a pair that light does not confirm.
 """
 
 from collections.abc import Callable, Iterator
@@ -126,7 +126,7 @@ def register(
         used = {result.method for result in results}
         method = next((name for name in MOST_GENERAL_FIRST if name in used), "none")
     else:
-        pairs = tuple(starmap(best_percentile, photograph_pairs(images)))
+        pairs = tuple(starmap(align_by_shift, photograph_pairs(images)))
     order = [pairs[0].moving, *(pair.fixed for pair in pairs)] if pairs else [0]
     homographies = warp.chain_homographies(order, [pair.step for pair in pairs])
     return Registration(homographies=homographies, pairs=pairs, method=method)
@@ -152,6 +152,24 @@ def align_pair(
     if quick.is_confirmed and quick.displacement <= MAX_QUICK_DISPLACEMENT:
         return PairResult(validation=confirm(first, first.step), method=method)
     return improve(shifted, B, A, make_pyramid)
+
+
+def align_by_shift(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:
+    """Return the Validation of two photos shifted by whole pixels.
+
+    It is unconfirmed where light shows that the photos do not fit: bitmaps overlook small rotations.
+    """
+    first = best_percentile(moving, B, fixed, A)
+    side = tile_motion.quick_side(A.Y[0].shape)
+    if tile_motion.check(B.Y[0], A.Y[0], first.step, side).is_confirmed:
+        return first
+    level = rigid_motion.finest_level(B.Y, A.Y)
+    if level is None:
+        return first
+    fit = rigid_motion.check(B.Y, A.Y, first.step, level)
+    if fit.is_confirmed or not fit.is_usable:
+        return first
+    return replace(first, confirmed=False)
 
 
 def confirm(first: Validation, H: F64) -> Validation:

@@ -44,10 +44,13 @@ def check(dark: Array, bright: Array, H: F64, side: int) -> Fit:
     """Return the Fit of two gray photos (h, w) of 8 bits in tiles, for a motion H.
 
     `side` is the side of a tile in pixels. Photos in whose overlap the tiles have no place are
-    without structure.
+    without structure, and photos that are smaller than a tile are not usable.
     """
     shape = bright.shape
     padded = side + 2 * MARGIN_PIXELS
+    if padded > min(shape):
+        nothing = np.zeros(0)
+        return Fit(H=H, next=H, step=0.0, usable=0.0, similarity=0.0, shifts=nothing, scale=1)
     starts = _place_tiles(H, shape, padded)
     rows = starts[0][:, None] + np.arange(padded)
     columns = starts[1][:, None] + np.arange(padded)

@@ -14,9 +14,9 @@ from hdrlab.pipeline.alignment import best_percentile, photograph_pairs, registe
 pytestmark = pytest.mark.papers
 
 
-def offsets_of(images):
+def offsets_of(images, method="mtb"):
     """Return the offsets (P, 2) that the pipeline finds."""
-    return register(images, "mtb").homographies[:, 1::-1, 2]
+    return register(images, method).homographies[:, 1::-1, 2]
 
 
 def validations(images, bits=6):
@@ -56,9 +56,10 @@ def test_the_found_offset_never_has_a_larger_error_than_no_offset(seed):
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (10, 10), (17, 63), (16, 64)])
-def test_small_frames_are_aligned_without_an_error(shape):
+@pytest.mark.parametrize("method", ["mtb", "auto"])
+def test_small_frames_are_aligned_without_an_error(shape, method):
     images = np.random.default_rng(0).integers(0, 256, (3, *shape), dtype=np.uint8)
-    offsets = offsets_of(images)
+    offsets = offsets_of(images, method)
     assert offsets.shape == (3, 2) and np.all(np.abs(offsets) < np.array(shape))
 
 

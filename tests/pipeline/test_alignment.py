@@ -112,6 +112,18 @@ def test_rotated_photos_are_reported_once_and_not_as_motion_too():
     assert "rotates" in doubt and "frame" in doubt
 
 
+@pytest.mark.parametrize(("degrees", "is_reported"), [(0, False), (0.3, True)])
+def test_a_small_rotation_that_no_shift_undoes_is_reported_and_the_method_that_does_it(
+    degrees, is_reported
+):
+    street = scenes.street((340, 510))
+    turned = [warp.turn(street.shape, angle, (3, -2)) for angle in (0, degrees)]
+    taken = camera.shoot(street, camera.times_around(street, 2, stops=1.5), offsets=turned, rng=1)
+    doubts = next(pipeline.assemble_steps(taken, align="mtb")).doubts
+    assert len(doubts) == is_reported
+    assert all("--align auto" in doubt for doubt in doubts)
+
+
 def by_percentile(monkeypatch, **validations):
     """Return which of the answers at the median and at the other two percentiles is taken."""
     answers = {
