@@ -222,6 +222,27 @@ def test_without_a_kernel_every_position_of_two_sliders_is_answered(page):
     assert page.evaluate(left) == 0
 
 
+def test_names_are_a_row_of_buttons_and_quantities_a_slider(page, axe):
+    shades = {"dark": 50, "middle": 100, "bright": 150}
+
+    def shade(operator="dark", time="1/30 s"):
+        return square(shades[operator] + (20 if time == "1/15 s" else 0))
+
+    ranges = {"operator": list(shades), "time": ["1/30 s", "1/15 s"]}
+    open_widget(page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", **ranges))
+    assert page.get_by_role("slider").count() == 1
+    buttons = page.get_by_role("radiogroup", name="operator")
+    assert buttons.get_by_role("radio", name="dark").is_checked()
+    buttons.get_by_text("bright").click()
+    until_level(page, 150)
+    page.get_by_role("slider", name="time").press("End")
+    until_level(page, 170)
+    buttons.get_by_role("radio", name="bright").press("ArrowLeft")
+    until_level(page, 120)
+    assert alt(page) == "Gray, operator = middle, time = 1/15 s"
+    assert axe(page, ".hdrlab") == []
+
+
 def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
     tuner.evaluate("window.hdrlab = { running: '../installing.html' }")
     tuner.get_by_role("slider").press("End")

@@ -181,6 +181,8 @@ class Tuner(Widget):
     # WebP; each is painted over the first
     stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
+    # the parameters that get a row of buttons, because their values have no order
+    unordered = traitlets.List(traitlets.Unicode()).tag(sync=True)
     areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # see picture_areas
 
     def __init__(
@@ -189,7 +191,8 @@ class Tuner(Widget):
         self._picture = picture
         self._grids = grids
         texts = [[short(value) for value in grid] for grid in grids.values()]
-        super().__init__(names=list(grids), values=texts, **traits)
+        unordered = [name for name, grid in grids.items() if positions.is_unordered(grid)]
+        super().__init__(names=list(grids), values=texts, unordered=unordered, **traits)
         self.observe(self._answer, "at")
 
     @property
@@ -229,6 +232,8 @@ def tune(
     **ranges: Any,
 ) -> Tuner:
     """Return a widget with a slider for each parameter, which shows draw(f(...)).
+
+    A list of names, such as operators, gets a row of buttons instead.
 
     Parameters
     ----------

@@ -21,23 +21,18 @@ async function render({ model, el }) {
   const hint = "To zoom, click and turn the wheel, or pinch; the arrow keys read single pixels, Space shows the next picture.";
   const help = `${labels.join(", ")}; Space shows the next`;
   const view = await viewer(root, model, { help, hint, compose, key });
-  const row = element(view.controls, "div", { className: "hdrlab-choice", role: "radiogroup", "aria-label": "picture" });
+  const { row, buttons, show: check } = radioRow(view.controls, "picture", labels);
   const button = element(view.controls, "button", { type: "button", textContent: "Blink" });
   view.controls.prepend(button, row);
-  const group = `hdrlab-${Math.random()}`; // each widget has a script of its own: nothing can count them
-  const choices = labels.map((label, k) => {
-    const line = element(row, "label");
-    const input = element(line, "input", { type: "radio", name: group });
-    line.append(` ${label}`);
+  buttons.forEach(({ input }, k) => {
     input.addEventListener("change", () => {
       pause();
       choose(k);
     });
-    return input;
   });
 
   function show() {
-    choices.forEach((input, k) => (input.checked = k === index()));
+    check(index());
     view.repaint();
   }
 

@@ -28,11 +28,30 @@ function slider(parent, name, count) {
   const value = element(row, "span", { className: "hdrlab-value", "aria-hidden": "true" });
   return {
     input,
+    position: () => Number(input.value),
     show(position, text) {
       input.value = position;
       input.setAttribute("aria-valuetext", text);
       value.textContent = text;
     },
+  };
+}
+
+// A row of radio buttons, for things without an order, such as operators.
+function radioRow(parent, name, labels) {
+  const row = element(parent, "div", { className: "hdrlab-choice", role: "radiogroup", "aria-label": name });
+  const group = `hdrlab-${Math.random()}`; // each widget has a script of its own: nothing can count them
+  const buttons = labels.map((label) => {
+    const line = element(row, "label");
+    const input = element(line, "input", { type: "radio", name: group });
+    const words = element(line, "span", { textContent: label });
+    return { line, input, words };
+  });
+  return {
+    row,
+    buttons,
+    position: () => buttons.findIndex(({ input }) => input.checked),
+    show: (k) => buttons.forEach(({ input }, other) => (input.checked = other === k)),
   };
 }
 

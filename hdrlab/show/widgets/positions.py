@@ -54,6 +54,19 @@ def _steps_of_range(name: str, ends: tuple[Any, ...]) -> list[Any]:
     return [low + index * step for index in range(count)]
 
 
+def is_unordered(grid: Sequence[Any]) -> bool:
+    """Return whether the values are names, such as operators; "1/60 s" or "f/8" are quantities.
+
+    Examples
+    --------
+    >>> is_unordered(["reinhard", "durand"]), is_unordered(["1/60 s", "1/30 s"])
+    (True, False)
+    """
+    return all(
+        isinstance(value, str) and not any(letter.isdigit() for letter in value) for value in grid
+    )
+
+
 def start(f: Callable[..., Any], grids: Grids) -> list[int]:
     """Return the position nearest to each parameter's default, or the middle where it has none."""
     parameters = inspect.signature(f).parameters

@@ -129,28 +129,18 @@ function compareShape(mine, truth, left, right) {
 const KINDS = {
   choice(root, model) {
     const [labels, truth, pictures] = [model.get("labels"), model.get("truth"), model.get("pictures")];
-    const attributes = { className: "hdrlab-choice", role: "radiogroup", "aria-label": model.get("question") };
-    const row = element(root, "div", attributes);
-    const group = `hdrlab-${Math.random()}`;
-    const choices = labels.map((label, k) => {
-      const line = element(row, "label");
-      const input = element(line, "input", { type: "radio", name: group });
-      const words = element(line, "span", { textContent: label });
-      if (pictures.length) {
-        line.classList.add("hdrlab-card");
-        picture(line).show(decode(pictures[k], "image/webp"), model.get("alts")[k]);
-      }
-      return { line, input, words };
+    const { buttons, position, show } = radioRow(root, model.get("question"), labels);
+    pictures.forEach((bytes, k) => {
+      const { line } = buttons[k];
+      line.classList.add("hdrlab-card");
+      picture(line).show(decode(bytes, "image/webp"), model.get("alts")[k]);
     });
-    const read = () => {
-      const k = choices.findIndex(({ input }) => input.checked);
-      return k < 0 ? null : k;
-    };
+    const read = () => (position() < 0 ? null : position());
     return {
       read,
-      show: (answer) => choices.forEach(({ input }, k) => (input.checked = k === answer)),
+      show,
       reveal: () =>
-        choices.forEach(({ line, input, words }, k) => {
+        buttons.forEach(({ line, input, words }, k) => {
           input.disabled = true;
           line.classList.toggle("hdrlab-true", k === truth);
           if (k === truth) words.textContent = `✓ ${labels[k]}`;

@@ -1,4 +1,4 @@
-// Parameters of a function: Python computes each picture. Those that are stored are shown at once, and stay where no
+// Sliders and rows of buttons for the parameters of a function: Python computes each picture. Those that are stored are shown at once, and stay where no
 // Python answers.
 
 const PATIENCE = 3000; // ms without an answer before a page that had a kernel counts as one without
@@ -40,7 +40,13 @@ function render({ model, el }) {
   const view = picture(root, model.get("areas"));
   const note = element(root, "p", { className: "hdrlab-note", role: "status" });
   const controls = element(root, "div", { className: "hdrlab-controls" });
-  const bars = names.map((name, k) => slider(controls, name, values[k].length));
+  const unordered = model.get("unordered") ?? []; // a page that was saved earlier has none
+  const bars = names.map((name, k) => {
+    if (!unordered.includes(name)) return slider(controls, name, values[k].length);
+    const { row, position, show } = radioRow(controls, name, values[k]);
+    row.prepend(element(row, "span", { textContent: name, "aria-hidden": "true" }));
+    return { input: row, position, show };
+  });
   const texts = (at) => at.map((position, k) => `${names[k]} = ${values[k][position]}`).join(", ");
   let [answered, timer, first, ready] = [false, null, null, false];
 
@@ -124,13 +130,13 @@ function render({ model, el }) {
     model.get("point").forEach((name, axis) => {
       const k = names.indexOf(name);
       const away = values[k].map((value) => Math.abs(Number(value) - shares[axis]));
-      bars[k].input.value = away.indexOf(Math.min(...away));
+      bars[k].show(away.indexOf(Math.min(...away)), "");
     });
     move();
   }
 
   function move() {
-    model.set("at", bars.map((bar) => Number(bar.input.value)));
+    model.set("at", bars.map((bar) => bar.position()));
     model.save_changes();
     showBars();
     clearTimeout(timer);
