@@ -70,6 +70,13 @@ def move_tune(page, widget):
     """Each slider was put back, so the picture is the one that the cell made: no later cell has a say."""
     before = widget.evaluate(DIGEST)
     move_sliders(page, widget, lambda: until_answered(page, widget))
+    for row in widget.get_by_role("radiogroup").all():
+        start = row.locator("label:has(:checked)").inner_text()
+        for button in row.get_by_role("radio", checked=False).all()[:1]:
+            button.check()
+            until_answered(page, widget)
+        row.get_by_text(start, exact=True).click()
+        until_answered(page, widget)
     # Python's own picture comes after a stored one of the same place.
     page.wait_for_function(
         f"([el, before]) => ({DIGEST})(el) === before",
@@ -79,15 +86,21 @@ def move_tune(page, widget):
     )
 
 
+def name_of(control):
+    return control.locator("span").first.inner_text()
+
+
+def text_of(control):
+    """Return the value of a slider or of a row of buttons."""
+    if control.get_attribute("role") == "radiogroup":
+        return control.locator("label:has(:checked)").inner_text()
+    return control.get_by_role("slider").get_attribute("aria-valuetext")
+
+
 def until_answered(page, widget):
     """Wait until the picture is of the last position."""
-    names = [
-        label.inner_text() for label in widget.locator(".hdrlab-slider span:first-child").all()
-    ]
-    texts = [
-        slider.get_attribute("aria-valuetext") for slider in widget.get_by_role("slider").all()
-    ]
-    wanted = ", ".join(f"{name} = {text}" for name, text in zip(names, texts, strict=True))
+    controls = widget.locator(".hdrlab-controls > *").all()
+    wanted = ", ".join(f"{name_of(control)} = {text_of(control)}" for control in controls)
     page.wait_for_function(
         """([el, wanted]) => el.querySelector("canvas").getAttribute("aria-label").endsWith(wanted)
             && el.querySelector("[role=status]").textContent === "" """,

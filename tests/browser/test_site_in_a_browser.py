@@ -97,6 +97,8 @@ def move(page, widget):
     if kind == "pixel":
         widget.get_by_role("application").press("Shift+ArrowRight")
         return
+    if widget.get_by_role("slider").count() == 0:
+        return widget.get_by_role("radio", checked=False).first.check()
     slider = widget.get_by_role("slider").first
     at_end = slider.input_value() == slider.get_attribute("max")
     slider.press("Home" if at_end else "End")
