@@ -267,6 +267,13 @@ def improve(
             )
     if is_certain:
         return shifted  # the bitmaps are certain, and light shows nothing that fits
+    # A coarse level averages black and white pixels to gray ones, which seem to be well exposed.
+    H = best.validation.step
+    tiles = tile_motion.check(B.Y[0], A.Y[0], H, tile_motion.SIDE_PIXELS)
+    if not tiles.is_usable:
+        return shifted
+    if tiles.has_enough_blocks and tiles.is_confirmed and tiles.displacement <= MAX_DISPLACEMENT:
+        return PairResult(validation=confirm(best.validation, H), method=best.method)
     return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
 
 

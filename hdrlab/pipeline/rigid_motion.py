@@ -119,7 +119,7 @@ class Fit:
     @property
     def is_confirmed(self) -> bool:
         """Whether the photos are similar, and most blocks would stay where they are."""
-        if len(self.shifts) < MIN_BLOCKS:
+        if not self.has_enough_blocks:
             return self.similarity >= MIN_SIMILARITY_WITHOUT_BLOCKS
         if self.similarity < MIN_SIMILARITY:
             return False
@@ -128,7 +128,12 @@ class Fit:
     @property
     def median_shift(self) -> float:
         """Median of `shifts`; infinite without enough blocks."""
-        return float(np.median(self.shifts)) if len(self.shifts) >= MIN_BLOCKS else np.inf
+        return float(np.median(self.shifts)) if self.has_enough_blocks else np.inf
+
+    @property
+    def has_enough_blocks(self) -> bool:
+        """Whether enough blocks are measured well to tell where they would move."""
+        return len(self.shifts) >= MIN_BLOCKS
 
     @property
     def motion(self) -> F64:

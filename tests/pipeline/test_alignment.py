@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from brackets import MARGIN, H, W, bracket as shoot, photograph, radiance
+from scipy.ndimage import gaussian_filter
 from skimage.data import astronaut, coffee
 
 from hdrlab import pipeline, scenes
@@ -45,6 +46,16 @@ def test_nearly_black_or_white_frames_from_a_tripod_give_no_warning(texture, ali
     found = aligned(images, align)
     assert not found.offsets.any() and found.doubts == ()
     assert found.notes == ()
+
+
+def test_photos_that_are_black_or_white_nearly_everywhere_give_no_warning():
+    """Hard contrast and sharpening leave no pixel that both expose well, only edges."""
+    hard = camera.Camera(response=lambda X: X**3, full_well=40_000.0)
+    taken = camera.shoot(scenes.room((344, 516)), [0.084, 0.277], hard, rng=0)
+    soft = gaussian_filter(taken.images.astype(np.float32), (0, 1, 1, 0))
+    sharp = np.clip(np.rint(2.0 * taken.images - soft), 0, 255).astype(np.uint8)
+    found = aligned(sharp)
+    assert not found.offsets.any() and found.doubts == ()
 
 
 @pytest.mark.parametrize("seed", range(3))
