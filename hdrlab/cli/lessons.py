@@ -10,6 +10,7 @@ from hdrlab.errors import InputError
 
 FIRST_NOTEBOOK = "notebooks/00_welcome.ipynb"
 SITE_MODULES = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+LITE_MODULES = ("jupyterlite_core", "jupyterlite_pyodide_kernel")
 
 # characters a line, of the help texts on the site's page about the commands
 HELP_WIDTH = 88
@@ -93,7 +94,14 @@ def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...
     show_default=False,
     help="Address of the published site, https://..., for link previews.",
 )
-def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
+@click.option(
+    "--lite",
+    default="",
+    show_default=False,
+    metavar="PYODIDE",
+    help="Let readers run the pages in their browsers, with Pyodide from this folder or address.",
+)
+def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lite: str) -> None:
     """Build a website of the course.
 
     It contains the executed notebooks, the guides and the reference. The pages need no server and
@@ -101,13 +109,21 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
 
     hdrlab keeps the executed notebooks in .NAME.cache next to the site. The next
     build runs only notebooks that have changed.
+
+    With --lite, readers open each notebook and assignment in JupyterLite, with check()
+    and nothing to install. PYODIDE is a folder with Pyodide 0.27, which is copied to the
+    site, or the address of one, such as https://cdn.jsdelivr.net/pyodide/v0.27.7/full/.
+    Such a site needs a web server; python -m http.server is enough.
     """
     common.require_modules("site", SITE_MODULES)
+    if lite:
+        common.require_modules("lite", LITE_MODULES)
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course import materials
     from hdrlab.course.authoring import execute
     from hdrlab.course.classroom.jobs import lock_folder
     from hdrlab.course.site import pages
+    from hdrlab.course.site.lite import build as jupyterlite
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
@@ -116,6 +132,8 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
         raise InputError(
             f"--notebooks: pass notebooks with different names, and none named {pages.FRONT.name}"
         )
+    pyodide = jupyterlite.find_pyodide(lite) if lite else None
+    edition = jupyterlite.edition_of(chosen, handouts) if lite else ""
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()
     cache = pages.claim(out)
@@ -128,8 +146,18 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> 
         executed.sort(key=lambda notebook: notebook.source.stem)
         more_pages = {"commands.md": _commands_page()}
         with elapsed("pages"):
-            made = pages.build(out, executed, handouts, more_pages, address=address)
+            made = pages.build(
+                out, executed, handouts, more_pages, address=address, edition=edition
+            )
+        if pyodide is None:
+            jupyterlite.remove(out)
+        else:
+            with elapsed("JupyterLite"):
+                jupyterlite.build(out, cache, chosen, handouts, pyodide)
     common.echo_notes(made.complaints)
+    if pyodide is not None and pyodide.lacking:
+        lacking = ", ".join(pyodide.lacking)
+        common.echo_notes([f"{lite} has no {lacking}: cells that need it fail in a browser"])
     fresh = sum(notebook.fresh for notebook in executed)
     counts = f"{made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks"
     click.echo(f"{made.front}: {counts}; run now: {fresh}")

@@ -91,23 +91,26 @@ def build(
     more: Mapping[str, str],
     *,
     address: str = "",
+    edition: str = "",
 ) -> Site:
     """Build the site from executed notebooks (FRONT among them), handouts, and more pages by name.
 
     Handouts are shown without being run: their tasks are still to be done. If nothing has changed
     since the last build, the site is left as it is. `address` is the URL where it will be published.
+    With an `edition` (see `lite.build`), each notebook's page has a button that opens it in
+    JupyterLite.
     """
     record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
     ran = sorted(notebook.executed.name for notebook in done)
-    made_of = [library_key(course=True), ran, sheets, dict(more), address]
+    made_of = [library_key(course=True), ran, sheets, dict(more), address, edition]
     key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
     if record.exists() and (out / "index.html").exists():
         before = json.loads(record.read_text("utf-8"))
         if before["key"] == key:
             return Site(out / "index.html", *before["site"])
     record.unlink(missing_ok=True)  # so that an interrupted build leaves no record
-    site = _build(out, done, sheets, more, address)
+    site = _build(out, done, sheets, more, address, edition)
     live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
     return site
 
@@ -118,6 +121,7 @@ def _build(
     sheets: dict[str, str],
     more: Mapping[str, str],
     address: str,
+    edition: str,
 ) -> Site:
     source = cache_of(out) / "source"
     html = cache_of(out) / "html"
@@ -153,6 +157,7 @@ def _build(
         "titles": titles,
         "lessons": {name: describe_lesson(notebook) for name, notebook in notebooks.items()},
         "handouts": headings,
+        "edition": edition,
     }
     texts["index.md"] = render_page(PAGES, "index.md", **first)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
@@ -164,7 +169,7 @@ def _build(
     for name, content in files.items():
         live.write_changed(source / name, content)
     _remove_other_files(source, set(files))
-    complaints = _sphinx(source, html, address)
+    complaints = _sphinx(source, html, address, edition)
     for part in ("notebooks", "assignments", "reference"):
         _remove_other_files(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
     _publish(html, out)
@@ -241,7 +246,7 @@ def _preview(hero: live.ExportedWidget) -> bytes:
     return web.encode_jpeg(np.hstack([left[:, :middle], right[:, middle:]]))
 
 
-def _sphinx(source: Path, html: Path, address: str) -> list[str]:
+def _sphinx(source: Path, html: Path, address: str, edition: str) -> list[str]:
     """Run Sphinx and return its warnings."""
     from sphinx.application import Sphinx
 
@@ -249,7 +254,8 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
 
     complaints = io.StringIO()
     notes = html.parent / "doctrees"
-    settings = SETTINGS | {"html_baseurl": address and address.rstrip("/") + "/"}
+    base_url = address and address.rstrip("/") + "/"
+    settings = SETTINGS | {"html_baseurl": base_url, "html_context": {"edition": edition}}
     Sphinx(source, None, html, notes, "html", settings, status=None, warning=complaints).build()
     return [
         line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()

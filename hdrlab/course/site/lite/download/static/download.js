@@ -1,0 +1,33 @@
+// An extension of JupyterLab, written as the prebuilt module that JupyterLab loads: the command
+// "Download my notebook". JupyterLite 0.5 has no entry for a download in the menu of a notebook, and
+// its own command names the file after the whole path, with the folder of the edition.
+const COMMAND = "hdrlab:download";
+
+async function download(context) {
+  await context.save();
+  const text = JSON.stringify(context.model.toJSON(), null, 1) + "\n";
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "application/x-ipynb+json" }));
+  link.download = context.path.split("/").pop();
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+const plugin = {
+  id: "hdrlab-download:command",
+  autoStart: true,
+  activate: ({ commands, shell }) => {
+    commands.addCommand(COMMAND, {
+      label: "Download my notebook",
+      caption: "Save this notebook as a file, to hand it in. Until then it is in this browser only.",
+      isEnabled: () => Boolean(shell.currentWidget?.context?.model),
+      execute: () => download(shell.currentWidget.context),
+    });
+  },
+};
+
+globalThis._JUPYTERLAB = globalThis._JUPYTERLAB ?? {};
+globalThis._JUPYTERLAB["hdrlab-download"] = {
+  init: () => {},
+  get: () => Promise.resolve(() => ({ __esModule: true, default: plugin })),
+};
