@@ -26,6 +26,7 @@ from hdrlab.course.site.lite import wheels
 from hdrlab.errors import InputError
 
 HERE = Path(__file__).parent
+KERNEL_DISTRIBUTION = "jupyterlite-pyodide-kernel"
 KERNEL = "@jupyterlite/pyodide-kernel-extension"
 LABEXTENSIONS = "labextensions"
 # extensions of JupyterLab: the kernel, sliders, and the widgets of hdrlab
@@ -110,9 +111,9 @@ def build(
 ) -> None:
     """Build the folder `lite` of the site in `out`; if nothing has changed, it is left as it is."""
     edition = edition_of(notebooks, handouts)
-    versions = [
-        metadata.version(name) for name in ("jupyterlite-core", "jupyterlite-pyodide-kernel")
-    ]
+    packages = [metadata.distribution(name) for name in ("jupyterlite-core", KERNEL_DISTRIBUTION)]
+    packages += wheels.needed_distributions()
+    versions = [f"{package.name} {package.version}" for package in packages]
     key = f"{library_key(course=True)} {edition} {pyodide} {versions}"
     record = cache / "lite.txt"
     target = out / "lite"
@@ -171,8 +172,10 @@ def _find_extension(name: str) -> Path:
 
 
 def _run_jupyterlite(source: Path, made: Path) -> None:
-    """Build JupyterLite's app for notebooks, without the settings of this computer's user."""
-    command = [sys.executable, "-m", "jupyterlite_core", "build", "--apps=notebooks"]
+    """Build JupyterLite's apps for notebooks, without the settings of this computer's user."""
+    command = [sys.executable, "-m", "jupyterlite_core", "build"]
+    # notebooks, and the list of files behind "Open..." in their menu
+    command += ["--apps=notebooks", "--apps=tree"]
     command += ["--no-sourcemaps", "--no-unused-shared-packages", "--ignore-sys-prefix"]
     command += [f"--FederatedExtensionAddon.extra_labextensions_path={source / LABEXTENSIONS}"]
     command += [f"--lite-dir={source}", f"--output-dir={made}"]

@@ -3,6 +3,8 @@
 (() => {
   const DATABASE = "hdrlab notebooks"; // as in lite/build.py
   const STORE = "files";
+  // as in lite/download/static/download.js
+  const KERNEL = { display_name: "Python 3 (ipykernel)", language: "python", name: "python3" };
   const place = document.querySelector(".run");
   if (!place) return;
   const { lite, path } = place.dataset;
@@ -45,7 +47,8 @@
   }
 
   function download(file) {
-    const text = JSON.stringify(file.content, null, 1) + "\n";
+    const notebook = { ...file.content, metadata: { ...file.content.metadata, kernelspec: KERNEL } };
+    const text = JSON.stringify(notebook, null, 1) + "\n";
     const href = URL.createObjectURL(new Blob([text], { type: "application/x-ipynb+json" }));
     element("a", { href, download: name.split("/").pop() }).click();
     setTimeout(() => URL.revokeObjectURL(href), 60_000);

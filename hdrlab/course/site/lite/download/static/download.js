@@ -2,10 +2,14 @@
 // "Download my notebook". JupyterLite 0.5 has no entry for a download in the menu of a notebook, and
 // its own command names the file after the whole path, with the folder of the edition.
 const COMMAND = "hdrlab:download";
+// as on a computer, where there is no kernel "Python (Pyodide)"
+const KERNEL = { display_name: "Python 3 (ipykernel)", language: "python", name: "python3" };
 
 async function download(context) {
   await context.save();
-  const text = JSON.stringify(context.model.toJSON(), null, 1) + "\n";
+  const notebook = context.model.toJSON();
+  notebook.metadata.kernelspec = KERNEL;
+  const text = JSON.stringify(notebook, null, 1) + "\n";
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([text], { type: "application/x-ipynb+json" }));
   link.download = context.path.split("/").pop();
