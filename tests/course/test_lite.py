@@ -95,6 +95,29 @@ def test_pyodide_may_be_at_an_address():
 
 
 @pytest.mark.notebooks
+@pytest.mark.skipif(find_spec("myst_nb") is None, reason='the site needs pip install ".[site]"')
+def test_a_page_of_a_notebook_opens_it_in_jupyterlite_and_other_pages_have_no_button(tmp_path):
+    from sphinx.application import Sphinx
+
+    from hdrlab.course.site.sphinx import SETTINGS
+
+    source = tmp_path / "source"
+    (source / "assignments").mkdir(parents=True)
+    (source / "assignments" / "hw2.ipynb").write_bytes(SHEET.read_bytes())
+    toctree = "```{toctree}\nassignments/hw2\n```\n"
+    (source / "index.md").write_text(f"# First page\n\nA text.\n\n{toctree}")
+    html = tmp_path / "html"
+    settings = SETTINGS | {"html_context": {"edition": "0123abcd"}}
+    Sphinx(source, None, html, tmp_path / "notes", "html", settings, status=None).build()
+    page = (html / "assignments" / "hw2.html").read_text("utf-8")
+    path = "0123abcd/assignments/hw2.ipynb"
+    assert f'href="../lite/notebooks/index.html?path={path}"' in page
+    assert f'href="../lite/files/{path}" download' in page
+    assert 'src="../_static/lite.js' in page
+    assert "Run this page" not in (html / "index.html").read_text("utf-8")
+
+
+@pytest.mark.notebooks
 def test_a_site_without_requests_elsewhere_has_its_notebooks_packages_and_pyodide(tmp_path):
     out = tmp_path / "site"
     out.mkdir()

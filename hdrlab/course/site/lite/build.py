@@ -203,7 +203,7 @@ def _configure(path: Path, pyodide_url: str, packages: list[str]) -> None:
 
 def _needed_packages(lock: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the packages of Pyodide that notebooks load, as far as the folder has them."""
-    needed = {}
+    needed: dict[str, Any] = {}
     names = [*KERNEL_PACKAGES, *wheels.COMPILED]
     while names:
         name = canonicalize_name(names.pop())
