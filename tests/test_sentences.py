@@ -290,6 +290,9 @@ SENTENCES = {
         ),
     },
     "07": {
+        "its slope falls from 2.3 in the dark to 0.5 near white": lambda n: (
+            [round(slope, 1) for slope in slopes_of_film(n)] == [2.3, 0.5]
+        ),
         "have a slope of 1, those of `gamma` 0.45": lambda n: round(1 / 2.2, 2) == 0.45,
         "order 10 is then off by two in a thousand": lambda n: (
             round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
@@ -323,6 +326,7 @@ SENTENCES = {
         "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
+        "only its darkest sample is missing": lambda n: len(n.two_grids[1].I) == 14,
         "The screen and the many times are hardly worse than the true curve": lambda n: (
             max(radiance_off(n, "a screen"), radiance_off(n, "a chart"))
             < 0.002 + radiance_off(n, "true")
@@ -458,6 +462,14 @@ SENTENCES = {
         ),
         "and by six pixels at a width of 2000 pixels": lambda n: (
             round(np.deg2rad(np.abs(n.degrees).max()) * np.hypot(1000, 1333)) == 6
+        ),
+        "Here $g$ comes from the same times": lambda n: (
+            round(
+                n.light.exposure_ratio(
+                    n.dark, n.bright, n.debevec.recover(n.images, n.bracket.times**2)[:, 1]
+                )
+            )
+            == n.k0**2
         ),
         "the photos agree equally well": lambda n: (
             np.ptp([one.spread for one in n.both.values()]) < 0.002
@@ -1011,6 +1023,13 @@ def spline_error(n, one):
 def spline_off(n, found):
     """Return by how many percent of the range a joined curve is off at most."""
     return max(np.abs(spline_error(n, one)).max() for one in found.values())
+
+
+def slopes_of_film(n):
+    """Return how steeply film's level rises with that of a photo with half the exposure, at both ends."""
+    film = n.responses.as_response("film")
+    ends = film.inverse(np.array([0.001, 0.002])), np.array([0.498, 0.499])
+    return [np.diff(film.f(2 * X))[0] / np.diff(film.f(X))[0] for X in ends]
 
 
 def lamps(n):

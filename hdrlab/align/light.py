@@ -148,7 +148,8 @@ def error(d: F64) -> float:
 def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     """Return the exposure ratio k from the histograms of two photographs, without alignment.
 
-    It is the median over the levels that both photographs measure; 1 where there is none.
+    It is the median over the levels that both photographs measure; 1 where there is none. If g was
+    estimated with wrong times of these photographs, k repeats the error.
 
     Examples
     --------

@@ -62,7 +62,7 @@ def correlation(c: ArrayLike, *, marks: Mapping[str, tuple[float, float]] | None
 
 def level(state: State) -> Figure:
     """Draw the difference at the end of a level's simplex, and the error of each step."""
-    d, final_error = differences(state.X, state.H)
+    d = differences(state.X, state.H)[0]
     tall = WIDTH_INCHES * d.shape[0] / d.shape[1]
     total = tall + 2.3
     figure = Figure(figsize=(WIDTH_INCHES, total), dpi=100)
@@ -73,7 +73,7 @@ def level(state: State) -> Figure:
     )
     bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
-    above.set_title(f"level {state.level}, {size}: error e = {final_error:.4f}", fontsize=11)
+    above.set_title(f"level {state.level}, {size}: error e = {state.errors[-1]:.4f}", fontsize=11)
     ax = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total))
     e = 1000 * state.errors
     ax.plot(e, color=LINE_COLOR, linewidth=1.8)
