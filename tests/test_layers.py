@@ -82,6 +82,9 @@ ONLY_IN = {  # package -> rooms
         ["nbformat", "nbclient", "sphinx", "numpydoc", "docutils", "ziamath", "latex2mathml"],
         {"course"},
     ),  # the site
+    **dict.fromkeys(
+        ["jupyterlite_pyodide_kernel", "jupyter_core", "packaging"], {"course"}
+    ),  # notebooks that run on the site
     "pyseccomp": {"course"},  # the sandbox
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
     "jinja2": {"show", "course"},
