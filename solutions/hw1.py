@@ -31,8 +31,7 @@ use_plan("hw1")
 #
 # $$\mathrm{EV} = 2\log_2 F - \log_2 T - \log_2\frac{S}{100}.$$
 #
-# The arguments are numbers or arrays of any shape. If a setting is not positive, raise a
-# `ValueError`.
+# The arguments are numbers or arrays of any shape, all above 0.
 
 # %% task="ev"
 # Return EV = 2 log2 F - log2 T - log2(S / 100).
@@ -144,7 +143,8 @@ pictures.picture(
 #   is enough for all checks.
 # - Test the nine offsets around twice the offset found so far. For each, XOR the bitmaps, AND the
 #   result with both exclusion bitmaps, and count. Use only the overlap of the images. The nine
-#   overlaps differ in size, so compare counts as fractions of the overlap.
+#   overlaps differ in size, so compare counts as fractions of the overlap. (Ward compares the
+#   counts themselves. The checks accept that, too.)
 # - Take the offset with the smallest fraction. In a tie, the center wins; between two others,
 #   either may win.
 #

@@ -123,7 +123,7 @@ pictures.picture(
 # 1. Compute the irradiances from the curve, and the curve from the irradiances.
 # 2. Fill values without pixels from their neighbors, by linear interpolation or from the nearest,
 #    as you like.
-# 3. Divide the curve by $f^{-1}(128)$, and yield it.
+# 3. Divide the curve by $f^{-1}(128)$, and yield it. (The checks accept any other factor.)
 #
 # Stop when $f^{-1}$ changes by less than `tolerance` everywhere, or after `max_iterations`.
 #
@@ -168,7 +168,7 @@ pictures.picture(
 #
 # `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames expose well, between 0.05 and
 # 0.98. Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, increasing, with $g(128) = 0$ in each
-# channel. The checks pass the parameters `order` and `eps`.
+# channel. (The checks accept any number added to $g$.) They pass the parameters `order` and `eps`.
 
 # %% task="recover"
 

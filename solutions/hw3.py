@@ -54,7 +54,7 @@ pictures.picture(
 #
 # $$\ln E = \frac{\sum_j w(Z_j)\,[\,g(Z_j) - \ln t_j\,]}{\sum_j w(Z_j)}.$$
 #
-# - `images` are `(P, H, W[, 3])` bytes, and `times` are `(P,)` seconds.
+# - `images` are `(P, H, W[, 3])` bytes, in any order, and `times` are their `(P,)` seconds.
 # - `g` is `(256,)`, or has one column for each channel.
 # - `w` is `(256,)`. If it is not given, use the hat of homework 2, which is 0 at both ends.
 #

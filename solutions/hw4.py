@@ -201,8 +201,9 @@ pictures.picture(
 # A large contrast has steep gradients at some level of the pyramid of $l = \ln L$. Level $k$ has
 # half the size of level $k - 1$ (blur, then take every second pixel; round sides up), as long as
 # neither side falls below 32. Gradients are central differences over $2^{k+1}$ pixels of the image,
-# with mirrored edges. A gradient of $\alpha$ times the mean gradient of its level stays unchanged,
-# and a larger one is reduced, the more so the smaller $\beta$ is:
+# with mirrored edges. (A factor that all gradients of a level share cancels. The checks accept any.)
+# A gradient of $\alpha$ times the mean gradient of its level stays unchanged, and a larger one is
+# reduced, the more so the smaller $\beta$ is:
 #
 # $$\varphi_k = \Bigl(\frac{|\nabla l_k|}{\alpha\, \overline{|\nabla l_k|}}\Bigr)^{\beta - 1}, \qquad
 #   \Phi_d = \varphi_d, \qquad \Phi_k = \mathrm{enlarged}(\Phi_{k+1})\, \varphi_k.$$
@@ -238,8 +239,8 @@ pictures.picture(
 #
 # $$2\cos\frac{\pi i}{H} - 2 + 2\cos\frac{\pi j}{W} - 2,$$
 #
-# and transform back with `idctn`. The coefficient $(0, 0)$ is the mean: set it to 0. You may use a
-# sparse solver instead.
+# and transform back with `idctn`. The coefficient $(0, 0)$ is the mean: set it to 0. (The checks
+# accept any other mean.) You may use a sparse solver instead.
 
 # %% task="solve"
 # Return the image u with mean 0 whose Laplacian is div G.

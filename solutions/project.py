@@ -44,6 +44,8 @@ use_plan("project")
 # - $\delta$ is that of homework 4, $10^{-6}$.
 # - `white=None` takes the brightest $L_m$ except for 0.01 % of the pixels, by any quantile rule,
 #   and at least 1.
+# - $L_d$ is clipped at 1. It is finite for any scene, even if all of it is black, and the same for
+#   the same scene.
 #
 # The checks use finite luminance and parameters above 0. For anything else, the behavior is up to
 # you. `key="auto"` exists only in the library.

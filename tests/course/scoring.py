@@ -46,21 +46,20 @@ def checks(task, variant=""):
     return found
 
 
+def ask(check, subject, seed=0):
+    """Return the error that a check raises for a subject, or None if it holds."""
+    wanted = inspect.signature(check).parameters
+    given = {"subject": subject, "rng": np.random.default_rng(seed)}
+    try:
+        check(**{one: given[one] for one in wanted})
+    except Exception as error:  # whatever a student's code raises costs that promise, and no other
+        return error
+    return None
+
+
 def answered(task, subject, seed=0, variant=""):
     """Return what each check of a task says of a subject: None where it holds."""
-    said = {}
-    for name, check, *_ in checks(task, variant):
-        wanted = inspect.signature(check).parameters
-        given = {"subject": subject, "rng": np.random.default_rng(seed)}
-        try:
-            check(**{one: given[one] for one in wanted})
-        except (
-            Exception
-        ) as error:  # whatever a student's code raises costs that promise, and no other
-            said[name] = error
-        else:
-            said[name] = None
-    return said
+    return {name: ask(check, subject, seed) for name, check, *_ in checks(task, variant)}
 
 
 def score(task, subject, seed=0, variant=""):

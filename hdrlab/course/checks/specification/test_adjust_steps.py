@@ -1,11 +1,9 @@
-"""Checks of adjust_steps(h, db, D), Ward's histogram trimming: the first part of each state is h
-after a trim.
-"""
+"""Checks of adjust_steps(h, db, D), Ward's histogram trimming: states (h, ceiling, T, trimmings)."""
 
 import numpy as np
 
 from hdrlab.core.steps import last
-from hdrlab.course.checks.compare import finite, points, require, same, states
+from hdrlab.course.checks.compare import finite, parts, points, require, same, states
 from hdrlab.tonemap import ward
 
 
@@ -121,3 +119,45 @@ def test_a_flat_histogram_is_left_alone(subject, rng):
         what="h of one peak",
         kind="curve",
     )
+
+
+@points(2, needs="test_the_last_histogram_is_correct")
+def test_each_state_says_what_was_trimmed_at_which_ceiling(subject, rng):
+    """Which four values does a state have, and what are they before the first trim?
+
+    h after the trim, the ceiling, the T before the trim from which it was computed, and the sum of
+    what was cut off.
+
+    The first state is (h, infinity, sum of h, infinity).
+    """
+    h, db, D = drawn(rng)
+    first, second = (
+        parts(one, 4, what="a state") for one in states(subject.adjust_steps(h, db, D))[:2]
+    )
+    T = h.sum()
+    cut = np.maximum(h - T * db / D, 0).sum()
+    same(first[0], h, 1e-6, what="h of the first state", kind="curve")
+    same(first[2], T, 1e-6 * T, what="T of the first state")
+    said = "the first state: expected an infinite ceiling and an infinite trimmed amount"
+    require(np.isposinf(first[1]) and np.isposinf(first[3]), said)
+    same(second[1], T * db / D, 1e-6 * T, what="the ceiling of the first trim")
+    same(second[2], T, 1e-6 * T, what="T of the first trim")
+    same(second[3], cut, 1e-6 * T, what="the trimmed amount of the first trim")
+
+
+@points(2, needs="test_the_last_histogram_is_correct")
+def test_tolerance_decides_when_to_stop(subject, rng):
+    """When is a trim the last one?
+
+    When it cuts off less than `tolerance` of the T before it, or when at most `tolerance` of the
+    first T is left.
+
+    With a wide display range, every trim cuts off most of what is left: then the second condition
+    ends the loop.
+    """
+    h, db, D = drawn(rng)
+    for tolerance, width in ((0.2, db), (0.005, db), (0.05, db / 20)):
+        expected = [one.h for one in ward.adjust_steps(h, width, D, tolerance=tolerance)]
+        came = states(subject.adjust_steps(h, width, D, tolerance=tolerance))
+        what = f"the number of states with tolerance={tolerance} and db={width:.3g}"
+        same(len(came), len(expected), 1, what=what)  # 1: of which T the fraction is taken

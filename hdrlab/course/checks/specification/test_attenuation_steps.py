@@ -120,3 +120,36 @@ def test_the_last_phi_combines_all_levels(subject, rng):
         what="ln Phi minus the correct one",
         picture=True,
     )
+
+
+@points(1, needs="test_each_level_is_attenuated_by_its_own_slopes")
+def test_a_slope_below_noise_counts_as_noise(subject, rng):
+    """What does your phi do to a gradient of almost 0?
+
+    It must not amplify it without limit: that would be noise.
+
+    Use max(slope, noise * mean) in place of the slope.
+    """
+    noise = float(rng.uniform(0.3, 0.6))
+    came, _ = asked(subject, drawn(rng), alpha=0.1, beta=0.8, noise=noise)
+    for one in came:
+        slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
+        expected = -0.2 * np.log(np.maximum(slope / slope.mean(), noise) / 0.1)
+        what = f"ln phi of level {int(one[0])} with noise={noise:.2g}"
+        same(np.log(np.asarray(one[3], float)), expected, 0.02, what=what, picture=True)
+
+
+@points(1, needs="test_the_last_phi_combines_all_levels")
+def test_phi_is_enlarged_by_linear_interpolation(subject, rng):
+    """Divide your last Phi by its phi. Do you see blocks of 2 x 2 equal pixels?
+
+    They come from repeated pixels, and become edges in the image.
+
+    Interpolate along straight lines, for example with scipy.ndimage.map_coordinates and order=1.
+    """
+    came, _ = asked(subject, drawn(rng), alpha=0.1, beta=0.8)
+    enlarged = np.asarray(came[-1][4], float) / np.asarray(came[-1][3], float)
+    steps = np.abs(np.diff(enlarged[INNER], axis=1))
+    equal = float(np.mean(steps < 1e-3 * steps.mean()))
+    said = f"Phi / phi of the full image: {equal:.0%} of the neighbors in a row are equal"
+    require(equal < 0.3, said, came=enlarged, kind="image")

@@ -81,8 +81,9 @@ def test_between_two_bounds_ln_E_is_their_mean(subject, rng):
     ln E = (lower + upper) / 2.
     """
     Z, B = drawn(rng)
-    truth = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[0]
-    same(asked(subject, Z, B)[0], np.log(truth), 1e-3, what="ln E")
+    for frames in ([0, 1, 2], [2, 0, 1]):
+        truth = bound(Z[frames], B[frames], G, TOP, np.ones(Z.shape, bool))[0]
+        same(asked(subject, Z[frames], B[frames])[0], np.log(truth), 1e-3, what="ln E")
 
 
 @points(2)
@@ -108,5 +109,25 @@ def test_the_flags_say_why_a_pixel_has_no_measurement(subject, rng):
     flags = 1 * clipped + 2 * dark, and 8 where a pixel is neither.
     """
     Z, B = drawn(rng)
-    flags = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[1]
-    same(asked(subject, Z, B)[1], flags, 0, what="the flags")
+    shown = np.ones(Z.shape, bool)
+    same(asked(subject, Z, B)[1], bound(Z, B, G, TOP, shown)[1], 0, what="the flags")
+    shown[0] = False
+    what = "the flags of pixels that the first photo does not show"
+    same(asked(subject, Z, B, shown)[1], bound(Z, B, G, TOP, shown)[1], 0, what=what)
+
+
+@points(2)
+def test_a_pixel_without_any_bound_is_0_and_has_the_flag_8(subject, rng):
+    """All values of such a pixel are between 0 and `top`. Which bounds does it have?
+
+    None: only 0 is dark, and only `top` and above are clipped.
+
+    E = 0, and the flag is 8.
+    """
+    Z, B = drawn(rng)
+    Z[:, ::2] = rng.integers(2, TOP - 1, Z[:, ::2].shape)
+    Z[0, ::4] = 1
+    Z[1, ::4] = TOP - 1
+    E, flags = parts(subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool)), 2)
+    same(np.asarray(E)[::2], np.zeros(20), 0, what="E of pixels without bounds")
+    same(np.asarray(flags)[::2], np.full(20, 8), 0, what="the flags of pixels without bounds")

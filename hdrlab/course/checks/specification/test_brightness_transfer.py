@@ -66,6 +66,9 @@ def test_T_is_not_known_at_the_end_levels_of_b(subject, rng):
     h_B[-1] += h_B.sum() // 3
     T = brightness_transfer(h_A, h_B)
     same(subject.brightness_transfer(h_A, h_B)[-3:], T[-3:], 0.02, what="T of the brightest")
+    T = brightness_transfer(h_A[::-1], h_B[::-1])
+    came = subject.brightness_transfer(h_A[::-1], h_B[::-1])
+    same(came[:3], T[:3], 0.02, what="T of the darkest")
 
 
 @points(1, needs="test_pixels_of_equal_rank_correspond")

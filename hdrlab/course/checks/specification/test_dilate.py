@@ -1,7 +1,7 @@
 """Checks of dilate(mask, margin), the margin of a ghost mask: mask (H, W)."""
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import binary_fill_holes, distance_transform_edt
 
 from hdrlab.course.checks.compare import points, same
 from hdrlab.radiance.deghosting import regions
@@ -12,6 +12,19 @@ def drawn(rng):
     mask = rng.uniform(size=(40, 50)) < 0.004
     mask[int(rng.integers(5, 30)), 8:20] = True
     return mask, int(rng.integers(3, 6))
+
+
+def with_a_hole_at_a_corner(rng):
+    """Return a mask, and the same mask widened by 1 and filled.
+
+    A hole in it is closed to steps up, down, left and right, but open to diagonal steps.
+    """
+    while True:
+        mask = rng.uniform(size=(40, 50)) < 0.15
+        near = distance_transform_edt(~mask) <= 1
+        filled = binary_fill_holes(near)
+        if np.any(filled != binary_fill_holes(near, np.ones((3, 3)))):
+            return mask, filled
 
 
 @points(5)
@@ -37,7 +50,7 @@ def test_the_inside_of_an_outline_is_marked(subject, rng):
 
     Mark a hole that the widened mask encloses on all sides, even if the outline had a gap.
 
-    Fill the holes after you have added the margin.
+    Fill the holes after you have added the margin. A path of diagonal steps does not open a hole.
     """
     closed = np.zeros((40, 40), bool)
     closed[6:34, 6:34] = True
@@ -48,6 +61,8 @@ def test_the_inside_of_an_outline_is_marked(subject, rng):
     for mask in (closed, ring):
         came = subject.dilate(mask, margin)
         same(came, regions.dilate(mask, margin), 0, what="the mask of a ring", picture=True)
+    dots, filled = with_a_hole_at_a_corner(rng)
+    same(subject.dilate(dots, 1), filled, 0, what="the mask of dots", picture=True)
 
 
 @points(1, needs="test_pixels_within_the_margin_are_marked")

@@ -48,8 +48,8 @@ def test_gains_outside_the_range_are_clipped(subject, rng):
 
     Clip g to 0 ... 1 before you apply gamma.
     """
-    for stops in ((-5, -3), (5, 7)):
-        agree(subject, rng, stops, -1.0, 3.0, k=(0.0, 0.0))
+    for stops, gamma in (((-5, -3), 2.0), ((5, 7), 1.0)):
+        agree(subject, rng, stops, -1.0, 3.0, gamma=gamma, k=(0.0, 0.0))
 
 
 @points(3)

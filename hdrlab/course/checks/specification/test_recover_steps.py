@@ -143,3 +143,19 @@ def test_the_unit_of_time_does_not_matter(subject, rng):
     Z, t = samples(rng, laws.drawn_response(rng))
     one, other = (asked(subject, Z, factor * t, max_iterations=6)[-1] for factor in (1.0, 1000.0))
     same_curve(other, one, 0.005)
+
+
+@points(1, needs="test_each_iteration_yields_a_state_and_changes_the_curve_less")
+def test_tolerance_and_max_iterations_end_it(subject, rng):
+    """When do your iterations end?
+
+    After the first iteration in which f^-1 changes by less than `tolerance` everywhere, and after
+    `max_iterations` at the latest.
+
+    Do not write numbers of your own in their place.
+    """
+    Z, t = samples(rng, laws.drawn_response(rng), N=300)
+    for knobs, most in (({"tolerance": 1e9}, 1), ({"tolerance": 0.0, "max_iterations": 3}, 3)):
+        count = len(asked(subject, Z, t, **knobs))
+        said = f"expected at most {most + 1} states with {knobs}, got {count}"
+        require(count <= most + 1, said)

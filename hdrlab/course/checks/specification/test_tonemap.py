@@ -57,7 +57,7 @@ def test_the_default_white_is_the_brightest_luminance_without_outliers(subject, 
     L[:6, :9] = (
         float(rng.uniform(1.5, 3)) * L.max()
     )  # so many that every rule of quantiles finds them
-    for one in (L, np.sqrt(np.sqrt(L))):
+    for one in (L, L**0.1):  # all of the second one is below 1
         Lm = reinhard.scale_to_key(one.astype(float))
         expected = reinhard.display(Lm, Lm, max(1.0, Lm.max()))
         same(subject.tonemap(one), expected, 0.01, what="Ld without a white", picture=True)
@@ -155,14 +155,3 @@ def test_the_unit_of_luminance_cancels(subject):
     Scale by a statistic of the image itself: the log average, the median, or a percentile.
     """
     laws.exposure(asked(subject))
-
-
-@points(1, needs=SHOWN)
-def test_it_takes_any_memory_layout(subject):
-    """Does your code depend on how the array is stored in memory?
-
-    A transposed array or a view with other strides has the same pixels.
-
-    Start with L = np.asarray(L, dtype=float).
-    """
-    laws.takes_any_memory_layout(asked(subject))
