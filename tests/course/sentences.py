@@ -40,7 +40,7 @@ def sentences_of(text):
         words = re.sub(r"^(- |\d+\. )", "", words)
         for part in re.split(r"(\$\$.*?\$\$)", words):
             pieces = [part] if part.startswith("$$") else SENTENCE_END.split(part)
-            found += [piece.strip() for piece in pieces if re.search("[A-Za-z]{2}", piece)]
+            found += [piece.strip() for piece in pieces if re.search("[A-Za-z]", piece)]
     return found
 
 

@@ -90,10 +90,6 @@ def to_radiance_keeps_the_exponent(pixels):
     return np.concatenate([to_radiance(pixels), pixels[..., 3:]], axis=-1)
 
 
-def to_radiance_of_exponent_0(pixels):
-    return pixels[..., :3] / 256 * 2.0 ** (pixels[..., 3:].astype(float) - 128)
-
-
 def decode_half_infinity_is_a_number(bits):
     e = bits.astype(int) >> 10 & 31
     return np.where(e == 31, np.where(bits >> 15, -65536.0, 65536.0), decode_half(bits))
