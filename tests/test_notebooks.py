@@ -16,7 +16,7 @@ PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip")}
 PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "brush", "pixel_mean")}
 PICTURES |= {"widgets.exposure_window"}
 PICTURES |= {"widgets.bitmap_difference"}
-PICTURES |= {"widgets.zone_scale"}
+PICTURES |= {"widgets.zone_scale", "widgets.gain_screen"}
 LONGEST = 100  # letters: what JupyterLab shows at 1280 px without scrolling
 
 pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

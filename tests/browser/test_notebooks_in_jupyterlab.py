@@ -179,6 +179,7 @@ MOVES = {
     "pixel": move_pixel,
     "exposure": move_shutter,
     "zones": move_zones,
+    "gains": move_shutter,
 }
 MOVES |= {"predict": move_predict}
 # It asks nothing of Python; `test_pressed_pixels` presses it, and the tier of all notebooks opens its own.

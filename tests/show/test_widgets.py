@@ -98,7 +98,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
-    kinds += [widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
+    kinds += [widgets.GainScreen, widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
     for widget in kinds:
         script = widget._esm
         assert str(script).count("export default") == 1 and "http" not in str(script)
@@ -802,4 +802,20 @@ def test_a_zone_scale_rejects_what_it_cannot_show():
 
 def test_a_zone_scale_falls_back_to_a_picture_with_alt_text():
     html, text = widgets.zone_scale(np.ones((4, 6)), alt="A gray wall").fallback()
+    assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"
+
+
+def test_a_gain_screen_rejects_what_it_cannot_show():
+    base, g = np.full((4, 6, 3), 90, np.uint8), np.ones((4, 6, 3))
+    wrong = ({"base": base[1:]}, {"base": base / 255}, {"g": 2 * g}, {"headroom": 1.0}, {"alt": ""})
+    for changed in (*wrong, {"screen": 0.5}):
+        arguments = {"base": base, "g": g, "low": [0] * 3, "high": [2] * 3, "alt": "Gray"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.gain_screen(**arguments)
+
+
+def test_a_gain_screen_falls_back_to_a_picture_with_alt_text():
+    base, g = np.full((4, 6, 3), 90, np.uint8), np.ones((4, 6, 3))
+    figure = widgets.gain_screen(base, g, [0] * 3, [2] * 3, alt="A gray wall")
+    html, text = figure.fallback()
     assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"

@@ -9,6 +9,7 @@ brush    the Detail Brush over a radiance map: `show.widgets.lens`
 exposure_window  drag the range of a photo along a histogram: `show.widgets.exposure`
 bitmap_difference  drag one bitmap over another, count the bits that differ: `show.widgets.bitmaps`
 zone_scale  drag Reinhard's key and white point along the zones: `show.widgets.zones`
+gain_screen  drag a screen's headroom, see base and gain map on it: `show.widgets.gains`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
 `play` and `tune` work with every algorithm: `states` is any iterable (the library's
@@ -43,6 +44,7 @@ from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.bitmaps import BitmapDifference, bitmap_difference
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.exposure import ExposureWindow, exposure_window
+from hdrlab.show.widgets.gains import GainScreen, gain_screen
 from hdrlab.show.widgets.lens import Brush, brush
 from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
 from hdrlab.show.widgets.scripts import Widget, script
@@ -53,6 +55,7 @@ __all__ = [
     "Blinker",
     "Brush",
     "ExposureWindow",
+    "GainScreen",
     "PixelMean",
     "Player",
     "Tuner",
@@ -62,6 +65,7 @@ __all__ = [
     "blink",
     "brush",
     "exposure_window",
+    "gain_screen",
     "pixel_mean",
     "play",
     "tune",

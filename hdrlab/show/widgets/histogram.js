@@ -10,9 +10,8 @@ function luminances(E, channels) {
     0.2126 * E[red(i)] + 0.7152 * E[red(i) + 1] + 0.0722 * E[red(i) + 2]);
 }
 
-// A histogram as an element whose shape is the bars, so that a change of its background colors them. `toStops` gives
-// the place of a luminance on the axis.
-function histogram(parent, L, [low, high], toStops = Math.log2) {
+// The bars of a histogram as a shape. `toStops` gives the place of a luminance on the axis.
+function barShape(L, [low, high], toStops = Math.log2) {
   const counts = new Float64Array((high - low) * BINS_PER_STOP);
   for (const each of L) {
     const bin = each > 0 ? Math.floor((toStops(each) - low) * BINS_PER_STOP) : 0;
@@ -24,8 +23,13 @@ function histogram(parent, L, [low, high], toStops = Math.log2) {
     const top = `${100 * (1 - count / largest)}%`;
     corners.push(`${(100 * k) / counts.length}% ${top}`, `${(100 * (k + 1)) / counts.length}% ${top}`);
   });
+  return `polygon(${corners.join(", ")}, 100% 100%)`;
+}
+
+// A histogram as an element of that shape, so that a change of its background colors the bars.
+function histogram(parent, L, span, toStops) {
   const bars = element(parent, "div", { className: "hdrlab-histogram" });
-  bars.style.clipPath = `polygon(${corners.join(", ")}, 100% 100%)`;
+  bars.style.clipPath = barShape(L, span, toStops);
   return bars;
 }
 
