@@ -52,7 +52,7 @@ def test_level_shows_the_difference_and_the_error_of_every_step():
         level=2, X=X, path=np.zeros((5, 3)), errors=np.geomspace(0.1, 0.01, 5), H=TRUE
     )
     figure = drawn.level(state)
-    assert "level 2" in title(figure) and "e = 0.0000" in title(figure)
+    assert "level 2" in title(figure) and "e = 0.0100" in title(figure)
     assert figure.axes[1].lines[0].get_ydata().tolist() == (1000 * state.errors).tolist()
     assert pictures.render(figure).ndim == 3
 
