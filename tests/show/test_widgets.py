@@ -819,3 +819,25 @@ def test_a_gain_screen_falls_back_to_a_picture_with_alt_text():
     figure = widgets.gain_screen(base, g, [0] * 3, [2] * 3, alt="A gray wall")
     html, text = figure.fallback()
     assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"
+
+
+def test_gsolve_by_hand_rejects_photos_from_which_nothing_can_be_solved():
+    images = np.array([10, 40, 160], np.uint8)[:, None, None] * np.ones((1, 4, 6), np.uint8)
+    wrong = (
+        {"images": images.astype(np.uint16)},
+        {"times": [1, 1, 1]},
+        {"pixels": 1},
+        {"alt": ""},
+        {"images": np.zeros_like(images)},
+    )
+    for changed in wrong:
+        arguments = {"images": images, "times": [1, 4, 16], "alt": "Gray"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.gsolve_by_hand(**arguments)
+
+
+def test_gsolve_by_hand_falls_back_to_a_plot_with_alt_text():
+    ramp = np.linspace(1, 60, 64).reshape(8, 8)
+    images = np.stack([ramp, 4 * ramp]).astype(np.uint8)
+    html, text = widgets.gsolve_by_hand(images, [1, 4], alt="A ramp of gray").fallback()
+    assert "<img" in html and 'alt="A ramp of gray"' in html and text == "A ramp of gray"
