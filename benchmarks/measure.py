@@ -33,6 +33,9 @@ ROUNDS, MOST_ROUNDS, ENOUGH = (
     41,
     3.0,
 )  # rounds at least and at most, and seconds after which the least suffice
+# Runs of several seconds vary by little: so many rounds suffice if they took so many seconds.
+LONG_ROUNDS = 2
+LONG_SECONDS = 10.0
 
 
 def rows_of(subject: str) -> Sequence[Any]:
@@ -47,7 +50,9 @@ def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, s
     one, default = child(subject, row, folder, "one"), child(subject, row, folder, "default")
     results = {}
     for who, seconds in one["seconds"].items():
-        memory = child(subject, row, folder, "memory", who)["megabytes"]
+        memory = one["megabytes"][who]
+        if memory is None:
+            memory = child(subject, row, folder, "memory", who)["megabytes"]
         times = median(seconds), median(default["seconds"][who])
         results[who] = Figures(*times, memory, one["errors"][who], one["floors"][who])
     return results, one["missing"]
@@ -82,17 +87,26 @@ def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None
 
 
 def timed(case: Case) -> dict[str, Any]:
-    """Return the seconds of every round, the errors and the floors of everyone, after a round to warm up."""
+    """Return the seconds of every round, the errors and the floors of everyone, after a round to warm up.
+
+    The memory of a command is known from that round, too; None where nothing else than a process of
+    its own can tell it.
+    """
     errors, floors, rate, least = {}, {}, bandwidth(), list[float]()
+    megabytes = {}
     for who, run in case.runs.items():
         result = run()
         errors[who] = case.error(who, result)
+        megabytes[who] = result.megabytes if isinstance(result, Usage) else None
         reads = case.reads if isinstance(case.reads, int) else case.reads[who]
         floors[who] = (reads + size(result)) / rate if reads else None
     seconds: dict[str, list[float]] = {who: [] for who in case.runs}
     start = time.perf_counter()
     for done in range(MOST_ROUNDS):
-        if done >= ROUNDS and time.perf_counter() - start > ENOUGH:
+        elapsed = time.perf_counter() - start
+        if done >= ROUNDS and elapsed > ENOUGH:
+            break
+        if done >= LONG_ROUNDS and elapsed > LONG_SECONDS:
             break
         for who, run in case.runs.items():
             seconds[who].append(clocked(run))
@@ -101,7 +115,13 @@ def timed(case: Case) -> dict[str, Any]:
         ):  # by turns, for what the others leave in memory and on the disk slows it down
             least.append(clocked(case.least))
     floors = dict.fromkeys(floors, median(least)) if least else floors
-    return {"seconds": seconds, "errors": errors, "missing": case.missing, "floors": floors}
+    return {
+        "seconds": seconds,
+        "errors": errors,
+        "missing": case.missing,
+        "floors": floors,
+        "megabytes": megabytes,
+    }
 
 
 def bandwidth() -> float:

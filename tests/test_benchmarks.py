@@ -342,6 +342,18 @@ def test_everyone_runs_once_to_warm_up_and_once_in_each_of_at_least_five_rounds(
     assert found["errors"] == {"a": 97, "b": 98}
 
 
+def test_long_runs_are_repeated_less_and_commands_tell_their_memory_while_they_are_timed(
+    monkeypatch,
+):
+    monkeypatch.setattr(measure, "LONG_SECONDS", 0)
+    order = []
+    case = Case({"a": lambda: order.append("a") or Usage(20, 64), "b": lambda: 1}, {})
+    found = measure.timed(case)
+    assert order == ["a"] * 3
+    assert found["seconds"]["a"] == [20, 20]
+    assert found["megabytes"] == {"a": 64, "b": None}
+
+
 def test_the_floor_is_the_time_to_read_the_input_and_to_write_the_result(monkeypatch):
     monkeypatch.setattr(measure, "ENOUGH", 0)
     monkeypatch.setattr(measure, "bandwidth", lambda: 1000.0)
