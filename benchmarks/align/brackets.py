@@ -207,7 +207,7 @@ def measure_fresh_brackets(_: Path, *, seed: int, name: str) -> Mapping[str, Arr
 
 
 def measure_program(name: str, brackets: Iterable[HandheldBracket]) -> Mapping[str, ArrayLike]:
-    """Return how well a program aligns brackets."""
+    """Return how well a program aligns brackets, and print each of them when it is done."""
     errors = []
     silent = 0
     seconds = []
@@ -228,6 +228,12 @@ def measure_program(name: str, brackets: Iterable[HandheldBracket]) -> Mapping[s
         seconds.append(measure_cpu_seconds() - start)
         errors.append(misregistration(bracket, answer.homographies))
         silent += errors[-1] > WRONG_PIXELS and not answer.has_warning
+        warning = "a warning" if answer.has_warning else "no warning"
+        print(
+            f"  {name}, up to {bracket.degrees:g} degrees: {errors[-1]:.3g} pixels, {warning}, "
+            f"{seconds[-1]:.3g} s",
+            flush=True,
+        )
         if not bracket.degrees:
             still_seconds += seconds[-1]
     return {
