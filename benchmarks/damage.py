@@ -10,25 +10,37 @@ wrong pixels  the file was read with other pixels, and nobody said so
 
 Formats with checksums or with strict codes have no wrong pixels. JPEG has no checksum: a flipped bit
 may give another valid code. WebP, AVIF, HEIC and uncompressed pixels have nothing but their length.
+
+The rows `bands-...` have brackets of which one photo has a damaged band of rows, as such formats are
+read: in every photo of four scenes once, from a tripod and from a hand that moves by up to so many
+pixels each way. Sound brackets of the same scenes are the control.
+
+found         hdrlab names the damaged photo and no other one
+missed        it names none
+wrong photo   it names a sound photo
 """
 
 import io
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import tifffile
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from benchmarks.experiments import Experiment, Found, Skipped, at_most
 from benchmarks.fuzz import seeds
+from hdrlab import scenes
+from hdrlab.capture import camera
 from hdrlab.core.optional import OpenEXR, imagecodecs
 from hdrlab.errors import HdrlabError
 from hdrlab.io import photos, radiance
+from hdrlab.io.damaged_bands import find_damaged_bands
 
 HEIGHT_PIXELS = 192
 WIDTH_PIXELS = 256
@@ -281,4 +293,86 @@ def row(name: str) -> Experiment:
     return Experiment(name, title, run, (at_most(WRONG, FORMATS[name].max_wrong),))
 
 
-ROWS = tuple(row(name) for name in FORMATS)
+BAND_SHAPE = (288, 432)
+BAND_SCENES = (*scenes.PLACES, "room")
+BAND_PHOTOS = 4
+BAND_STOPS = 1.5
+DAMAGED_ROWS = slice(120, 180)
+GRAY_LEVEL = 128
+SHIFT_COLUMNS = 37
+HAND_PIXELS = (0, 2, 5)
+# Sound brackets of each scene.
+SOUND_COUNT = 6
+Photo = NDArray[np.uint8]
+
+
+def make_rows_gray(photo: Photo) -> None:
+    """Make the damaged rows gray, as decoders fill what is missing."""
+    photo[DAMAGED_ROWS] = GRAY_LEVEL
+
+
+def shift_rows(photo: Photo) -> None:
+    """Shift the damaged rows to the side, as missing bytes do."""
+    photo[DAMAGED_ROWS] = np.roll(photo[DAMAGED_ROWS], SHIFT_COLUMNS, axis=1)
+
+
+def overwrite_rows(photo: Photo) -> None:
+    """Fill the damaged rows with bytes from elsewhere."""
+    rows = photo[DAMAGED_ROWS]
+    rows[:] = np.random.default_rng(2).integers(0, 256, rows.shape)
+
+
+BAND_DAMAGES: dict[str, Callable[[Photo], None]] = {
+    "gray": make_rows_gray,
+    "shifted": shift_rows,
+    "overwritten": overwrite_rows,
+}
+
+
+def shoot_photos(scene: str, hand_pixels: int, draw: int) -> NDArray[np.uint8]:
+    """Return the photos (P, H, W, 3) of a sound bracket."""
+    rng = np.random.default_rng((BAND_SCENES.index(scene), hand_pixels, draw))
+    E = getattr(scenes, scene)(BAND_SHAPE)
+    times = camera.times_around(E, BAND_PHOTOS, stops=BAND_STOPS)
+    offsets = camera.shake(BAND_PHOTOS, radius=hand_pixels, rng=rng) if hand_pixels else None
+    return camera.shoot(E, times, offsets=offsets, rng=rng).images
+
+
+def judge_bands(_: Path, *, hand_pixels: int) -> dict[str, ArrayLike]:
+    """Return how many damaged bands are found, missed, or blamed on a sound photo."""
+    counts = {damage: Counter[str]() for damage in BAND_DAMAGES}
+    false_alarms = 0
+    for scene in BAND_SCENES:
+        sound = [shoot_photos(scene, hand_pixels, draw) for draw in range(SOUND_COUNT)]
+        false_alarms += sum(bool(find_damaged_bands(images)) for images in sound)
+        for frame in range(BAND_PHOTOS):
+            for damage, apply in BAND_DAMAGES.items():
+                images = sound[0].copy()
+                apply(images[frame])
+                named = {band.frame for band in find_damaged_bands(images)}
+                if not named:
+                    counts[damage]["missed"] += 1
+                elif named == {frame}:
+                    counts[damage]["found"] += 1
+                else:
+                    counts[damage]["wrong photo"] += 1
+    found: dict[str, ArrayLike] = {
+        f"{damage}: found, missed, wrong photo": [
+            count["found"], count["missed"], count["wrong photo"],
+        ]
+        for damage, count in counts.items()
+    }  # fmt: skip
+    return found | {FALSE_ALARMS: false_alarms}
+
+
+FALSE_ALARMS = f"sound brackets of {SOUND_COUNT * len(BAND_SCENES)} with a false alarm"
+BAND_ROWS = tuple(
+    Experiment(
+        "bands-tripod" if pixels == 0 else f"bands-hand-{pixels}",
+        f"a damaged band in one of {BAND_PHOTOS} photos, {BAND_PHOTOS * len(BAND_SCENES)} bands of a kind",
+        partial(judge_bands, hand_pixels=pixels),
+        (at_most(FALSE_ALARMS, 0),),
+    )
+    for pixels in HAND_PIXELS
+)
+ROWS = (*(row(name) for name in FORMATS), *BAND_ROWS)
