@@ -71,6 +71,8 @@
     if (!copies.length) return;
     const hasCurrent = copies.some((file) => file.path === path);
     start.textContent = hasCurrent ? "Continue your work" : "Run the new version of this page";
+    // or a student might hand in the notebook without her work
+    place.querySelector("a[download]").textContent = "Download the notebook without your work";
     const list = element("ul", {});
     list.append(...copies.map(describe));
     place.append(list);
