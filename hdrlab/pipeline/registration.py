@@ -20,6 +20,7 @@ from hdrlab.pipeline.assembly import Assembly, Method
 # What to do about photos that could not be aligned, depending on the method.
 ADVICE_AFTER_MTB = "use --align auto, which also rotates photos, or leave one out"
 ADVICE = "leave one out, or use --align none if it was the scene that moved"
+ADVICE_ABOUT_GHOSTS = "use --ghosts regions, which shows each thing once, "
 # rows of a photo that are shifted at a time
 ROWS_PER_COPY = 32
 
@@ -34,17 +35,28 @@ class Alignment:
 
 
 def align_bracket(
-    bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False
+    bracket: Bracket,
+    align: Method,
+    response: Method = "auto",
+    in_place: bool = False,
+    *,
+    removes_ghosts: bool = False,
 ) -> Assembly:
     """Return the Assembly after alignment by a method's name, your own function or "none".
 
-    `in_place` is the option of `apply_alignment`.
+    `in_place` is the option of `apply_alignment`. Where ghosts will be removed, warnings do not
+    recommend it.
     """
     # A homography needs the response, an offset does not. So it is found on demand, and once.
     get_response = cache(partial(find_provisional_response, bracket, response))
     found = estimate_alignment(bracket, align, get_response)
     g = get_response() if found.transforms.ndim == 3 else None
-    advice = ADVICE_AFTER_MTB if align == "mtb" else ADVICE
+    if align == "mtb":
+        advice = ADVICE_AFTER_MTB
+    elif removes_ghosts:
+        advice = ADVICE
+    else:
+        advice = ADVICE_ABOUT_GHOSTS + ADVICE
     doubts, notes = describe_pairs(found.pairs, bracket.names, advice)
     aligned = apply_alignment(bracket, found.transforms, g, in_place=in_place)
     homographies = warp.as_homographies(found.transforms)

@@ -181,7 +181,11 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     bracket = completed.bracket
     has_relative_times = completed.are_relative
     state = registration.align_bracket(
-        bracket, options.align, options.response, in_place=options.in_place
+        bracket,
+        options.align,
+        options.response,
+        in_place=options.in_place,
+        removes_ghosts=options.ghosts in ("regions", "reference"),
     )
     state = replace(state, notes=(*completed.notes, *state.notes))
     yield state

@@ -82,6 +82,17 @@ def test_misaligned_pairs_give_one_warning_that_says_what_to_do():
     assert "and 1 more pair" in doubt and "leave one out" in doubt
 
 
+@pytest.mark.parametrize("removes_ghosts", [False, True])
+def test_ghost_removal_is_recommended_for_photos_that_nothing_aligns(removes_ghosts):
+    shots = [
+        shoot([(0, 0)], [time], texture=texture())
+        for time, texture in ((1, astronaut), (4, coffee))
+    ]
+    taken = bracket(np.concatenate(shots)[:, ::3, ::3], [1.0, 4.0])
+    (doubt,) = pipeline.align_bracket(taken, "auto", removes_ghosts=removes_ghosts).doubts
+    assert ("--ghosts regions" in doubt) != removes_ghosts
+
+
 def test_the_search_range_grows_with_the_image_size():
     E = np.kron(radiance(astronaut()), np.ones((2, 2, 1)))
     rng = np.random.default_rng(0)
