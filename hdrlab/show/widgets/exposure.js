@@ -1,9 +1,8 @@
 // The range of a photo as a window over a scene's histogram: capture/sensor.py and capture/ranges.py again.
 
-const CERTAINLY_FULL = 4; // wells: as in capture/sensor.py
 const NORMALS = normals(16384); // few enough for a processor's cache
 const STRIPE = 8; // pixels from one stripe of the marks to the next
-const [FULL, NOISE] = [[213, 94, 0], [0, 114, 178]]; // as in show/plots/lectures/sensors.py
+const [FULL, NOISE] = [0xff005ed5, 0xffb27200]; // A B G R, as in show/plots/lectures/sensors.py
 
 // Random numbers of a normal distribution: the same ones in each photo, so that only the light changes.
 function normals(count) {
@@ -36,6 +35,7 @@ async function render({ model, el }) {
   const canvas = element(left, "canvas", { role: "img", "aria-label": "", className: "hdrlab-photo", width, height });
   const context = canvas.getContext("2d", { alpha: false });
   const image = context.createImageData(width, height);
+  const pixels = new Uint32Array(image.data.buffer);
 
   const right = element(columns, "div", { className: "hdrlab-column hdrlab-chart" });
   const scale = element(right, "div", { className: "hdrlab-scale", role: "slider", tabIndex: 0, "aria-label": "Shutter" });
@@ -60,35 +60,34 @@ async function render({ model, el }) {
     return model.get("limits").map((X) => X / (model.get("sensitivity") * time));
   }
 
-  // One channel of a pixel: photons, the amplifier's noise, and a level of the converter.
-  function pixelValue(arriving, i) {
-    const mean = Math.min(arriving, CERTAINLY_FULL * fullWell);
-    const photons = Math.min(mean + Math.sqrt(mean) * NORMALS[i & 16383], fullWell);
-    const electrons = photons + readNoise * NORMALS[(5 * i + 1) & 16383];
-    const level = Math.floor(electrons / gain + black + 0.5);
-    return pixelValues[clamp(level, 0, pixelValues.length - 1)];
-  }
+  // The noise of each channel of a pixel: of the photons, for one electron per radiance, and of the amplifier.
+  const shotNoise = E.map((radiance, i) => Math.sqrt(radiance) * NORMALS[i & 16383]);
+  const amplifierNoise = E.map((_, i) => readNoise * NORMALS[(5 * i + 1) & 16383]);
+  const topLevel = pixelValues.length - 1;
 
   // Write the photo of this time with its marks, and return how many pixels are lost in noise, and how many full.
   function expose(time) {
     const electronsPerRadiance = fullWell * model.get("sensitivity") * time;
+    const rootOfGain = Math.sqrt(electronsPerRadiance);
     const [darkest, full] = limits(time);
-    let [noiseCount, fullCount, to] = [0, 0, 0];
+    let [noiseCount, fullCount] = [0, 0];
+
+    function pixelValue(k) {
+      const photons = Math.min(electronsPerRadiance * E[k] + rootOfGain * shotNoise[k], fullWell);
+      const level = (photons + amplifierNoise[k]) / gain + black + 0.5;
+      return pixelValues[level < 0 ? 0 : level > topLevel ? topLevel : level | 0];
+    }
+
     for (let y = 0, i = 0; y < height; y++)
       for (let x = 0; x < width; x++, i++) {
-        let mark = null;
-        if (L[i] >= full) {
-          fullCount++;
-          if ((x + y) % STRIPE < STRIPE / 2) mark = FULL;
-        } else if (L[i] < darkest) {
-          noiseCount++;
-          if ((x + height - y) % STRIPE < STRIPE / 2) mark = NOISE;
-        }
-        for (let c = 0; c < 3; c++) {
-          const from = i * channels + (c % channels);
-          image.data[to++] = mark ? mark[c] : pixelValue(electronsPerRadiance * E[from], from);
-        }
-        image.data[to++] = 255;
+        const isFull = L[i] >= full;
+        const isNoise = L[i] < darkest;
+        if (isFull) fullCount++;
+        if (isNoise) noiseCount++;
+        if (isFull && (x + y) % STRIPE < STRIPE / 2) pixels[i] = FULL;
+        else if (isNoise && (x + height - y) % STRIPE < STRIPE / 2) pixels[i] = NOISE;
+        else if (channels === 1) pixels[i] = 0xff000000 | (0x10101 * pixelValue(i));
+        else pixels[i] = 0xff000000 | (pixelValue(3 * i + 2) << 16) | (pixelValue(3 * i + 1) << 8) | pixelValue(3 * i);
       }
     return [noiseCount / L.length, fullCount / L.length];
   }

@@ -51,19 +51,19 @@ async function render({ model, el }) {
   });
   const say = teller(root);
 
-  // Paint a canvas with a code for each pixel and channel.
-  function painter(canvas) {
+  // Paint the codes of an image (3, H, W).
+  function paintCodes(canvas, codes) {
     const context = canvas.getContext("2d", { alpha: false });
     const image = context.createImageData(width, height);
-    image.data.fill(255);
-    return (codeOf) => {
-      for (let c = 0; c < 3; c++)
-        for (let i = 0; i < count; i++) image.data[4 * i + c] = codeOf(c * count + i, c, i);
-      context.putImageData(image, 0, 0);
-    };
+    for (let i = 0, to = 0; i < count; i++) {
+      for (let c = 0; c < 3; c++) image.data[to++] = codes[c * count + i];
+      image.data[to++] = 255;
+    }
+    context.putImageData(image, 0, 0);
   }
-  const [paintShown, paintBase, paintGain] = [shown, basePart, gainPart].map(painter);
-  paintBase((at) => base[at]);
+  const codes = new Uint8Array(base.length);
+  paintCodes(basePart, base);
+  paintCodes(gainPart, gains);
 
   const weight = () => clamp(Math.log2(screen()) / Math.log2(headroom), 0, 1);
 
@@ -72,12 +72,16 @@ async function render({ model, el }) {
     const factors = low.map((lowest, c) =>
       Float32Array.from({ length: 256 }, (_, k) => 2 ** (W * (lowest + ((high[c] - lowest) * k) / 255))));
     result.fill(0);
-    paintShown((at, c, i) => {
-      const light = (LINEAR[base[at]] + baseOffset) * factors[c][gains[at]] - lightOffset;
-      result[i] += SHARES[c] * light;
-      return code(Math.max((65535 * light) / headroom, 0));
-    });
-    paintGain((at) => W * gains[at]);
+    for (let c = 0; c < 3; c++) {
+      const factor = factors[c];
+      for (let i = 0, at = c * count; i < count; i++, at++) {
+        const light = (LINEAR[base[at]] + baseOffset) * factor[gains[at]] - lightOffset;
+        result[i] += SHARES[c] * light;
+        codes[at] = code(light > 0 ? (65535 * light) / headroom : 0);
+      }
+    }
+    paintCodes(shown, codes);
+    gainPart.style.filter = `brightness(${W})`;
     bars.style.clipPath = barShape(result, span);
     handle.style.left = `${across(Math.log2(screen()))}%`;
     const times = Number(screen().toPrecision(2));
