@@ -53,7 +53,7 @@ class ExposureWindow(Widget):
 
     def still(self) -> Picture:
         """Return the photo and the window at the first exposure time."""
-        alts = (self.alt, "A histogram of luminance: pixels lost in noise, held and full")
+        alts = (self.alt, "A histogram of luminance: pixels lost in noise, recorded and full")
         return Picture(tuple(self.pictures), alts, ("", ""), density=PLOT_PIXEL_DENSITY)
 
 
