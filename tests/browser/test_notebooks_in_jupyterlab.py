@@ -155,6 +155,18 @@ def move_pixel(page, widget):
     changed_by(page, widget, widget.get_by_role("button").first.click)
 
 
+def move_by_key(page, widget):
+    status = widget.get_by_role("status")
+    before = status.inner_text()
+    widget.get_by_role("application").press("ArrowLeft")
+    page.wait_for_function(
+        "([status, before]) => status.innerText !== before",
+        arg=[status.element_handle(), before],
+        timeout=PATIENCE,
+        polling=LOOK,
+    )
+
+
 def move_shutter(page, widget):
     changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowLeft"))
 
@@ -177,13 +189,15 @@ MOVES = {
     "blink": move_blink,
     "brush": move_brush,
     "pixel": move_pixel,
+    "bitmaps": move_by_key,
+    "gsolve": move_by_key,
     "exposure": move_shutter,
     "zones": move_zones,
     "gains": move_shutter,
 }
 MOVES |= {"predict": move_predict}
-# It asks nothing of Python; `test_pressed_pixels` presses it, and the tier of all notebooks opens its own.
-TESTED_ALONE = {"pixel"}
+# They ask nothing of Python; tests of their own drag them, and the tier of all notebooks opens theirs.
+TESTED_ALONE = {"pixel", "exposure", "bitmaps", "gsolve", "zones", "gains"}
 
 
 class Notebooks:

@@ -94,7 +94,7 @@ def move(page, widget):
     kind = widget.get_attribute("data-kind")
     if kind == "blink":
         return widget.get_by_role("radio").last.check()
-    if kind == "pixel":
+    if kind in ("pixel", "bitmaps", "gsolve"):
         widget.get_by_role("application").press("Shift+ArrowRight")
         return
     if widget.get_by_role("slider").count() == 0:
@@ -111,7 +111,7 @@ def seen(page, canvas):
 
 def changed_by(page, widget, move):
     """Move a control, and wait until what one sees is another: from a folder no canvas can be read."""
-    canvas = widget.locator("canvas").first
+    canvas = widget.locator("canvas, .hdrlab-levels").first
     canvas.scroll_into_view_if_needed()
     before = seen(page, canvas)
     move()
