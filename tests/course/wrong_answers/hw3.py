@@ -36,21 +36,12 @@ def bound_nan_without_bounds(Z, B, g, top, shown):
     return np.where(E > 0, E, np.nan), flags
 
 
-def bound_of_1_is_dark(Z, B, g, top, shown):
-    return bound(np.where(Z == 1, 0, Z), B, g, top, shown)
-
-
 def bound_above_top_alone(Z, B, g, top, shown):
     return bound(np.where(Z == top, top - 1, Z), B, g, top, shown)
 
 
 def bound_sorts_the_times_alone(Z, B, g, top, shown):
     return bound(Z, np.sort(B), g, top, shown)
-
-
-def bound_without_the_8(Z, B, g, top, shown):
-    E, flags = bound(Z, B, g, top, shown)
-    return E, flags & 3
 
 
 def bound_flags_of_hidden_photos(Z, B, g, top, shown):

@@ -84,3 +84,36 @@ def hidden_frames_count(Z, B, g, top, shown):
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
     flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_without_the_8",
+    says="Your flag is 0 where a pixel has no bound at all. The flag of such a pixel is 8.",
+)
+def without_the_8(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
+    bound_count = 1.0 * low + high
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(bound_count, 1)
+    flags = 1 * low + 2 * high
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+@mistake(
+    "bound_of_1_is_dark",
+    says="You take pixels of value 1 for dark. Only the value 0 is: 1 is a measurement and gives no"
+    " bound.",
+)
+def of_1_is_dark(Z, B, g, top, shown):
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z <= 1), g[1] - B, np.inf).min(axis=0)
+    low = np.isfinite(lower)
+    high = np.isfinite(upper)
+    bound_count = 1.0 * low + high
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(bound_count, 1)
+    flags = 1 * low + 2 * high + 8 * ~(low | high)
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
