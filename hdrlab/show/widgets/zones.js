@@ -61,7 +61,7 @@ async function render({ model, el }) {
   ruler(right, [low, high], NUMERALS);
   element(right, "p", {
     className: "hdrlab-axis",
-    textContent: "zone, one stop each; the strip has the tones of the picture, the dashed curve no white point",
+    textContent: "One zone is one stop. The strip shows the tones of the picture; the dashed curve has no white point.",
   });
   const say = teller(root);
   plain.setAttribute("d", path(Infinity));
