@@ -29,6 +29,8 @@ MIN_NOISE_LEVELS = 1.0
 MAX_NOISE_LEVELS = 2.0
 # pixel values of 8-bit photos that are dark enough to show the noise
 MAX_DARK_LEVEL = 16
+# samples of a photo whose noise is measured at a time, so that a large photo takes little memory
+MAX_BAND_SAMPLES = 2**20
 # side of the square whose mean value decides, in pixels
 WINDOW_SIDE = 5
 # standard deviation over median absolute deviation, of a normal distribution
@@ -220,15 +222,35 @@ def measure_noise(image: ArrayLike) -> float:
     image = np.asarray(image)
     is_byte = image.dtype == np.uint8
     dark_level = MAX_DARK_LEVEL if is_byte else 257 * MAX_DARK_LEVEL
-    left = image[:, :-1].astype(np.int32)
-    right = image[:, 1:].astype(np.int32)
-    is_dark = (left < dark_level) & (right < dark_level) & (left > 0) & (right > 0)
-    differences = np.abs(right - left)[is_dark]
-    if not len(differences):
+    counts = np.zeros(dark_level, np.int64)
+    rows_per_band = max(1, MAX_BAND_SAMPLES // max(image[0].size, 1))
+    for top in range(0, len(image), rows_per_band):
+        counts += _count_dark_differences(image[top : top + rows_per_band], dark_level)
+    if not counts.any():
         return MIN_NOISE_LEVELS
-    noise = DEVIATION_PER_MAD * float(np.median(differences)) / np.sqrt(2)
+    noise = DEVIATION_PER_MAD * _median_of_counts(counts) / np.sqrt(2)
     most = MAX_NOISE_LEVELS if is_byte else 257 * MAX_NOISE_LEVELS
     return float(np.clip(noise, MIN_NOISE_LEVELS, most))
+
+
+def _count_dark_differences(image: Array, dark_level: int) -> Array:
+    """Return how many dark neighbors in the rows of an image differ by 0, 1, ... pixel values."""
+    left = image[:, :-1]
+    right = image[:, 1:]
+    low = np.minimum(left, right)
+    high = np.maximum(left, right)
+    is_dark = (high < dark_level) & (low > 0)
+    differences = high[is_dark] - low[is_dark]
+    return np.bincount(differences.astype(np.intp), minlength=dark_level)
+
+
+def _median_of_counts(counts: Array) -> float:
+    """Return the median of numbers of which counts[k] are k."""
+    cumulative = np.cumsum(counts)
+    number = int(cumulative[-1])
+    # Of an even number of values, the mean of the two in the middle.
+    middle = np.searchsorted(cumulative, [(number - 1) // 2, number // 2], side="right")
+    return float(middle.mean())
 
 
 def _find_bright(stack: np.ndarray, is_dark: Mask, level: float, mask: Mask | None) -> Mask:

@@ -113,3 +113,10 @@ def test_the_gray_case_has_the_color_of_its_photos_in_every_tone(shared):
     photo_ratios = measure_log_ratios(exposures[None])
     found = stages.assemble(taken)
     assert np.abs(measure_ratios_by_tone(found.E) - photo_ratios).max() < 0.1
+
+
+def test_the_noise_of_a_large_photo_is_its_standard_deviation():
+    rng = np.random.default_rng(3)
+    level, deviation = 8 * 257, 1.2 * 257
+    photo = rng.normal(level, deviation, (1200, 1000)).astype(np.uint16)
+    assert dark_pixels.measure_noise(photo) == pytest.approx(deviation, rel=0.01)
