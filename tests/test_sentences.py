@@ -1099,8 +1099,11 @@ def test_each_sentence_stands_in_its_notebook(path):
     assert [sentence for sentence in SENTENCES.get(path.stem[:2], {}) if sentence not in text] == []
 
 
-def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_cannot_be_judged_with_the_reason():
-    (sentence,) = SENTENCES["00"]
+def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_cannot_be_judged_with_the_reason(
+    monkeypatch,
+):
+    sentence = "about sixteen stops"
+    monkeypatch.setitem(SENTENCES, "00", {sentence: lambda n: round(n.stops) == 16})
     assert untrue("00_welcome", {"stops": 16.2}) == [] and untrue("00_welcome", {"stops": 15}) == [
         sentence
     ]

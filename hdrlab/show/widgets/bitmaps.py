@@ -68,8 +68,8 @@ def bitmap_difference(
     Examples
     --------
     >>> stripes = np.tile(np.array([20, 200], np.uint8), (32, 16))
-    >>> bitmap_difference(stripes, stripes, alt="Stripes").sizes
-    [[32, 32]]
+    >>> bitmap_difference(stripes, stripes, alt="Stripes").sizes[0]
+    [32, 32]
     """
     Y_fixed = _make_gray(fixed)
     Y_moving = _make_gray(moving)

@@ -87,7 +87,7 @@ def gain_screen(
     --------
     >>> base = np.full((4, 6, 3), 188, np.uint8)
     >>> gain_screen(base, np.ones((4, 6, 3)), [0] * 3, [2] * 3, alt="Gray").span
-    [-2, 4]
+    [-1, 4]
     """
     base = np.asarray(base)
     g = np.asarray(g, np.float64)
