@@ -17,7 +17,8 @@ THREE = ["00_welcome.ipynb", "18_all_operators.ipynb", "24_made_of_patches.ipynb
 OTHERS = sorted({path.name for path in FOLDER.glob("*.ipynb")} - set(THREE))
 
 # JupyterLab's own, when it runs without its optional servers.
-NOISE = ("/lsp/status", "/api/terminals", "terminals")
+# The last one is the extension for JupyterLite, which is installed beside and finds no JupyterLite.
+NOISE = ("/lsp/status", "/api/terminals", "terminals", "Shared module @jupyterlite/")
 
 
 def outputs_of(page):

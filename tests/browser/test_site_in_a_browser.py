@@ -97,6 +97,8 @@ def move(page, widget):
     if kind in ("pixel", "bitmaps", "gsolve"):
         widget.get_by_role("application").press("Shift+ArrowRight")
         return
+    if kind in ("exposure", "zones", "gains"):
+        return widget.get_by_role("slider").first.press("Shift+ArrowLeft")
     if widget.get_by_role("slider").count() == 0:
         return widget.get_by_role("radio", checked=False).first.check()
     slider = widget.get_by_role("slider").first
