@@ -172,6 +172,11 @@ def move_shutter(page, widget):
     changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowLeft"))
 
 
+def move_screen(page, widget):
+    """Drag to a brighter screen, for the dimmest is shown at first."""
+    changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowRight"))
+
+
 def move_zones(page, widget):
     for handle in widget.get_by_role("slider").all():
         changed_by(page, widget, lambda handle=handle: handle.press("Shift+ArrowLeft"))
@@ -194,7 +199,7 @@ MOVES = {
     "gsolve": move_by_key,
     "exposure": move_shutter,
     "zones": move_zones,
-    "gains": move_shutter,
+    "gains": move_screen,
 }
 MOVES |= {"predict": move_predict}
 # They ask nothing of Python; tests of their own drag them, and the tier of all notebooks opens theirs.

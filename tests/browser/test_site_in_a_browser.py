@@ -98,7 +98,9 @@ def move(page, widget):
         widget.get_by_role("application").press("Shift+ArrowRight")
         return
     if kind in ("exposure", "zones", "gains"):
-        return widget.get_by_role("slider").first.press("Shift+ArrowLeft")
+        # the screen of the gain map is the dimmest at first
+        arrow = "ArrowRight" if kind == "gains" else "ArrowLeft"
+        return widget.get_by_role("slider").first.press(f"Shift+{arrow}")
     if widget.get_by_role("slider").count() == 0:
         return widget.get_by_role("radio", checked=False).first.check()
     slider = widget.get_by_role("slider").first
