@@ -69,9 +69,11 @@ def compress(base, low, high, *, contrast=50.0):
 
 def adjust_steps(f, db, D, *, tolerance=0.025):
     f = f.astype(f32)
+    T = f.sum()
+    least = tolerance * T
     trimmings = f32(np.inf)
-    yield f, f32(np.inf), f.sum(), trimmings
-    while trimmings >= tolerance * f.sum():
+    yield f, f32(np.inf), T, trimmings
+    while trimmings >= tolerance * T and f.sum() > least:
         T = f.sum()
         ceiling = T * f32(db / D)
         trimmings = np.clip(f - ceiling, 0, None).sum()
@@ -98,7 +100,7 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     for k, level in reversed(list(enumerate(pyramid))):
         dy, dx = np.gradient(level)
         slope = np.sqrt(dy**2 + dx**2) / f32(2**k)
-        phi = (np.maximum(slope, f32(0.01) * slope.mean()) / (f32(alpha) * slope.mean())) ** f32(
+        phi = (np.maximum(slope, f32(noise) * slope.mean()) / (f32(alpha) * slope.mean())) ** f32(
             beta - 1
         )
         H, W = phi.shape

@@ -82,8 +82,9 @@ def compress(base, low, high, *, contrast=50.0):
 
 def adjust_steps(f, db, D, *, tolerance=0.025):
     f = [float(count) for count in f]
+    least = tolerance * sum(f)
     yield np.array(f), math.inf, sum(f), math.inf
-    while True:
+    while sum(f) > least:
         T = sum(f)
         ceiling, trimmings = T * db / D, 0.0
         for i in range(len(f)):
@@ -140,7 +141,7 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
         dy, dx = np.gradient(pyramid[k])
         slope = np.hypot(dy, dx) / 2**k
         a = alpha * slope.mean()
-        phi = (np.maximum(slope, 1e-2 * slope.mean()) / a) ** (beta - 1)
+        phi = (np.maximum(slope, noise * slope.mean()) / a) ** (beta - 1)
         Phi = phi if Phi is None else larger(Phi, phi.shape) * phi
         yield k, pyramid[k], slope, phi, Phi
 

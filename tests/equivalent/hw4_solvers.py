@@ -59,7 +59,7 @@ def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
         H = np.pad(pyramid[k], 1, mode="edge")
         dy, dx = (H[2:] - H[:-2])[:, 1:-1], (H[:, 2:] - H[:, :-2])[1:-1]
         slope = np.sqrt(dy**2 + dx**2) / 2 ** (k + 1)
-        lphi = (beta - 1) * np.log(np.maximum(slope / (alpha * slope.mean()), 0.01 / alpha))
+        lphi = (beta - 1) * np.log(np.maximum(slope / (alpha * slope.mean()), noise / alpha))
         rows = np.interp(np.arange(slope.shape[0]) / 2, np.arange(len(lPhi)), np.arange(len(lPhi)))
         columns = np.minimum(np.arange(slope.shape[1]) / 2, lPhi.shape[1] - 1)
         lPhi = np.log(between(np.exp(lPhi), rows, columns)) + lphi
@@ -86,14 +86,19 @@ def scale(L, *, headroom=8.0, sigma=None):
 
 
 def adjust_steps(f, db, D, *, tolerance=0.025):
-    """Yield the histograms alone."""
+    """Yield lists instead of tuples."""
     histogram = np.asarray(f, dtype=float)
-    yield histogram
+    first = histogram.sum()
+    yield [histogram, np.inf, first, np.inf]
     for _ in range(200):
         total = histogram.sum()
-        trimmed = np.where(histogram > total * db / D, total * db / D, histogram)
-        yield trimmed
-        if total - trimmed.sum() < tolerance * total:
+        if total <= tolerance * first:
+            break
+        ceiling = total * db / D
+        trimmed = np.where(histogram > ceiling, ceiling, histogram)
+        cut = total - trimmed.sum()
+        yield [trimmed, ceiling, total, cut]
+        if cut < tolerance * total:
             break
         histogram = trimmed
 
