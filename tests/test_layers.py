@@ -38,6 +38,7 @@ COURSE_PARTS = (
     "materials",
     "source_code",
     "variants",
+    "due_dates",
     "plan",
     "students",
     "sandbox",

@@ -62,6 +62,7 @@ def grade(folder: Path, out: Path, *words: str, beside: Sequence[int] = ()) -> U
     ]
     for option, name in (
         ("roster", "roster.csv"),
+        ("plan", "plan.toml"),
         ("received", "received.csv"),
         ("secret-file", "secret.txt"),
     ):

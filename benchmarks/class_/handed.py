@@ -13,7 +13,7 @@ Kinds take turns, so that a smaller class has the same mixture.
 
 import re
 from collections.abc import Iterable
-from datetime import timedelta
+from datetime import datetime, timedelta
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
 from itertools import cycle, islice
@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 from benchmarks.measure import ROOT
 from hdrlab.course import plan
-from hdrlab.course.authoring import solutions
+from hdrlab.course.authoring import solutions, term, toy_class
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.plan import Homework
 from hdrlab.course.students import csv_tables
@@ -178,8 +178,11 @@ def tests(name: str) -> ModuleType:
 
 def write(folder: Path, each: Iterable[Handed]) -> Path:
     """Write what was handed in, the roster, the times and the secret into a folder, and return it."""
-    due = plan.read().homeworks["hw2"].due
     (folder / "submissions").mkdir(parents=True)
+    text_of_plan = term.move(plan.PLAN.read_text(encoding="utf8"), toy_class.FIRST_DAY)
+    (folder / "plan.toml").write_text(text_of_plan, encoding="utf8")
+    due = plan.read(folder / "plan.toml").homeworks["hw2"].due
+    assert isinstance(due, datetime)
     students, times = [], []
     for one in each:
         (folder / "submissions" / one.file).write_bytes(one.data)

@@ -161,12 +161,18 @@ def grade_class(graded_class: GradedClass) -> None:
 def _describe_lateness(graded_class: GradedClass) -> str:
     """Return who is late, by which times, before anybody is graded."""
     from hdrlab.course.classroom import marks
+    from hdrlab.course.due_dates import DueInWeek
 
     options = graded_class.options
     if options.received is None and not options.file_times:
         return (
             "no times of the submissions, so nobody is late; "
             "to count late days, pass --received FILE or --file-times"
+        )
+    if isinstance(graded_class.course.homework.due, DueInWeek):
+        return (
+            f"the plan does not say on which date {graded_class.course.homework.name} is due, so "
+            "nobody is late; set the first day of your term with `hdrlab course move`"
         )
     source = "the files' modification times" if options.received is None else str(options.received)
     late = marks.describe_late(graded_class.course, graded_class.scan.submissions)

@@ -151,27 +151,24 @@ def export(
 )
 @assignments.plan_option
 def move(*, first_day: datetime, out: Path, holidays: Path | None, plan: Path | None) -> None:
-    """Move all due dates to a term that begins on DATE.
+    """Give the plan the dates of a term whose first week begins on DATE.
 
-    Each date keeps its week of the course, its weekday and its time. hdrlab writes a new plan, which
-    you pass to the other commands with --plan.
+    hdrlab writes a new plan, which you pass to the other commands with --plan.
     """
-    from hdrlab.course import plan as plans
+    from hdrlab.course import due_dates, plan as plans
     from hdrlab.course.authoring import term
     from hdrlab.io import files
 
     plan_path = plans.PLAN if plan is None else plan
     files.require_other([out], [plan_path, *([holidays] if holidays else [])])
     old_plan = plans.read(plan_path)
-    moved = term.move(
-        plan_path.read_text(encoding="utf8"),
-        first_day.date(),
-        term.read_holidays(holidays) if holidays else (),
-    )
-    files.write(out, moved.text)
+    free_days = term.read_holidays(holidays) if holidays else old_plan.holidays
+    files.write(out, term.move(plan_path.read_text(encoding="utf8"), first_day.date(), free_days))
     for name, homework in plans.read(out).homeworks.items():
         old_due = old_plan.homeworks[name].due
-        click.echo(f"{name}: {old_due:%a %d %b %Y} -> {homework.due:%a %d %b %Y}")
+        due = due_dates.describe(homework.due)
+        stays = ", as before: the plan gives a date, not a week" if homework.due == old_due else ""
+        click.echo(f"{name}: {due}{stays}")
     click.echo(f"{out}; to write the assignments: hdrlab course build --plan {out} -o our-sheets")
 
 

@@ -1,6 +1,7 @@
 """The course's plan: homeworks, tasks, points and dates, read from plan.toml, and what each student draws.
 
-An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the
+An instructor changes plan.toml, or gives the path of another. Homeworks are due in a week of the
+course; with `first_day`, on a date. A task is a function of hdrlab: the
 solution is that function, the handout its signature, and the checks are in
 course/checks/specification/test_<id>.py. Or it is a function of the instructor's own,
 "vignette.py:vignette", in a file beside the plan; its checks are test_<id>.py in the same folder,
@@ -16,11 +17,13 @@ import tomllib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import date, datetime
+from datetime import date
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course import due_dates
+from hdrlab.course.due_dates import Due
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.variants import rewording
 from hdrlab.errors import FileFormatError, InputError
@@ -71,11 +74,11 @@ class ManualTask(NamedTuple):
 
 
 class Homework(NamedTuple):
-    """An assignment: its tasks, its due date, and the points that count at most if its tasks give more."""
+    """An assignment: its tasks, when it is due, and the points that count at most if its tasks give more."""
 
     name: str
     title: str
-    due: datetime
+    due: Due
     tasks: tuple[Task, ...]
     by_hand: tuple[ManualTask, ...] = ()
     at_most: float | None = None
@@ -102,13 +105,16 @@ class Plan(NamedTuple):
     homeworks : by name
     late : the late-day rule
     team_size : students in a team at most
-    first_day : the first day of the first week, or None; `hdrlab course move` counts weeks from it
+    first_day : the first day of the first week, or None; without it, homeworks may have a week of
+        the course and no date
+    holidays : any day of each week without a class
     """
 
     homeworks: dict[str, Homework]
     late: Late = Late()
     team_size: int = TEAM_SIZE
     first_day: date | None = None
+    holidays: tuple[date, ...] = ()
 
     def task(self, id: str) -> Task:
         """Return the task with an id; raise a KeyError that lists all tasks if there is none."""
@@ -169,12 +175,20 @@ def read(path: str | Path | None = None) -> Plan:
             f"{path}: expected team_size as a number of students, got {team_size!s:.80}"
         )
     first_day = sheets.pop("first_day", None)
-    if first_day is not None and type(first_day) is not date:
-        raise InputError(
-            f"{path}: expected first_day as a date such as 2026-09-21, got {first_day!s:.80}"
-        )
-    homeworks = {name: _homework(name, sheet, path) for name, sheet in sheets.items()}
-    plan = Plan(homeworks, late, team_size, first_day)
+    holidays = sheets.pop("holidays", [])
+    if not isinstance(holidays, list):
+        raise InputError(f"{path}: expected holidays as a list of dates, got {holidays!s:.80}")
+    for day in holidays if first_day is None else [first_day, *holidays]:
+        if type(day) is not date:
+            raise InputError(
+                f"{path}: expected first_day and holidays as dates such as 2027-02-08, got {day!s:.80}"
+            )
+    homeworks = {}
+    for name, sheet in sheets.items():
+        homework = _homework(name, sheet, path)
+        due = due_dates.date_in_term(homework.due, first_day, holidays)
+        homeworks[name] = homework._replace(due=due)
+    plan = Plan(homeworks, late, team_size, first_day, tuple(holidays))
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     if not ids:
         raise InputError(f"{path}: expected tasks, got none")
@@ -202,20 +216,17 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
         homework = Homework(
             name=name,
             title=sheet["title"],
-            due=sheet["due"],
+            due=due_dates.read(sheet["due"]),
             tasks=tuple(_task(table, path) for table in sheet["tasks"]),
             by_hand=tuple(_manual_task(table) for table in sheet.get("by_hand", ())),
             at_most=float(sheet["at_most"]) if "at_most" in sheet else None,
         )
+    except InputError as error:
+        raise InputError(f"{path}: {here}: {error}") from None
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{path}: expected title, due and tasks in {here}, {error!r:.200}"
         ) from None
-    due = homework.due
-    if not isinstance(due, datetime) or due.tzinfo is None:
-        raise InputError(
-            f"{path}: expected due of {here} as a date with time and zone, got {due!s:.80}"
-        )
     points = [task.points for task in homework.tasks]
     points += [manual.points for manual in homework.by_hand]
     if not (points and min(points) >= 0 and sum(points) < math.inf):

@@ -3,6 +3,7 @@
 import csv
 import os
 import pickle
+import re
 import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -347,6 +348,17 @@ def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade)
         (("b2",), 0),
         (("b3",), 3),
     ]
+
+
+@pytest.mark.grading
+def test_nobody_is_late_for_a_plan_without_dates_and_it_is_said(folder, capsys):
+    in_week = 'due = { week = 5, day = "Friday", time = "23:59Z" }'
+    (folder / "plan.toml").write_text(re.sub(r"due = .*", in_week, PLAN))
+    with pytest.raises(SystemExit):
+        cli.run(WORDS)
+    assert "does not say on which date hw2 is due, so nobody is late" in capsys.readouterr().err
+    rows = csv_tables.read_csv(folder / "out" / "gradebook.csv")
+    assert {row["late"] for row in rows} == {"0"}
 
 
 @pytest.mark.grading

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import materials, notebook, plan
+from hdrlab.course import due_dates, materials, notebook, plan
 from hdrlab.course.authoring import handouts
 from hdrlab.course.plan import Task
 from hdrlab.course.source_code import names
@@ -162,7 +162,7 @@ def test_every_task_has_a_cell_a_check_and_its_points(made, name):
         required = ", required" if task.minimum else ""
         assert f"({task.points:g} points{required})" in prose
     assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
-    assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
+    assert f"Due {due_dates.describe(PLAN.homeworks[name].due)}." in prose
 
 
 def test_a_task_that_the_plan_leaves_out_disappears_with_its_prose_and_figures():

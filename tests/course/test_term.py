@@ -1,67 +1,101 @@
-"""A plan is moved to another term: weeks, weekdays and times stay, and weeks without a class are left out."""
+"""A plan says in which week a homework is due; with the first day of a term, it has dates."""
 
-from datetime import date
+from datetime import date, datetime, timedelta
 
 import pytest
 from click.testing import CliRunner
 
 from hdrlab import cli
-from hdrlab.course import plan
+from hdrlab.course import due_dates, plan
 from hdrlab.course.authoring import term
+from hdrlab.course.due_dates import DueInWeek
 from hdrlab.errors import InputError
 
 TEXT = plan.PLAN.read_text(encoding="utf8")
 MONDAY = date(2031, 2, 10)
 
 
-def week(day, first_day):
-    return (day - first_day).days // 7
+@pytest.fixture
+def in_term(tmp_path):
+    """Return a function that gives the homeworks of the course's plan in a term."""
+
+    def read(first_day, holidays=()):
+        path = tmp_path / "plan.toml"
+        path.write_text(term.move(TEXT, first_day, holidays), encoding="utf8")
+        return plan.read(path).homeworks
+
+    return read
 
 
-def test_each_due_date_keeps_its_week_its_weekday_and_its_time(tmp_path):
-    path = tmp_path / "plan.toml"
-    path.write_text(term.move(TEXT, MONDAY).text, encoding="utf8")
-    old, new = plan.read(), plan.read(path)
-    assert new.first_day == MONDAY
-    for name, homework in new.homeworks.items():
-        due = old.homeworks[name].due
-        assert homework.due.timetz() == due.timetz()
-        assert homework.due.weekday() == due.weekday()
-        assert week(homework.due.date(), MONDAY) == week(due.date(), old.first_day)
+def test_the_plan_of_hdrlab_has_weeks_and_no_date_that_could_pass():
+    assert all(isinstance(homework.due, DueInWeek) for homework in plan.read().homeworks.values())
 
 
-def test_nothing_but_dates_changes_and_the_way_back_gives_the_same_text():
-    there = term.move(TEXT, MONDAY).text
-    assert there != TEXT
-    assert term.move(there, plan.read().first_day).text == TEXT
+@pytest.mark.parametrize("first_day", [MONDAY, MONDAY + timedelta(2), MONDAY + timedelta(6)])
+def test_a_date_is_on_the_weekday_and_in_the_week_of_the_plan(first_day, in_term):
+    homeworks = in_term(first_day)
+    for name, homework in plan.read().homeworks.items():
+        date_and_time = homeworks[name].due
+        days = (date_and_time.date() - first_day).days
+        assert days // 7 == homework.due.week - 1
+        assert f"{date_and_time:%A}" == homework.due.day
+        assert date_and_time.timetz() == homework.due.time
 
 
-def test_dates_from_a_week_without_a_class_on_come_a_week_later():
-    plain = term.move(TEXT, MONDAY).after
+def test_dates_from_a_week_without_a_class_on_come_a_week_later(in_term):
     free = date(2031, 3, 12)  # a Wednesday of the fifth week
-    moved = term.move(TEXT, MONDAY, [free]).after
-    assert {(b - a).days for a, b in zip(plain, moved, strict=True)} == {0, 7}
-    for due, later in zip(plain, moved, strict=True):
-        assert (later > due) == (week(due, MONDAY) >= week(free, MONDAY))
-        assert week(later, MONDAY) != week(free, MONDAY)
+    plain, moved = in_term(MONDAY), in_term(MONDAY, [free])
+    for name, homework in plan.read().homeworks.items():
+        later = moved[name].due - plain[name].due
+        assert later == timedelta(weeks=1 if homework.due.week >= 5 else 0)
 
 
-def test_two_holidays_in_a_week_cost_one_week():
-    one = term.move(TEXT, MONDAY, [date(2031, 3, 10)]).after
-    assert term.move(TEXT, MONDAY, [date(2031, 3, 10), date(2031, 3, 16)]).after == one
+def test_two_holidays_in_a_week_cost_one_week(in_term):
+    one = in_term(MONDAY, [date(2031, 3, 10)])
+    assert in_term(MONDAY, [date(2031, 3, 10), date(2031, 3, 16)]) == one
+
+
+def test_only_the_lines_of_the_term_change_when_a_plan_is_moved_again():
+    moved = term.move(TEXT, MONDAY, [date(2031, 3, 10)])
+    again = term.move(moved, date(2032, 9, 20))
+    assert set(moved.splitlines()) - set(TEXT.splitlines()) == {
+        "first_day = 2031-02-10",
+        "holidays = [2031-03-10]",
+    }
+    assert set(again.splitlines()) - set(TEXT.splitlines()) == {"first_day = 2032-09-20"}
+    assert term.move(moved, MONDAY, [date(2031, 3, 10)]) == moved
 
 
 @pytest.mark.parametrize(
-    ("text", "first_day", "message"),
+    "due",
     [
-        (TEXT, date(2031, 2, 11), "expected a Monday.*2031-02-11, a Tuesday"),
-        (TEXT.replace("first_day", "# first_day"), MONDAY, "add a line such as first_day"),
-        ("first_day = 2026-09-21\n[a]\ndue = 2026-09-20T12:00:00Z\n", MONDAY, "2026-09-20"),
+        {"week": 0, "day": "Friday", "time": "23:59Z"},
+        {"week": 10**9, "day": "Friday", "time": "23:59Z"},
+        {"week": 3, "day": "Freitag", "time": "23:59Z"},
+        {"week": 3, "day": "Friday", "time": "23:59"},
+        {"week": 3, "day": "Friday"},
+        {"week": 3, "day": "Friday", "time": "23:59Z", "weak": 1},
+        "Friday",
     ],
 )
-def test_what_cannot_be_moved_is_said(text, first_day, message):
-    with pytest.raises(InputError, match=message):
-        term.move(text, first_day)
+def test_what_is_no_due_date_is_refused_with_an_example(due):
+    with pytest.raises(InputError, match=r"expected due as .* week = 3, day = "):
+        due_dates.read(due)
+
+
+def test_a_fixed_date_stays_in_every_term():
+    fixed = datetime.fromisoformat("2027-02-26T23:59:00Z")
+    assert due_dates.date_in_term(fixed, MONDAY) == fixed
+
+
+@pytest.mark.parametrize(
+    "line", ["first_day = 7", "holidays = 2031-03-10", "holidays = ['Easter']"]
+)
+def test_a_term_that_is_no_date_is_refused(line, tmp_path):
+    path = tmp_path / "plan.toml"
+    path.write_text(f"{line}\n{TEXT}", encoding="utf8")
+    with pytest.raises(InputError, match=r"plan\.toml: expected .*dates"):
+        plan.read(path)
 
 
 def test_a_line_of_the_holidays_that_is_no_date_is_named(tmp_path):
@@ -75,10 +109,17 @@ def test_the_command_writes_a_plan_of_its_own_and_lists_the_dates(tmp_path):
     out = tmp_path / "our-plan.toml"
     result = CliRunner().invoke(cli.main, ["course", "move", "2031-02-10", "-o", str(out)])
     assert result.exit_code == 0, result.output
-    due = plan.read(out).homeworks["hw1"].due
-    assert f"-> {due:%a %d %b %Y}" in result.output
+    assert "hw1: Friday, 28 February 2031, 23:59 UTC" in result.output
     assert plan.read(out).first_day == MONDAY
     text = out.read_text(encoding="utf8")
     again = ["course", "move", "2031-02-17", "--plan", str(out), "-o", str(out)]
     assert CliRunner().invoke(cli.main, again).exit_code != 0
     assert out.read_text(encoding="utf8") == text
+
+
+def test_a_plan_with_holidays_keeps_them_unless_others_are_given(tmp_path):
+    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    first.write_text(term.move(TEXT, MONDAY, [date(2031, 3, 10)]), encoding="utf8")
+    words = ["course", "move", "2031-02-17", "--plan", str(first), "-o", str(second)]
+    assert CliRunner().invoke(cli.main, words).exit_code == 0
+    assert plan.read(second).holidays == (date(2031, 3, 10),)

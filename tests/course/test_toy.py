@@ -165,7 +165,7 @@ def test_two_toy_classes_are_the_same(tmp_path):
     files = [
         file.relative_to(tmp_path / "a") for file in (tmp_path / "a").rglob("*") if file.is_file()
     ]
-    assert len(files) == 12 + 3
+    assert len(files) == 12 + 4
     for file in files:
         if file.name != "README.md":  # it names the folder
             assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()

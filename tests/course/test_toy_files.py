@@ -8,7 +8,8 @@ import pytest
 from hdrlab.course import plan
 from hdrlab.course.authoring import solutions, toy_class
 
-HOMEWORK = plan.read().homeworks["hw2"]
+DUE = datetime.fromisoformat("2026-10-23T23:59:00Z")
+HOMEWORK = plan.read().homeworks["hw2"]._replace(due=DUE)
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course import due_dates
 from hdrlab.course.authoring import stubs
 from hdrlab.course.plan import Homework, ManualTask, Plan, Task
 from hdrlab.course.source_code import inline
@@ -169,7 +170,7 @@ def _fill_in(text: str, homework: Homework, task: Task | None, late: str) -> str
             f"Choose: the tasks are worth {points_of_tasks:g} points in total, but at most "
             f"{homework.points:g} count."
         ),
-        "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
+        "due": due_dates.describe(homework.due),
         "late": late,
         "hand": "\n".join(_manual_task_text(manual) for manual in homework.by_hand),
     }

@@ -4,6 +4,7 @@ FOLDER/
   submissions/    the submissions
   roster.csv      fourteen students, two of them a team; one has handed in nothing
   received.csv    when each file was received
+  plan.toml       the plan with the dates of a term in the past
   README.md       what each file is, and what result to expect
 
 The students are no real people; they are called by numbers.
@@ -11,18 +12,19 @@ The students are no real people; they are called by numbers.
 
 import tomllib
 from collections.abc import Iterator, Sequence
-from datetime import timedelta
+from datetime import date, datetime, timedelta
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course import plan
-from hdrlab.course.authoring import solutions
+from hdrlab.course.authoring import solutions, term
 from hdrlab.course.students import csv_tables
 from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
 from hdrlab.show.pages.templates import render_page
 
 HOMEWORK = "hw2"
+FIRST_DAY = date(2026, 9, 21)
 TEAM = "t1"
 TEAM_MEMBERS = ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
@@ -73,8 +75,10 @@ def write(folder: Path) -> list[Path]:
     """
     if folder.is_dir() and any(folder.iterdir()) or folder.is_file():
         raise InputError(f"{folder}: expected a new folder for the toy class, something is there")
-    homework = plan.read().homeworks[HOMEWORK]
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
+    text_of_plan = term.move(plan.PLAN.read_text(encoding="utf8"), FIRST_DAY)
+    (folder / "plan.toml").write_text(text_of_plan, encoding="utf8")
+    homework = plan.read(folder / "plan.toml").homeworks[HOMEWORK]
     files = list(hand_ins(homework))
     for file in files:
         (folder / "submissions" / file.name).write_bytes(file.data)
@@ -93,4 +97,5 @@ def write(folder: Path) -> list[Path]:
 
 def received(files: Sequence[ToyFile], homework: plan.Homework) -> list[tuple[str, str]]:
     """Return the table of the files and the times when they were received."""
+    assert isinstance(homework.due, datetime)
     return [(file.name, (homework.due + timedelta(hours=file.hours)).isoformat()) for file in files]

@@ -6,6 +6,7 @@ term.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
+from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
@@ -173,7 +174,9 @@ def _late_records(
     """Yield how late each student of a submission is, after the student's own extension."""
     homework = context.homework
     for team, submission in submissions.items():
-        days = days_late(homework.due, submission.received) if submission.can_be_late else 0
+        days = 0
+        if submission.can_be_late and isinstance(homework.due, datetime):
+            days = days_late(homework.due, submission.received)
         for student in submission.students:
             adjustment = context.adjustments.get(student, Adjustment())
             late = max(0, days - adjustment.extension)
