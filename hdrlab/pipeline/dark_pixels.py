@@ -29,7 +29,7 @@ MIN_NOISE_LEVELS = 1.0
 MAX_NOISE_LEVELS = 2.0
 # pixel values of 8-bit photos that are dark enough to show the noise
 MAX_DARK_LEVEL = 16
-# samples of a photo whose noise is measured at a time, so that a large photo takes little memory
+# samples of a photo that are measured at a time, so that a large photo takes little memory
 MAX_BAND_SAMPLES = 2**20
 # side of the square whose mean value decides, in pixels
 WINDOW_SIDE = 5
@@ -83,36 +83,55 @@ def measure_color_certainty(
     image = stack[longest].reshape(*stack.shape[1:3], -1)
     noise = measure_noise(image)
     full_level = FULL_SIGNAL_TO_NOISE * noise
-    is_dark = image.max(axis=2) < full_level
-    if mask is not None:
-        is_dark &= mask[longest]
-    if not is_dark.any():
-        return None
-    signal = np.zeros(image.shape[:2], np.float32)
+    certainty = np.ones(image.shape[:2], np.float32)
+    rows_per_band = max(1, MAX_BAND_SAMPLES // max(image[0].size, 1))
+    for top in range(0, len(image), rows_per_band):
+        rows = slice(top, min(top + rows_per_band, len(image)))
+        is_dark = _find_largest(image[rows]) < full_level
+        if mask is not None:
+            is_dark &= mask[longest, rows]
+        # Something that moved may be bright in another photo.
+        band_mask = None if mask is None else mask[:, rows]
+        is_dark &= ~_find_bright(stack[:, rows], is_dark, full_level, band_mask)
+        if not is_dark.any():
+            continue
+        signal_to_noise = _average_windows(image, rows)[is_dark] / np.float32(noise)
+        span = FULL_SIGNAL_TO_NOISE - MIN_SIGNAL_TO_NOISE
+        certainty[rows][is_dark] = np.clip((signal_to_noise - MIN_SIGNAL_TO_NOISE) / span, 0, 1)
+    return None if np.all(certainty == 1) else certainty
+
+
+def _find_largest(image: Array) -> Array:
+    """Return the largest channel (H, W) of an image (H, W, C)."""
+    largest = image[..., 0]
+    for channel in range(1, image.shape[2]):
+        largest = np.maximum(largest, image[..., channel])
+    return largest
+
+
+def _average_windows(image: Array, rows: slice) -> F32:
+    """Return the largest channel of the mean over the window around each pixel of some rows.
+
+    The image (H, W, C) is continued beyond its edges.
+    """
+    height, width = image.shape[:2]
+    margin = WINDOW_SIDE // 2
+    around = np.clip(np.arange(rows.start - margin, rows.stop + margin), 0, height - 1)
+    band_height = rows.stop - rows.start
+    # Whole numbers are exact, and the largest sum of 16-bit values needs 21 bits.
+    dtype = np.uint16 if image.dtype == np.uint8 else np.uint32
+    largest = np.zeros((band_height, width), dtype)
     for channel in range(image.shape[2]):
-        np.maximum(signal, _average_window(image[..., channel]), out=signal)
-    signal_to_noise = signal / np.float32(noise)
-    span = FULL_SIGNAL_TO_NOISE - MIN_SIGNAL_TO_NOISE
-    certainty = np.clip((signal_to_noise - MIN_SIGNAL_TO_NOISE) / span, 0, 1)
-    # Something that moved may be bright in another photo.
-    is_bright_elsewhere = _find_bright(stack, is_dark, full_level, mask)
-    certainty[~is_dark | is_bright_elsewhere] = 1
-    if np.all(certainty == 1):
-        return None
-    return certainty.astype(np.float32)
-
-
-def _average_window(channel: Array) -> F32:
-    """Return the mean over the window around each pixel of (H, W), continued beyond the edges."""
-    height, width = channel.shape
-    padded = np.pad(channel.astype(np.float32), WINDOW_SIDE // 2, mode="edge")
-    columns = np.zeros((height, padded.shape[1]), np.float32)
-    for shift in range(WINDOW_SIDE):
-        columns += padded[shift : shift + height]
-    total = np.zeros((height, width), np.float32)
-    for shift in range(WINDOW_SIDE):
-        total += columns[:, shift : shift + width]
-    return total / np.float32(WINDOW_SIDE**2)
+        values = image[around, :, channel].astype(dtype)
+        columns = np.zeros((band_height, width), dtype)
+        for shift in range(WINDOW_SIDE):
+            columns += values[shift : shift + band_height]
+        padded = np.pad(columns, ((0, 0), (margin, margin)), mode="edge")
+        total = np.zeros((band_height, width), dtype)
+        for shift in range(WINDOW_SIDE):
+            total += padded[:, shift : shift + width]
+        np.maximum(largest, total, out=largest)
+    return largest.astype(np.float32) / np.float32(WINDOW_SIDE**2)
 
 
 def measure_black_fraction(certainty: ArrayLike) -> float:
