@@ -49,3 +49,119 @@ NUMBERS = {
         "50 000": "an example of a number of samples",
     },
 }
+
+# Numbers of the text outside of answers that no cell computes and no sentence of the table holds.
+OPEN_TEXT = {
+    "00": {
+        "100": "an example of a level",
+        "200": "twice that level",
+        "ten stops": "a screen of 1 : 1000; seven stops are 1 : 128",
+    },
+    "01": {
+        "8 cd/m²": "the unit that own photos get, 8.0 in the code",
+        "1 cd/m²": "the first rung of the ladder",
+        "twelve decades": "from 1e-6 to 1e6 cd/m²",
+        "four decades": "what an eye sees at once, a textbook figure; the figure's SPANS draw it",
+        "seven decades": "from 1e-3 to more than 1e4 cd/m²",
+        "a third of a stop": "a step of the shutter dial",
+        "1 s": "a time of the slider",
+        "two stops": "gained by a second gain, a makers' figure",
+    },
+    "02": {
+        "20 000": "electrons, the full well of the simulated camera",
+    },
+    "03": {
+        "four times": "two photos two stops apart",
+        "8 pixels": "the period of the tiles",
+        "41": "offsets from -20 to 20",
+        "five times": "the six levels of the pyramid",
+        "six levels": "the default of `align`",
+        "two bits": "those that XOR compares",
+        "64": "bits of a machine word",
+        "84": "percent, reported by Ward (2003)",
+        "3 %": "reported by Ward (2003)",
+    },
+    "04": {
+        "four times": "two stops",
+        "a quarter of a stop": "the default limit of the figure",
+        "201": "curves of Grossberg and Nayar",
+    },
+    "05": {
+        "252": "an example of a level",
+        "254": "the level below white",
+        "0.98": "the limit of Cerman and Hlavac",
+    },
+    "06": {
+        "5 %": "a value of the slider",
+        "50": "percent, a value of the slider",
+        "2.2": "the exponent of the camera `gamma`",
+        "0.45": "a limit of the ratios in the paper",
+        "2.7": "percent, reported by the paper",
+        "0 %": "a value of the slider",
+    },
+    "07": {"2.2": "the exponent of the camera `gamma`"},
+    "09": {"1024": "points of the published curves (EMoR)"},
+    "10": {
+        "8 bits": "the depth of the simulated photos",
+        "204": "0.8 of 255",
+        "6.4": "a section of the paper",
+        "125": "an example of a reading",
+        "seven times": "the longer frame of the bracket of two",
+    },
+    "11": {
+        "2 %": "an example of a closer camera",
+        "8 pixels": "the largest shift of the simulated hand",
+        "2 degrees": "its largest rotation",
+        "5 %": "a limit in `pipeline.alignment`",
+        "0.3": "pixels, a limit in `pipeline.alignment`",
+    },
+    "12": {"five percent": "the scattered fraction of this page"},
+    "13": {
+        "0000": "bits",
+        "0001": "bits",
+        "0010": "bits",
+        "0100": "bits",
+        "1000": "bits",
+        "5 bits": "the exponent of IEEE 754 half precision",
+    },
+    "14": {
+        "2 pixels": "a value of the slider",
+        "0.4": "decades, see the definition of `chiu.halo`",
+        "80": "pixels, a value of the slider",
+    },
+    "15": {
+        "3 decades": "a value of the slider, and the height of the edge",
+        "6 pixels": "a value of the slider",
+        "0.005": "half of the square of an amplitude of 0.1",
+    },
+    "16": {
+        "seven stops": "from zone II to zone VIII",
+        "90": "percent, what white paper reflects",
+        "ten times": "an example of a bright pixel",
+    },
+    "18": {
+        "four decades": "see the map of the chapel",
+        "two decades": "a screen of 1 : 100",
+    },
+    "19": {
+        "two levels": "the smoothing of the paper",
+        "5 stops": "a value of the slider",
+        "8 bits": "the depth of the photo",
+    },
+    "20": {
+        "40": "pixels, a value of the slider",
+    },
+    "22": {
+        "four times": "a class of four levels is four times as wide as a level",
+        "201": "curves of Grossberg and Nayar",
+        "255": "the top level of 8 bits",
+    },
+    "25": {
+        "1 %": "the smallest visible step at 1 cd/m², a textbook figure",
+        "1 cd/m²": "the luminance of that step",
+        "3 %": "the smallest visible step at 0.01 cd/m², a textbook figure",
+        "8 bits": "the depth of a gain map",
+        "21496": "a standard",
+        "22028": "a standard",
+    },
+}

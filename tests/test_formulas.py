@@ -33,6 +33,9 @@ REFERENCE = re.compile(
 # an equation of a paper: a link or a citation stands right before it
 CITED_REFERENCE = re.compile(r"(?:\]\([^)]*\),\s+|\[\w+\s+)(?:equations?|eqs?\.)\s+\(?\d+\)?")
 FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
+# exercises and questions name values to try, which nobody has to compute
+EXERCISES = re.compile(r"^## Exercises.*", re.DOTALL | re.MULTILINE)
+QUESTION = re.compile(r"[^.:?!]*(?:\d\.\d[^.:?!]*)*\?")
 CODE_OR_LINK = re.compile(r"`[^`]*`|\]\([^)]*\)|<[^>]*>")
 # a number of two digits or more, with a decimal point or without
 NUMBER = re.compile(r"(?<![\w.])(?:\d+\.\d+|\d{2,}(?: \d{3})*)(?![\w.]\d|\w)")
@@ -85,6 +88,15 @@ def quantities(text):
     return set(NUMBER_WITH_UNIT.findall(text)) | set(WORDS_WITH_UNIT.findall(text.lower()))
 
 
+def numbers_in(prose):
+    """Return the numbers of a prose text without its formulas, code and years, some with a unit."""
+    prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", prose)))
+    prose = re.sub(r"(?<=\d),(?=\d{3})", " ", " ".join(prose.split()))  # 1,500 is 1 500
+    return {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)} | quantities(
+        prose
+    )
+
+
 def texts_of(path):
     return [cell.source for cell in cells_of(path, "markdown")]
 
@@ -129,12 +141,24 @@ def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(pat
     known |= {page.stem[:2] for page in NOTEBOOKS}
     before = " ".join([*open_text.split(), *SENTENCES.get(number, {})])
     known |= quantities(before)
-    said = set()
-    for fold in FOLD.findall(text):
-        prose = " ".join(INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", fold))).split())
-        said |= {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)}
-        said |= quantities(prose)
+    said = set().union(*(numbers_in(fold) for fold in FOLD.findall(text)))
     assert said - known == set()
+
+
+@each_notebook
+def test_a_number_of_the_open_text_is_computed_on_the_page_or_has_a_source(path):
+    """It stands in the page's code, its table or the table of sentences, or has a source."""
+    number = path.stem[:2]
+    table, *texts = texts_of(path)
+    code = "\n".join(cell.source for cell in cells_of(path, "code")).replace("_", " ")
+    known = numbers_in(code) | set(NUMBER.findall(code)) | numbers_in(table)
+    known |= numbers_in(" ".join(SENTENCES.get(number, {})))
+    known |= set(numbers_from_outside.NUMBERS.get(number, {}))
+    known |= set(numbers_from_outside.OPEN_TEXT.get(number, {}))
+    known |= {page.stem[:2] for page in NOTEBOOKS}
+    text = EXERCISES.sub(" ", FOLD.sub(" ", "\n\n".join(texts)))
+    prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", text)))
+    assert numbers_in(QUESTION.sub(" ", prose)) - known == set()
 
 
 @each_page

@@ -79,12 +79,19 @@ def quality(n, name):
 
 SENTENCES = {
     "00": {
+        "Here are seven photos, two stops apart": lambda n: apart(n.times, 7, 2),
+        "each stop is a step of the same size, 0.7": lambda n: round(float(np.log(2)), 1) == 0.7,
         "Sky and corners lie about sixteen stops apart": lambda n: round(float(n.stops)) == 16,
         "differs from the ratio above by less than a percent": lambda n: (
             abs(n.high / n.low / 2**n.stops - 1) < 0.01
         ),
     },
     "01": {
+        "a read noise of 5 electrons, and a converter of 12 bits with 5 electrons per level": lambda n: (
+            (n.GOOD.read_noise, n.GOOD.bits, n.GOOD.gain) == (5, 12, 5)
+        ),
+        "Give the converter only eight levels": lambda n: 2**n.COARSE.bits == 8,
+        "The noise is 5 levels": lambda n: round(n.darkness(64).std()) == 5,
         "8, 12 or 17?": lambda n: round(float(np.log2(n.L.max() / n.L.min()))) == 17,
         "With 10 bits a level is 21 electrons wide, and its rounding error of 6 electrons": lambda n: (
             round(20_000 / (2**10 - 1 - 2**6)) == 21 and round(21 / 12**0.5) == 6
@@ -123,6 +130,14 @@ SENTENCES = {
         ),
     },
     "02": {
+        "1/4, 1/8, 1/15, 1/30, 1/60, 1/125": lambda n: (
+            {"1/4", "1/8", "1/15", "1/30", "1/60", "1/125"} <= set(n.full.names)
+        ),
+        "a sensor of 24 mm by 36 mm": lambda n: np.isclose(n.CORNER, np.hypot(24, 36) / 2),
+        "A field of snow reflects 86 % of the light, and a black locomotive 5 %": lambda n: (
+            [round(100 * float(n.three[name].rho)) for name in ("snow", "locomotive")] == [86, 5]
+        ),
+        "a ratio of 10 (3.3 stops)": lambda n: round(float(np.log2(10)), 1) == 3.3,
         "The partial meter needs 8.2 stops": lambda n: (
             round(18 - n.steps(18, "partial")[-1].EV, 1) == 8.2
         ),
@@ -173,6 +188,7 @@ SENTENCES = {
         ),
     },
     "03": {
+        "in five hand-held photos two stops apart": lambda n: apart(n.times, 5, 2),
         "you would compare whole bitmaps 16 129 times": lambda n: 127**2 == 16_129,
         "needs 54 comparisons": lambda n: 9 * len(n.levels) == 54,
         "The coarsest level has little more than a hundred pixels": lambda n: (
@@ -194,6 +210,8 @@ SENTENCES = {
         ),
     },
     "04": {
+        "photographed seven times from a tripod": lambda n: apart(n.bracket.times, 7, 2),
+        "Sixty spots of the scene give 420 points": lambda n: n.Z.size == 420,
         "(25 make 250, not quite)": lambda n: 25 * (11 - 1) == 250 < 255,
         "the middle of 0 ... 255 is 127.5": lambda n: np.mean([0, 255]) == 127.5,
         "with our $P = 7$ for 43": lambda n: n.debevec.samples_needed(7) == 43,
@@ -219,6 +237,7 @@ SENTENCES = {
         "40 if you ask for 43": lambda n: len(n.sampling.by_grid(n.frames, 43)) == 40,
     },
     "05": {
+        "photographed seven times from a tripod, two stops apart": lambda n: apart(n.times, 7, 2),
         "near the levels 130 and 70": lambda n: (
             [round(0.98 * 255 / ratio ** (1 / 2.2), -1) for ratio in (4, 16)] == [130, 70]
         ),
@@ -290,6 +309,7 @@ SENTENCES = {
         ),
     },
     "07": {
+        "six photos two stops apart": lambda n: apart(n.noisy.times, 6, 2),
         "its slope falls from 2.3 in the dark to 0.5 near white": lambda n: (
             [round(slope, 1) for slope in slopes_of_film(n)] == [2.3, 0.5]
         ),
@@ -326,6 +346,9 @@ SENTENCES = {
         "so its slope is above 4": lambda n: n.last_round("paper")[0].k > 4.005,
     },
     "08": {
+        "The six grays reflect 90, 59, 36, 20, 9 and 3 %": lambda n: (
+            np.round(n.chart.LUMINANCE[-1]).tolist() == [90, 59, 36, 20, 9, 3]
+        ),
         "only its darkest sample is missing": lambda n: len(n.two_grids[1].I) == 14,
         "The screen and the many times are hardly worse than the true curve": lambda n: (
             max(radiance_off(n, "a screen"), radiance_off(n, "a chart"))
@@ -352,6 +375,7 @@ SENTENCES = {
         ),
     },
     "09": {
+        "use only two of them, noisy and two stops apart": lambda n: apart(n.times, 2, 2),
         "With 4 components the space represents `film` and `srgb` to a few tenths of a percent": lambda n: (
             all(0.1 < off(*n.nearest(name, 4)) < 0.4 for name in ("film", "srgb"))
         ),
@@ -398,6 +422,10 @@ SENTENCES = {
         ),
     },
     "10": {
+        "Here are seven photos, two stops apart": lambda n: apart(n.inside.times, 7, 2),
+        "Each of the seven photos covers six or seven stops": lambda n: (
+            6 < np.log2(n.exp_g[249] / n.exp_g[8]) < 7
+        ),
         "gives level 254 more than a third of its largest weight": lambda n: (
             3 * n.pipeline.WEIGHTS["snr"](n.true_g)[254] > n.pipeline.WEIGHTS["snr"](n.true_g).max()
         ),
@@ -457,6 +485,7 @@ SENTENCES = {
         ),
     },
     "11": {
+        "three photos of a workshop, two stops apart": lambda n: apart(n.times, 3, 2),
         "A fifth of a degree. It moves a corner by a pixel here": lambda n: (
             round(float(np.abs(n.degrees).max()), 1) == 0.2
         ),
@@ -479,12 +508,28 @@ SENTENCES = {
         ),
     },
     "12": {
+        "seven photos of a street at night, two stops apart": lambda n: apart(
+            n.moving.bracket.times, 7, 2
+        ),
+        "the mean difference over 5 × 5 pixels is at most three standard deviations of its noise, plus 5 %": (
+            lambda n: (
+                (n.reference.BOX_SIDE, n.reference.MAX_STANDARD_DEVIATIONS, n.reference.TAU)
+                == (5, 3, 0.05)
+            )
+        ),
+        "it has the loss of that photo plus 0.25": lambda n: n.frames.FILLED_LOSS == 0.25,
+        "removes glare only where it is more than 2 % of the light": lambda n: (
+            n.flare.remove_glare.__kwdefaults__["part"] == 0.02
+        ),
         "will the error in the region shrink: two, five, or fifteen?": lambda n: (
             12 < errors_shrink(n) < 19
         ),
         "Once, where he stood in the reference photo": lambda n: len(n.result.references) == 1,
     },
     "13": {
+        "230, 89, 15": lambda n: (
+            n.rgbe.to_pixels(np.float32([[[0.9, 0.35, 0.06]]]))[0, 0].tolist() == [230, 89, 15, 128]
+        ),
         "over far more decades than any scene has (76 in all)": lambda n: (
             int(254 * np.log10(2)) == 76
         ),
@@ -529,6 +574,9 @@ SENTENCES = {
         "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
     },
     "16": {
+        "paper white reflects about 90 %, only 2.3 stops more than middle gray": lambda n: (
+            round(float(np.log2(0.9 / 0.18)), 1) == 2.3
+        ),
         "seven in ten belong to the brightest tenth": lambda n: (
             round(np.mean((n.L >= np.quantile(n.L, 0.9))[n.index == 0]), 1) == 0.7
         ),
@@ -554,6 +602,7 @@ SENTENCES = {
         ),
     },
     "15": {
+        "two flat areas, two decades apart": lambda n: np.isclose(np.ptp(n.step), 2.2, atol=0.02),
         "it smooths only a fifth of the ripple": lambda n: (
             round(1 - ripple_kept(n, sigma_r=0.05), 1) == 0.2
         ),
@@ -578,6 +627,9 @@ SENTENCES = {
         ),
     },
     "17": {
+        "the levels reduce most slopes, in the median to 0.6 times": lambda n: (
+            round(float(np.median(n.Phi)), 1) == 0.6
+        ),
         "It must flatten them most to reduce the range, so its edges are soft": lambda n: (
             fine_detail(n, "finest alone")
             < fine_detail(n, "all levels")
@@ -664,6 +716,7 @@ SENTENCES = {
         "Five stops down the shade has a handful of levels": lambda n: levels_in_shade(n, -5) < 10,
     },
     "20": {
+        "four photos of the workshop, three stops apart": lambda n: apart(n.times, 4, 3),
         "About a third, and half of these by more than 0.15, which is 38 levels": lambda n: (
             round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
             and np.median(beyond(n.R)[beyond(n.R) > 0]) > 0.15
@@ -677,6 +730,7 @@ SENTENCES = {
         ),
     },
     "21": {
+        "it has 52 chops, 26 of them open": lambda n: (len(n.CODE), np.sum(n.CODE)) == (52, 26),
         "The smear is 52 pixels long": lambda n: len(n.CODE) == 52,
         "so bright that a fifth of the pixels are full": lambda n: (
             round(np.mean(n.L >= 1), 1) == 0.2
@@ -725,6 +779,12 @@ SENTENCES = {
         ),
     },
     "23": {
+        "at 89 % of its levels, the noise would rise from 0.8 % to 1.2 %": lambda n: (
+            np.round(error_with_hat(n, 0.89), 1).tolist() == [0.8, 1.2]
+        ),
+        "the exposures of the frames are four stops apart": lambda n: np.isclose(
+            np.log2(n.turn[0] / n.turn[1]), 4
+        ),
         "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
         "which reflects 6 % of that and lets the rest through: 7.52 %": lambda n: (
             share_of_light(n)[1] == 7.52
@@ -747,6 +807,7 @@ SENTENCES = {
         "it is 7.7 stops larger": lambda n: round(np.log2(n.shares[0] / n.shares[2]), 1) == 7.7,
     },
     "24": {
+        "Three photos of the street are three stops apart": lambda n: apart(n.times, 3, 3),
         "at more than half of these pixels nothing does": lambda n: (
             filled_from_reference_alone(n) > 0.5
         ),
@@ -837,6 +898,20 @@ def mean_of_cut_counts(electrons, read_noise):
     rng = np.random.default_rng(0)
     counts = rng.poisson(electrons, 100_000) + rng.normal(0, read_noise, 100_000)
     return np.maximum(counts, 0).mean()
+
+
+def apart(times, count, stops):
+    """Return whether these are so many exposure times, all so many stops apart."""
+    return len(times) == count and np.allclose(np.diff(np.log2(times)), stops)
+
+
+def error_with_hat(n, level):
+    """Return the errors in percent of one sensor and of a mean by hat, on page 23."""
+    exposures = level * np.asarray(n.shares) / n.shares[0]
+    weights = np.minimum(exposures, 1 - exposures)
+    electrons = exposures * n.WELL["full_well"]
+    errors = 100 * np.sqrt(electrons + n.WELL["read_noise"] ** 2) / electrons
+    return errors[0], np.sqrt(np.sum((weights * errors) ** 2)) / weights.sum()
 
 
 def as_half(number):
