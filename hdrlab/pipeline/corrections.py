@@ -86,11 +86,13 @@ def remove_ghosts(
     *,
     certainty: F32 | None = None,
     neutral: ArrayLike = (1, 1, 1),
+    is_misaligned: bool = False,
 ) -> Assembly:
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
-    With "auto", nothing changes if nothing moved. Pixels without a color fade to `neutral`, see
+    With "auto", nothing changes if nothing moved, and nothing if most of the image differs between
+    photos that could not be aligned: that is no motion. Pixels without a color fade to `neutral`, see
     `dark_pixels.measure_color_certainty` and `dark_pixels.measure_neutral`.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.
@@ -106,15 +108,16 @@ def remove_ghosts(
         merge=merge,
         fixed=len(bracket.images) // 2 if mode == "reference" else None,
     )
-    if mode == "auto" and not len(result.references):
+    percent = 100 * np.mean(result.labels > 0)
+    is_widespread = percent >= ghosts.WIDESPREAD
+    if mode == "auto" and (not len(result.references) or (is_misaligned and is_widespread)):
         return state
     E = result.E
     if certainty is not None:
         is_new = np.reshape(state.E != E, (*E.shape[:2], -1)).any(axis=-1)
         E = dark_pixels.fade_to_neutral(E, np.where(is_new, certainty, 1), neutral=neutral)
     state = replace(state, stage="ghosts", E=E, quality=result.quality, moving=result.labels)
-    percent = 100 * np.mean(result.labels > 0)
-    if percent >= ghosts.WIDESPREAD:
+    if is_widespread:
         text = warning_text("widespread", percent=percent)
         if mode != "reference":
             text += warning_text("widespread_advice")

@@ -90,7 +90,8 @@ def assemble(
         How to show things that moved. "none" leaves them half transparent. "regions" takes each
         moving region from the photo that exposes it best, "reference" takes all of them from the
         middle photo, see `radiance.deghosting.ghosts`. "auto" is "regions" if something moved, see
-        `diagnostics.motion`. If most of the image moved, there is a warning.
+        `diagnostics.motion`, also against a background that no alignment brings to the same place.
+        If most of the image moved, there is a warning.
     flare : {"none", "glare"}
         "glare" removes veiling glare, the light that the lens scattered, see `radiance.flare`.
     in_place : bool
@@ -185,7 +186,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         options.align,
         options.response,
         in_place=options.in_place,
-        removes_ghosts=options.ghosts in ("regions", "reference"),
+        removes_ghosts=options.ghosts != "none",
     )
     state = replace(state, notes=(*completed.notes, *state.notes))
     yield state
@@ -272,7 +273,11 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     block_errors = blocks_task.result()
     contradictions = contradictions_task.result()
 
-    may_have_ghosts = not is_misaligned and measured_motion.fraction > motion.MIN_MOVING_FRACTION
+    # Photos that "mtb" could not align may be rotated, and "auto" would align them. With any other
+    # method, something moved that no alignment undoes.
+    is_explained_by_rotation = is_misaligned and options.align == "mtb"
+    is_moving = measured_motion.fraction > motion.MIN_MOVING_FRACTION
+    may_have_ghosts = is_moving and not is_explained_by_rotation
     removes_ghosts = options.ghosts in ("regions", "reference") or (
         options.ghosts == "auto" and may_have_ghosts
     )
@@ -295,7 +300,13 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
 
     if removes_ghosts:
         state = corrections.remove_ghosts(
-            state, options.ghosts, pixel_weights, merge, certainty=certainty, neutral=neutral
+            state,
+            options.ghosts,
+            pixel_weights,
+            merge,
+            certainty=certainty,
+            neutral=neutral,
+            is_misaligned=is_misaligned,
         )
         if state.moving is not None:
             yield state

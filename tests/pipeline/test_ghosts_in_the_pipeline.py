@@ -13,6 +13,7 @@ from hdrlab.cli import main
 from hdrlab.core.bracket import bracket
 from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
+from hdrlab.pipeline import registration
 from hdrlab.show.pages import report
 
 pytestmark = pytest.mark.papers
@@ -73,6 +74,22 @@ def test_auto_does_not_change_the_map_of_a_still_scene():
     assert (
         np.array_equal(auto.E, none.E) and auto.moving is None and auto.doubts == none.doubts == ()
     )
+
+
+@pytest.mark.parametrize(("align", "is_cleaned"), [("auto", True), ("mtb", False)])
+def test_auto_removes_ghosts_from_photos_that_no_alignment_brings_together(
+    moving, monkeypatch, align, is_cleaned
+):
+    align_bracket = registration.align_bracket
+
+    def report_misalignment(bracket, *given, **named):
+        aligned = align_bracket(bracket, "none")
+        return replace(aligned, doubts=("two photos could not be aligned",))
+
+    monkeypatch.setattr(registration, "align_bracket", report_misalignment)
+    found = pipeline.assemble(moving, align=align)
+    assert (found.moving is not None) == is_cleaned
+    assert found.doubts == ("two photos could not be aligned",)
 
 
 def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
