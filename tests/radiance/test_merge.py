@@ -276,6 +276,19 @@ def test_a_frame_with_one_clipped_channel_is_left_out_for_all_three():
     assert not np.allclose(merge(images, [1, 3.5], LINEAR), short_alone, rtol=1e-3)
 
 
+def test_by_channel_a_frame_counts_in_the_channels_that_it_does_not_clip():
+    images = np.array([[[[100, 60, 40]]], [[[255, 200, 160]]]], np.uint8)
+    found = merge_with_quality(images, [1, 3.5], LINEAR, method="shot", by_channel=True).E
+    each = [
+        merge_with_quality(images[..., c], [1, 3.5], LINEAR, method="shot").E[0, 0]
+        for c in range(3)
+    ]
+    assert np.allclose(found[0, 0], each, rtol=1e-6)
+    short_alone = merge_with_quality(images[:1], [1], LINEAR, method="shot").E[0, 0]
+    assert found[0, 0, 0] == short_alone[0]
+    assert not np.isclose(found[0, 0, 1:], short_alone[1:], rtol=1e-3).any()
+
+
 def test_where_every_frame_clips_a_channel_the_others_keep_their_measurement():
     images = np.array([[[[255, 100, 0]]], [[[255, 200, 1]]]], np.uint8)
     found = merge_with_quality(images, [1, 2], LINEAR)
@@ -286,12 +299,13 @@ def test_where_every_frame_clips_a_channel_the_others_keep_their_measurement():
 LINEAR_AT_TOP = TOP / 128
 
 
-def test_highlights_keep_the_colour_of_their_light():
+@pytest.mark.parametrize("by_channel", [False, True])
+def test_highlights_keep_the_colour_of_their_light(by_channel):
     E = (np.geomspace(0.5, 50, 400)[None, :, None] * np.array([1.0, 0.7, 0.5])).astype(np.float32)
     taken = camera.shoot(
         np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), camera.Camera(full_well=50_000), rng=2
     )
-    found = merge_with_quality(taken.images, taken.times, FILM)
+    found = merge_with_quality(taken.images, taken.times, FILM, by_channel=by_channel)
     tint = np.median(found.E, axis=0)[np.median(found.quality, axis=0) == Quality.MEASURED]
     assert np.allclose(tint[:, 1:] / tint[:, :1], [0.7, 0.5], rtol=0.06)
 
