@@ -18,7 +18,6 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
-import scipy
 
 from hdrlab.core import steps
 from hdrlab.core.arrays import F32, Array, ArrayLike, Flags, Mask
@@ -94,7 +93,9 @@ def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
 
 def blurs(Lm: F32) -> Iterator[F32]:
     """Yield V1(s) for s = 1, 1.6, ..., 43 [Battiato08 eq. 1.34]."""
-    return (scipy.ndimage.gaussian_filter(Lm, s / 4) for s in WIDTHS)
+    from scipy.ndimage import gaussian_filter  # large, and `display` does without it
+
+    return (gaussian_filter(Lm, s / 4) for s in WIDTHS)
 
 
 def response(V1: F32, V2: F32, *, width: float, key: float = 0.18, phi: float = 8.0) -> F32:

@@ -3,7 +3,6 @@
 import numpy as np
 
 from hdrlab.core import arrays, colour
-from hdrlab.pipeline.stages import CONTRADICTION
 
 # Correct exposure times and a camera on a tripod reach this spread, in stops.
 AGREEMENT_STOPS = 0.03
@@ -56,6 +55,8 @@ def offset(pixels: arrays.ArrayLike) -> str:
 
 def verdict(spread: float) -> str:
     """Return in words how well frames agree whose spread is this, in stops."""
+    from hdrlab.pipeline.stages import CONTRADICTION  # large, and figures do without it
+
     if np.isnan(spread):
         return "no pixel value occurs in two frames"
     if spread <= AGREEMENT_STOPS:

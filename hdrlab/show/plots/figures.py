@@ -9,7 +9,7 @@ which stays legible on a phone and which a screen reader can read.
 
 import io
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import matplotlib
 import numpy as np
@@ -17,7 +17,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.colour import luminance
@@ -83,11 +82,18 @@ def false_colour(values: Array, low: float, high: float, *, colours: str = "viri
     return table(np.clip(position, 0, 1), bytes=True)[..., :3]
 
 
+def _grow(labels: NDArray[Any], size: int) -> NDArray[Any]:
+    """Return the largest label around each pixel, in a square of this size."""
+    from scipy.ndimage import maximum_filter  # large, and the other figures do without it
+
+    return np.asarray(maximum_filter(labels, size=size))
+
+
 def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
     """Return the picture in pale gray, with a dot in its flag's color for each unmeasured pixel."""
     image = _pale_gray(picture).astype(np.uint8)
     for flag, color in KNOWN.items():
-        spots = maximum_filter(quality == flag, size=dot(quality.shape))
+        spots = _grow(quality == flag, size=dot(quality.shape))
         image[spots] = tuple(bytes.fromhex(color[1:]))
     return image
 
@@ -97,7 +103,7 @@ def regions(picture: Image, labels: NDArray[np.int32]) -> Image:
     image = _pale_gray(picture)
     is_inside = labels > 0
     image[is_inside] = 0.5 * image[is_inside] + 0.5 * np.array(REGION_COLOR)
-    is_outline = maximum_filter(labels, size=dot(labels.shape)) != labels
+    is_outline = _grow(labels, size=dot(labels.shape)) != labels
     image[is_outline] = REGION_OUTLINE_COLOR
     return image.astype(np.uint8)
 
