@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from hdrlab.core.steps import last
 from hdrlab.course import plan as plans
 from hdrlab.course.grading import grader, results
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
@@ -26,6 +27,8 @@ if in_process.IS_BROWSER:
     PRACTICE = plans.GradingOptions(
         tier=in_process.TIER, timeout=BROWSER_TIMEOUT_FACTOR * CALL_TIMEOUT_SECONDS
     )
+# what messages call the code that `check_text` is given
+TEXT = "Your text"
 
 # the latest result of each task in this kernel, for the bar of the homework
 _latest: dict[str, results.Result] = {}
@@ -96,6 +99,46 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     for task_id in task_ids:
         _latest[task_id] = replace(result, checks=result.of(task_id), problems=())
     return Feedback(result, homework)
+
+
+def check_text(name: str, text: str, *, draw: bool = True) -> results.Result:
+    """Check one task in code that is in no notebook, such as in a box on a page of the site.
+
+    Parameters
+    ----------
+    name : str
+        A task, such as "gsolve".
+    text : str
+        Python code with its function. It can use what the assignment gives, such as `np`.
+    draw : bool
+        Whether differences are drawn as images.
+
+    Returns
+    -------
+    result : Result
+        The result, in the tier of `check`.
+
+    Raises
+    ------
+    InputError
+        For a name that is not a task.
+    """
+    homework, _ = find_tasks(name)
+    cells = [closure.Cell(text, where=TEXT)]
+    sources, problems = closure.extract_sources(cells, [name], reader.given_cells(homework.name))
+    if not sources:
+        # where the text is no Python, that is why the function is missing
+        broken = [problem for problem in problems if problem.startswith(TEXT)]
+        problems = broken or [f"{TEXT} defines no function {name}"]
+    code = reader.SubmittedCode(
+        sources=sources,
+        problems=tuple(problems),
+        hash="",
+        modules=tuple(names.imported_numpy_modules(sources.values())),
+    )
+    tasks = tuple(task for task in homework.tasks if task.id == name)
+    options = replace(PRACTICE, draw=draw)
+    return last(grader.check_steps(code, homework._replace(tasks=tasks), options))
 
 
 def _code_of_kernel(homework: plans.Homework, task_ids: Sequence[str]) -> reader.SubmittedCode:

@@ -6,6 +6,7 @@ formulas   draws formulas
 reference  lays out a page for each module, and the map from the lecture to them
 words      what the search takes for a word
 lite       puts JupyterLite beside the pages, which runs the notebooks in a browser
+boxes      puts boxes into pages in which a reader writes and checks a function
 pages      puts all of it in one folder, and Sphinx with myst-nb makes the site of it
 
 What is written by hand lies beside: `pages`, the guides in Markdown, and `theme`, how a page looks.

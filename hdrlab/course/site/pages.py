@@ -19,7 +19,7 @@ import numpy as np
 from markupsafe import Markup
 
 from hdrlab.course.authoring.execute import ExecutedNotebook, library_key
-from hdrlab.course.site import covers, live, reference
+from hdrlab.course.site import boxes, covers, live, reference
 from hdrlab.errors import InputError
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
@@ -98,7 +98,7 @@ def build(
     Handouts are shown without being run: their tasks are still to be done. If nothing has changed
     since the last build, the site is left as it is. `address` is the URL where it will be published.
     With an `edition` (see `lite.build`), each notebook's page has a button that opens it in
-    JupyterLite.
+    JupyterLite, and some have boxes in which a reader checks a function.
     """
     record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
@@ -145,6 +145,8 @@ def _build(
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # some notebooks may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
+            if edition and folder == "notebooks":
+                boxes.insert(notebook, name, set(sheets))
             texts[f"{folder}/{name}.ipynb"], count = _prepare_notebook(
                 notebook, name, known, html / WIDGETS
             )

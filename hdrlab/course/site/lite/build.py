@@ -3,6 +3,7 @@
 lite/files/EDITION    the notebooks and assignments; the edition is a digest of them
 lite/wheels/DIGEST    hdrlab and the packages that it needs
 lite/pyodide          Pyodide, if it is served from a folder
+lite/try, try.json    what the boxes "Try it" load, see `checks`
 
 JupyterLite shows the copy of a file in the browser in place of the site's. So another edition has
 other paths: a new notebook is never hidden by an old copy, and the old copy stays where it was.
@@ -14,7 +15,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib import metadata
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,7 +23,7 @@ from typing import Any, NamedTuple
 from packaging.utils import canonicalize_name
 
 from hdrlab.course.authoring.execute import library_key
-from hdrlab.course.site.lite import wheels
+from hdrlab.course.site.lite import checks, wheels
 from hdrlab.errors import InputError
 
 HERE = Path(__file__).parent
@@ -51,6 +52,9 @@ DISABLED = (
 )
 # what the kernel of JupyterLite loads
 KERNEL_PACKAGES = ("micropip", "ssl", "sqlite3", "ipython")
+NOTEBOOK_PACKAGES = (*KERNEL_PACKAGES, *wheels.COMPILED)
+# files whose bytes the worker of a box counts: it loads scripts in another way
+LOADED_FILES = ("pyodide.asm.wasm", "python_stdlib.zip", LOCK_FILE)
 
 
 class PyodideSource(NamedTuple):
@@ -97,7 +101,7 @@ def find_pyodide(place: str) -> PyodideSource:
             f"--lite: the installed jupyterlite-pyodide-kernel needs Pyodide {PYODIDE_VERSION}, "
             f"and {folder} has {version}"
         )
-    present = _needed_packages(lock, folder)
+    present = _needed_packages(lock, folder, NOTEBOOK_PACKAGES)
     lacking = tuple(name for name in wheels.COMPILED if name not in present)
     return PyodideSource("./pyodide/pyodide.js", folder, lacking)
 
@@ -133,6 +137,7 @@ def build(
     if pyodide.folder is not None:
         _copy_pyodide(pyodide.folder, made / "pyodide")
     compiled = [name for name in wheels.COMPILED if name not in pyodide.lacking]
+    checks.write(made, pyodide.url, _sizes_for_checks(pyodide.folder))
     _configure(made / "jupyter-lite.json", pyodide.url, [*names, *KERNEL_PACKAGES, *compiled])
     shutil.rmtree(target, ignore_errors=True)
     # with times of today: JupyterLite's are of 1985, and a browser would keep such a file for years
@@ -201,10 +206,31 @@ def _configure(path: Path, pyodide_url: str, packages: list[str]) -> None:
     path.write_text(json.dumps(settings, indent=1), "utf8")
 
 
-def _needed_packages(lock: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the packages of Pyodide that notebooks load, as far as the folder has them."""
+def _sizes_for_checks(folder: Path | None) -> dict[str, int]:
+    """Return the bytes of Pyodide that a check loads at first, and those of each further package.
+
+    They are unknown, {}, if Pyodide is loaded from elsewhere.
+    """
+    if folder is None:
+        return {}
+    lock = json.loads((folder / LOCK_FILE).read_text("utf8"))
+
+    def size(files: Iterable[str]) -> int:
+        return sum((folder / name).stat().st_size for name in files)
+
+    def files_of(names: Sequence[str]) -> set[str]:
+        needed = _needed_packages(lock, folder, names)
+        return {package["file_name"] for package in needed.values()}
+
+    first = files_of(checks.PACKAGES)
+    further = {name: size(files_of([name]) - first) for name in wheels.COMPILED}
+    return {"start": size([*LOADED_FILES, *first]), **further}
+
+
+def _needed_packages(lock: dict[str, Any], folder: Path, names: Sequence[str]) -> dict[str, Any]:
+    """Return packages of Pyodide with those that they need, as far as the folder has them."""
     needed: dict[str, Any] = {}
-    names = [*KERNEL_PACKAGES, *wheels.COMPILED]
+    names = list(names)
     while names:
         name = canonicalize_name(names.pop())
         package = lock["packages"].get(name)
@@ -218,7 +244,7 @@ def _copy_pyodide(folder: Path, target: Path) -> None:
     """Copy Pyodide with the packages that notebooks load, and verify their checksums."""
     target.mkdir()
     lock = json.loads((folder / LOCK_FILE).read_text("utf8"))
-    needed = _needed_packages(lock, folder)
+    needed = _needed_packages(lock, folder, NOTEBOOK_PACKAGES)
     for package in needed.values():
         content = (folder / package["file_name"]).read_bytes()
         if hashlib.sha256(content).hexdigest() != package["sha256"]:

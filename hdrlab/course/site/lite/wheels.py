@@ -41,10 +41,10 @@ WHEEL_METADATA = (
 def write_wheels(folder: Path) -> list[Path]:
     """Write the wheels of hdrlab and of what it needs in a browser, and return their paths."""
     folder.mkdir(parents=True, exist_ok=True)
-    wheels = [_write_wheel(folder, "hdrlab", __version__, _files_of_hdrlab())]
+    wheels = [_write_wheel(folder, "hdrlab", __version__, files_of_hdrlab())]
     for distribution in needed_distributions():
         name = canonicalize_name(distribution.name).replace("-", "_")
-        files = _files_of_distribution(distribution)
+        files = files_of_distribution(distribution)
         wheels.append(_write_wheel(folder, name, distribution.version, files))
     return wheels
 
@@ -75,7 +75,7 @@ def needed_distributions() -> list[metadata.Distribution]:
     return sorted(distributions, key=lambda distribution: canonicalize_name(distribution.name))
 
 
-def _files_of_distribution(distribution: metadata.Distribution) -> dict[str, bytes]:
+def files_of_distribution(distribution: metadata.Distribution) -> dict[str, bytes]:
     """Return the files of an installed distribution, without scripts and compiled modules."""
     files = {}
     for file in distribution.files or ():
@@ -85,7 +85,7 @@ def _files_of_distribution(distribution: metadata.Distribution) -> dict[str, byt
     return files
 
 
-def _files_of_hdrlab() -> dict[str, bytes]:
+def files_of_hdrlab() -> dict[str, bytes]:
     """Return the files of hdrlab's wheel, from an installation or from a clone."""
     files = {}
     for path in PACKAGE.rglob("*"):
