@@ -78,7 +78,6 @@ class _Plan:
     top : the first level that is clipped
     factors : of each frame
     base : (C, n) complex64, e + i w of each channel, which times the factors is T of a frame
-    by_channel : whether a frame counts in the channels that it does not clip
     is_paired : whether two frames of 8 bits share a plane
     plane_tables : (C, n * n) or (C, n), one table for each of the planes; empty for a large bracket
     finish : from the quotient to E
@@ -89,7 +88,6 @@ class _Plan:
     top: int
     factors: list[_Factors]
     base: Array
-    by_channel: bool
     is_paired: bool
     plane_tables: list[Array]
     finish: Callable[[Array], Array]
@@ -114,13 +112,12 @@ def merge_with_quality(
     top: float = CLIPPING_LEVEL,
     repair: bool = True,
     valid: ArrayLike | None = None,
-    by_channel: bool = False,
 ) -> Merged:
     """Return the radiance map and the quality flags of its pixels, the lesson's."""
     stack, t, w, g, first_clipped = as_tables(images, times, g, w, method, top)
     mask = as_mask(valid, stack)
     order = short_to_long(stack, t)
-    plan = _make_plan(t[order], g, w, first_clipped, method, by_channel)
+    plan = _make_plan(t[order], g, w, first_clipped, method)
     pixels = stack.reshape(*stack.shape[:3], -1)
     E = np.empty(pixels.shape[1:], np.float32)
     quality = np.empty(pixels.shape[1:3], np.uint8)
@@ -152,7 +149,7 @@ def _release(rows: Array) -> None:
         )
 
 
-def _make_plan(times: F64, g: F64, w: F64, top: int, method: str, by_channel: bool) -> _Plan:
+def _make_plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:
     """Return the _Plan of frames with these times."""
     n = len(g)
     z = np.arange(n)
@@ -173,7 +170,6 @@ def _make_plan(times: F64, g: F64, w: F64, top: int, method: str, by_channel: bo
         top=top,
         factors=factors,
         base=base.astype(np.complex64),
-        by_channel=by_channel,
         is_paired=is_paired,
         plane_tables=plane_tables,
         finish=np.exp if method == "log" else np.positive,
@@ -274,9 +270,7 @@ def _sum_channels(frames: list[Array], shown: Mask | None, plan: _Plan) -> Array
         if shown is not None:
             masks = shown[start : start + FRAMES_PER_GROUP]
             group = [frame * mask[..., None] for frame, mask in zip(group, masks, strict=True)]
-        planes = _planes(group, plan.is_paired)
-        if not plan.by_channel:
-            planes = _drop_clipped(planes, plan.is_paired, plan.top)
+        planes = _drop_clipped(_planes(group, plan.is_paired), plan.is_paired, plan.top)
         for c in range(plan.g.shape[1]):
             if plan.plane_tables:
                 tables = [table[c] for table in plan.plane_tables]

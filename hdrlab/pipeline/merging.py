@@ -12,8 +12,6 @@ and dark colors turned gray. The longest photo collected the most light. Up to i
 upper limit.
 """
 
-from functools import partial
-
 import numpy as np
 
 from hdrlab.core.arrays import Array, ArrayLike, Mask, as_mask, as_response, as_stack, levels
@@ -40,7 +38,6 @@ def merge_photos(
     noise: float,
     valid: ArrayLike | None = None,
     repair: bool = True,
-    by_channel: bool = False,
 ) -> Merged:
     """Return the radiance map and the quality flags of its pixels.
 
@@ -64,8 +61,6 @@ def merge_photos(
         False where a photo shows nothing of the scene.
     repair : bool
         Whether to repair stuck pixels.
-    by_channel : bool
-        Whether a photo counts in the channels that it does not clip; see `radiance.merge.weigh`.
 
     Raises
     ------
@@ -79,16 +74,13 @@ def merge_photos(
     >>> merge_photos(images, [1, 4], g, method="shot", noise=1).E.tolist()
     [[0.5, 40.0]]
     """
-    merge = partial(
-        merge_with_quality, method=method, repair=repair, valid=valid, by_channel=by_channel
-    )
     if method not in LIMITED_METHODS:
-        return merge(images, times, g, w)
+        return merge_with_quality(images, times, g, w, method=method, repair=repair, valid=valid)
     stack = as_stack(images)
     mask = as_mask(valid, stack)
     # The dark pixels are found first, because the merge may free the photos.
     is_dark, dark_levels, time = _find_dark(stack, np.asarray(times, np.float64), mask)
-    merged = merge(images, times, g, w)
+    merged = merge_with_quality(images, times, g, w, method=method, repair=repair, valid=valid)
     if not len(dark_levels):
         return merged
     E = merged.E.reshape(is_dark.shape)

@@ -248,15 +248,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     if sample.shape != images.shape:
         sample = sample.copy()  # contiguous, because it is read several times
     sample_valid = None if valid is None else valid[grid]
-    sample_map = merge(
-        sample,
-        times,
-        response.g,
-        pixel_weights,
-        valid=sample_valid,
-        repair=False,
-        by_channel=True,
-    ).E
+    sample_map = merge(sample, times, response.g, pixel_weights, valid=sample_valid, repair=False).E
     motion_task = run_in_background(
         partial(motion.measure_motion, images, times, response.g, pixel_weights, valid=valid),
         pixels=images[0].size,
@@ -295,7 +287,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         images = images.view(Expendable)
     # The certainty is measured first, because the merge may free the photos.
     certainty = dark_pixels.measure_color_certainty(images, times, valid=valid)
-    merged = merge(images, times, response.g, pixel_weights, valid=valid, by_channel=True)
+    merged = merge(images, times, response.g, pixel_weights, valid=valid)
     state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
     neutral = np.ones(3, np.float32)
     if certainty is not None:

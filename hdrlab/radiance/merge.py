@@ -84,18 +84,14 @@ def shot_noise(W: F64, X: F64, t: F64) -> F64:
 METHODS = {"log": log_mean, "likelihood": likelihood, "mean": frame_mean, "shot": shot_noise}
 
 
-def weigh(
-    Z: Array, w: F64, top: int, shown: Mask | bool = True, *, by_channel: bool = False
-) -> F64:
+def weigh(Z: Array, w: F64, top: int, shown: Mask | bool = True) -> F64:
     """Return W: w(Z) where a frame measures a pixel, 0 elsewhere.
 
     A frame with a clipped channel is dropped for all channels if another frame measures the pixel:
-    otherwise an error of the curves would give highlights a tint. With `by_channel`, the other two
-    channels of this frame count. They have less noise than those of the next shorter frame.
+    cameras clip before their color matrix, so the other channels of a clipped pixel are wrong, too,
+    and highlights would have a tint.
     """
     usable = (Z > 0) & (Z < top) & shown
-    if by_channel:
-        return usable * np.maximum(w[Z], MIN_RELATIVE_WEIGHT * w.max())
     whole = usable & np.all(Z < top, axis=-1, keepdims=True)
     in_use = np.where(whole.any(axis=0), whole, usable)
     return in_use * np.maximum(w[Z], MIN_RELATIVE_WEIGHT * w.max())
@@ -181,7 +177,6 @@ def merge_with_quality(
     top: float = CLIPPING_LEVEL,
     repair: bool = True,
     valid: ArrayLike | None = None,
-    by_channel: bool = False,
 ) -> Merged:
     """Return the radiance map by one of METHODS, with stuck pixels repaired, and its quality flags.
 
@@ -204,8 +199,6 @@ def merge_with_quality(
         Replace single pixels that do not follow the exposure by their neighbours' median.
     valid : (P, H, W) bool, optional
         False where a photograph shows nothing of the scene.
-    by_channel : bool
-        Use the other channels of a photograph where one is clipped, see `weigh`.
 
     Returns
     -------
@@ -233,7 +226,7 @@ def merge_with_quality(
     mask = arrays.as_mask(valid, stack)
     Z = stack.reshape(*stack.shape[:3], -1)
     shown = np.broadcast_to(True if mask is None else mask[..., None], Z.shape)
-    W = weigh(Z, w, first, shown, by_channel=by_channel)
+    W = weigh(Z, w, first, shown)
     X = np.exp(curves[Z, np.arange(Z.shape[-1])])
     bounds, flags = bound(Z, np.log(t), curves, first, shown)
     measured = W.any(axis=0)

@@ -1,7 +1,5 @@
 """The longest photo limits what the merge makes of pixels that are dark in every photo."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -78,21 +76,3 @@ def test_noise_of_short_photos_does_not_brighten_the_dark_part_of_a_night():
         return abs(np.median(ratios))
 
     assert measure_blue_error(limited) < 0.65 * measure_blue_error(plain)
-
-
-def test_colors_are_exacter_where_a_photo_counts_in_the_channels_that_it_does_not_clip():
-    E = np.geomspace(0.02, 20, 90 * 120).reshape(90, 120, 1) * np.float32([1.0, 0.6, 0.3])
-    model = camera.Camera(response="srgb", full_well=3000, read_noise=12)
-    taken = camera.shoot(E.astype(np.float32), 4.0 ** np.arange(-3, 2), model, rng=5)
-    merge = partial(
-        merging.merge_photos, taken.images, taken.times, true_g("srgb"), method="shot", noise=1
-    )
-    whole, each = merge(), merge(by_channel=True)
-    differs = (whole.E != each.E).any(axis=-1) & (whole.quality == 0) & (each.quality == 0)
-
-    def color_error(found):
-        error = np.log2(found.E / E)[differs]
-        return np.sqrt(np.mean((error - error.mean(axis=-1, keepdims=True)) ** 2))
-
-    assert differs.mean() > 0.1
-    assert color_error(each) < 0.9 * color_error(whole)
