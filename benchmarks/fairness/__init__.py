@@ -33,7 +33,7 @@ import pytest
 from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.authoring import solutions
-from hdrlab.course.checks import compare, misconceptions, plugin
+from hdrlab.course.checks import compare, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.grading import scoring
 from hdrlab.course.grading.results import Check, Outcome
@@ -52,13 +52,13 @@ TWENTIETH = 1 / 20
 
 
 class Score(NamedTuple):
-    """What an answer got for its task: the share of the points, the promises it broke, the mistake named."""
+    """What an answer got for its task: the share of the points, the promises it broke, the mistakes named."""
 
     task: str
     way: str
     share: float
     broken: tuple[str, ...]
-    named: str
+    named: tuple[str, ...]
 
 
 def texts(kind: str) -> dict[str, dict[str, str]]:
@@ -117,7 +117,8 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     worth = scoring.split_points(
         Fraction(str(task.points)), [Fraction(str(one.args[0])) for one in marks.values()]
     )
-    checks, calls = [], []
+    checks = []
+    asked = []
     for (name, test), points in zip(tests.items(), worth, strict=True):
         subject.fresh()
         compare.notes.clear()
@@ -133,15 +134,16 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
             outcome: Outcome = "no answer" if kind else "fails"
             ended = replace(ended, outcome=outcome, kind=kind, message=str(error))
         checks.append(ended)
-        calls += [(one.args, one.kwargs, one.answer) for one in subject.calls]
+        calls = [(one.args, one.kwargs, one.answer) for one in subject.calls]
+        asked.append(misconceptions.CheckedCalls(calls=calls, holds=ended.outcome == "holds"))
     broken = tuple(one.name for one in checks if one.outcome != "holds")
-    found = misconceptions.closest(task, calls[: plugin.MAX_REMEMBERED_CALLS]) if broken else None
+    found = misconceptions.diagnose(task, asked) if broken else misconceptions.Diagnosis()
     needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
     traced = scoring.attribute_failures(
-        checks, needs, named=found is not None, once=found is not None and found.costs_half_at_most
+        checks, needs, named=found.explains_all, once=found.costs_half_at_most
     )
     share = float(sum(one.points for one in traced) / sum(worth))
-    return Score(task.id, way, share, broken, found.name if found else "")
+    return Score(task.id, way, share, broken, tuple(one.name for one in found.mistakes))
 
 
 def scores(answers: dict[str, dict[str, str]], seeds: int) -> list[Score]:
@@ -222,7 +224,7 @@ def named(_: Path) -> dict[str, Any]:
         "of the others, that cost more than half": sum(
             one.share < 1 / 2 and one.way not in method for one in found
         ),
-        "named, %": 100 * sum(one.named == one.way for one in found) / len(found),
+        "named, %": 100 * sum(one.named == (one.way,) for one in found) / len(found),
         "by which a score varies": spread(found),
     }
 

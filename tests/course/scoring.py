@@ -59,7 +59,19 @@ def ask(check, subject, seed=0):
 
 def answered(task, subject, seed=0, variant=""):
     """Return what each check of a task says of a subject: None where it holds."""
-    return {name: ask(check, subject, seed) for name, check, *_ in checks(task, variant)}
+    return answered_and_asked(task, subject, seed, variant)[0]
+
+
+def answered_and_asked(task, subject, seed=0, variant=""):
+    """Return what each check of a task says of a subject, and the calls that each check made."""
+    said = {}
+    asked = []
+    for name, check, *_ in checks(task, variant):
+        before = len(subject.calls)
+        said[name] = ask(check, subject, seed)
+        calls = subject.calls[before:]
+        asked.append(misconceptions.CheckedCalls(calls=calls, holds=said[name] is None))
+    return said, asked
 
 
 def score(task, subject, seed=0, variant=""):
@@ -67,11 +79,10 @@ def score(task, subject, seed=0, variant=""):
 
     As in grading: a well-known mistake that explains all answers costs half at most.
     """
-    said = answered(task, subject, seed, variant)
-    asked = PLAN.task(task)._replace(variant=variant)
-    found = None
+    said, asked = answered_and_asked(task, subject, seed, variant)
+    found = misconceptions.Diagnosis()
     if any(said.values()):
-        found = misconceptions.closest(asked, subject.calls[: plugin.MAX_REMEMBERED_CALLS])
+        found = misconceptions.diagnose(PLAN.task(task)._replace(variant=variant), asked)
     worth = [Fraction(str(points)) for _, _, points, *_ in checks(task, variant)]
     each = [
         Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")
@@ -79,6 +90,6 @@ def score(task, subject, seed=0, variant=""):
     ]
     needs = {name: needs or "" for name, *_, needs in checks(task, variant)}
     traced = scoring.attribute_failures(
-        each, needs, named=found is not None, once=found is not None and found.costs_half_at_most
+        each, needs, named=found.explains_all, once=found.costs_half_at_most
     )
     return float(sum(one.points for one in traced) / sum(worth)), said

@@ -156,8 +156,10 @@ def test_hidden_checks_are_not_used_to_recognize_a_mistake(checking):
     assert not checking.failed and not checking.calls
     end_check(checking, item(subject=Asked(*range(15))), None)
     end_check(checking, item(subject=Asked(*range(15))), None)
-    assert [answer for *_, answer in checking.calls["hat"]] == [*range(15), *range(5)]
-    assert checking.calls["hat"][1] == ((1,), {}, 1)
+    kept = checking.calls["hat"]
+    assert [[answer for *_, answer in check.calls] for check in kept] == [[*range(15)], [*range(5)]]
+    assert all(check.holds for check in kept)
+    assert kept[0].calls[1] == ((1,), {}, 1)
 
 
 def test_an_unavailable_sandbox_is_reported_without_failing_a_check(checking):
@@ -168,19 +170,23 @@ def test_an_unavailable_sandbox_is_reported_without_failing_a_check(checking):
 def test_mistakes_of_failed_tasks_are_recognized_and_an_error_affects_one_task_only(
     checking, monkeypatch
 ):
-    def closest(task, calls):
+    def diagnose(task, checks):
         if task.id == "gsolve":
             raise ValueError
-        assert (task.function, task.points, calls) == ("core.weights.hat", 1.0, [((0,), {}, 5)])
-        return KnownMistake(
+        asked = [misconceptions.CheckedCalls(calls=[((0,), {}, 5)], holds=False)]
+        assert (task.function, task.points, checks) == ("core.weights.hat", 1.0, asked)
+        mistake = KnownMistake(
             name="hat_x", task="hat", sentence="A sentence.", function=len, misses_method=True
         )
+        return misconceptions.Diagnosis(mistakes=(mistake,), explains_all=True)
 
-    monkeypatch.setattr(misconceptions, "closest", closest)
+    monkeypatch.setattr(misconceptions, "diagnose", diagnose)
     end_check(checking, item(subject=Asked(5)), AssertionError())
     checking.failed |= {"gsolve", "unknown"}
     checking.pytest_sessionfinish(None)
-    assert checking.lines()[1:] == [{"recognised": "hat", "sentence": "A sentence.", "once": False}]
-    monkeypatch.setattr(misconceptions, "closest", lambda task, calls: None)
+    recognised = {"recognised": "hat", "sentence": "A sentence.", "explains_all": True}
+    assert checking.lines()[1:] == [{**recognised, "once": False}]
+    nothing = misconceptions.Diagnosis()
+    monkeypatch.setattr(misconceptions, "diagnose", lambda task, checks: nothing)
     checking.pytest_sessionfinish(None)
     assert len(checking.lines()) == 2

@@ -78,7 +78,7 @@ def test_the_fairness_benchmark_gives_the_same_points_and_mistake_as_check():
     earned, whole = results.points(result.of("hat"))
     assert (
         second.share == earned / whole < 1
-        and second.named == way
+        and second.named == (way,)
         and "hat" in result.misconceptions
     )
     assert list(second.broken) == [one.name for one in result.of("hat") if one.outcome != "holds"]

@@ -153,7 +153,9 @@ def test_an_unavailable_tier_ends_the_grading(heard):
 
 def test_a_result_is_yielded_after_each_check_and_at_the_end(heard):
     lines = [check("hold"), check("fail"), ending("hold"), ending("fail", "fails")]
-    found = heard(*lines, {"recognised": "hat", "sentence": "S", "once": True})
+    found = heard(
+        *lines, {"recognised": "hat", "sentence": "S", "explains_all": True, "once": True}
+    )
     outcomes = [[one.outcome for one in each.checks] for each in found]
     assert outcomes == [["holds", "no answer"], ["holds", "fails"], ["holds", "fails"]]
     assert [each.misconceptions for each in found] == [{}, {}, {"hat": "S"}]
@@ -224,23 +226,27 @@ def test_the_points_of_a_task_are_split_by_the_weights_of_its_checks(heard):
     ]
 
 
-@pytest.mark.parametrize(
-    ("more", "earned"), [({}, [2, 0, 0]), ({"once": False}, [2, 0, 0]), ({"once": True}, [2, 0, 2])]
-)
-def test_a_recognized_mistake_is_named_as_the_cause_of_its_tasks_failures(more, earned, heard):
+@pytest.mark.parametrize(("once", "earned"), [(False, [2, 0, 0]), (True, [2, 0, 2])])
+def test_a_recognized_mistake_is_named_as_the_cause_of_its_tasks_failures(once, earned, heard):
     lines = [check("hold", points="2"), check("fail", points="3"), check("err", points="3")]
     ends = [ending("hold"), ending("fail", "fails"), ending("err", "fails")]
     homework = HOMEWORK._replace(tasks=tuple(one._replace(points=8.0) for one in HOMEWORK.tasks))
-    *_, found = heard(
-        *lines, *ends, {"recognised": "hat", "sentence": "S", **more}, homework=homework
-    )
+    recognized = {"sentence": "S", "explains_all": True, "once": once}
+    *_, found = heard(*lines, *ends, {"recognised": "hat", **recognized}, homework=homework)
     assert [one.follows for one in found.checks] == ["", "", "It fails"]
     assert [one.points for one in found.checks] == earned
-    *_, found = heard(
-        *lines, *ends, {"recognised": "gsolve", "sentence": "S", **more}, homework=homework
-    )
+    *_, found = heard(*lines, *ends, {"recognised": "gsolve", **recognized}, homework=homework)
     assert [one.points for one in found.checks] == [2, 0, 0]
     assert [one.follows for one in found.checks] == ["", "", ""]
+
+
+def test_a_mistake_that_explains_only_some_checks_is_named_but_is_not_the_cause_of_all(heard):
+    lines = [check("hold", points="2"), check("fail", points="3"), check("err", points="3")]
+    ends = [ending("hold"), ending("fail", "fails"), ending("err", "fails")]
+    partial = {"recognised": "hat", "sentence": "S", "explains_all": False, "once": False}
+    *_, found = heard(*lines, *ends, partial)
+    assert [one.follows for one in found.checks] == ["", "", ""]
+    assert found.misconceptions == {"hat": "S"}
 
 
 def test_a_check_that_needs_another_one_is_passed_on_to_the_scoring(heard):

@@ -81,6 +81,39 @@ def test_the_library_and_a_blank_stub_are_not_taken_for_a_mistake(task):
     assert misconceptions.closest(PLAN.task(task), []) is None
 
 
+def diagnosed(task, function):
+    """Return the diagnosis of a wrong function from the checks of its task."""
+    subject = inprocess.Subject({task: function})
+    _, asked = scoring.answered_and_asked(task, subject, plan.seed("secret", "ada", task))
+    return misconceptions.diagnose(PLAN.task(task), asked)
+
+
+@pytest.mark.grading
+def test_two_independent_mistakes_are_both_named():
+    def signed_contrast_and_exposedness_of_the_mean(F, powers=(1, 1, 1)):
+        Y = np.pad(0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2], 1, mode="edge")
+        around = Y[:-2, 1:-1] + Y[2:, 1:-1] + Y[1:-1, :-2] + Y[1:-1, 2:]
+        contrast = around - 4 * Y[1:-1, 1:-1]
+        exposedness = np.exp(-((F.mean(axis=0) - 0.5) ** 2) / (2 * 0.2**2))
+        return contrast ** powers[0] * F.std(axis=0) ** powers[1] * exposedness ** powers[2]
+
+    found = diagnosed("weight", signed_contrast_and_exposedness_of_the_mean)
+    assert not found.explains_all and not found.costs_half_at_most
+    names = {one.name for one in found.mistakes}
+    assert names == {"weight_sign_kept", "weight_exposedness_of_the_mean"}
+    assert all(one.sentence in found.sentence for one in found.mistakes)
+
+
+@pytest.mark.grading
+def test_a_mistake_that_a_right_answer_contradicts_is_not_named():
+    def wrong_for_one_fraction(h, q):
+        right = plan.function(PLAN.task("threshold"))(h, q)
+        return right + 1 if np.ndim(q) == 0 and q == 0.5 else right
+
+    found = diagnosed("threshold", wrong_for_one_fraction)
+    assert found.mistakes == ()
+
+
 @pytest.mark.grading
 def test_a_nonsense_answer_is_not_taken_for_a_known_mistake():
     Z = np.random.default_rng(0).integers(0, 256, (30, 4))

@@ -29,8 +29,6 @@ from hdrlab.course.sandbox import in_process, tiers
 from hdrlab.course.sandbox.inside import system
 from hdrlab.course.sandbox.session import Unavailable
 
-# calls of a task that are kept to recognize a mistake
-MAX_REMEMBERED_CALLS = 20
 MAX_MESSAGE_CHARACTERS = 1500
 # why a check has no answer, where the student's code was never called or has no time left
 NOT_TRIED_AGAIN = ("missing", "late", "killed")
@@ -77,7 +75,7 @@ class GradingPlugin:
     def __init__(self, job: dict[str, Any]) -> None:
         self.job = job
         self.open = ExitStack()
-        self.calls: dict[str, list[tuple[Any, ...]]] = {}
+        self.calls: dict[str, list[misconceptions.CheckedCalls]] = {}
         self.failed: set[str] = set()
         self.late: set[str] = set()
 
@@ -138,9 +136,7 @@ class GradingPlugin:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
         said = MEMORY_ADDRESS.sub("", subject.printed[:MAX_PRINTED_CHARACTERS])
         if not self._is_hidden(item) and isinstance(subject, Subject):
-            kept = self.calls.setdefault(task_of(item), [])
-            room = MAX_REMEMBERED_CALLS - len(kept)
-            kept += [(call.args, call.kwargs, call.answer) for call in subject.calls[:room]]
+            self._keep_calls(task_of(item), subject, holds=raised is None)
         if isinstance(raised, Unavailable):  # the machine failed, not the submission
             return self._write(unavailable=str(raised))
         if raised is None:
@@ -157,6 +153,13 @@ class GradingPlugin:
         told = {"outcome": "no answer" if kind else "fails", "kind": kind}
         differs = _differs(raised) if self.job["draw"] else None
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
+
+    def _keep_calls(self, task_id: str, subject: Subject, *, holds: bool) -> None:
+        """Keep the calls that a check has made, to recognize a mistake."""
+        kept = self.calls.setdefault(task_id, [])
+        room = misconceptions.MAX_COMPARED_CALLS - sum(len(check.calls) for check in kept)
+        calls = [(call.args, call.kwargs, call.answer) for call in subject.calls[:room]]
+        kept.append(misconceptions.CheckedCalls(calls=calls, holds=holds))
 
     def _problem_of_check(self, item: pytest.Item) -> str:
         """Return what is wrong with a check itself, or "" if the solution passes it.
@@ -201,17 +204,18 @@ class GradingPlugin:
         return functions
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        """Write a line for each task whose answers show a known mistake."""
+        """Write a line for each task whose answers show known mistakes."""
         tasks = {task.id: task for task in (plan.Task(*values) for values in self.job["tasks"])}
         for task_id in sorted(self.failed):
             # an answer that breaks the search costs this task its sentence, and no other task
             with suppress(Exception):
-                mistake = misconceptions.closest(tasks[task_id], self.calls.get(task_id, []))
-                if mistake:
+                diagnosis = misconceptions.diagnose(tasks[task_id], self.calls.get(task_id, []))
+                if diagnosis.mistakes:
                     self._write(
                         recognised=task_id,
-                        sentence=mistake.sentence,
-                        once=mistake.costs_half_at_most,
+                        sentence=diagnosis.sentence,
+                        explains_all=diagnosis.explains_all,
+                        once=diagnosis.costs_half_at_most,
                     )
 
     def pytest_unconfigure(self) -> None:

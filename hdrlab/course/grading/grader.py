@@ -288,7 +288,7 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
         yield from scoring.attribute_failures(
             checks,
             needs,
-            named=task.id in mistakes,
+            named=task.id in mistakes and mistakes[task.id]["explains_all"],
             once=mistakes.get(task.id, {}).get("once", False),
         )
 
