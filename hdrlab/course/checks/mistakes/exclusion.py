@@ -28,3 +28,13 @@ def four_kept(Y, t):
 )
 def inverted(Y, t):
     return (Y <= t + NOISE) & (Y >= t - NOISE)
+
+
+@mistake(
+    "exclusion_inverted_and_bytes_wrap",
+    says="Your exclusion bitmap is inverted: keep pixels that are far from t. Y - t also wraps "
+    "around, because Y contains bytes: convert Y to int first.",
+    misses_method=True,
+)
+def inverted_and_bytes_wrap(Y, t):
+    return abs(Y - Y.dtype.type(t)) <= NOISE

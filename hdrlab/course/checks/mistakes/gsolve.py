@@ -252,3 +252,73 @@ def root_of_lambda(Z, B, smoothness, w):
     x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
     reached = np.flatnonzero(A[:, :n].any(axis=0))
     return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+def _solve(Z, B, w, data_weights, smoothness_factors):
+    """Return the solution with these weights of the data, and factors of the smoothness rows."""
+    Z = np.asarray(Z)
+    N, P = Z.shape
+    n = len(w)
+    A = np.zeros((N * P + n - 1, n + N))
+    b = np.zeros(N * P + n - 1)
+    for k, (i, j) in enumerate(np.ndindex(N, P)):
+        weight = data_weights[Z[i, j]]
+        A[k, Z[i, j]] = weight
+        A[k, n + i] = -weight
+        b[k] = weight * B[j]
+    A[N * P, n // 2] = 1
+    for z in range(1, n - 1):
+        A[N * P + z, z - 1 : z + 2] = smoothness_factors[z] * np.array([1, -2, 1])
+    x = np.linalg.lstsq(A, b, rcond=None)[0]
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
+
+
+@mistake(
+    "gsolve_lambda_squared",
+    says="Your smoothness rows contain the square of lambda. Each row is squared in the sum, so the "
+    "row contains lambda itself.",
+)
+def lambda_squared(Z, B, smoothness, w):
+    w = np.asarray(w, np.float64)
+    return _solve(Z, B, w, w, smoothness**2 * w)
+
+
+@mistake(
+    "gsolve_weight_of_the_value_below",
+    says="The smoothness row of z has the weight w(z). In a loop that starts at 0, the middle of the "
+    "row is z + 1: use its weight.",
+)
+def weight_of_the_value_below(Z, B, smoothness, w):
+    w = np.asarray(w, np.float64)
+    return _solve(Z, B, w, w, smoothness * np.roll(w, 1))
+
+
+@mistake(
+    "gsolve_root_of_lambda_not_weighted",
+    says="Your smoothness rows contain the root of lambda and no weight. The row of z is lambda w(z) "
+    "(g(z - 1) - 2 g(z) + g(z + 1)).",
+)
+def root_of_lambda_not_weighted(Z, B, smoothness, w):
+    w = np.asarray(w, np.float64)
+    return _solve(Z, B, w, w, np.full(len(w), smoothness**0.5))
+
+
+@mistake(
+    "gsolve_lambda_squared_not_weighted",
+    says="Your smoothness rows contain the square of lambda and no weight. The row of z is lambda "
+    "w(z) (g(z - 1) - 2 g(z) + g(z + 1)).",
+)
+def lambda_squared_not_weighted(Z, B, smoothness, w):
+    w = np.asarray(w, np.float64)
+    return _solve(Z, B, w, w, np.full(len(w), smoothness**2))
+
+
+@mistake(
+    "gsolve_nothing_weighted",
+    says="You use no weights at all: clipped pixels bend your curve. Multiply the data rows by "
+    "w(Z) and the smoothness rows by w(z).",
+)
+def nothing_weighted(Z, B, smoothness, w):
+    ones = np.ones(len(w))
+    return _solve(Z, B, w, ones, smoothness * ones)

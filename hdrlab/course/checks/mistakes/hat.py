@@ -30,8 +30,8 @@ def half_at_the_ends(n=256):
     says="Your table always has 256 entries. Use n: a 16-bit photo has 65536 pixel values.",
 )
 def of_256_levels(n=256):
-    z = np.arange(n)
-    return np.minimum(z, 255 - z).clip(0) / 127
+    z = np.arange(256)
+    return np.minimum(z, 255 - z) / 127
 
 
 @mistake(
@@ -54,3 +54,13 @@ def ramp(n=256):
 def zero_in_the_middle(n=256):
     z = np.arange(n)
     return np.abs(z - (n - 1) / 2) / ((n - 1) / 2)
+
+
+@mistake(
+    "hat_falls_from_the_bottom",
+    says="Your weight falls from the lowest pixel value on, so the middle of your hat is at 0. The "
+    "middle is half the sum of the lowest and the highest value.",
+)
+def falls_from_the_bottom(n=256):
+    z = np.arange(n)
+    return np.where(z > 0, n - 1 - z, 0) / (n - 1)

@@ -42,3 +42,13 @@ def time_below_alone(Z, t, f_inv, w):
 def time_once(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):
         return (w[Z] * f_inv[Z]).sum(axis=1) / (w[Z] @ t)
+
+
+@mistake(
+    "irradiance_mean_of_the_quotients",
+    says="You average f^-1(Z) / t with the weights w alone. A long exposure is more precise: its "
+    "weight is w t^2.",
+)
+def mean_of_the_quotients(Z, t, f_inv, w):
+    with np.errstate(invalid="ignore"):
+        return (w[Z] * f_inv[Z] / t).sum(axis=1) / w[Z].sum(axis=1)

@@ -60,3 +60,13 @@ def absolute_delta(L, *, delta=1e-06):
 )
 def black_in_the_median(L, *, delta=1e-06):
     return float(np.exp(np.log(L + delta * float(np.median(L))).mean(dtype=np.float64)))
+
+
+@mistake(
+    "log_average_log10_and_exp",
+    says="You took the logarithm to base 10, but exp is the inverse of the natural one. Use log and "
+    "exp.",
+)
+def log10_and_exp(L, *, delta=1e-06):
+    median = np.median(L[L > 0]) if np.any(L) else 1.0
+    return float(np.exp(np.log10(L + delta * float(median)).mean(dtype=np.float64)))

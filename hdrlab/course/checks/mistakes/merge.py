@@ -202,3 +202,20 @@ def clipped_levels_count(images, times, g, w=None):
     W = table[Z]
     lE = np.sum(W * (g[Z, c] - np.log(t)[:, None, None, None]), axis=0) / W.sum(axis=0)
     return np.exp(lE).reshape(images.shape[1:]).astype(np.float32)
+
+
+@mistake(
+    "merge_sum_of_weights_plus_1",
+    says="Your sum of weights does not start at 0, so all radiances are pulled toward 1. Start both "
+    "sums at 0, and treat pixels without any weight separately.",
+)
+def sum_of_weights_plus_1(images, times, g, w=None):
+    images = np.asarray(images)
+    g = np.asarray(g, np.float64)
+    Z = images.reshape(*images.shape[:3], -1)
+    c = np.arange(Z.shape[-1])
+    g = np.broadcast_to(np.reshape(g, (len(g), -1)), (len(g), len(c)))
+    z = np.arange(len(g))
+    W = (np.minimum(z, len(g) - 1 - z) if w is None else np.asarray(w))[Z]
+    lE = np.sum(W * (g[Z, c] - np.log(times)[:, None, None, None]), axis=0) / (1 + W.sum(axis=0))
+    return np.exp(lE).reshape(images.shape[1:])

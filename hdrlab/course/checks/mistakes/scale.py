@@ -42,3 +42,13 @@ def times_luminance(L, *, headroom=8.0, sigma=None):
 )
 def not_blurred(L, *, headroom=8.0, sigma=None):
     return 1 / np.maximum(headroom * L, SMALLEST_DIVISOR)
+
+
+@mistake(
+    "scale_headroom_above_times_luminance",
+    says="You return k L / blur(L). The scale has neither k nor L in its numerator: s = 1 / (k "
+    "blur(L)).",
+    misses_method=True,
+)
+def headroom_above_times_luminance(L, *, headroom=8.0, sigma=None):
+    return headroom * L / np.maximum(gaussian_filter(L, choose_sigma(L, sigma)), SMALLEST_DIVISOR)

@@ -45,3 +45,14 @@ def upside_down(E):
 def wrong_order_of_bytes(E):
     E = np.asarray(E)
     return header_of(E) + E[::-1].astype(">f4").tobytes()
+
+
+@mistake(
+    "to_bytes_height_first_upside_down",
+    says="Your header has the height before the width, and your rows run from top to bottom. A PFM "
+    "file needs the width first, and its rows run from bottom to top.",
+)
+def height_first_upside_down(E):
+    E = np.asarray(E)
+    header = f"{'PF' if E.ndim == 3 else 'Pf'}\n{E.shape[0]} {E.shape[1]}\n-1.0\n"
+    return header.encode() + E.astype("<f4").tobytes()

@@ -34,3 +34,11 @@ def not_over_256(pixels):
 )
 def mantissa_from_1(pixels):
     return np.where(pixels[..., 3:] > 0, (256.0 + pixels[..., :3]) * SCALE[pixels[..., 3:]], 0)
+
+
+@mistake(
+    "to_radiance_over_255",
+    says="You divide the mantissa by 255. It is a binary fraction: divide by 256.",
+)
+def over_255(pixels):
+    return 256 / 255 * pixels[..., :3] * SCALE[pixels[..., 3:]]

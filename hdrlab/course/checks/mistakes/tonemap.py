@@ -60,4 +60,19 @@ def not_clipped(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05
     Lm = scale_to_key(L, key=a)
     white = white_point(Lm) if white is None else white
     V1 = local_adaptation(Lm, key=a, phi=phi, threshold=threshold) if local else Lm
-    return 1.5 * np.asarray(display(Lm, V1, white), np.float32)
+    return np.asarray(Lm * (1 + Lm / white**2) / (1 + V1), np.float32)
+
+
+@mistake(
+    "tonemap_absolute_delta",
+    says="You add delta itself to L, whatever the unit of L is. Add delta times the median of the "
+    "pixels that are not black.",
+)
+def absolute_delta(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
+    L = as_light(L)
+    if not np.any(L):
+        return np.zeros(L.shape, np.float32)
+    Lm = key * L / np.exp(np.log(L + 1e-6).mean(dtype=np.float64))
+    white = white_point(Lm) if white is None else white
+    V1 = local_adaptation(Lm, key=key, phi=phi, threshold=threshold) if local else Lm
+    return np.asarray(display(Lm, V1, white), np.float32)

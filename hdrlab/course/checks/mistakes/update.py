@@ -57,3 +57,26 @@ def time_forgotten(Z, t, E, n=256):
         return np.bincount(Z[known].ravel(), X.ravel(), n) / np.bincount(
             Z[known].ravel(), minlength=n
         )
+
+
+@mistake(
+    "update_nan_spreads",
+    says="One sample with NaN makes the whole mean NaN. Leave out the samples without irradiance, in "
+    "the sum and in the count.",
+)
+def nan_spreads(Z, t, E, n=256):
+    X = E[:, None] * t
+    with np.errstate(invalid="ignore"):
+        return np.bincount(Z.ravel(), X.ravel(), n) / np.bincount(Z.ravel(), minlength=n)
+
+
+@mistake(
+    "update_empty_is_0",
+    says="A pixel value that no pixel has gets 0 in your curve. Nothing is known about it: return "
+    "NaN there.",
+)
+def empty_is_0(Z, t, E, n=256):
+    known = ~np.isnan(E)
+    X = E[known, None] * t
+    count = np.bincount(Z[known].ravel(), minlength=n)
+    return np.bincount(Z[known].ravel(), X.ravel(), n) / np.maximum(count, 1)

@@ -34,3 +34,13 @@ def root(x, w):
     total = np.maximum(w.sum(axis=0), 1e-30)
     m = (w * x).sum(axis=0) / total
     return np.sqrt((w * (x - m) ** 2).sum(axis=0) / total)
+
+
+@mistake(
+    "weighted_variance_root_about_the_plain_mean",
+    says="Subtract the weighted mean of x, not the plain one, and return the variance without the "
+    "square root.",
+)
+def root_about_the_plain_mean(x, w):
+    total = np.maximum(w.sum(axis=0), 1e-30)
+    return np.sqrt((w * (x - x.mean(axis=0)) ** 2).sum(axis=0) / total)
