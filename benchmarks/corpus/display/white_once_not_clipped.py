@@ -1,0 +1,5 @@
+import numpy as np
+
+
+def display(Lm, adaptation, white=np.inf):
+    return (Lm * (1 + (Lm / white))) / (1 + adaptation)
