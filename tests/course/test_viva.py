@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from benchmarks import viva as bench
 from hdrlab.cli import main
 from hdrlab.course import plan
+from hdrlab.course.checks.misconceptions import CheckedCalls
 from hdrlab.course.grading import grader
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
@@ -271,7 +272,7 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
         shown={"texts": ["1.5", "1.4", "1.6", "-900"]},
     )
     monkeypatch.setattr(examining.QuestionGenerator, "draft_value", lambda self: found)
-    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
+    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls_of=lambda task: [])
     asked = examining.QuestionGenerator(run, "twice", [], np.random.default_rng(3))
     drawn = [asked.question("value", 20) for _ in range(4000)]
     share = np.bincount([one["right"] for one in drawn], minlength=4) / len(drawn)
@@ -286,7 +287,7 @@ def test_uninitialized_memory_is_not_an_answer(memory, right, monkeypatch):
         np, "empty", np.empty
     )  # which the run of a version changes, in a process of its own
     monkeypatch.setattr(np, "empty_like", np.empty_like)
-    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
+    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls_of=lambda task: [])
     asked = examining.QuestionGenerator(run, "twice", [], np.random.default_rng(3))
     texts = [
         f"import numpy as np\n\n\ndef twice():\n    return np.{memory}(1)[0] + {k}\n"
@@ -317,7 +318,7 @@ def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_t
     name, made
 ):
     _, passed, questions = made(name)
-    assert len(passed) == len(HOMEWORKS[name].tasks)
+    assert sorted(passed) == sorted(one.id for one in HOMEWORKS[name].tasks)
     assert [one["again"] for one in questions] == [True] * 5
     assert len({(one["task"], one["kind"]) for one in questions}) == 5
     assert len({one["task"] for one in questions}) >= 4
@@ -363,7 +364,8 @@ def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more
     monkeypatch.setattr(examining, "QuestionGenerator", Asked)
     run = examining.Examining.__new__(examining.Examining)
     run.job, run.failed = {"seed": "1", "sources": dict.fromkeys(tasks, ""), "timeout": 1}, set()
-    run.calls, run.submission = {task: [None] for task in tasks}, SimpleNamespace(seconds_left=1)
+    one_call = CheckedCalls(calls=[((), {}, None)], holds=True)
+    run.calls, run.submission = dict.fromkeys(tasks, [one_call]), SimpleNamespace(seconds_left=1)
     run._replace_sandbox, run._write = lambda: None, lambda **one: written.append(one)
     run.pytest_sessionfinish(SimpleNamespace(items=[]))
     asked = [one["question"] for one in written if "question" in one]

@@ -161,6 +161,10 @@ class GradingPlugin:
         calls = [(call.args, call.kwargs, call.answer) for call in subject.calls[:room]]
         kept.append(misconceptions.CheckedCalls(calls=calls, holds=holds))
 
+    def calls_of(self, task_id: str) -> list[misconceptions.Call]:
+        """Return the calls of a task that were kept, of all checks."""
+        return [call for check in self.calls.get(task_id, []) for call in check.calls]
+
     def _problem_of_check(self, item: pytest.Item) -> str:
         """Return what is wrong with a check itself, or "" if the solution passes it.
 

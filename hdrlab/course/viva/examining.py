@@ -95,7 +95,7 @@ class Examining(plugin.GradingPlugin):
         rng = np.random.default_rng(int(self.job["seed"]))
         self._replace_sandbox()
         passed = [
-            task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed
+            task for task in self.job["sources"] if self.calls_of(task) and task not in self.failed
         ]
         self._write(passed=passed)
         generators = {task: QuestionGenerator(self, task, session.items, rng) for task in passed}
@@ -186,7 +186,7 @@ class QuestionGenerator:
         self.max_versions = VERSIONS_PER_SEARCH[0]
         self.items = [item for item in items if plugin.task_of(item) == task]
         self.source = run.job["sources"][task]
-        calls = run.calls[task]
+        calls = run.calls_of(task)
         self.calls = [calls[k] for k in rng.permutation(len(calls))]
 
     @property
@@ -427,7 +427,7 @@ class QuestionGenerator:
 
     def _is_same(self, source: str) -> bool:
         """Return whether a version answers the smallest calls of the checks as the own function does."""
-        calls = sorted(self.run.calls[self.task], key=lambda call: inputs.count(call[:2]))
+        calls = sorted(self.run.calls_of(self.task), key=lambda call: inputs.count(call[:2]))
         self.run.submission.fresh(**{self.task: source})
         return all(
             misconceptions.difference(self._call(call), call[2]) <= SAME_ANSWER
