@@ -627,7 +627,7 @@ SENTENCES = {
         ),
     },
     "17": {
-        "the levels reduce most slopes, in the median to 0.6 times": lambda n: (
+        "the levels reduce most slopes (to 0.6 times in the median)": lambda n: (
             round(float(np.median(n.Phi)), 1) == 0.6
         ),
         "It must flatten them most to reduce the range, so its edges are soft": lambda n: (

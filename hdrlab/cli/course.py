@@ -164,11 +164,18 @@ def move(*, first_day: datetime, out: Path, holidays: Path | None, plan: Path | 
     old_plan = plans.read(plan_path)
     free_days = term.read_holidays(holidays) if holidays else old_plan.holidays
     files.write(out, term.move(plan_path.read_text(encoding="utf8"), first_day.date(), free_days))
+    unchanged = []
     for name, homework in plans.read(out).homeworks.items():
-        old_due = old_plan.homeworks[name].due
-        due = due_dates.describe(homework.due)
-        stays = ", as before: the plan gives a date, not a week" if homework.due == old_due else ""
-        click.echo(f"{name}: {due}{stays}")
+        click.echo(f"{name}: {due_dates.describe(homework.due)}")
+        if homework.due == old_plan.homeworks[name].due:
+            unchanged.append(name)
+    if unchanged:
+        common.echo_notes(
+            [
+                f"the date of {', '.join(unchanged)} did not change; a date moves with the term if "
+                'the plan gives a week: due = { week = 3, day = "Friday", time = "23:59Z" }'
+            ]
+        )
     click.echo(f"{out}; to write the assignments: hdrlab course build --plan {out} -o our-sheets")
 
 

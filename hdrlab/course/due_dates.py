@@ -65,6 +65,11 @@ def date_in_term(due: Due, first_day: date | None, holidays: Collection[date] = 
     first_day : the first day of the first week of the course
     holidays : dates, any day of each week without a class; these weeks are not counted
 
+    Raises
+    ------
+    InputError
+        For a term after the year 9999.
+
     Examples
     --------
     >>> friday = DueInWeek(3, "Friday", time.fromisoformat("23:59Z"))
@@ -79,7 +84,10 @@ def date_in_term(due: Due, first_day: date | None, holidays: Collection[date] = 
     class_weeks = (week for week in count() if week not in free_weeks)
     week = [next(class_weeks) for _ in range(due.week)][-1]
     days_into_week = (WEEKDAYS.index(due.day) - first_day.weekday()) % 7
-    day = first_day + timedelta(weeks=week, days=days_into_week)
+    try:
+        day = first_day + timedelta(weeks=week, days=days_into_week)
+    except OverflowError:
+        raise InputError(f"expected a first day before the year 9999, got {first_day}") from None
     return datetime.combine(day, due.time)
 
 

@@ -1,9 +1,10 @@
 """The course's plan: homeworks, tasks, points and dates, read from plan.toml, and what each student draws.
 
-An instructor changes plan.toml, or gives the path of another. Homeworks are due in a week of the
-course; with `first_day`, on a date. A task is a function of hdrlab: the
-solution is that function, the handout its signature, and the checks are in
-course/checks/specification/test_<id>.py. Or it is a function of the instructor's own,
+An instructor changes plan.toml, or gives the path of another. A homework is due in a week of the
+course, and if the plan has a `first_day`, on a date.
+
+A task is a function of hdrlab: the solution is that function, the handout its signature, and the
+checks are in course/checks/specification/test_<id>.py. Or it is a function of the instructor's own,
 "vignette.py:vignette", in a file beside the plan; its checks are test_<id>.py in the same folder,
 and its mistakes in `mistakes`.
 """

@@ -91,8 +91,8 @@ def remove_ghosts(
     """Return the Assembly without ghosts of things that moved; `mode` is the option `ghosts`.
 
     With "reference", the reference is the middle photo. A warning says if most of the image moved.
-    With "auto", nothing changes if nothing moved, and nothing if most of the image differs between
-    photos that could not be aligned: that is no motion. Pixels without a color fade to `neutral`, see
+    With "auto", nothing changes if nothing moved, or if most of the image differs between photos that
+    could not be aligned, because that is not motion. Pixels without a color fade to `neutral`, see
     `dark_pixels.measure_color_certainty` and `dark_pixels.measure_neutral`.
     """
     # Imported here, because SciPy's filters take a fifth of a second to import.

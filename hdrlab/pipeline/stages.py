@@ -90,8 +90,8 @@ def assemble(
         How to show things that moved. "none" leaves them half transparent. "regions" takes each
         moving region from the photo that exposes it best, "reference" takes all of them from the
         middle photo, see `radiance.deghosting.ghosts`. "auto" is "regions" if something moved, see
-        `diagnostics.motion`, also against a background that no alignment brings to the same place.
-        If most of the image moved, there is a warning.
+        `diagnostics.motion`, even if the photos could not be aligned. If most of the image moved,
+        there is a warning.
     flare : {"none", "glare"}
         "glare" removes veiling glare, the light that the lens scattered, see `radiance.flare`.
     in_place : bool

@@ -66,6 +66,17 @@ def test_only_the_lines_of_the_term_change_when_a_plan_is_moved_again():
     assert term.move(moved, MONDAY, [date(2031, 3, 10)]) == moved
 
 
+def test_holidays_on_several_lines_are_replaced_whole():
+    text = "holidays = [\n  2030-12-24, # a feast\n  2030-12-31,\n]\n[hw1]\n"
+    assert term.move(text, MONDAY) == "first_day = 2031-02-10\n[hw1]\n"
+
+
+def test_a_term_after_the_last_year_of_the_calendar_is_refused():
+    week = DueInWeek(10, "Friday", datetime.fromisoformat("2031-01-01T12:00Z").timetz())
+    with pytest.raises(InputError, match="before the year 9999, got 9999-12-27"):
+        due_dates.date_in_term(week, date(9999, 12, 27))
+
+
 @pytest.mark.parametrize(
     "due",
     [
@@ -115,6 +126,16 @@ def test_the_command_writes_a_plan_of_its_own_and_lists_the_dates(tmp_path):
     again = ["course", "move", "2031-02-17", "--plan", str(out), "-o", str(out)]
     assert CliRunner().invoke(cli.main, again).exit_code != 0
     assert out.read_text(encoding="utf8") == text
+
+
+def test_the_command_says_which_dates_it_did_not_change(tmp_path):
+    own, out = tmp_path / "own.toml", tmp_path / "moved.toml"
+    own.write_text(
+        TEXT.replace('{ week = 3, day = "Friday", time = "23:59Z" }', "2031-03-01T12:00:00Z")
+    )
+    words = ["course", "move", "2031-02-17", "--plan", str(own), "-o", str(out)]
+    result = CliRunner().invoke(cli.main, words)
+    assert "the date of hw1 did not change" in result.stderr
 
 
 def test_a_plan_with_holidays_keeps_them_unless_others_are_given(tmp_path):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from hdrlab.errors import InputError
 
-# a line with the dates of a term, with the comment behind it
-LINE_OF_TERM = re.compile(r"^(first_day|holidays)\s*=.*\n", re.MULTILINE)
+# the dates of a term, with the comment behind them; a list of holidays may take several lines
+DATES_OF_TERM = re.compile(r"^(first_day\s*=|holidays\s*=\s*\[[^\]]*\]).*\n", re.MULTILINE)
 COMMENTS_AT_TOP = re.compile(r"(#.*\n|\s*\n)*")
 
 
@@ -18,7 +18,7 @@ def move(text: str, first_day: date, holidays: Collection[date] = ()) -> str:
     Parameters
     ----------
     text : str
-        The plan in TOML. Its lines `first_day` and `holidays`, if there are any, are replaced.
+        The plan in TOML. Its entries `first_day` and `holidays`, if there are any, are replaced.
     first_day : date
         The first day of the first week of the course.
     holidays : dates
@@ -33,7 +33,7 @@ def move(text: str, first_day: date, holidays: Collection[date] = ()) -> str:
     [hw1]
     <BLANKLINE>
     """
-    without = LINE_OF_TERM.sub("", text)
+    without = DATES_OF_TERM.sub("", text)
     lines = f"first_day = {first_day.isoformat()}\n"
     if holidays:
         lines += f"holidays = [{', '.join(day.isoformat() for day in sorted(set(holidays)))}]\n"

@@ -43,7 +43,10 @@
     const bar = part(box, "progress");
     const megabytes = (bytes) => (bytes / 1e6).toFixed(0);
     bar.hidden = false;
-    if (total) [bar.max, bar.value] = [total, Math.min(loaded, total)];
+    if (total) {
+      bar.max = total;
+      bar.value = Math.min(loaded, total);
+    }
     const amount = total ? `${megabytes(loaded)} of ${megabytes(total)} MB` : `${megabytes(loaded)} MB`;
     // not each megabyte is read out
     bar.setAttribute("aria-valuetext", amount);
@@ -123,7 +126,7 @@
     part(box, ".check").addEventListener("click", () => check(box));
     part(box, ".stop").addEventListener("click", () => endWorker("Stopped."));
     part(box, ".again").addEventListener("click", () => {
-      if (field.value !== field.defaultValue && !confirm("Replace your text by the stub? It cannot be brought back.")) return;
+      if (field.value !== field.defaultValue && !confirm("Replace your text with the stub? You cannot undo this.")) return;
       field.value = field.defaultValue;
       keep();
       field.focus();

@@ -2,7 +2,10 @@
 let manifest = null; // lite/try.json, made by lite/checks.py
 let python = null;
 const present = new Set(); // packages of Pyodide
-let [loaded, total, what] = [0, 0, ""];
+// of what is being loaded: its name, and bytes
+let what = "";
+let loaded = 0;
+let total = 0;
 
 const tell = (kind, details) => postMessage({ kind, ...details });
 
@@ -22,7 +25,9 @@ self.fetch = async (...request) => {
 };
 
 function expect(label, bytes) {
-  [loaded, total, what] = [0, bytes, label];
+  what = label;
+  loaded = 0;
+  total = bytes;
   tell("progress", { what, loaded, total });
 }
 
