@@ -58,7 +58,8 @@ def walls_over_glass(n, Ld):
 def ripple_kept(n, sigma_r):
     """Return which share of the ripple of notebook 15 the bilateral filter leaves in the base."""
     flat = slice(20, 80)
-    return float(n.smoothed(sigma_r=sigma_r)["bilateral"][flat].std() / n.step[25, flat].std())
+    base = n.grid.bilateral(n.step, sigma_s=8, sigma_r=sigma_r).mean
+    return float(base[25, flat].std() / n.step[25, flat].std())
 
 
 def filled_from_reference_alone(n):
@@ -603,7 +604,7 @@ SENTENCES = {
     },
     "15": {
         "two flat areas, two decades apart": lambda n: np.isclose(np.ptp(n.step), 2.2, atol=0.02),
-        "it smooths only a fifth of the ripple": lambda n: (
+        "at 0.05, half the height of the ripple, it smooths only a fifth of the ripple": lambda n: (
             round(1 - ripple_kept(n, sigma_r=0.05), 1) == 0.2
         ),
         "over 10 pixels, its detail falls by 0.71 decades": lambda n: (
@@ -620,10 +621,7 @@ SENTENCES = {
             abs(n.glint - n.alone.mean)[32, 48] < 0.005 and round(float(n.alone.k[32, 48]), 1) == 1
         ),
         "by a decade on each side": lambda n: (
-            round(
-                float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())
-            )
-            == 1
+            round(float(np.abs(n.step - n.blur.gaussian(n.step, 8.0))[25, 90:110].max())) == 1
         ),
     },
     "17": {

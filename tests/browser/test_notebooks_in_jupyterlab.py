@@ -182,6 +182,19 @@ def move_zones(page, widget):
         changed_by(page, widget, lambda handle=handle: handle.press("Shift+ArrowLeft"))
 
 
+def move_handles(page, widget):
+    """Move each handle of a figure of a line; a handle states its own value."""
+    for handle in widget.get_by_role("slider").all():
+        before = handle.get_attribute("aria-valuetext")
+        handle.press("Shift+ArrowLeft")
+        page.wait_for_function(
+            "([handle, before]) => handle.getAttribute('aria-valuetext') !== before",
+            arg=[handle.element_handle(), before],
+            timeout=PATIENCE,
+            polling=LOOK,
+        )
+
+
 def move_predict(page, widget):
     """Ask for the truth: the answers themselves are given in `test_predict_without_a_kernel`."""
     widget.get_by_role("button", name="Show", exact=True).click()
@@ -200,10 +213,11 @@ MOVES = {
     "exposure": move_shutter,
     "zones": move_zones,
     "gains": move_screen,
+    "kernel": move_handles,
 }
 MOVES |= {"predict": move_predict}
 # They ask nothing of Python; tests of their own drag them, and the tier of all notebooks opens theirs.
-TESTED_ALONE = {"pixel", "exposure", "bitmaps", "gsolve", "zones", "gains"}
+TESTED_ALONE = {"pixel", "exposure", "bitmaps", "gsolve", "zones", "gains", "kernel"}
 
 
 class Notebooks:

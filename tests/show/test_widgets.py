@@ -98,6 +98,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
+    kinds += [widgets.BilateralKernel]
     kinds += [widgets.GainScreen, widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
     for widget in kinds:
         script = widget._esm
@@ -819,6 +820,29 @@ def test_a_gain_screen_falls_back_to_a_picture_with_alt_text():
     figure = widgets.gain_screen(base, g, [0] * 3, [2] * 3, alt="A gray wall")
     html, text = figure.fallback()
     assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"
+
+
+def test_a_bilateral_kernel_rejects_what_it_cannot_show():
+    step = np.repeat([0.0, 2.0], 10)
+    wrong = (
+        {"v": step[None]},
+        {"v": step[:4]},
+        {"v": np.full(20, np.nan)},
+        {"v": np.ones(20)},
+        {"at": 20},
+        {"sigma_s": 0.0},
+        {"sigma_r": -1.0},
+        {"alt": ""},
+    )
+    for changed in wrong:
+        arguments = {"v": step, "alt": "A step"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.bilateral_kernel(arguments.pop("v"), **arguments)
+
+
+def test_a_bilateral_kernel_falls_back_to_a_picture_with_alt_text():
+    html, text = widgets.bilateral_kernel(np.repeat([0.0, 2.0], 10), alt="A step").fallback()
+    assert "<img" in html and 'alt="A step"' in html and "A step" in text
 
 
 def test_gsolve_by_hand_rejects_photos_from_which_nothing_can_be_solved():

@@ -10,6 +10,7 @@ exposure_window  drag the range of a photo along a histogram: `show.widgets.expo
 bitmap_difference  drag one bitmap over another, count the bits that differ: `show.widgets.bitmaps`
 zone_scale  drag Reinhard's key and white point along the zones: `show.widgets.zones`
 gain_screen  drag a screen's headroom, see base and gain map on it: `show.widgets.gains`
+bilateral_kernel  drag the kernel of the bilateral filter along a line: `show.widgets.kernel`
 gsolve_by_hand  drag pixels sideways until they lie on one curve: `show.widgets.gsolve`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
@@ -47,12 +48,14 @@ from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.exposure import ExposureWindow, exposure_window
 from hdrlab.show.widgets.gains import GainScreen, gain_screen
 from hdrlab.show.widgets.gsolve import GsolveByHand, gsolve_by_hand
+from hdrlab.show.widgets.kernel import BilateralKernel, bilateral_kernel
 from hdrlab.show.widgets.lens import Brush, brush
 from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
 from hdrlab.show.widgets.scripts import Widget, script
 from hdrlab.show.widgets.zones import ZoneScale, zone_scale
 
 __all__ = [
+    "BilateralKernel",
     "BitmapDifference",
     "Blinker",
     "Brush",
@@ -64,6 +67,7 @@ __all__ = [
     "Tuner",
     "Wiper",
     "ZoneScale",
+    "bilateral_kernel",
     "bitmap_difference",
     "blink",
     "brush",
