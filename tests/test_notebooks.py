@@ -17,7 +17,7 @@ PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "br
 PICTURES |= {"widgets.exposure_window"}
 PICTURES |= {"widgets.bitmap_difference"}
 PICTURES |= {"widgets.zone_scale", "widgets.gain_screen"}
-PICTURES |= {"widgets.gsolve_by_hand", "widgets.bilateral_kernel"}
+PICTURES |= {"widgets.gsolve_by_hand", "widgets.bilateral_kernel", "widgets.gradient_line"}
 LONGEST = 100  # letters: what JupyterLab shows at 1280 px without scrolling
 
 pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

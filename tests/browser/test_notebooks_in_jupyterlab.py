@@ -214,10 +214,11 @@ MOVES = {
     "zones": move_zones,
     "gains": move_screen,
     "kernel": move_handles,
+    "gradients": move_handles,
 }
 MOVES |= {"predict": move_predict}
 # They ask nothing of Python; tests of their own drag them, and the tier of all notebooks opens theirs.
-TESTED_ALONE = {"pixel", "exposure", "bitmaps", "gsolve", "zones", "gains", "kernel"}
+TESTED_ALONE = {"pixel", "exposure", "bitmaps", "gsolve", "zones", "gains", "kernel", "gradients"}
 
 
 class Notebooks:

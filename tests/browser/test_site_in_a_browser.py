@@ -97,7 +97,7 @@ def move(page, widget):
     if kind in ("pixel", "bitmaps", "gsolve"):
         widget.get_by_role("application").press("Shift+ArrowRight")
         return
-    if kind in ("exposure", "zones", "gains", "kernel"):
+    if kind in ("exposure", "zones", "gains", "kernel", "gradients"):
         # the screen of the gain map is the dimmest at first
         arrow = "ArrowRight" if kind == "gains" else "ArrowLeft"
         return widget.get_by_role("slider").first.press(f"Shift+{arrow}")

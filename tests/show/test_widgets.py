@@ -98,7 +98,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
-    kinds += [widgets.BilateralKernel]
+    kinds += [widgets.BilateralKernel, widgets.GradientLine]
     kinds += [widgets.GainScreen, widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
     for widget in kinds:
         script = widget._esm
@@ -843,6 +843,28 @@ def test_a_bilateral_kernel_rejects_what_it_cannot_show():
 def test_a_bilateral_kernel_falls_back_to_a_picture_with_alt_text():
     html, text = widgets.bilateral_kernel(np.repeat([0.0, 2.0], 10), alt="A step").fallback()
     assert "<img" in html and 'alt="A step"' in html and "A step" in text
+
+
+def test_a_gradient_line_rejects_what_it_cannot_show():
+    ramp = np.linspace(0, 5, 20)
+    wrong = (
+        {"lL": ramp[None]},
+        {"lL": ramp[:4]},
+        {"lL": np.full(20, np.inf)},
+        {"lL": np.ones(20)},
+        {"alpha": 2.0},
+        {"beta": 0.0},
+        {"alt": ""},
+    )
+    for changed in wrong:
+        arguments = {"lL": ramp, "alt": "A ramp"} | changed
+        with pytest.raises(errors.InputError):
+            widgets.gradient_line(arguments.pop("lL"), **arguments)
+
+
+def test_a_gradient_line_falls_back_to_a_picture_with_alt_text():
+    html, text = widgets.gradient_line(np.linspace(0, 5, 20), alt="A ramp").fallback()
+    assert "<img" in html and 'alt="A ramp"' in html and "A ramp" in text
 
 
 def test_gsolve_by_hand_rejects_photos_from_which_nothing_can_be_solved():

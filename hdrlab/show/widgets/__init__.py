@@ -11,6 +11,7 @@ bitmap_difference  drag one bitmap over another, count the bits that differ: `sh
 zone_scale  drag Reinhard's key and white point along the zones: `show.widgets.zones`
 gain_screen  drag a screen's headroom, see base and gain map on it: `show.widgets.gains`
 bilateral_kernel  drag the kernel of the bilateral filter along a line: `show.widgets.kernel`
+gradient_line  drag Fattal's attenuation of the gradients of a line: `show.widgets.gradients`
 gsolve_by_hand  drag pixels sideways until they lie on one curve: `show.widgets.gsolve`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
 
@@ -47,6 +48,7 @@ from hdrlab.show.widgets.bitmaps import BitmapDifference, bitmap_difference
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.exposure import ExposureWindow, exposure_window
 from hdrlab.show.widgets.gains import GainScreen, gain_screen
+from hdrlab.show.widgets.gradients import GradientLine, gradient_line
 from hdrlab.show.widgets.gsolve import GsolveByHand, gsolve_by_hand
 from hdrlab.show.widgets.kernel import BilateralKernel, bilateral_kernel
 from hdrlab.show.widgets.lens import Brush, brush
@@ -61,6 +63,7 @@ __all__ = [
     "Brush",
     "ExposureWindow",
     "GainScreen",
+    "GradientLine",
     "GsolveByHand",
     "PixelMean",
     "Player",
@@ -73,6 +76,7 @@ __all__ = [
     "brush",
     "exposure_window",
     "gain_screen",
+    "gradient_line",
     "gsolve_by_hand",
     "pixel_mean",
     "play",
