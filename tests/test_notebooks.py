@@ -12,7 +12,7 @@ import pytest
 from hdrlab.course.site import pages
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
-PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip")}
+PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip", "side_by_side")}
 PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "brush", "pixel_mean")}
 PICTURES |= {"widgets.exposure_window"}
 PICTURES |= {"widgets.bitmap_difference"}
@@ -149,14 +149,31 @@ def test_a_question_that_begins_with_predict_takes_an_answer_and_no_other_does(p
     assert waiting != ["Predict"]
 
 
-def test_a_static_strip_stands_beside_each_widget(path):
-    """Nothing but text comes between a widget and its strip."""
+def test_still_pictures_stand_beside_each_widget(path):
+    """Nothing but text comes between a widget and its pictures for paper."""
     code = cells_of(path, "code")
     for cell, following in zip(code, [*code[1:], None], strict=True):
         if kinds_of(cell) & {"play", "tune"}:
-            assert following is not None and "strip" in kinds_of(cell) | kinds_of(following), (
-                cell.id
-            )
+            assert following is not None, cell.id
+            stills = {"side_by_side", "strip"} & (kinds_of(cell) | kinds_of(following))
+            assert stills, cell.id
+
+
+def test_no_strip_shows_on_screen_what_the_widget_above_it_shows(path):
+    drawn_by_widgets = ""
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            if re.search(r"^## |\*\*(?:Predict|Think)\.\*\*", cell.source, re.M):
+                drawn_by_widgets = ""
+            continue
+        for call in calls_of(cell):
+            if call.func.attr in ("play", "tune"):
+                drawn_by_widgets += ast.unparse(call.args[1]) + "\n"
+            elif call.func.attr == "strip":
+                draw = ast.unparse(call.args[1])
+                assert not re.search(rf"\b{re.escape(draw)}\b", drawn_by_widgets), (
+                    f"{cell.id}: use pictures.side_by_side"
+                )
 
 
 def test_answers_that_unfold_are_closed_again(path):

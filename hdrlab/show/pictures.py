@@ -30,7 +30,15 @@ MIN_WHITE_FRACTION = 0.72
 MIN_WHITE_EDGE_FRACTION = 0.93
 DECADES_PER_STOP = float(np.log10(2))
 PARAMETER_SYMBOLS = dict(
-    alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ"
+    alpha="α",
+    beta="β",
+    delta="δ",
+    epsilon="ε",
+    rho="ρ",
+    s2="s₂",
+    sigma="σ",
+    sigma_r="σᵣ",
+    sigma_s="σₛ",
 )
 
 
@@ -44,6 +52,7 @@ class Picture(NamedTuple):
     scales : color scales below the images, in stops and in decades
     density : pixels of an image per CSS pixel
     areas : boxes of each image that keep their colors on a dark page, see `picture_areas`
+    folded : whether the images stay behind the words "Side by side" until a reader unfolds them
     """
 
     frames: tuple[bytes, ...]
@@ -52,6 +61,7 @@ class Picture(NamedTuple):
     scales: tuple[figures.Scale, ...] = ()
     density: int = 1
     areas: tuple[list[list[float]], ...] = ()
+    folded: bool = False
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
@@ -75,6 +85,7 @@ class Picture(NamedTuple):
             scales=self.scales,
             density=self.density,
             column=PAGE_COLUMN_PIXELS,
+            folded=self.folded,
         )
 
 
@@ -124,7 +135,13 @@ def radiance(E: ArrayLike, *, alt: str) -> Picture:
 
 
 def strip(
-    f: Callable[..., Any], draw: Callable[[Any], object], /, *, alt: str, **values: Iterable[Any]
+    f: Callable[..., Any],
+    draw: Callable[[Any], object],
+    /,
+    *,
+    alt: str,
+    caption: str = "",
+    **values: Iterable[Any],
 ) -> Picture:
     """Return draw(f(name=value)) for several values of one parameter, side by side, as a printed slider.
 
@@ -135,7 +152,10 @@ def strip(
     draw : function
         Takes what `f` returns, and returns a uint8 picture, an Axes or a Figure.
     alt : str
-        What the pictures show; each one's value is added to it.
+        What the pictures show; each one's caption is added to it.
+    caption : str, optional
+        The caption of a value as a format string, such as "{:g} pixels wide". By default, the
+        parameter's name and the value.
     **values : iterable
         One parameter of `f` and the values to show it at.
 
@@ -151,6 +171,8 @@ def strip(
     ...     return np.full((8, 8), level, np.uint8)
     >>> strip(square, lambda picture: picture, alt="A gray square", level=[0, 128])
     A gray square, level 0; A gray square, level 128
+    >>> strip(square, lambda picture: picture, alt="A square", caption="{:.0%} gray", level=[0, 1])
+    A square, 0% gray; A square, 100% gray
     """
     if len(values) != 1:
         raise InputError(
@@ -166,7 +188,7 @@ def strip(
         frames.append(encode(drawn, PLOT_PIXEL_DENSITY))
         densities.append(_density(drawn))
         areas.append(picture_areas(drawn))
-        captions.append(in_words(name, value))
+        captions.append(caption.format(value) if caption else in_words(name, value))
     if not frames:
         raise InputError(f"expected at least one value for {name}, got none")
     return Picture(
@@ -176,6 +198,23 @@ def strip(
         density=max(densities),
         areas=tuple(areas),
     )
+
+
+def side_by_side(
+    f: Callable[..., Any],
+    draw: Callable[[Any], object],
+    /,
+    *,
+    alt: str,
+    caption: str = "",
+    **values: Iterable[Any],
+) -> Picture:
+    """Return a `strip` behind the words "Side by side", for the cell after a slider that shows the same.
+
+    A reader unfolds it to compare values. On paper, and on a page without scripts, where no slider
+    moves, it is open. Parameters and errors are those of `strip`.
+    """
+    return strip(f, draw, alt=alt, caption=caption, **values)._replace(folded=True)
 
 
 def encode(drawn: object, density: int = 1) -> bytes:

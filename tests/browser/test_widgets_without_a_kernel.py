@@ -141,6 +141,20 @@ def test_four_pictures_of_a_strip_stand_in_one_row_or_two_by_two(page, draw, row
         assert [found.count(top) for top in sorted(set(found))] == expected, width
 
 
+def test_pictures_side_by_side_are_folded_on_screen_and_open_on_paper(page):
+    folded = pictures.side_by_side(lambda k: k, shaded, alt="A picture", k=range(2))
+    page.set_content(folded._repr_html_())
+    summary = page.get_by_text("Side by side")
+    images = page.get_by_role("img")
+    assert images.count() == 0 and not page.locator("img").first.is_visible()
+    summary.press("Enter")
+    assert images.count() == 2 and page.locator("img").first.is_visible()
+    summary.press("Enter")
+    page.emulate_media(media="print")
+    assert all(image.is_visible() for image in page.locator("img").all())
+    assert not summary.is_visible()
+
+
 def test_arrow_keys_move_through_the_steps_and_reach_nobody_else(player):
     slider = player.get_by_role("slider", name="step")
     slider.focus()

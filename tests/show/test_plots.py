@@ -242,6 +242,16 @@ def test_strip_has_an_image_a_caption_and_an_alt_text_for_each_value():
     assert len(set(strip.frames)) == 3 and strip._repr_html_().count("<img ") == 3
 
 
+def test_a_caption_of_a_strip_can_be_written_with_words_and_units():
+    def square(width):
+        return np.zeros((width, width), np.uint8)
+
+    strip = pictures.strip(
+        square, lambda drawn: drawn, alt="A square", caption="{:g} pixels wide", width=[4, 8]
+    )
+    assert strip.captions == ("4 pixels wide", "8 pixels wide")
+
+
 @pytest.mark.parametrize(
     ("values", "message"),
     [
