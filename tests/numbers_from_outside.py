@@ -6,6 +6,7 @@ A number of one digit, and one that is written as a word, stands with its unit.
 PAPERS_PROGRAM = "the entry of level 128 in the program of Debevec and Malik, counted from 1"
 
 NUMBERS = {
+    "03": {"two degrees": "an example of a rotation"},
     "04": {
         "half a level": "the lower end of level 1, which holds all that is rounded to it",
         "129": PAPERS_PROGRAM,
@@ -34,12 +35,12 @@ NUMBERS = {
     "14": {
         "2.5": "percent of the sum, in the paper and in the program `pcond`",
         "15": "pixels, the width of the blur in Battiato and others, 2008",
-        "1.6": "percent of the image's width, read off their figure",
         "8 %": "of the longer side, the default width of the library",
         "two levels": "the lowest and the highest one",
         "50": "half of the ratio 1 : 100, see 50.5",
     },
     "15": {"2 %": "of the image's size, the paper's width of the filter"},
+    "18": {"three stops": "0.4 times the level at the edge, as light"},
     "19": {"half a level": "the upper end of level 0, which holds all that is rounded to it"},
     "20": {"8 bits": "an example of a file"},
     "21": {"four percent": "an error of the speed in the figure"},

@@ -12,8 +12,8 @@ comparagram. And T is found without comparing pixels, since it takes ranks to ra
 need not be aligned, and noise averages out. Two models take these equations: a table g, as Debevec
 and Malik's, and a polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a polynomial of high
 order fails; from histograms, without the levels above the cut, it does not. (In Cerman and Hlavac's
-experiment it failed from histograms, too. Here T takes the middle of a level's ranks to the middle
-of another's, and the darkest levels have little weight.)
+experiment it failed from histograms, too; the paper does not say why.) Here T takes the middle of a
+level's ranks to the middle of another's, and the darkest levels have little weight.
 """
 
 from dataclasses import dataclass
