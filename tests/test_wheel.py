@@ -85,7 +85,7 @@ def test_neither_the_wheel_nor_the_source_distribution_holds_a_model_solution(wh
     with tarfile.open(next(tmp_path.glob("hdrlab-*.tar.gz"))) as sdist:
         held = sdist.getnames() + zipfile.ZipFile(wheel).namelist()
     assert any(name.endswith("course/authoring/solutions.py") for name in held)
-    answers = ("/solutions/", "/fairness/right/", "/tests/equivalent/")
+    answers = ("/solutions/", "/exercises/", "/fairness/right/", "/tests/equivalent/")
     assert not [name for name in held if any(folder in name for folder in answers)]
 
 

@@ -202,16 +202,32 @@ def new_task(*, task: str, out: Path, homework: str) -> None:
 
 @course.command()
 @click.argument("folder", type=common.INPUT_PATH)
+@click.option(
+    "--exercises",
+    type=common.INPUT_PATH,
+    default="solutions/exercises",
+    help="Folder with the answers to the exercises, in a clone of hdrlab.",
+)
 @assignments.plan_option
-def pack(*, folder: Path, plan: Path | None) -> None:
-    """Write model solutions to FOLDER.
+def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
+    """Write model solutions to FOLDER, for instructors.
 
-    hdrlab solves each homework with the library's functions.
+    hdrlab solves each homework with the library's functions, and copies the answers to the
+    exercises of the notebooks. The installed package does not contain these answers. Run the
+    command in a clone of hdrlab, or pass --exercises.
     """
     from hdrlab.course import plan as plans
     from hdrlab.course.authoring import solutions
 
-    common.echo_paths(solutions.write(plans.read(plan), folder))
+    answers = sorted(exercises.glob("*.ipynb"))
+    common.echo_paths(solutions.write(plans.read(plan), folder, answers))
+    if not answers:
+        common.echo_notes(
+            [
+                f"{exercises} has no answers to the exercises; run the command in a clone of "
+                "hdrlab, or pass --exercises FOLDER"
+            ]
+        )
 
 
 @course.command()

@@ -290,6 +290,13 @@ def are_shown(page, part):
 COVERED_OUTPUT = ".tag_covered .cell_output, details.covered"
 
 
+def test_no_file_of_the_site_has_an_answer_to_an_exercise(site):
+    assert (site / "notebooks" / "04_response_gsolve.html").exists()
+    files = [path for path in site.rglob("*") if path.is_file()]
+    heading = b"Answers to the exercises of notebook"  # the first line of each file with answers
+    assert [path for path in files if heading in path.read_bytes()] == []
+
+
 @pytest.fixture
 def asking(site, page):
     """The first notebook's page, on which nothing has been answered."""

@@ -1,7 +1,8 @@
 """Handouts filled in, rightly or with a well-known mistake; the pack of solutions; a sheet for each team.
 
 What is right is the library's own function, that of the library that is installed, and a mistake
-changes it. Neither the wheel nor the source distribution holds the pack.
+changes it. The pack also gets the answers to the exercises, which are in a clone alone. Neither the
+wheel nor the source distribution holds the pack.
 """
 
 import json
@@ -18,6 +19,10 @@ from hdrlab.errors import InputError
 
 FENCE = "\n\n\n# %%\n"
 HEAD = Path(__file__).with_name("solutions_head.md")  # of the table of what is in the pack
+EXERCISES_FOLDER = "exercises"
+EXERCISES_NOTE = f"""
+The folder `{EXERCISES_FOLDER}` has the answers to the exercises at the end of each notebook.
+"""
 
 
 def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
@@ -54,8 +59,15 @@ def script(cells: Mapping[str, str]) -> str:
     return "# %%\n" + FENCE.join(cells.values()) + "\n"
 
 
-def write(plan: Plan, folder: Path) -> Iterator[Path]:
-    """Write the pack into a folder, which is made where it is missing, and yield each file."""
+def write(plan: Plan, folder: Path, answers: Iterable[Path] = ()) -> Iterator[Path]:
+    """Write the pack into a folder, which is made where it is missing, and yield each file.
+
+    Parameters
+    ----------
+    plan : the homeworks
+    folder : where the pack goes
+    answers : notebooks with answers to the exercises of the lessons, copied as they are
+    """
     table = HEAD.read_text("utf8")
     for name, homework in plan.homeworks.items():
         cells = texts(homework)
@@ -65,6 +77,13 @@ def write(plan: Plan, folder: Path) -> Iterator[Path]:
         for task in homework.tasks:
             lines = len(cells[task.id].splitlines())
             table += f"| {name} | `{task.id}` | {task.points:g} | {lines} | `{task.function}` |\n"
+    copies = []
+    for answer in answers:
+        copy = folder / EXERCISES_FOLDER / answer.name
+        copies.append(handouts.write_text(copy, answer.read_text(encoding="utf8")))
+    yield from copies
+    if copies:
+        table += EXERCISES_NOTE
     yield handouts.write_text(folder / "README.md", table)
 
 
