@@ -56,6 +56,7 @@ COURSE_EXTRAS = {  # extra -> the extras that it may use
     "similarity": set(),
     "viva": set(),
     "site": set(),
+    "slides": {"site"},
 }
 DEPRECATED_NAMES = {"code", "material"}  # they import the new names, and nothing imports them
 
@@ -92,7 +93,9 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["dask", "distributed"], {"course"}),  # a class on many machines
     "filelock": {"course"},  # one run at a time in a folder
     "copydetect": {"course"},  # what submissions have in common
-    **dict.fromkeys(["starlette", "uvicorn", "markupsafe", "markdown_it"], {"course"}),
+    **dict.fromkeys(
+        ["starlette", "uvicorn", "markupsafe", "markdown_it", "mdit_py_plugins"], {"course"}
+    ),
     "threadpoolctl": {"show"},
 }
 OPTIONAL = ("hdrlab", "core", "optional")  # imports from it are imports of other packages

@@ -41,6 +41,9 @@ IN = (
     "hdrlab/course/checks/mistakes/gsolve.py",
     "hdrlab/course/variants/parameters/shift.toml",
     "hdrlab/course/gallery/web/templates/base.html",
+    "hdrlab/course/slides/deck.html",
+    "hdrlab/course/slides/reveal/LICENSE",
+    "hdrlab/course/slides/reveal/reveal.js",
     "hdrlab/show/widgets/blink.js",
 )
 OUT = ("tests", "attacks", "equivalent", "solutions", "benchmarks", "models", ".ci")

@@ -1,5 +1,6 @@
-"""The commands that build the course: `course build`, `export`, `move`, `new-task`, `pack` and `toy`."""
+"""The commands of `hdrlab course`: `build`, `export`, `move`, `new-task`, `pack`, `slides` and `toy`."""
 
+import os
 from datetime import datetime
 from pathlib import Path
 
@@ -8,10 +9,12 @@ import click
 from hdrlab.cli import assignments, common
 from hdrlab.errors import InputError
 
+SLIDES_MODULES = ("mdit_py_plugins", "ziamath")
+
 
 @click.group(cls=common.Group)
 def course() -> None:
-    """Build assignments and solutions, and export the course."""
+    """Build assignments, solutions and slides, and export the course."""
 
 
 @course.command()
@@ -228,6 +231,61 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
                 "hdrlab, or pass --exercises FOLDER"
             ]
         )
+
+
+@course.command()
+@click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
+@click.option(
+    "-o",
+    "--out",
+    type=common.OUTPUT_PATH,
+    default="slides",
+    help="Folder for the decks, one HTML file for each notebook.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=min(4, os.cpu_count() or 1),
+    help="Number of notebooks to run at the same time.",
+)
+def slides(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
+    """Make a deck of slides from each notebook.
+
+    NOTEBOOK is the name or the number of a notebook of hdrlab, such as 04, or the path of a
+    notebook of your own. By default, hdrlab makes a deck from each of its notebooks.
+
+    A deck is one HTML file with live widgets and speaker notes. It needs no server and no
+    network. Open it in a browser. The key S shows the notes. To print it, or to save it as PDF,
+    write ?print-pdf at the end of its address.
+
+    hdrlab keeps the executed notebooks in .NAME.cache next to the folder. The next run executes
+    only notebooks that have changed.
+    """
+    common.require_modules("site", SLIDES_MODULES)
+    from hdrlab.course.authoring import execute
+    from hdrlab.course.classroom.jobs import lock_folder
+    from hdrlab.course.site import pages
+    from hdrlab.course.slides import decks
+    from hdrlab.io import files
+
+    chosen = decks.find_notebooks(notebooks)
+    files.require_folder_name(out)
+    # Jupyter needs a working folder; if it is gone, stop here and not in the middle
+    os.getcwd()
+    cache = pages.make_cache(out)
+    out.mkdir(parents=True, exist_ok=True)
+    written = []
+    with lock_folder(cache):
+        steps = decks.write_steps(chosen, out, cache, jobs=jobs)
+        try:
+            for deck in common.progress(steps, "decks", len(chosen)):
+                click.echo(f"{deck.path}: {deck.slides} slides")
+                written.append(deck)
+        except execute.NotebookError as error:
+            raise click.ClickException(str(error)) from None
+    count = sum(deck.slides for deck in written)
+    fresh = sum(deck.fresh for deck in written)
+    click.echo(f"{out}: {len(written)} decks, {count} slides; run now: {fresh}")
 
 
 @course.command()

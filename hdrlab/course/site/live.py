@@ -30,6 +30,7 @@ SKIPPED_TRAITS = ("layout", "tabbable", "tooltip", "frame")
 IMAGE_TRAITS = ("stored", "frames", "picture", "pictures")
 BITS_PER_LETTER = 15
 FIRST_LETTER = 0x3000  # no letter from here on has a meaning in a script
+LESS_THAN = "\\u003c"  # in a string of JSON
 BYTES = re.compile(r'{"base64": "([^"]*)"}')
 EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)?')
 
@@ -66,14 +67,37 @@ class ExportedWidget(NamedTuple):
 
     def as_html(self, folder: str) -> str:
         """Return the HTML of the widget; `folder` is the address of its files."""
+        asks = f' data-asks="{escape(self.question)}"' if self.question else ""
+        return self._place(f"{folder}/{self.name}.webp", f"{folder}/", asks)
+
+    def as_embedded_html(self) -> str:
+        """Return the HTML of the widget, for a page that contains its image and its `scripts`.
+
+        Such a page forgets the answer to a question when it is closed.
+        """
+        return self._place(web.data_uri(self.picture) if self.picture else "", "", "")
+
+    def _place(self, picture: str, folder: str, asks: str) -> str:
+        """Return the HTML of the widget's place, with its image or alt text."""
         still = f"<p>{escape(self.alt)}</p>"
         if self.picture:
-            source = f'src="{folder}/{self.name}.webp"'
             attributes = f'alt="{escape(self.alt)}" {_image_attributes(self.picture)}'
-            still = f'<img {source} {attributes} loading="lazy">'
-        scripts = f'data-code="{folder}/{self.code}.js" data-from="{folder}/{self.name}.js"'
-        asks = f' data-asks="{escape(self.question)}"' if self.question else ""
+            still = f'<img src="{picture}" {attributes} loading="lazy">'
+        scripts = f'data-code="{folder}{self.code}.js" data-from="{folder}{self.name}.js"'
         return f'<div class="live" data-name="{self.name}"{asks} {scripts}>{still}</div>'
+
+    def scripts(self) -> dict[str, str]:
+        """Return the widget's scripts by the names of their files: its code, and then its state.
+
+        Bytes are {"base64": text}. No script contains a "<", so that a page can contain it.
+        """
+        code = json.dumps({"script": self.script, "style": self.style})
+        state = json.dumps({"code": self.code, "state": self.state})
+        contents = {self.code: code, self.name: state}
+        return {
+            f"{name}.js": f'hdrlab.take("{name}", {content.replace("<", LESS_THAN)});\n'
+            for name, content in contents.items()
+        }
 
 
 def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, ExportedWidget]]:
@@ -167,12 +191,10 @@ def extract_images(notebook: Any, name: str, folder: Path, address: str) -> None
 
 def write_widget(widget: ExportedWidget, folder: Path) -> None:
     """Write the files of a widget; unchanged files are left alone."""
-    code = json.dumps({"script": widget.script, "style": widget.style})
-    shared_script = f'hdrlab.take("{widget.code}", {code});\n'
-    write_changed(folder / f"{widget.code}.js", shared_script.encode())
-    state = json.dumps({"code": widget.code, "state": widget.state})
-    state_script = f'hdrlab.take("{widget.name}", {BYTES.sub(_encode_as_letters, state)});\n'
-    write_changed(folder / f"{widget.name}.js", state_script.encode("utf-16"))
+    code, state = widget.scripts().values()
+    write_changed(folder / f"{widget.code}.js", code.encode())
+    state = BYTES.sub(_encode_as_letters, state)
+    write_changed(folder / f"{widget.name}.js", state.encode("utf-16"))
     if widget.picture:
         write_changed(folder / f"{widget.name}.webp", widget.picture)
 

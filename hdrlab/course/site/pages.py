@@ -79,6 +79,11 @@ def claim(out: Path) -> Path:
             f"{out} is neither empty nor an hdrlab site; choose another folder with --out"
         )
     live.write_changed(mark, MADE)
+    return make_cache(out)
+
+
+def make_cache(out: Path) -> Path:
+    """Make the cache folder of an output folder, which git ignores, and return it."""
     cache = cache_of(out)
     live.write_changed(cache / ".gitignore", b"*\n")
     return cache

@@ -4,8 +4,9 @@
   const places = new Map();
   const codes = new Map(); // of each kind of widget, its module
 
-  // Bytes as `live.write` packed them, fifteen bits a letter.
-  function bytesOf({ letters, length }) {
+  // Bytes as `live.write_widget` packed them, fifteen bits a letter, or as base64 on a page that contains its widgets.
+  function bytesOf({ base64, letters, length }) {
+    if (base64 !== undefined) return new DataView(Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)).buffer);
     const bytes = new Uint8Array(length);
     for (let [k, at, bits, held] = [0, 0, 0, 0]; k < length; k++) {
       if (held < 8) [bits, held] = [((bits & 255) << 15) | (letters.charCodeAt(at++) - 0x3000), held + 15];
@@ -18,7 +19,7 @@
   const unpack = (value, shown) => {
     if (Array.isArray(value)) return value.map((each) => unpack(each, shown));
     if (value?.shown) return shown;
-    return value?.letters === undefined ? value : bytesOf(value);
+    return value?.letters === undefined && value?.base64 === undefined ? value : bytesOf(value);
   };
 
   // The browser's own memory. Where it keeps nothing for a file, what is remembered holds for this page alone.
@@ -90,15 +91,16 @@
     const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value, shown)]));
     await widget.render({ model: modelOf(values, place), el });
     const notice = el.querySelector(".hdrlab-cover");
-    if (notice) notice.hidden = questions.get(place).length === 0;
+    if (notice) notice.hidden = !questions.get(place)?.length;
     const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
     for (let k = 0; k < 120 && waiting(); k++) await frame();
     place.replaceChildren(el); // the picture that stood here until now is what the canvas begins with
     place.dataset.state = "open";
   }
 
+  const root = document.documentElement.dataset.content_root; // a page by itself has none
   window.hdrlab = {
-    running: `${document.documentElement.dataset.content_root}installing.html`,
+    running: root === undefined ? undefined : `${root}installing.html`,
     take(name, content) {
       if (content.script) learn(name, content);
       for (const place of places.get(name) ?? [])
@@ -110,10 +112,12 @@
     },
   };
 
-  // What is loaded runs in this order: a widget after the code of its kind.
+  // What is loaded runs in this order: a widget after the code of its kind. A page by itself contains the scripts.
   const asked = new Set();
   function load(src) {
-    if (!asked.has(src)) document.head.append(Object.assign(document.createElement("script"), { src, async: false }));
+    const contained = document.getElementById(src);
+    const what = contained ? { textContent: contained.textContent } : { src, async: false };
+    if (!asked.has(src)) document.head.append(Object.assign(document.createElement("script"), what));
     asked.add(src);
   }
 
