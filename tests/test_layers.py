@@ -57,6 +57,7 @@ COURSE_EXTRAS = {  # extra -> the extras that it may use
     "viva": set(),
     "site": set(),
     "slides": {"site"},
+    "question_bank": {"site", "slides"},
 }
 DEPRECATED_NAMES = {"code", "material"}  # they import the new names, and nothing imports them
 

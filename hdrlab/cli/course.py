@@ -1,4 +1,7 @@
-"""The commands of `hdrlab course`: `build`, `export`, `move`, `new-task`, `pack`, `slides` and `toy`."""
+"""The commands of `hdrlab course`.
+
+They are `build`, `export`, `move`, `new-task`, `pack`, `questions`, `slides` and `toy`.
+"""
 
 import os
 from datetime import datetime
@@ -231,6 +234,59 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
                 "hdrlab, or pass --exercises FOLDER"
             ]
         )
+
+
+@course.command()
+@click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
+@click.option(
+    "-o",
+    "--out",
+    type=common.OUTPUT_PATH,
+    default="questions.xml",
+    help="Moodle XML (.xml), or a page to print, with the answers at its end (.html).",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=min(4, os.cpu_count() or 1),
+    help="Number of notebooks to run at the same time.",
+)
+def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
+    """Write a question bank from the predictions of the notebooks.
+
+    NOTEBOOK is the name or the number of a notebook of hdrlab, such as 04, or the path of a
+    notebook of your own. By default, hdrlab uses all of its notebooks.
+
+    The bank contains each question with a choice or a number as its answer. hdrlab runs the
+    notebooks, which compute the right answers. Import the file into the question bank of a Moodle
+    course as Moodle XML.
+
+    hdrlab keeps the executed notebooks in .NAME.cache next to the file. The next run executes only
+    notebooks that have changed.
+    """
+    common.require_modules("site", SLIDES_MODULES)
+    from hdrlab.course.authoring import execute
+    from hdrlab.course.classroom.jobs import lock_folder
+    from hdrlab.course.question_bank import bank
+    from hdrlab.course.site import pages
+    from hdrlab.course.slides import decks
+    from hdrlab.io import files
+
+    chosen = decks.find_notebooks(notebooks)
+    bank.require_format(out)
+    files.require_other([out], chosen)
+    # Jupyter needs a working folder; if it is gone, stop here and not in the middle
+    os.getcwd()
+    cache = pages.make_cache(out)
+    with lock_folder(cache):
+        steps = bank.collect_steps(chosen, cache, jobs=jobs)
+        try:
+            lessons = list(common.progress(steps, "notebooks", len(chosen)))
+        except execute.NotebookError as error:
+            raise click.ClickException(str(error)) from None
+    bank.write(lessons, out)
+    count = sum(len(lesson.questions) for lesson in lessons)
+    click.echo(f"{out}: {count} questions of {len(lessons)} notebooks")
 
 
 @course.command()

@@ -136,7 +136,7 @@ def _build(
         for notebook in done
         if notebook.source != FRONT
     }
-    titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
+    titles = {name: title_of(notebook) or name for name, notebook in notebooks.items()}
     modules = reference.list_modules()
     known = {*notebooks, *sheets}
     uses = {
@@ -145,7 +145,7 @@ def _build(
     }
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
-    headings = {name: _title(notebook) for name, notebook in handouts.items()}
+    headings = {name: title_of(notebook) for name, notebook in handouts.items()}
     widgets = 0
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # some notebooks may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
@@ -187,7 +187,7 @@ def _code(notebook: Any) -> list[str]:
     return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
 
 
-def _title(notebook: Any) -> str:
+def title_of(notebook: Any) -> str:
     """Return a notebook's title, its first heading."""
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
@@ -213,7 +213,7 @@ def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -
     live.extract_images(notebook, name, folder, f"../{WIDGETS}")
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
-    if not _title(notebook):
+    if not title_of(notebook):
         notebook.cells.insert(0, nbformat.v4.new_markdown_cell(f"# {name}"))
     for cell in notebook.cells:
         if cell.cell_type == "markdown":

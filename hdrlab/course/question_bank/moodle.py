@@ -1,0 +1,109 @@
+r"""Write questions as Moodle XML, which Moodle imports into the question bank of a course.
+
+See "Moodle XML format" in Moodle's documentation. Formulas are written as TeX between \( and \),
+which Moodle's MathJax filter draws.
+"""
+
+import base64
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+from hdrlab.course.question_bank.questions import (
+    ChoiceQuestion,
+    LessonQuestions,
+    NumberQuestion,
+    Question,
+)
+from hdrlab.course.slides.markdown import parser
+
+BANK = "$course$/top/hdrlab"  # the category of all questions
+RIGHT, WRONG = "100", "0"  # percent of the points
+
+
+def to_moodle(lessons: Sequence[LessonQuestions]) -> str:
+    """Return a question bank as Moodle XML, with a category for each notebook.
+
+    Parameters
+    ----------
+    lessons : the questions of each notebook
+    """
+    quiz = ET.Element("quiz")
+    for title, questions in lessons:
+        category = ET.SubElement(quiz, "question", type="category")
+        _add_text(category, "category", f"{BANK}/{title.replace('/', '//')}")
+        for number, question in enumerate(questions, 1):
+            _add_question(quiz, question, f"{title}, question {number}")
+    ET.indent(quiz)
+    return ET.tostring(quiz, "unicode", xml_declaration=True) + "\n"
+
+
+def _add_question(quiz: ET.Element, question: Question, name: str) -> None:
+    is_choice = isinstance(question, ChoiceQuestion)
+    element = ET.SubElement(quiz, "question", type="multichoice" if is_choice else "numerical")
+    _add_text(element, "name", name)
+    asked = f"<p><b>{escape(question.text)}</b></p>"
+    if isinstance(question, NumberQuestion):
+        asked += f"<p>{escape(question.instruction)}</p>"
+    _add_html(element, "questiontext", _to_html(question.context) + asked)
+    _add_html(element, "generalfeedback", f"<p>{escape(question.because)}</p>")
+    ET.SubElement(element, "defaultgrade").text = "1"
+    ET.SubElement(element, "idnumber").text = f"hdrlab-{question.name}"
+    if isinstance(question, ChoiceQuestion):
+        _add_choices(element, question)
+    else:
+        answer = _add_answer(element, RIGHT, f"{question.truth:.6g}", "moodle_auto_format")
+        ET.SubElement(answer, "tolerance").text = f"{question.tolerance:.6g}"
+
+
+def _add_choices(element: ET.Element, question: ChoiceQuestion) -> None:
+    ET.SubElement(element, "single").text = "true"
+    ET.SubElement(element, "shuffleanswers").text = "true"
+    ET.SubElement(element, "answernumbering").text = "abc"
+    for index, label in enumerate(question.labels):
+        fraction = RIGHT if index == question.right else WRONG
+        html = f"<p>{escape(label)}</p>"
+        if not question.images:
+            _add_answer(element, fraction, html, "html")
+            continue
+        image = question.images[index]
+        file_name = f"{question.name}-{index + 1}.webp"
+        html += f'<img src="@@PLUGINFILE@@/{file_name}" alt="{escape(image.alt)}">'
+        answer = _add_answer(element, fraction, html, "html")
+        file = ET.SubElement(answer, "file", name=file_name, path="/", encoding="base64")
+        file.text = base64.b64encode(image.content).decode()
+
+
+def _add_answer(element: ET.Element, fraction: str, text: str, text_format: str) -> ET.Element:
+    answer = ET.SubElement(element, "answer", fraction=fraction, format=text_format)
+    ET.SubElement(answer, "text").text = text
+    return answer
+
+
+def _add_text(element: ET.Element, name: str, text: str) -> ET.Element:
+    child = ET.SubElement(element, name)
+    ET.SubElement(child, "text").text = text
+    return child
+
+
+def _add_html(element: ET.Element, name: str, html: str) -> None:
+    _add_text(element, name, html).set("format", "html")
+
+
+def _to_html(markdown: str) -> str:
+    """Return Markdown as HTML, with formulas as TeX."""
+    converter = parser()
+    converter.add_render_rule("math_inline", _inline_tex)
+    converter.add_render_rule("math_block", _displayed_tex)
+    return str(converter.render(markdown))
+
+
+def _inline_tex(self: object, tokens: list[Any], index: int, options: object, env: object) -> str:
+    return rf"\({escape(tokens[index].content)}\)"
+
+
+def _displayed_tex(
+    self: object, tokens: list[Any], index: int, options: object, env: object
+) -> str:
+    return rf"<p>\[{escape(tokens[index].content)}\]</p>"
