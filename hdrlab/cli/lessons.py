@@ -128,9 +128,9 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lit
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
     names = {notebook.stem for notebook in chosen}
-    if len(names) < len(chosen) or pages.FRONT.stem in names:
+    if len(names) < len(chosen) or pages.STORY.stem in names:
         raise InputError(
-            f"--notebooks: pass notebooks with different names, and none named {pages.FRONT.name}"
+            f"--notebooks: pass notebooks with different names, and none named {pages.STORY.name}"
         )
     pyodide = jupyterlite.find_pyodide(lite) if lite else None
     edition = jupyterlite.edition_of(chosen, handouts) if lite else ""
@@ -138,7 +138,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lit
     os.getcwd()
     cache = pages.claim(out)
     with lock_folder(cache):
-        steps = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
+        steps = execute.run_steps([pages.STORY, *chosen], cache, jobs=jobs)
         try:
             executed = list(common.progress(steps, "notebooks", len(chosen) + 1))
         except execute.NotebookError as error:

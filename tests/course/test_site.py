@@ -168,9 +168,7 @@ def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_
     assert [
         line for line in ran.stderr.splitlines() if not any(word in line for word in of_others)
     ] == []
-    assert (
-        "4 widgets, 4 notebooks; run now: 5" in ran.stdout
-    )  # the first page has a picture to wipe
+    assert "4 notebooks; run now: 5" in ran.stdout, "the story is run, too"
     assert sorted(folder.iterdir()) == sorted([site, folder / ".site.cache", *notebooks])
     assert not list((folder / ".site.cache" / "kernels").iterdir())
     assert not [path for path in folder.rglob("*") if path.name.startswith((".hdrlab-", "tmp"))]
@@ -222,6 +220,9 @@ def test_style_sheets_and_scripts_name_no_address_outside(made):
             "utf-16" if file.parent.name == "_widgets" and file not in codes else "utf-8"
         )
         text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+        text = text.replace(
+            "http://www.w3.org/2000/svg", ""
+        )  # a name, which nothing is fetched from
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
 
@@ -243,6 +244,38 @@ def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(found):
         assert addresses.headings.count(1) == 1, page.name
         steps = zip(addresses.headings, addresses.headings[1:], strict=False)
         assert all(after - before <= 1 for before, after in steps), page.name
+
+
+def test_the_first_page_begins_with_the_story_and_shows_its_finished_image(made):
+    first = (made[1] / "index.html").read_text("utf-8")
+    assert 'href="story.html">Start here (10 minutes)</a>' in first
+    (shown,) = re.findall(r'data-name="([^"]+)"', first)
+    assert shown == re.findall(r'data-name="([^"]+)"', story_of(made))[-1]
+
+
+def story_of(made):
+    return (made[1] / "story.html").read_text("utf-8")
+
+
+def test_without_scripts_the_story_has_a_picture_for_each_figure_and_no_code(made):
+    text = story_of(made)
+    places = re.findall(r'<div class="live"[^>]*>(.*?)</div>', text)
+    assert len(places) >= 10
+    assert all(re.match(r'<img [^>]*alt="[^"]+"', place) for place in places)
+    assert "<pre" not in text
+
+
+def test_the_story_is_readable_after_300_kB_and_has_less_than_4_MB_in_all(made):
+    """Its words, its style and the images that stand in the figures' places; then the figures."""
+    page = made[1] / "story.html"
+    asked = {
+        page,
+        *(page.parent / one.partition("?")[0] for one in Addresses(story_of(made)).asked),
+    }
+    figures = re.findall(r'data-(?:code|from)="([^"]+)"', story_of(made))
+    everything = asked | {page.parent / name for name in figures}
+    assert sum(file.stat().st_size for file in asked) < 300_000
+    assert sum(file.stat().st_size for file in everything) < 4_000_000
 
 
 def test_formulas_are_drawn_and_spoken(made):
@@ -496,7 +529,7 @@ def test_the_sources_of_the_site_travel_with_the_package():
     folder = Path(live.__file__).parent
     for name in (
         "pages/index.md",
-        "pages/front.ipynb",
+        "pages/story.ipynb",
         "theme/layout.html",
         "theme/static/live.js",
     ):

@@ -25,7 +25,7 @@ from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
 
 PAGES = Path(__file__).parent / "pages"
-FRONT = PAGES / "front.ipynb"  # draws the figure of the first page
+STORY = PAGES / "story.ipynb"  # its last figure is on the first page, too
 # makes GitHub Pages serve files whose names begin with _; its text identifies a site of hdrlab
 MARK = ".nojekyll"
 MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
@@ -98,7 +98,7 @@ def build(
     address: str = "",
     edition: str = "",
 ) -> Site:
-    """Build the site from executed notebooks (FRONT among them), handouts, and more pages by name.
+    """Build the site from executed notebooks (STORY among them), handouts, and more pages by name.
 
     Handouts are shown without being run: their tasks are still to be done. If nothing has changed
     since the last build, the site is left as it is. `address` is the URL where it will be published.
@@ -130,12 +130,8 @@ def _build(
 ) -> Site:
     source = cache_of(out) / "source"
     html = cache_of(out) / "html"
-    [front] = [notebook for notebook in done if notebook.source == FRONT]
-    notebooks = {
-        notebook.source.stem: nbformat.read(notebook.executed, 4)
-        for notebook in done
-        if notebook.source != FRONT
-    }
+    notebooks = {notebook.source.stem: nbformat.read(notebook.executed, 4) for notebook in done}
+    story = notebooks.pop(STORY.stem)
     titles = {name: title_of(notebook) or name for name, notebook in notebooks.items()}
     modules = reference.list_modules()
     known = {*notebooks, *sheets}
@@ -153,15 +149,16 @@ def _build(
             if edition and folder == "notebooks":
                 boxes.insert(notebook, name, set(sheets))
             texts[f"{folder}/{name}.ipynb"], count = _prepare_notebook(
-                notebook, name, known, html / WIDGETS
+                notebook, name, known, html / WIDGETS, f"../{WIDGETS}"
             )
             widgets += count
-    _, hero = next(live.widgets(nbformat.read(front.executed, 4), "front"))
-    live.write_widget(hero, html / WIDGETS)
+    *_, (_, hero) = live.widgets(story, STORY.stem)
+    texts[STORY.name], count = _prepare_notebook(story, STORY.stem, known, html / WIDGETS, WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
     first = {
         "hero": Markup(hero.as_html(WIDGETS)),
         "titles": titles,
+        "story": describe_lesson(story),
         "lessons": {name: describe_lesson(notebook) for name, notebook in notebooks.items()},
         "handouts": headings,
         "edition": edition,
@@ -180,7 +177,7 @@ def _build(
     for part in ("notebooks", "assignments", "reference"):
         _remove_other_files(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
     _publish(html, out)
-    return Site(out / "index.html", len(texts), widgets + 1, complaints)
+    return Site(out / "index.html", len(texts), widgets + count, complaints)
 
 
 def _code(notebook: Any) -> list[str]:
@@ -202,15 +199,20 @@ def describe_lesson(notebook: Any) -> Lesson:
     return Lesson(int(stated["minutes"]), " ".join(stated["goal"].split()))
 
 
-def _prepare_notebook(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
-    """Export a notebook's widgets to `folder`; return its text for Sphinx and the number of widgets."""
+def _prepare_notebook(
+    notebook: Any, name: str, known: set[str], folder: Path, address: str
+) -> tuple[str, int]:
+    """Export a notebook's widgets to `folder`; return its text for Sphinx and the number of widgets.
+
+    `address` is the address of the folder, as seen from the notebook's page.
+    """
     exported = list(live.widgets(notebook, name))
     for output, widget in exported:
         live.write_widget(widget, folder)
-        output["data"] = {"text/html": widget.as_html(f"../{WIDGETS}")}
+        output["data"] = {"text/html": widget.as_html(address)}
     questions = [output for output, widget in exported if widget.question]
     covers.mark_covered(notebook.cells, _cells_of(questions, notebook))
-    live.extract_images(notebook, name, folder, f"../{WIDGETS}")
+    live.extract_images(notebook, name, folder, address)
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
     if not title_of(notebook):
