@@ -23,9 +23,10 @@ function barPath(heights, up, foot) {
   return `M0,${foot}${steps.join("")}V${foot}Z`;
 }
 
-// A dot at each of these points; a path of class hdrlab-dots draws it as wide as its line.
+// A dot at each of these points; a path of class hdrlab-dots draws it as wide as its line. Each dot has a length, because
+// WebKit stretches one of no length over the whole plot.
 function dotPath(points) {
-  return points.map(([x, y]) => `M${point(x, y)}h0`).join("");
+  return points.map(([x, y]) => `M${point(x, y)}h0.0001`).join("");
 }
 
 // A part of a plot that is a slider: its frame takes the focus, the keys and the pointer.
