@@ -186,8 +186,8 @@ def jupyterlab(home: Path) -> Iterator[Lab]:
             server.wait()
 
 
-def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
-    """Open a plain page with a widget, and wait until its picture is there: no kernel, and no server."""
+def widget_page(widget: anywidget.AnyWidget) -> str:
+    """Return a plain page with a widget, as HTML: no kernel, and no server."""
 
     def packed(value: Any) -> Any:
         if isinstance(value, bytes):
@@ -201,7 +201,12 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
         "script": json.dumps(str(widget._esm)),
         "css": str(widget._css),
     }
-    page.set_content(PAGE.format(**texts))
+    return PAGE.format(**texts)
+
+
+def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
+    """Open a plain page with a widget, and wait until its picture is there."""
+    page.set_content(widget_page(widget))
     shown = """() => {
         const canvas = document.querySelector("canvas");  // a question may have none
         return canvas ? canvas.getAttribute("aria-label") : document.querySelector(".hdrlab-note");

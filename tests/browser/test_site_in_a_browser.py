@@ -141,11 +141,9 @@ def assert_it_fits(page, axe):
         assert found == [], width
 
 
-@pytest.mark.parametrize("name", NOTEBOOKS)
-def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(
-    opened, axe, name
-):
-    page = opened(f"notebooks/{name}")
+@pytest.mark.parametrize("name", ["story", *(f"notebooks/{name}" for name in NOTEBOOKS)])
+def test_the_widgets_of_a_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(opened, axe, name):
+    page = opened(name)
     places = page.locator(".live").all()
     assert places, "the page shows no widget"
     widgets = [open_widget(page, place) for place in places]
@@ -171,7 +169,7 @@ def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(open
 
 
 @pytest.mark.parametrize(
-    "name", ["index", "notebooks/04_response_gsolve", "verdicts", "reference/tonemap.chiu"]
+    "name", ["index", "story", "notebooks/04_response_gsolve", "verdicts", "reference/tonemap.chiu"]
 )
 def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wrong(
     opened, axe, name
@@ -185,6 +183,33 @@ def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wro
     assert_it_fits(page, axe)
     page.emulate_media(media="print")
     assert page.evaluate(light) == 255
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_story_has_ten_screens_which_begin_with_a_claim_and_fill_the_window(opened, width):
+    page = opened("story", width)
+    screens = page.locator("main section section").filter(has_text="Guess.")
+    assert screens.count() == 10
+    for number, screen in enumerate(screens.all(), 1):
+        assert screen.get_by_role("heading").inner_text().startswith(f"{number} · ")
+        assert screen.locator(".live").count() == 1
+        assert screen.bounding_box()["height"] > 800
+    answer = screens.first.locator("details")
+    assert not answer.get_by_role("paragraph").is_visible()
+    answer.locator("summary").press("Enter")
+    assert answer.get_by_role("paragraph").is_visible()
+    page.get_by_role("link", name="00 · Welcome").first.click()
+    assert "notebooks/00_welcome" in page.url
+
+
+def test_the_photos_in_figures_keep_their_colors_on_a_dark_page(opened):
+    page = opened("story")
+    page.emulate_media(color_scheme="dark")
+    for kind, photo in (("gsolve", ".hdrlab-picked canvas"), ("pixel", "canvas")):
+        for place in page.locator(".live").all():
+            open_widget(page, place)
+        canvas = page.locator(f"[data-kind={kind}]").locator(photo)
+        assert "invert" not in canvas.evaluate("canvas => getComputedStyle(canvas).filter")
 
 
 def test_the_brush_follows_the_pointer_and_the_keys(opened, site):

@@ -9,5 +9,6 @@ lite       puts JupyterLite beside the pages, which runs the notebooks in a brow
 boxes      puts boxes into pages in which a reader writes and checks a function
 pages      puts all of it in one folder, and Sphinx with myst-nb makes the site of it
 
-What is written by hand lies beside: `pages`, the guides in Markdown, and `theme`, how a page looks.
+What is written by hand lies beside: `pages`, the guides in Markdown and the story in ten screens, and
+`theme`, how a page looks.
 """
