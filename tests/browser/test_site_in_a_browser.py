@@ -185,9 +185,11 @@ def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wro
     assert page.evaluate(light) == 255
 
 
-@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("width", [1440, 1280, 390])
 def test_the_story_has_ten_screens_which_begin_with_a_claim_and_fill_the_window(opened, width):
     page = opened("story", width)
+    header = page.locator("header").bounding_box()
+    assert header["width"] == width and header["height"] < 80
     screens = page.locator("main section section").filter(has_text="Guess.")
     assert screens.count() == 10
     for number, screen in enumerate(screens.all(), 1):
