@@ -58,7 +58,7 @@ def slope_between(n, low, high):
 CLAIMS = {
     "1/250 of a second": lambda n: np.isclose(n["times"][n["short"]], 1 / 250),
     "1/4 of a second": lambda n: np.isclose(n["times"][n["long"]], 1 / 4),
-    "took twelve photos, each with twice the time": lambda n: (
+    "Twelve photos, each with twice the time": lambda n: (
         len(n["times"]) == 12 and np.allclose(np.diff(np.log2(n["times"])), 1, atol=0.1)
     ),
     "always seven stops wide, and the room has eleven": lambda n: (
