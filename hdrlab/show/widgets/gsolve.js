@@ -290,6 +290,7 @@ async function render({ model, el }) {
   const names = ["change:ln_E", "change:smoothness_index"];
   names.forEach((name) => model.on(name, repaint));
   paint();
+  repaint(); // once more when it is in the page, whose colors the matrix has
   return () => names.forEach((name) => model.off(name, repaint));
 }
 
