@@ -15,7 +15,7 @@ def taken(folder, data, **limits):
     try:
         found = unpack(archive, target, ArchiveLimits(**limits))
     except (ArchiveRejected, OSError):
-        assert not target.exists() and not list(folder.glob(".unpack-*"))
+        assert not target.exists() and not list(folder.glob(".hdrlab-*"))
         raise
     written = {str(path): (target / path).read_bytes() for path, _ in found}
     assert [size for _, size in found] == [len(held) for held in written.values()]

@@ -149,6 +149,7 @@ class Command(click.Command):
         This happens before the command starts, because some commands work for minutes.
         """
         from hdrlab.io.files import require_distinct, require_other
+        from hdrlab.io.temporary import remove_leftovers
 
         written: list[Path] = []
         read: list[Path] = []
@@ -167,6 +168,8 @@ class Command(click.Command):
             require_other(written, [*read, *photos])
         for check in checks:
             check()
+        for path in written:
+            remove_leftovers(path.parent)
         return super().invoke(ctx)
 
 

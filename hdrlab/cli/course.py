@@ -72,6 +72,7 @@ def build(
     """
     from hdrlab.course import plan as plans
     from hdrlab.course.authoring import execute, handouts, solutions as solved
+    from hdrlab.course.scratch import temporary_folder
     from hdrlab.course.students import roster
 
     common.require_modules("course", ["jupytext"])
@@ -90,7 +91,8 @@ def build(
             written = solved.build_for_teams_steps(
                 course_plan, sources, teams, secret, out, solutions
             )
-        common.echo_paths(common.progress(written, "handouts"))
+        with temporary_folder():
+            common.echo_paths(common.progress(written, "handouts"))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None
 

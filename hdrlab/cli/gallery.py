@@ -71,12 +71,13 @@ def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
     it cannot add, and adds the others.
     """
     from hdrlab.course.gallery import collect, store
+    from hdrlab.course.scratch import temporary_folder
     from hdrlab.course.students import roster as rosters
 
     students = rosters.read(roster)
     added = 0
     refused = 0
-    with closing(store.connect(folder)) as db:
+    with temporary_folder(), closing(store.connect(folder)) as db:
         with store.transaction(db):
             for student in students.students:
                 store.admit(db, store.Voter(student.id, student.name, student.team))

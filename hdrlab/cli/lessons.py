@@ -122,6 +122,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lit
     from hdrlab.course import materials
     from hdrlab.course.authoring import execute
     from hdrlab.course.classroom.jobs import lock_folder
+    from hdrlab.course.scratch import temporary_folder
     from hdrlab.course.site import pages
     from hdrlab.course.site.lite import build as jupyterlite
 
@@ -137,7 +138,7 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lit
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()
     cache = pages.claim(out)
-    with lock_folder(cache):
+    with temporary_folder(), lock_folder(cache):
         steps = execute.run_steps([pages.STORY, *chosen], cache, jobs=jobs)
         try:
             executed = list(common.progress(steps, "notebooks", len(chosen) + 1))

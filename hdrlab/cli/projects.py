@@ -27,12 +27,13 @@ def report(*, project: Path, example: bool) -> None:
     """
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course.projects import project as projects, report as reports
+    from hdrlab.io import files
 
     if example:
         source = project / projects.REPORT_SOURCES[0]
         if source.exists():
             raise InputError(f"{source}: already exists; edit it, or remove it first")
-        source.write_text(reports.example(), encoding="utf8")
+        files.write(source, reports.example())
         click.echo(source)
         return
     with elapsed("report"):

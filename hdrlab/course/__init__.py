@@ -3,7 +3,7 @@
 Each part imports only the parts above it in this list (held by `tests/test_layers.py`).
 
 sanitize       text from strangers, made safe for a terminal and a page
-scratch        temporary folders, locks, and files that are written whole or not at all
+scratch        a command's temporary folder, and locks between processes
 materials      where the notebooks and the assignments are
 source_code    Python that is read as text and never run
 variants       the same task with other parameters

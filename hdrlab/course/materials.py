@@ -1,7 +1,8 @@
 """Where notebooks and assignments are, in a package or a clone, and a reader's copy."""
 
-import shutil
 from pathlib import Path
+
+from hdrlab.io import files
 
 COURSE = Path(__file__).parent
 # settings of JupyterLab: it saves the state of widgets, and shows no news
@@ -35,6 +36,6 @@ def copy_course(target: Path) -> list[Path]:
         for notebook in sorted(folder(name).glob("*.ipynb")):
             copy = target / name / notebook.name
             if not copy.exists():
-                shutil.copyfile(notebook, copy)
+                files.write(copy, notebook.read_bytes())
                 new.append(copy)
     return new

@@ -11,7 +11,6 @@ and its mistakes in `mistakes`.
 
 import hmac
 import math
-import os
 import runpy
 import secrets
 import tomllib
@@ -28,6 +27,7 @@ from hdrlab.course.due_dates import Due
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.variants import rewording
 from hdrlab.errors import FileFormatError, InputError
+from hdrlab.io.temporary import move_new, temporary_folder
 
 PLAN = Path(__file__).with_name("plan.toml")
 TEAM_SIZE = 2  # students in a team at most, unless the plan says otherwise
@@ -300,9 +300,11 @@ def read_secret(path: Path) -> tuple[str, bool]:
     """
     is_new = not path.exists()
     if is_new:
-        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with open(descriptor, "w", encoding="utf8") as file:
-            file.write(secrets.token_urlsafe(32) + "\n")
+        with temporary_folder(path.parent, target=path) as folder:
+            unfinished = folder / "secret"
+            unfinished.touch(mode=0o600)
+            unfinished.write_text(secrets.token_urlsafe(32) + "\n", encoding="utf8")
+            move_new(unfinished, path)
     try:
         secret = path.read_text(encoding="utf8").strip()
     except UnicodeDecodeError:

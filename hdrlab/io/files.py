@@ -2,8 +2,6 @@
 
 import errno
 import os
-import secrets
-import shutil
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import combinations, product
@@ -11,11 +9,10 @@ from pathlib import Path
 from typing import BinaryIO
 
 from hdrlab.errors import FileFormatError, InputError
+from hdrlab.io.temporary import temporary_file
 
 # Beyond any camera, and 1.6 GB as float32 RGB.
 MAX_PIXELS = 2**27
-# A disk with less room counts as full: what was being written did not fit.
-FULL_DISK_BYTES = 64 * 2**10
 
 # Why a photo for print cannot be a frame of a bracket.
 CMYK_REASON = (
@@ -51,43 +48,8 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     """
     path = require_replaceable(path)
     # Codecs choose the format by the suffix.
-    temporary = path.with_name(f".hdrlab-{secrets.token_hex(6)}{path.suffix}")
-    try:
-        if private:
-            temporary.touch(mode=0o600)
+    with temporary_file(path.parent, path.suffix, private=private, target=path) as temporary:
         yield temporary
-        os.replace(temporary, path)
-    except BaseException as error:  # Ctrl-C as well
-        # Some codecs raise a RuntimeError where the disk is full.
-        is_of_disk = isinstance(error, OSError | RuntimeError)
-        is_full = is_of_disk and is_disk_full(path.parent)
-        temporary.unlink(missing_ok=True)
-        if is_full:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path)) from None
-        if isinstance(error, OSError):
-            raise _name_file(error, path, temporary) from None
-        raise
-
-
-def is_disk_full(folder: Path) -> bool:
-    """Return whether the disk of a folder has hardly any room left."""
-    try:
-        return shutil.disk_usage(folder).free < FULL_DISK_BYTES
-    except OSError:  # the folder is gone
-        return False
-
-
-def _name_file(error: OSError, path: Path, temporary: Path) -> OSError:
-    """Return an error of writing that names the file of the user, and says why it failed.
-
-    NumPy's error for a short write has no number: "817920 requested and 383940 written".
-    """
-    if error.errno is None:
-        reason = f"it could not be written completely ({error})"
-        return OSError(errno.EIO, reason, str(path))
-    if error.filename in (None, str(temporary)):
-        error.filename = str(path)
-    return error
 
 
 def write(path: str | Path, content: str | bytes, *, private: bool = False) -> Path:

@@ -12,7 +12,6 @@ Frames are decoded one at a time, so that a film need not fit into memory.
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, cast
 
 import numpy as np
@@ -22,6 +21,7 @@ from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.errors import InputError
 from hdrlab.io import album, photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing, require_replaceable, require_suffix
+from hdrlab.io.temporary import new_folder
 
 FILM_SUFFIXES = {".mp4", ".mov", ".mkv", ".avi", ".webm"}
 WRITABLE_SUFFIXES = (".gif", ".mp4")
@@ -202,15 +202,12 @@ def write_maps(folder: str | Path, maps: Iterable[F32], *, suffix: str = ".exr")
     folder = Path(folder).resolve()
     require_new(folder)
     count = 0
-    with TemporaryDirectory(prefix=".hdrlab-", dir=folder.parent) as scratch:
-        unfinished = Path(scratch) / "maps"
-        unfinished.mkdir()
+    with new_folder(folder) as unfinished:
         for E in maps:
             count += 1
             radiance.write_radiance(unfinished / f"{count:04d}{suffix}", E)
         if count == 0:
             raise InputError(f"{folder}: expected at least one map, got none")
-        unfinished.replace(folder)
     return count
 
 

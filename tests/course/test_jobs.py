@@ -185,7 +185,7 @@ def test_a_folder_is_locked_by_one_run_and_cleared_of_half_written_files(tmp_pat
         with pytest.raises(ValueError, match="results"), jobs.lock_folder(folder):
             pass
         (folder / "in").mkdir()
-        for name in (".hdrlab-1", "in/.hdrlab-2", "kept.json"):
+        for name in (".hdrlab-0123456789ab", "in/.hdrlab-0123456789ab.json", "kept.json"):
             (folder / name).touch()
     with jobs.lock_folder(folder):
         assert not list(folder.rglob(".hdrlab-*"))

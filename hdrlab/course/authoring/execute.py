@@ -7,7 +7,6 @@ outputs.
 import asyncio
 import hashlib
 import os
-import secrets
 import shutil
 import sys
 import tempfile
@@ -20,6 +19,7 @@ import numpy as np
 from hdrlab.course.sandbox.subprocess_runner import LIBRARY, import_path
 from hdrlab.errors import FileFormatError, HdrlabError
 from hdrlab.io.files import replacing
+from hdrlab.io.temporary import temporary_folder
 
 CELL_TIMEOUT_SECONDS = 600
 MAX_SOCKET_PATH_BYTES = 80  # the system allows about 100, and the kernel adds a suffix
@@ -103,18 +103,28 @@ def _run_all(
 async def _run(source: Path, kept: Path, cache: Path) -> None:
     """Run one notebook from the top, and write it to `kept`."""
     import nbformat
-    from nbclient import NotebookClient
-    from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
     try:
         notebook = nbformat.read(source, as_version=4)
     except (ValueError, nbformat.ValidationError) as error:
         raise FileFormatError(f"{source}: not a valid Jupyter notebook: {error!s:.200}") from None
-    where = "its kernel"
-    # where a notebook may leave something
-    folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
-    folder.mkdir(parents=True)
+    kernels = cache / "kernels"
+    kernels.mkdir(parents=True, exist_ok=True)
     kept.parent.mkdir(parents=True, exist_ok=True)
+    with temporary_folder(kernels) as folder:
+        await _execute_cells(notebook, source.name, folder)
+    with replacing(kept) as temporary:
+        nbformat.write(notebook, temporary)
+    for older in set(kept.parent.glob(f"{source.stem}-????????????????.ipynb")) - {kept}:
+        older.unlink()
+
+
+async def _execute_cells(notebook: Any, name: str, folder: Path) -> None:
+    """Execute the cells of a notebook in a kernel that works in a folder."""
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError, CellTimeoutError
+
+    where = "its kernel"
     client: Any = NotebookClient(
         notebook,
         kernel_name="python3",
@@ -143,16 +153,12 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
         client.set_widgets_metadata()
     except (CellExecutionError, CellTimeoutError, RuntimeError) as error:
         # nbclient raises a RuntimeError when the kernel dies
-        raise NotebookError(f"{source.name}, {where}: {_error_text(error)}") from None
+        raise NotebookError(f"{name}, {where}: {_error_text(error)}") from None
     finally:
-        await _shut_down(client, folder, sockets)
-    with replacing(kept) as temporary:
-        nbformat.write(notebook, temporary)
-    for older in set(kept.parent.glob(f"{source.stem}-????????????????.ipynb")) - {kept}:
-        older.unlink()
+        await _shut_down(client, sockets)
 
 
-async def _shut_down(client: Any, *folders: Path | str) -> None:
+async def _shut_down(client: Any, sockets: str) -> None:
     try:
         # a kernel that never answered is gone already
         if client.km is not None and client.km.has_kernel:
@@ -160,8 +166,7 @@ async def _shut_down(client: Any, *folders: Path | str) -> None:
     finally:
         if client.kc is not None:
             client.kc.stop_channels()
-        for folder in folders:
-            shutil.rmtree(folder, ignore_errors=True)
+        shutil.rmtree(sockets, ignore_errors=True)
 
 
 def _cell_label(cell: Any, index: int) -> str:

@@ -39,7 +39,8 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
             f"expected a new task, got {task!r}: change {folder / task}.py, or choose another"
         )
     templates = [path for path in TEMPLATES.rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    for template in sorted(templates):
+    # the function comes last: a folder without it has no such task yet, if this is interrupted
+    for template in sorted(templates, key=lambda path: (path.name == "TASK.py", path)):
         name = template.relative_to(TEMPLATES).as_posix()
         path = folder / _fill_in(name, task, homework)
         text = _fill_in(template.read_text(encoding="utf8"), task, homework)
@@ -47,6 +48,8 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
         if not present:
             yield write_text(path, text)
         elif path.name == "plan.toml" or path.parent.name == "sheets":
+            if f'"{task}"' in present:  # of a run that was interrupted
+                continue
             yield write_text(path, append_task(present, text, homework))
 
 

@@ -21,6 +21,7 @@ from hdrlab.course.authoring import solutions, term
 from hdrlab.course.students import csv_tables
 from hdrlab.course.submissions.archives.packing import make_zip
 from hdrlab.errors import InputError
+from hdrlab.io.temporary import new_folder
 from hdrlab.show.pages.templates import render_page
 
 HOMEWORK = "hw2"
@@ -75,23 +76,30 @@ def write(folder: Path) -> list[Path]:
     """
     if folder.is_dir() and any(folder.iterdir()) or folder.is_file():
         raise InputError(f"{folder}: expected a new folder for the toy class, something is there")
-    (folder / "submissions").mkdir(parents=True, exist_ok=True)
-    text_of_plan = term.move(plan.PLAN.read_text(encoding="utf8"), FIRST_DAY)
-    (folder / "plan.toml").write_text(text_of_plan, encoding="utf8")
-    homework = plan.read(folder / "plan.toml").homeworks[HOMEWORK]
-    files = list(hand_ins(homework))
-    for file in files:
-        (folder / "submissions" / file.name).write_bytes(file.data)
-    roster = [
-        (student, f"Student {student[1:]}", TEAM if student in TEAM_MEMBERS else "")
-        for student in STUDENTS
-    ]
-    csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
-    csv_tables.write_csv(folder / "received.csv", ("file", "received"), received(files, homework))
-    text = render_page(
-        Path(__file__).parent, "toy_class.plain", command=COMMAND.format(folder=folder), each=files
-    )
-    (folder / "README.md").write_text(text + "\n", encoding="utf8")
+    folder.resolve().parent.mkdir(parents=True, exist_ok=True)
+    with new_folder(folder.resolve()) as unfinished:
+        (unfinished / "submissions").mkdir()
+        text_of_plan = term.move(plan.PLAN.read_text(encoding="utf8"), FIRST_DAY)
+        (unfinished / "plan.toml").write_text(text_of_plan, encoding="utf8")
+        homework = plan.read(unfinished / "plan.toml").homeworks[HOMEWORK]
+        files = list(hand_ins(homework))
+        for file in files:
+            (unfinished / "submissions" / file.name).write_bytes(file.data)
+        roster = [
+            (student, f"Student {student[1:]}", TEAM if student in TEAM_MEMBERS else "")
+            for student in STUDENTS
+        ]
+        csv_tables.write_csv(unfinished / "roster.csv", ("student", "name", "team"), roster)
+        csv_tables.write_csv(
+            unfinished / "received.csv", ("file", "received"), received(files, homework)
+        )
+        text = render_page(
+            Path(__file__).parent,
+            "toy_class.plain",
+            command=COMMAND.format(folder=folder),
+            each=files,
+        )
+        (unfinished / "README.md").write_text(text + "\n", encoding="utf8")
     return [folder / "submissions" / file.name for file in files]
 
 

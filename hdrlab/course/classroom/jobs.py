@@ -20,6 +20,7 @@ from hdrlab.course import scratch
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.errors import InputError
 from hdrlab.io.files import replacing
+from hdrlab.io.temporary import remove_leftovers
 
 MAX_ATTEMPTS = 3
 KEY_LENGTH = 16  # hexadecimal digits
@@ -155,8 +156,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
             raise InputError(
                 f"{folder}: another run is writing to this folder; wait until it has finished"
             ) from None
-        for path in folder.rglob(".hdrlab-*"):
-            path.unlink(missing_ok=True)
+        remove_leftovers(folder, recursive=True)
         yield
 
 

@@ -18,7 +18,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from hdrlab.errors import InputError
-from hdrlab.io import files
+from hdrlab.io import temporary
 
 DATABASE = "gallery.sqlite"
 PICTURES = "pictures"
@@ -109,31 +109,36 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
         )
     if marks < 1:
         raise InputError(f"expected at least 1 vote on a ballot, got {marks}")
+    temporary.remove_leftovers(folder)
     if database.exists():
-        raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
+        raise _another_gallery(folder)
     row = (title, closes.isoformat(), marks, secrets.token_bytes(SECRET_BYTES))
-    with _new_folders(folder / PICTURES):
-        temporary = folder / f".hdrlab-{secrets.token_hex(6)}.sqlite"
+    with (
+        _new_folders(folder / PICTURES, database),
+        temporary.temporary_folder(folder, target=database) as scratch,
+    ):
+        # SQLite's journal is in this folder, too
+        unfinished = scratch / DATABASE
+        unfinished.touch(mode=DATABASE_MODE)
+        _write_tables(unfinished, row)
         try:
-            temporary.touch(mode=DATABASE_MODE)
-            _write_tables(temporary, row)
-            _move_new(temporary, database)
-        finally:
-            for path in folder.glob(f"{temporary.name}*"):  # SQLite's journal, too
-                path.unlink(missing_ok=True)
+            temporary.move_new(unfinished, database)
+        except FileExistsError:
+            raise _another_gallery(folder) from None
 
 
 @contextmanager
-def _new_folders(folder: Path) -> Iterator[None]:
-    """Make a folder and its parents; if the block fails, remove those that were made."""
+def _new_folders(folder: Path, database: Path) -> Iterator[None]:
+    """Make a folder and its parents; if the block makes no database, remove those that were made."""
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         yield
     except BaseException:  # Ctrl-C as well
-        for path in missing:
-            with suppress(OSError):
-                path.rmdir()
+        if not database.exists():
+            for path in missing:
+                with suppress(OSError):
+                    path.rmdir()
         raise
 
 
@@ -146,16 +151,8 @@ def _write_tables(path: Path, row: tuple[str, str, int, bytes]) -> None:
         db.execute("COMMIT")
 
 
-def _move_new(temporary: Path, database: Path) -> None:
-    """Give a file its name, unless another process has made a file of this name meanwhile."""
-    try:
-        os.link(temporary, database)
-    except FileExistsError:
-        raise FileExistsError(
-            f"{database.parent}: expected a folder without a gallery, there is one"
-        ) from None
-    except OSError:  # a file system without hard links
-        os.replace(temporary, database)
+def _another_gallery(folder: Path) -> FileExistsError:
+    return FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
 
 
 @contextmanager
@@ -171,7 +168,7 @@ def _disk_errors(path: Path) -> Iterator[None]:
             ) from None
         if code not in ERRNO_OF_CODE:
             raise
-        number = errno.ENOSPC if files.is_disk_full(path.parent) else ERRNO_OF_CODE[code]
+        number = errno.ENOSPC if temporary.is_disk_full(path.parent) else ERRNO_OF_CODE[code]
         raise OSError(number, os.strerror(number), str(path)) from None
 
 

@@ -12,7 +12,6 @@ import errno
 import os
 import struct
 import tarfile
-import tempfile
 import zipfile
 import zlib
 from collections.abc import Sequence
@@ -27,6 +26,7 @@ from hdrlab.course.submissions.archives.members import (
     Member,
     quote_name,
 )
+from hdrlab.io.temporary import temporary_folder
 
 # what the readers of the standard library raise for a damaged archive
 READER_ERRORS = (
@@ -98,8 +98,8 @@ def unpack(archive: str | Path, target: str | Path, limits: ArchiveLimits = LIMI
         raise ArchiveRejected(
             f"it has {packed_bytes} bytes, expected at most {limits.max_total_bytes}"
         )
-    with tempfile.TemporaryDirectory(prefix=".unpack-", dir=target.parent) as scratch:
-        folder = Path(scratch) / "files"
+    with temporary_folder(target.parent) as scratch:
+        folder = scratch / "files"
         folder.mkdir()
         try:
             if _is_zip(archive):

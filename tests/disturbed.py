@@ -1,0 +1,228 @@
+"""Run commands of hdrlab as processes that are disturbed at a chosen change of a file.
+
+`Commands` starts a process that has loaded hdrlab, and forks it for each run, because loading takes
+longer than most commands. A run counts its changes of files below its working folder: a file that is
+opened for writing, a new folder, a rename, a removal, a link. At one of them it sends itself a signal.
+"""
+
+import ctypes
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import traceback
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+TIMEOUT_SECONDS = 300
+PRELOADED = (
+    "hdrlab.pipeline",
+    "hdrlab.show.plots",
+    "hdrlab.show.pages.report",
+    "hdrlab.show.pages.sheet",
+    "hdrlab.course.authoring.handouts",
+    "hdrlab.io.screens",
+    "skimage.filters",
+    "scipy.optimize",
+    "matplotlib.backends.backend_agg",
+)
+CHANGES = {
+    "os.mkdir",
+    "os.rename",
+    "os.remove",
+    "os.rmdir",
+    "os.link",
+    "os.symlink",
+    "os.truncate",
+    "sqlite3.connect",
+}
+WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
+# Of Linux: the rights by which root writes and reads where the owner may not, and how to drop them.
+DAC_OVERRIDE = 1
+DAC_READ_SEARCH = 2
+CAPABILITY_VERSION = 0x20080522
+PR_CAPBSET_DROP = 24
+
+
+@dataclass(frozen=True)
+class Run:
+    """How to run a command.
+
+    Attributes
+    ----------
+    words : the words after `hdrlab`
+    folder : the working folder
+    signal, change : the signal, and the number of the change at which it comes; 0 for no signal
+    is_ordinary_user : whether root loses the right to write where the owner may not
+    """
+
+    words: list[str]
+    folder: str
+    signal: int = 0
+    change: int = 0
+    is_ordinary_user: bool = False
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended: its exit code (negative for a signal), its text, the number of changes."""
+
+    code: int
+    out: str
+    err: str
+    changes: int
+
+    @property
+    def last_line(self):
+        """The last line on standard error."""
+        return (self.err.strip().splitlines() or [""])[-1]
+
+
+class Commands:
+    """A process that runs commands, one after the other."""
+
+    def __init__(self, home):
+        """Start it; what matplotlib keeps is in the folder `home`."""
+        environment = os.environ | {"MPLCONFIGDIR": str(home), "OMP_NUM_THREADS": "1"}
+        self.process = subprocess.Popen(
+            [sys.executable, "-W", "ignore", __file__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
+            text=True,
+        )
+
+    def run(self, run):
+        """Run a command to its end."""
+        self.process.stdin.write(json.dumps(asdict(run)) + "\n")
+        self.process.stdin.flush()
+        return Ended(**json.loads(self.process.stdout.readline()))
+
+    def close(self):
+        """End the process."""
+        self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+
+
+def serve():
+    """Read runs from standard input, and print how each ended."""
+    import importlib
+
+    from hdrlab import cli
+
+    for module in PRELOADED:
+        importlib.import_module(module)
+    with open(os.devnull) as nothing:
+        requests = os.fdopen(os.dup(0))
+        os.dup2(nothing.fileno(), 0)
+    for line in requests:
+        ended = run_forked(cli.run, Run(**json.loads(line)))
+        sys.stdout.write(json.dumps(asdict(ended)) + "\n")
+        sys.stdout.flush()
+
+
+def run_forked(command, run):
+    """Run a command in a child of this process."""
+    outputs = [os.memfd_create(name) for name in ("out", "err", "changes")]
+    child = os.fork()
+    if child == 0:
+        os.setsid()
+        code = 1
+        try:
+            code = run_here(command, run, outputs)
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            for stream in (sys.stdout, sys.stderr):
+                with suppress(OSError):
+                    stream.flush()
+            os._exit(code)
+    watch = threading.Timer(TIMEOUT_SECONDS, os.kill, (child, signal.SIGKILL))
+    watch.start()
+    _, status = os.waitpid(child, 0)
+    watch.cancel()
+    texts = []
+    for descriptor in outputs:
+        size = os.fstat(descriptor).st_size
+        texts.append(os.pread(descriptor, size, 0).decode(errors="replace"))
+        os.close(descriptor)
+    return Ended(os.waitstatus_to_exitcode(status), texts[0], texts[1], len(texts[2]))
+
+
+def run_here(command, run, outputs):
+    """Run a command in this process, and return its exit code."""
+    os.dup2(outputs[0], 1)
+    os.dup2(outputs[1], 2)
+    os.chdir(run.folder)
+    os.environ["TMPDIR"] = f"{run.folder}/tmp"
+    sys.argv = ["hdrlab", *run.words]
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if run.is_ordinary_user:
+        obey_rights()
+    watch_changes(run, outputs[2])
+    try:
+        command()
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else int(stop.code is not None)
+    except KeyboardInterrupt:
+        return -signal.SIGINT % 256
+    return 0
+
+
+def watch_changes(run, count):
+    """Send the signal at the chosen change; each change is a byte in the file `count`."""
+    lock = threading.Lock()
+    home = run.folder + os.sep
+    number = 0
+
+    def notice(event, arguments):
+        nonlocal number
+        if event == "open":
+            if not (isinstance(arguments[2], int) and arguments[2] & WRITING):
+                return
+        elif event not in CHANGES:
+            return
+        path = arguments[0]
+        if isinstance(path, int):
+            return
+        if not os.path.abspath(os.fsdecode(path)).startswith(home):
+            return
+        with lock:
+            number += 1
+            os.write(count, b".")
+            is_chosen = number == run.change
+        if is_chosen:
+            os.kill(os.getpid(), run.signal)
+
+    sys.addaudithook(notice)
+
+
+def obey_rights():
+    """Take root's right to write and read where the owner may not."""
+    if os.geteuid() != 0:
+        return
+    libc = ctypes.CDLL(None)
+    for right in (DAC_OVERRIDE, DAC_READ_SEARCH):
+        libc.prctl(PR_CAPBSET_DROP, right, 0, 0, 0)
+    header = (ctypes.c_uint32 * 2)(CAPABILITY_VERSION, 0)
+    sets = (ctypes.c_uint32 * 6)()
+    libc.capget(header, sets)
+    for kind in range(3):  # effective, permitted, inheritable
+        sets[kind] &= ~(1 << DAC_OVERRIDE | 1 << DAC_READ_SEARCH)
+    libc.capset(header, sets)
+
+
+def files_below(folder):
+    """Return every file and folder below a folder: a file's bytes, and None for a folder."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
+        for path in sorted(Path(folder).rglob("*"))
+    }
+
+
+if __name__ == "__main__":
+    serve()
