@@ -9,6 +9,7 @@ colors are no exposures.
 Frames are decoded one at a time, so that a film need not fit into memory.
 """
 
+import io
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
@@ -19,8 +20,8 @@ import numpy as np
 from hdrlab.core.arrays import F32, Array, as_picture
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.errors import InputError
-from hdrlab.io import album, photos, radiance, web
-from hdrlab.io.files import MAX_PIXELS, replacing, require_replaceable, require_suffix
+from hdrlab.io import album, files, photos, radiance, web
+from hdrlab.io.files import MAX_PIXELS, require_replaceable, require_suffix
 from hdrlab.io.temporary import new_folder
 
 FILM_SUFFIXES = {".mp4", ".mov", ".mkv", ".avi", ".webm"}
@@ -155,18 +156,22 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
             f"got {rate}"
         )
     pictures = require_alike((web.as_rgb(as_picture(frame)) for frame in frames), path)
-    with replacing(path) as name:
-        if path.suffix.lower() in FILM_SUFFIXES:
-            return _write_film(name, pictures, rate)
-        return _write_gif(name, pictures, rate)
+    # In memory, because ImageIO tries to complete a file on a full disk again and again.
+    buffer = io.BytesIO()
+    if path.suffix.lower() in FILM_SUFFIXES:
+        count = _encode_film(buffer, pictures, rate, path.suffix.lower())
+    else:
+        count = _encode_gif(buffer, pictures, rate)
+    files.write(path, buffer.getvalue())
+    return count
 
 
-def _write_film(path: Path, frames: Iterator[Array], rate: float) -> int:
-    """Write a film frame by frame, and return the number of frames."""
-    # Without any frame, `next` raises before the file is opened.
+def _encode_film(buffer: io.BytesIO, frames: Iterator[Array], rate: float, suffix: str) -> int:
+    """Encode a film frame by frame, and return the number of frames."""
+    # Without any frame, `next` raises before the encoder starts.
     first = next(frames)
     written = 0
-    with iio.imopen(path, "w", plugin="pyav") as file:
+    with iio.imopen(buffer, "w", plugin="pyav", extension=suffix) as file:
         film: Any = file
         film.init_video_stream("libx264", fps=float(rate))
         for frame in chain([first], frames):
@@ -177,11 +182,11 @@ def _write_film(path: Path, frames: Iterator[Array], rate: float) -> int:
     return written
 
 
-def _write_gif(path: Path, frames: Iterable[Array], rate: float) -> int:
-    """Write an animation in one piece, because its frames are small, and return their number."""
+def _encode_gif(buffer: io.BytesIO, frames: Iterable[Array], rate: float) -> int:
+    """Encode an animation in one piece, because its frames are small, and return their number."""
     images = np.stack(list(frames))
     milliseconds = 1000 / rate
-    with iio.imopen(path, "w", plugin="pillow") as file:
+    with iio.imopen(buffer, "w", plugin="pillow", extension=".gif") as file:
         cast(Any, file).write(images, duration=milliseconds, loop=0)
     return len(images)
 
