@@ -178,8 +178,7 @@ def _describe(error: Exception) -> tuple[str, int]:
             return str(error), EXIT_BAD_INPUT
         return f"{_file_names(error)}: {error.strerror}", EXIT_BAD_INPUT
     if isinstance(error, MemoryError):
-        advice = "not enough memory; use fewer or smaller photos, or close other programs"
-        return f"{advice} ({error})" if str(error) else advice, EXIT_BAD_INPUT
+        return str(error) or "not enough memory", EXIT_BAD_INPUT
     return (
         f"this is a bug in hdrlab ({type(error).__name__}); please report it with the lines above",
         EXIT_BUG,

@@ -84,6 +84,9 @@ REPLACEMENTS = {
     ("new-task", "--folder"): "-o",
 }
 
+# how NumPy says how much memory it could not get
+NUMPY_MEMORY_NEED = re.compile(r"Unable to allocate (\d[\d.]* \w+)")
+
 # the decades of a radiance map are measured on an even grid of at most so many pixels
 MAX_SAMPLED_PIXELS = 400_000
 
@@ -170,7 +173,25 @@ class Command(click.Command):
             check()
         for path in written:
             remove_leftovers(path.parent)
-        return super().invoke(ctx)
+        try:
+            return super().invoke(ctx)
+        except MemoryError as error:
+            raise MemoryError(describe_memory_error(error, self)) from error
+
+
+def describe_memory_error(error: MemoryError, command: click.Command) -> str:
+    """Return how much memory a command needs, as far as NumPy says it, and what the user can do."""
+    names = {param.name for param in command.params}
+    advice = ["close other programs"]
+    if "size" in names:
+        advice.insert(0, "pass a smaller --size")
+    if "photos" in names:
+        advice.insert(0, "use fewer or smaller photos")
+    need = NUMPY_MEMORY_NEED.search(str(error))
+    reason = (
+        f"not enough memory: {need[1]} more are needed at once" if need else "not enough memory"
+    )
+    return f"{reason}; {', or '.join(advice)}"
 
 
 class Group(click.Group):

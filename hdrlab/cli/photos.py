@@ -304,7 +304,10 @@ def _assemble_each(ctx: click.Context, photos: tuple[Path, ...]) -> None:
             ctx.invoke(assemble, **settings)
         except (HdrlabError, OSError, MemoryError) as error:
             failed.append(title)
-            click.echo(f"hdrlab: {terminal.visible(error)}", err=True)
+            reason = str(error)
+            if isinstance(error, MemoryError):
+                reason = common.describe_memory_error(error, assemble)
+            click.echo(f"hdrlab: {terminal.visible(reason)}", err=True)
         except click.exceptions.Exit as stop:
             exit_code = stop.exit_code
     if failed:

@@ -82,9 +82,9 @@ def bracket(
 ) -> Bracket:
     """Return the Bracket of `images` and `times`, checked and sorted from short to long.
 
-    Photographs take much memory, so no copy is made where none is needed: an array of frames that
-    are sorted already, and a mask, are those of the Bracket, too. Pass a copy if you change yours
-    afterwards.
+    Photographs take much memory, so they are not copied if they are sorted already. Then the images
+    and the masks of the Bracket are your arrays, and a change of yours changes the Bracket. Pass
+    copies if you change them afterwards. Times and names are always copied.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def bracket(
     [0.0083, 0.0667]
     """
     images = as_stack(images)
-    times = as_times(times, len(images))
+    times = np.array(as_times(times, len(images)))
     if names is None:
         names = [f"frame {j + 1}" for j in range(len(images))]
     names = tuple(names)

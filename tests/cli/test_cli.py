@@ -596,14 +596,25 @@ def test_bug_shows_its_traceback_and_has_exit_code_1(kind, monkeypatch, tmp_path
     assert closing_line.startswith("hdrlab: ") and "bug in hdrlab" in closing_line
 
 
-def test_memory_error_is_one_line_with_advice(monkeypatch, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("command", "reader", "advice"),
+    [
+        ("assemble", "hdrlab.io.album.select", "fewer or smaller photos"),
+        ("compare", "hdrlab.io.radiance.read_sanitized", "a smaller --size"),
+        ("tonemap", "hdrlab.io.radiance.read_sanitized", "close other programs"),
+    ],
+)
+def test_memory_error_is_one_line_with_the_need_and_advice_for_the_command(
+    command, reader, advice, monkeypatch, tmp_path, capsys
+):
     def exhausted(*_, **__):
-        raise MemoryError("Unable to allocate 9 GiB")
+        raise MemoryError("Unable to allocate 9.00 GiB for an array with shape (9,)")
 
-    monkeypatch.setattr("hdrlab.io.album.select", exhausted)
-    code, _, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    monkeypatch.setattr(reader, exhausted)
+    out = tmp_path / ("x.hdr" if command == "assemble" else "x.png")
+    code, _, complaint = hdrlab(command, tmp_path, "-o", out, capsys=capsys)
     assert code == 2 and complaint.count("\n") == 1
-    assert "smaller photos" in complaint and "9 GiB" in complaint
+    assert advice in complaint and "9.00 GiB" in complaint
 
 
 @pytest.mark.parametrize("words", ["--debug info missing.jpg", "info missing.jpg --debug"])

@@ -38,6 +38,13 @@ def test_a_sorted_bracket_does_not_copy_the_images():
     assert np.shares_memory(bracket(IMAGES, [1, 2, 4]).images, IMAGES)
 
 
+def test_a_bracket_keeps_its_times_when_the_callers_array_changes():
+    times = np.array([1.0, 2, 4])
+    taken = bracket(IMAGES, times)
+    times[0] = 3
+    assert taken.times.tolist() == [1, 2, 4]
+
+
 def test_bracket_does_not_change_its_arguments():
     images, times = IMAGES.copy(), np.array([4.0, 2, 1])
     bracket(images, times)
