@@ -287,6 +287,93 @@ def test_what_means_nothing_is_refused_in_words(verb, name):
             pytest.fail(f"{verb} answered to {name} that are {mistake}")
 
 
+class OnlyArray:
+    """What is no NumPy array, no sequence and no picture, and can be made an array."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.array, dtype=dtype)
+
+
+def is_number_array(value):
+    return isinstance(value, np.ndarray) and value.dtype.kind in "iuf"
+
+
+FORMS = {
+    "Fortran order": np.asfortranarray,
+    "the other byte order": lambda a: a.astype(a.dtype.newbyteorder()),
+    "rows from the last to the first": lambda a: a[::-1].copy()[::-1],
+    "an object with only __array__": OnlyArray,
+}
+# A lesson shows a loop over frames, and takes a list or an array of them.
+NEEDS_ARRAYS = (*LESSONS, "align.shift.shift")
+
+
+@pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
+def test_the_order_in_memory_and_the_kind_of_container_change_nothing(verb):
+    first = call(verb, arguments(verb))
+    for form, change in FORMS.items():
+        if form == "an object with only __array__" and verb in NEEDS_ARRAYS:
+            continue
+        given = {
+            name: change(value) if is_number_array(value) else value
+            for name, value in arguments(verb).items()
+        }
+        assert same(first, call(verb, given)), form
+
+
+BRIGHTEST = np.float32(3e38)
+AWKWARD = {
+    "one pixel": lambda a: np.full((1, 1), 5, np.float32),
+    "one row": lambda a: a[:1],
+    "one column": lambda a: a[:, :1],
+    "all black": lambda a: 0 * a,
+    "minus zero": lambda a: -0.0 * a,
+    "all equal": lambda a: np.full_like(a, 7),
+    "all near the largest float32": lambda a: np.full_like(a, BRIGHTEST),
+    "half near the largest float32": lambda a: np.where(a > np.median(a), BRIGHTEST, a),
+    "one bright pixel": lambda a: some(0 * a, 5),
+    "denormal numbers": lambda a: np.full_like(a, 1e-42),
+    "denormal numbers and others": lambda a: a * np.float32(1e-39),
+    "integers": lambda a: np.full(a.shape, 3),
+}
+# the spread of a glare that cannot be measured, which is documented as infinite
+INFINITE = ("radiance.flare.estimate_spread", "radiance.flare.remove_glare")
+LIT = [
+    verb
+    for verb, (_, needed) in VERBS.items()
+    if verb.startswith(("fast.", "radiance.", "tonemap.")) and needed[0] in ("L", "E", "F")
+]
+
+
+@pytest.mark.parametrize("verb", LIT)
+def test_unusual_light_gives_finite_numbers_or_is_refused_in_words(verb):
+    for kind, make in AWKWARD.items():
+        given = arguments(verb)
+        for name in {"L", "E", "F"} & given.keys():
+            given[name] = make(given[name])
+        if "picture" in given:
+            given["picture"] = np.full(given["L"].shape, 90, np.uint8)
+        try:
+            answer = call(verb, given)
+        except InputError:
+            continue
+        if verb not in INFINITE:
+            assert all(np.all(np.isfinite(leaf)) for leaf in leaves(answer)), kind
+
+
+@pytest.mark.parametrize("verb", LIT)
+def test_half_floats_give_what_their_values_give(verb):
+    given = arguments(verb)
+    half = {
+        name: value.astype(np.float16) for name, value in given.items() if name in ("L", "E", "F")
+    }
+    single = {name: value.astype(np.float32) for name, value in half.items()}
+    assert same(call(verb, given | half), call(verb, given | single))
+
+
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
 def test_inputs_are_left_alone_and_their_layout_order_and_threads_change_nothing(verb):
     given = arguments(verb)

@@ -55,7 +55,9 @@ def describe(array: ArrayLike) -> str:
 
 def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     """Return `images` as one array (P, H, W[, 3]) of uint8 or uint16, or raise a ValueError."""
-    if not isinstance(images, np.ndarray):
+    if hasattr(images, "__array__"):
+        images = np.asanyarray(images)
+    else:
         images = _stack(list(images) if isinstance(images, Iterable) else [images])
     is_stack = images.ndim == 3 or (images.ndim == 4 and images.shape[-1] == 3)
     if not is_stack or 0 in images.shape:
@@ -155,7 +157,8 @@ def _finite(array: Array, what: str) -> NDArray[np.float32]:
     if array.dtype.kind not in "iuf" or np.ma.is_masked(array):
         raise InputError(f"expected {what} as numbers, got {describe(array)}")
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
-        array = np.asarray(array).astype(np.float32, copy=False)
+        # in C order, because even the last bit of a sum depends on the order of its terms
+        array = np.asarray(array).astype(np.float32, order="C", copy=False)
     # One pass over the bits is enough for nearly all arrays; -0.0 needs the second comparison.
     is_suspect = array.view(np.uint32).max() >= _INFINITY_BITS
     if is_suspect and not (array.min() >= 0 and array.max() < np.inf):

@@ -89,7 +89,8 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     Raises
     ------
     ValueError
-        For a place outside the map or without light, and for a reading that is not positive.
+        For a place outside the map or without light, for a reading that is not positive, and for a
+        quotient beyond float32.
 
     Examples
     --------
@@ -107,4 +108,10 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
             f"expected a reading above 0 cd/m^2 at a pixel with light within {width} x {height}, "
             f"got {reading:g} at {x},{y}"
         )
-    return float(reading / L[rows, columns].mean())
+    k = float(reading) / float(L[rows, columns].mean(dtype=np.float64))
+    if k > float(np.finfo(np.float32).max):
+        raise InputError(
+            f"expected a pixel with more light, because {reading:g} cd/m^2 over the radiance at {x},{y} "
+            "does not fit into float32"
+        )
+    return k

@@ -10,6 +10,7 @@ K falls off with a power of two to three [Talvala07 fig. 3]: so slowly that a br
 darkest corner.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,10 @@ def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) ->
     K[0, 0] = 0
     K[shape[0] : size[0] - shape[0] + 1] = 0
     K[:, shape[1] : size[1] - shape[1] + 1] = 0
-    return np.asarray(scipy.fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
+    total = K.sum(dtype=np.float64).astype(np.float32)
+    if total > 0:  # a frame of one pixel has no other
+        K = K / total
+    return np.asarray(scipy.fft.rfft2(K), np.complex64)
 
 
 def scatter(E: F32, transform: Array) -> F32:
@@ -65,9 +69,12 @@ def scatter(E: F32, transform: Array) -> F32:
     height, width = E.shape[:2]
     size = (transform.shape[0], scipy.fft.next_fast_len(2 * width, real=True))
     planes = E.reshape(height, width, -1)
+    # a power of 2, so that division is exact; sums of the quotients stay within float32
+    _, exponent = math.frexp(float(E.max()))
+    unit = np.float32(math.ldexp(1, exponent - 1))
     out = np.empty_like(planes)
     for c in range(planes.shape[-1]):
-        spectrum = scipy.fft.rfft2(planes[..., c], size)
+        spectrum = scipy.fft.rfft2(planes[..., c] / unit, size)
         spectrum *= transform
         out[..., c] = scipy.fft.irfft2(spectrum, size)[:height, :width]
-    return np.maximum(out, 0).reshape(E.shape)
+    return (np.maximum(out, 0) * unit).reshape(E.shape)
