@@ -26,6 +26,7 @@ LONG_FILES = (
     "tests/course/test_site.py",
     "tests/browser/test_site_in_a_browser.py",
     "tests/course/test_killed.py",
+    "tests/cli/test_disturbed_commands.py",
     "tests/course/test_toy.py",
     "tests/course/test_viva.py",
     "tests/course/test_regrade.py",

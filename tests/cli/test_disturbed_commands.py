@@ -30,7 +30,7 @@ from hdrlab.capture import camera
 from hdrlab.io import photos, radiance, response_files
 
 pytestmark = [
-    pytest.mark.papers,
+    pytest.mark.grading,
     pytest.mark.skipif(
         not (hasattr(disturbed.os, "fork") and hasattr(disturbed.os, "memfd_create")),
         reason="commands are forked and watched as on Linux",
@@ -158,6 +158,11 @@ COMMANDS = {
     "gallery init": Command(INIT, refuses_twice=True, same=GALLERY),
     "gallery add": Command(ADD, before=(INIT,), same=GALLERY),
     "gallery links": Command(LINKS, before=(INIT, ADD), output="out/links.csv", same=GALLERY),
+    "gallery links --all-anew": Command(
+        f"{LINKS} --all-anew",
+        before=(INIT, ADD, LINKS),
+        same=GALLERY,
+    ),
     "gallery close": Command("gallery close out/g", before=(INIT,), same=GALLERY),
     "gallery results": Command(
         "gallery results out/g -o out/results.csv",
