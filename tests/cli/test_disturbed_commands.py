@@ -45,7 +45,7 @@ PACKED_AT = re.compile(rb'"made": ".*?"')
 TIME = re.compile(rb"\d{4}-\d\d-\d\dT[\d:]+\.\d+")
 # The moments of a run at which it is killed, as fractions of its changes of files.
 MOMENTS = (0, 0.25, 0.5, 0.75, 1)
-SLOW_MOMENTS = (0.5, 0.9)
+SLOW_MOMENTS = (0.6,)
 SIGNALS = {"SIGINT": 0.2, "SIGTERM": 0.5, "SIGHUP": 0.9}
 
 
@@ -283,7 +283,7 @@ class Place:
         sizes = {path: path.stat().st_size for path in (self.here / "out").rglob("*")}
         new = [path for path in sizes if str(path.relative_to(self.here)) not in self.before]
         self.written_bytes = sum(sizes[path] for path in new if path.is_file())
-        assert self.changes > 0 and self.before != self.after
+        assert self.changes > 0
 
     def reset(self):
         """Return to the state before the command."""

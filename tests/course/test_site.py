@@ -378,6 +378,28 @@ def test_the_pages_of_a_notebook_that_is_gone_are_removed(made, tmp_path):
         shutil.copytree(whole, folder)
 
 
+def test_a_build_that_was_killed_is_made_again_from_the_executed_notebooks(made, tmp_path):
+    """In its place, as a kill leaves it: half of a file of Sphinx, and no record of a whole build."""
+    folder, site, notebooks, _ = made
+    cache = folder / ".site.cache"
+    whole = shutil.copytree(folder, tmp_path / "whole")
+    before = {page: page.read_bytes() for page in site.rglob("*.html")}
+    try:
+        (cache / "made.json").unlink()
+        for file in (cache / "doctrees").iterdir():
+            if file.is_file():
+                file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+        (cache / "html" / "searchindex.js.tmp").write_text("half")
+        ran = run("site", *notebooks, folder=folder)
+        assert ran.returncode == 0, ran.stderr
+        assert "run now: 0" in ran.stdout
+        assert {page: page.read_bytes() for page in site.rglob("*.html")} == before
+        assert not list(folder.rglob("searchindex.js.tmp"))
+    finally:
+        shutil.rmtree(folder)
+        shutil.copytree(whole, folder)
+
+
 def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
     bad = notebook(tmp_path / "bad.ipynb", "Bad", "x = 1", "light = x / 0")
     ran = run(tmp_path / "site", bad, folder=tmp_path)

@@ -114,6 +114,10 @@ def build(
         before = json.loads(record.read_text("utf-8"))
         if before["key"] == key:
             return Site(out / "index.html", *before["site"])
+    else:
+        # a build that was killed has left half of a file, or a page that Sphinx takes for finished
+        for folder in ("source", "html", "doctrees"):
+            shutil.rmtree(cache_of(out) / folder, ignore_errors=True)
     record.unlink(missing_ok=True)  # so that an interrupted build leaves no record
     site = _build(out, done, sheets, more, address, edition)
     live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
