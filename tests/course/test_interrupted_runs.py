@@ -118,7 +118,7 @@ def test_an_error_of_a_job_is_reported_in_one_line(tmp_path):
 
 def test_two_runs_cannot_write_to_the_same_folder(tmp_path):
     (tmp_path / "feedback").mkdir()
-    (tmp_path / "feedback" / ".hdrlab-1234.html").write_text(
+    (tmp_path / "feedback" / ".hdrlab-0123456789ab.html").write_text(
         "half of a page, by a run that was killed"
     )
     with jobs.lock_folder(tmp_path):
