@@ -270,6 +270,7 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     from hdrlab.course.authoring import execute
     from hdrlab.course.classroom.jobs import lock_folder
     from hdrlab.course.question_bank import bank
+    from hdrlab.course.scratch import temporary_folder
     from hdrlab.course.site import pages
     from hdrlab.course.slides import decks
     from hdrlab.io import files
@@ -280,7 +281,7 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()
     cache = pages.make_cache(out)
-    with lock_folder(cache):
+    with temporary_folder(), lock_folder(cache):
         steps = bank.collect_steps(chosen, cache, jobs=jobs)
         try:
             lessons = list(common.progress(steps, "notebooks", len(chosen)))
@@ -322,6 +323,7 @@ def slides(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     common.require_modules("site", SLIDES_MODULES)
     from hdrlab.course.authoring import execute
     from hdrlab.course.classroom.jobs import lock_folder
+    from hdrlab.course.scratch import temporary_folder
     from hdrlab.course.site import pages
     from hdrlab.course.slides import decks
     from hdrlab.io import files
@@ -333,7 +335,7 @@ def slides(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     cache = pages.make_cache(out)
     out.mkdir(parents=True, exist_ok=True)
     written = []
-    with lock_folder(cache):
+    with temporary_folder(), lock_folder(cache):
         steps = decks.write_steps(chosen, out, cache, jobs=jobs)
         try:
             for deck in common.progress(steps, "decks", len(chosen)):
