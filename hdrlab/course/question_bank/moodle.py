@@ -19,7 +19,9 @@ from hdrlab.course.question_bank.questions import (
 from hdrlab.course.slides.markdown import parser
 
 BANK = "$course$/top/hdrlab"  # the category of all questions
-RIGHT, WRONG = "100", "0"  # percent of the points
+# percent of the points
+RIGHT_PERCENT = "100"
+WRONG_PERCENT = "0"
 
 
 def to_moodle(lessons: Sequence[LessonQuestions]) -> str:
@@ -53,7 +55,7 @@ def _add_question(quiz: ET.Element, question: Question, name: str) -> None:
     if isinstance(question, ChoiceQuestion):
         _add_choices(element, question)
     else:
-        answer = _add_answer(element, RIGHT, f"{question.truth:.6g}", "moodle_auto_format")
+        answer = _add_answer(element, RIGHT_PERCENT, f"{question.truth:.6g}", "moodle_auto_format")
         ET.SubElement(answer, "tolerance").text = f"{question.tolerance:.6g}"
 
 
@@ -62,7 +64,7 @@ def _add_choices(element: ET.Element, question: ChoiceQuestion) -> None:
     ET.SubElement(element, "shuffleanswers").text = "true"
     ET.SubElement(element, "answernumbering").text = "abc"
     for index, label in enumerate(question.labels):
-        fraction = RIGHT if index == question.right else WRONG
+        fraction = RIGHT_PERCENT if index == question.right else WRONG_PERCENT
         html = f"<p>{escape(label)}</p>"
         if not question.images:
             _add_answer(element, fraction, html, "html")
