@@ -13,6 +13,12 @@ from hdrlab.cli import assignments, common
 from hdrlab.errors import InputError
 
 SLIDES_MODULES = ("mdit_py_plugins", "ziamath")
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=min(4, os.cpu_count() or 1),
+    help="Number of notebooks to run at the same time.",
+)
 
 
 @click.group(cls=common.Group)
@@ -247,12 +253,7 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
     default="questions.xml",
     help="Moodle XML (.xml), or a page to print, with the answers at its end (.html).",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=min(4, os.cpu_count() or 1),
-    help="Number of notebooks to run at the same time.",
-)
+@jobs_option
 def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     """Write a question bank from the predictions of the notebooks.
 
@@ -301,12 +302,7 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     default="slides",
     help="Folder for the decks, one HTML file for each notebook.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=min(4, os.cpu_count() or 1),
-    help="Number of notebooks to run at the same time.",
-)
+@jobs_option
 def slides(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     """Make a deck of slides from each notebook.
 
