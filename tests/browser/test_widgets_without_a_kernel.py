@@ -202,14 +202,12 @@ def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named_where_no
     slider.focus()
     tuner.keyboard.press("End")
     until_level(tuner, 200)
-    assert alt(tuner) == "A square, level = 200"
+    assert alt(tuner) == "A square, level 200"
     for _ in range(9):
         tuner.keyboard.press("ArrowLeft")
     assert slider.get_attribute("aria-valuetext") == "191"
     status = tuner.get_by_role("status").inner_text()
-    assert (
-        status == "Computed beforehand, at 3 of 201 positions of level; the nearest: level = 200."
-    )
+    assert status == "Computed beforehand, at 3 of 201 positions of level; the nearest: level 200."
     assert tuner.evaluate("window.reached") == []
 
 
@@ -231,7 +229,7 @@ def test_without_a_kernel_every_position_of_two_sliders_is_answered(page):
         page.get_by_role("slider", name=name).press(key)
         until_level(page, expected)
         assert page.get_by_role("status").inner_text() == "Computed beforehand."
-    assert alt(page) == "Gray, level = 0, more = 40"
+    assert alt(page) == "Gray, level 0, more 40"
     left = "document.querySelector('canvas').getContext('2d').getImageData(5, 20, 1, 1).data[0]"
     assert page.evaluate(left) == 0
 
@@ -253,8 +251,21 @@ def test_names_are_a_row_of_buttons_and_quantities_a_slider(page, axe):
     until_level(page, 170)
     buttons.get_by_role("radio", name="bright").press("ArrowLeft")
     until_level(page, 120)
-    assert alt(page) == "Gray, operator = middle, time = 1/15 s"
+    assert alt(page) == "Gray, operator middle, time 1/15 s"
     assert axe(page, ".hdrlab") == []
+
+
+def test_captions_name_the_sliders_and_give_the_unit_to_screen_readers(page):
+    captions = {"level": "gray level {} of 255"}
+    open_widget(
+        page,
+        widgets.tune(square, lambda drawn: drawn, alt="Gray", captions=captions, level=[0, 200]),
+    )
+    slider = page.get_by_role("slider", name="gray level")
+    slider.press("End")
+    until_level(page, 200)
+    assert slider.get_attribute("aria-valuetext") == "200 of 255"
+    assert alt(page) == "Gray, gray level 200 of 255"
 
 
 def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
@@ -286,15 +297,15 @@ def test_where_python_answers_a_stored_picture_is_shown_until_it_does_and_earlie
     until_level(tuner, 120)
     tuner.get_by_role("slider").press("End")
     until_level(tuner, 200)
-    assert alt(tuner) == "A square, level = 200" and tuner.get_by_role("status").inner_text() == ""
+    assert alt(tuner) == "A square, level 200" and tuner.get_by_role("status").inner_text() == ""
     answer(tuner, 60, [150])
-    assert alt(tuner) == "A square, level = 200"
+    assert alt(tuner) == "A square, level 200"
     answer(tuner, 30, [200])
     until_level(tuner, 30)
     tuner.get_by_role("slider").press("ArrowLeft")
     answer(tuner, 90, [150])  # nothing is stored here, so what was asked for earlier shows the way
     until_level(tuner, 90)
-    assert alt(tuner) == "A square, level = 150"
+    assert alt(tuner) == "A square, level 150"
 
 
 def test_an_answer_replaces_the_stored_picture(tuner):

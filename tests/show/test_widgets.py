@@ -334,6 +334,36 @@ def test_tune_rejects_a_point_that_is_not_two_parameters(point):
         widgets.tune(lambda level=1: level, square, alt="A square", point=point, level=(0, 9))
 
 
+def test_captions_put_words_and_units_beside_the_sliders():
+    tuner = widgets.tune(
+        square,
+        same,
+        alt="A square",
+        captions={"level": "gray level {:g}", "side": "side of {} pixels"},
+        level=[0.5, 100.0],
+        side=[8, 16],
+    )
+    assert tuner.labels == ["gray level", "side of"]
+    assert tuner.values == [["0.5", "100"], ["8 pixels", "16 pixels"]]
+    assert tuner.parameters == {"level": 100.0, "side": 16}
+
+
+def test_a_parameter_without_a_caption_is_shown_by_its_name():
+    tuner = widgets.tune(square, same, alt="A square", level=[0, 100])
+    assert tuner.labels == ["level"] and tuner.values == [["0", "100"]]
+
+
+def test_tune_rejects_captions_of_other_parameters():
+    with pytest.raises(ValueError, match="captions of level, got one of hue"):
+        widgets.tune(square, same, alt="A square", captions={"hue": "hue {}"}, level=[0, 100])
+
+
+@pytest.mark.parametrize("caption", ["gray level", "{} levels", "{} of {}", ""])
+def test_tune_rejects_captions_without_words_before_one_value(caption):
+    with pytest.raises(ValueError, match="caption of level with words before the value"):
+        widgets.tune(square, same, alt="A square", captions={"level": caption}, level=[0, 100])
+
+
 def test_tune_rejects_empty_alt_texts():
     with pytest.raises(ValueError, match="alt text"):
         widgets.tune(square, same, alt="", level=(0, 9))

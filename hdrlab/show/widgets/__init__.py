@@ -22,7 +22,7 @@ or (H, W, 3), an Axes or a Figure.
 
 import gc
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any, TypeVar
@@ -40,7 +40,6 @@ from hdrlab.show.pictures import (
     picture_areas,
     render,
     require_alt,
-    short,
 )
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
@@ -184,7 +183,8 @@ class Tuner(Widget):
 
     _esm = script("tune.js")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
-    # each position's text
+    # what readers see beside each slider: words, and the text of each position
+    labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)
     # The browser moves the sliders, so it needs no echo.
     at = traitlets.List(traitlets.Int()).tag(sync=True, echo_update=False)
@@ -202,13 +202,24 @@ class Tuner(Widget):
     areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # see picture_areas
 
     def __init__(
-        self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any
+        self,
+        picture: Callable[[list[int]], web.Image],
+        grids: positions.Grids,
+        captions: Mapping[str, str],
+        **traits: Any,
     ):
         self._picture = picture
         self._grids = grids
-        texts = [[short(value) for value in grid] for grid in grids.values()]
+        labels = []
+        texts = []
+        for name, grid in grids.items():
+            label, grid_texts = positions.caption_texts(name, grid, captions.get(name))
+            labels.append(label)
+            texts.append(grid_texts)
         unordered = [name for name, grid in grids.items() if positions.is_unordered(grid)]
-        super().__init__(names=list(grids), values=texts, unordered=unordered, **traits)
+        super().__init__(
+            names=list(grids), labels=labels, values=texts, unordered=unordered, **traits
+        )
         self.observe(self._answer, "at")
 
     @property
@@ -245,6 +256,7 @@ def tune(
     alt: str,
     stored: int = DEFAULT_STORED_PICTURES,
     point: tuple[str, str] | None = None,
+    captions: Mapping[str, str] | None = None,
     **ranges: Any,
 ) -> Tuner:
     """Return a widget with a slider for each parameter, which shows draw(f(...)).
@@ -268,6 +280,9 @@ def tune(
     point : (down, right), optional
         Two of the parameters, fractions of the picture from 0 to 1, that a click on the picture
         sets as well.
+    captions : dict, optional
+        The words and the unit beside each slider as a format string, such as
+        {"read_noise": "read noise {:g} electrons"}. A parameter without one is shown by its name.
     **ranges : (low, high), (low, high, step), or a list of values
         A tuple is a range, of integers if both ends are integers, and in 100 steps otherwise. A
         list contains the values themselves.
@@ -275,8 +290,9 @@ def tune(
     Raises
     ------
     InputError
-        For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty
-        alt text, or a `draw` that returns something else.
+        For bad ranges, parameters that `f` does not have, a point that is not two of them, a
+        caption of another parameter or without a place for the value, an empty alt text, or a
+        `draw` that returns something else.
 
     Examples
     --------
@@ -294,6 +310,11 @@ def tune(
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
         raise InputError(
             f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}"
+        )
+    unknown = sorted(set(captions or ()) - set(grids))
+    if unknown:
+        raise InputError(
+            f"expected captions of {', '.join(grids)}, got one of {', '.join(unknown)}"
         )
 
     kept = reuse.Kept()
@@ -319,6 +340,7 @@ def tune(
     return Tuner(
         picture,
         grids,
+        captions or {},
         at=start,
         shown=start,
         alt=alt,

@@ -29,6 +29,10 @@ function slider(parent, name, count) {
   return {
     input,
     position: () => Number(input.value),
+    // So that the bar keeps its length while the text of its value changes.
+    reserve(characters) {
+      value.style.minWidth = `${characters}ch`;
+    },
     show(position, text) {
       input.value = position;
       input.setAttribute("aria-valuetext", text);

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from hdrlab.errors import InputError
+from hdrlab.show.pictures import short
 
 Grids = dict[str, list[Any]]
 
@@ -52,6 +53,32 @@ def _steps_of_range(name: str, ends: tuple[Any, ...]) -> list[Any]:
     rounding = 1e-9  # (high - low) / step may come out slightly below a whole number
     count = int(np.floor((high - low) / step + rounding)) + 1
     return [low + index * step for index in range(count)]
+
+
+def caption_texts(name: str, grid: Sequence[Any], caption: str | None) -> tuple[str, list[str]]:
+    """Return the words beside a slider, and the text of each of its values.
+
+    Examples
+    --------
+    >>> caption_texts("f_number", [2.0, 2.8], "aperture f/{:g}")
+    ('aperture', ['f/2', 'f/2.8'])
+    >>> caption_texts("full_well", [1000], "full well {} electrons")
+    ('full well', ['1000 electrons'])
+    >>> caption_texts("full_well", [1000], None)
+    ('full_well', ['1000'])
+    """
+    if caption is None:
+        return name, [short(value) for value in grid]
+    words = caption.split(" ")
+    places = [index for index, word in enumerate(words) if "{" in word]
+    if len(places) != 1 or places == [0]:
+        raise InputError(
+            f"expected a caption of {name} with words before the value, such as "
+            f"'{name} {{:g}} pixels', got {caption!r}"
+        )
+    label = " ".join(words[: places[0]])
+    value_text = " ".join(words[places[0] :])
+    return label, [value_text.format(value) for value in grid]
 
 
 def is_unordered(grid: Sequence[Any]) -> bool:

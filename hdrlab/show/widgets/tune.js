@@ -37,17 +37,22 @@ function opened(bytes) {
 function render({ model, el }) {
   const root = start(el, "tune");
   const [names, values] = [model.get("names"), model.get("values")];
+  const labels = model.get("labels") ?? names; // a page that was saved earlier has none
   const view = picture(root, model.get("areas"));
   const note = element(root, "p", { className: "hdrlab-note", role: "status" });
   const controls = element(root, "div", { className: "hdrlab-controls" });
   const unordered = model.get("unordered") ?? []; // a page that was saved earlier has none
   const bars = names.map((name, k) => {
-    if (!unordered.includes(name)) return slider(controls, name, values[k].length);
-    const { row, position, show } = radioRow(controls, name, values[k]);
-    row.prepend(element(row, "span", { textContent: name, "aria-hidden": "true" }));
+    if (!unordered.includes(name)) {
+      const bar = slider(controls, labels[k], values[k].length);
+      bar.reserve(Math.max(...values[k].map((text) => text.length)));
+      return bar;
+    }
+    const { row, position, show } = radioRow(controls, labels[k], values[k]);
+    row.prepend(element(row, "span", { textContent: labels[k], "aria-hidden": "true" }));
     return { input: row, position, show };
   });
-  const texts = (at) => at.map((position, k) => `${names[k]} = ${values[k][position]}`).join(", ");
+  const texts = (at) => at.map((position, k) => `${labels[k]} ${values[k][position]}`).join(", ");
   let [answered, timer, first, ready] = [false, null, null, false];
 
   // Stored positions are a grid: the nearest one is so along each slider.
@@ -59,7 +64,7 @@ function render({ model, el }) {
   // How many positions of a slider have a picture, where not all of them do.
   function thinned() {
     const counts = names.map((_, k) => new Set(model.get("stored_at").map((at) => at[k])).size);
-    const told = names.map((name, k) => `${counts[k]} of ${values[k].length} positions of ${name}`);
+    const told = labels.map((label, k) => `${counts[k]} of ${values[k].length} positions of ${label}`);
     return told.filter((_, k) => counts[k] < values[k].length).join(", ");
   }
 
@@ -129,7 +134,7 @@ function render({ model, el }) {
     const shares = [(down - top) / height, (across - left) / width];
     model.get("point").forEach((name, axis) => {
       const k = names.indexOf(name);
-      const away = values[k].map((value) => Math.abs(Number(value) - shares[axis]));
+      const away = values[k].map((value) => Math.abs(parseFloat(value) - shares[axis]));
       bars[k].show(away.indexOf(Math.min(...away)), "");
     });
     move();
