@@ -64,6 +64,8 @@ def caption_texts(name: str, grid: Sequence[Any], caption: str | None) -> tuple[
     ('aperture', ['f/2', 'f/2.8'])
     >>> caption_texts("full_well", [1000], "full well {} electrons")
     ('full well', ['1000 electrons'])
+    >>> caption_texts("span", [0, 1], "span {} frames on each side")
+    ('span', ['0 frames on each side', '1 frame on each side'])
     >>> caption_texts("full_well", [1000], None)
     ('full_well', ['1000'])
     """
@@ -78,7 +80,17 @@ def caption_texts(name: str, grid: Sequence[Any], caption: str | None) -> tuple[
         )
     label = " ".join(words[: places[0]])
     value_text = " ".join(words[places[0] :])
-    return label, [value_text.format(value) for value in grid]
+    return label, [_singular(value_text.format(value)) for value in grid]
+
+
+def _singular(text: str) -> str:
+    """Return "1 pixel" for "1 pixels"; other texts stay as they are."""
+    number, _, unit = text.partition(" ")
+    noun, space, rest = unit.partition(" ")
+    is_plural = noun.endswith("s") and noun not in ("s", "times")
+    if number.lstrip("+-") != "1" or not is_plural:
+        return text
+    return f"{number} {noun.removesuffix('s')}{space}{rest}"
 
 
 def is_unordered(grid: Sequence[Any]) -> bool:
