@@ -31,7 +31,7 @@ function slider(parent, name, count) {
     position: () => Number(input.value),
     // So that the bar keeps its length while the text of its value changes.
     reserve(characters) {
-      value.style.minWidth = `${characters}ch`;
+      value.style.minWidth = `min(${characters}ch, 35%)`;
     },
     show(position, text) {
       input.value = position;
