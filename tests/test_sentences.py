@@ -204,6 +204,15 @@ SENTENCES = {
         "The partial meter needs 8.2 stops": lambda n: (
             round(18 - n.steps(18, "partial")[-1].EV, 1) == 8.2
         ),
+        "The lowest belongs to the longest photo, which takes 4 of the 4.5 seconds": lambda n: (
+            np.argmin(n.ratios(*n.both(10)["noise"])) == 0
+            and n.both(10)["noise"][0].max() == 4
+            and round(float(n.both(10)["noise"][0].sum()), 1) == 4.5
+        ),
+        "as three photos three stops apart, with half to two thirds of the error": lambda n: all(
+            0.45 < shaken_error(n, radius, 7, 1.0) / shaken_error(n, radius, 3, 3.0) < 0.7
+            for radius in (6, 12)
+        ),
         "It takes 4.5 seconds instead of 34": lambda n: (
             [
                 round(float(times.sum()), digits)
