@@ -425,6 +425,9 @@ SENTENCES = {
             np.round(n.chart.LUMINANCE[-1]).tolist() == [90, 59, 36, 20, 9, 3]
         ),
         "only its darkest sample is missing": lambda n: len(n.two_grids[1].I) == 14,
+        "the root mean square of the error grows from 0.4 to 2.2 % of the range": lambda n: (
+            [round(gray_error(n, falloff), 1) for falloff in (0.0, 0.3)] == [0.4, 2.2]
+        ),
         "The screen and the many times are hardly worse than the true curve": lambda n: (
             max(radiance_off(n, "a screen"), radiance_off(n, "a chart"))
             < 0.002 + radiance_off(n, "true")
