@@ -697,6 +697,18 @@ SENTENCES = {
         "An isolated pixel is its own base. Its detail is zero": lambda n: (
             abs(n.glint - n.alone.mean)[32, 48] < 0.005 and round(float(n.alone.k[32, 48]), 1) == 1
         ),
+        "is 0.5 in a filter window that the step divides in half, and lower in all others": lambda n: (
+            np.isclose(
+                n.guided.lines(n.step, n.step, radius=8, epsilon=1.0).a.max(), 0.5, atol=0.02
+            )
+        ),
+        "the image has halos, as with a blur": lambda n: (
+            max(halo(n, guided_base(n, 1.0)), halo(n, n.blur.gaussian(n.lL, 8.0))) < -0.2
+            and halo(n, guided_base(n, 0.04)) > -0.1
+        ),
+        "it has little detail": lambda n: (
+            np.std(n.lL - guided_base(n, 0.0025)) < 0.1 * np.std(n.detail)
+        ),
         "by a decade on each side": lambda n: (
             round(float(np.abs(n.step - n.blur.gaussian(n.step, 8.0))[25, 90:110].max())) == 1
         ),
