@@ -900,6 +900,10 @@ SENTENCES = {
         "at more than half of these pixels nothing does": lambda n: (
             filled_from_reference_alone(n) > 0.5
         ),
+        "The plain merge shows two walkers": lambda n: (
+            [bool(stops > 0.5) for stops in darkening_by_walkers(n)] == [False, True, True]
+        ),
+        "The third one is invisible": lambda n: abs(darkening_by_walkers(n)[0]) < 0.1,
         "`ghosts` is about as good here": lambda n: (
             abs(
                 np.diff(
