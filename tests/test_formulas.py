@@ -119,6 +119,15 @@ def test_the_table_has_a_row_only_once_for_each_symbol_and_says_what_it_is(path)
     assert [row for row in rows if len(row) < 2 or len(row[1].strip()) < 3] == []
 
 
+@each_notebook
+def test_the_letters_of_height_and_width_in_a_table_are_no_symbols_of_the_same_table(path):
+    """A table whose H is a filter, or W a weight, writes (rows, columns) for the shape of an image."""
+    rows = table_rows(texts_of(path)[0])
+    lengths = set(re.findall(r"\b[HW]\b", " ".join(row[-1] for row in rows if "(" in row[-1])))
+    named = [symbols(name) for row in rows for name in INLINE.findall(row[0])]
+    assert lengths & set().union(*named) == set()
+
+
 @each_page
 def test_an_equation_that_the_text_refers_to_has_its_number_on_the_page(path):
     text = "\n".join(texts_of(path))
