@@ -67,8 +67,9 @@ use_plan("hw1")
 #
 # The photos show a room: five hand-held exposures, each shifted by some pixels. You cannot compare
 # their pixel values directly, since each has a different exposure. But a pixel that is brighter
-# than the median of the scene is brighter than the median in *every* photo. Ward's method compares
-# only that: one bit per pixel, the *median threshold bitmap* (MTB).
+# than the median of the scene is brighter than the median in every photo, unless both are black or
+# both are white there. Ward's method compares only that: one bit per pixel, the *median threshold
+# bitmap* (MTB).
 
 # %%
 room = scenes.room((240, 320))

@@ -3,9 +3,10 @@
 #
 # Due {due}. {total} points. {late}
 #
-# The radiance map covers a factor of a million, but a screen only shows a factor of a few hundred.
-# Five papers give five answers: one curve for all pixels, a base layer that holds the illumination,
-# a histogram with limited contrast, a scale that varies slowly, and attenuated gradients.
+# The radiance map of a room covers a factor of some 400,000, but a screen only shows a factor of a
+# few hundred. Five papers give five answers: one curve for all pixels, a base layer that holds the
+# illumination, a histogram with limited contrast, a scale that varies slowly, and attenuated
+# gradients.
 #
 # {choice} Everybody begins with Reinhard's curve. Then choose from the other four papers, for
 # example those whose images you like best. Durand with Ward is enough, so is Chiu with Fattal, and
@@ -122,7 +123,7 @@ pictures.picture(
 # ## 5 · Durand and Dorsey: compress the base ({points})
 #
 # The base spans from `low` to `high` decades. On the screen it must span `contrast`, and its bright
-# end must stay where it is: $m\,(\text{base} - \text{high})$ with
+# end must become white, 0 decades: $m\,(\text{base} - \text{high})$ with
 # $m = \log_{10}(\text{contrast}) / (\text{high} - \text{low})$. Never stretch a scene: $m \le 1$.
 
 # %% task="compress"
@@ -232,8 +233,8 @@ pictures.picture(
 # %% [markdown] about="solve"
 # ## 11 · Fattal: the image with these gradients ({points})
 #
-# No image has exactly the attenuated gradients. The closest one solves the *Poisson equation*
-# $\nabla^2 u = \operatorname{div} G$, with nothing flowing through the edges. In the cosine
+# In general, no image has exactly the attenuated gradients. The closest one solves the *Poisson
+# equation* $\nabla^2 u = \operatorname{div} G$, with nothing flowing through the edges. In the cosine
 # transform, the Laplacian is a multiplication: compute `scipy.fft.dctn(divG, type=2)`, divide the
 # coefficient $(i, j)$ of an image with $H$ rows and $W$ columns by
 #

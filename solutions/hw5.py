@@ -8,8 +8,8 @@
 # compression at each scale without a base layer (the local Laplacian filter), and PQ coding and
 # gain maps for HDR screens. The others are parts of the lecture that no other homework covers: the
 # gain of a sensor, the brightness transfer between two histograms, the signal-to-noise ratio of a
-# pixel value, the weights of exposure fusion, metering, and flat patches. You write the core of
-# each.
+# pixel value, the weights of exposure fusion, metering, flat patches, and least squares by the
+# singular value decomposition. You write the core of each.
 #
 # {choice}
 #
