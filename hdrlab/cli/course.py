@@ -1,6 +1,6 @@
 """The commands of `hdrlab course`.
 
-They are `build`, `export`, `move`, `new-task`, `pack`, `questions`, `slides` and `toy`.
+They are `build`, `export`, `gain`, `move`, `new-task`, `pack`, `questions`, `slides` and `toy`.
 """
 
 import os
@@ -253,8 +253,13 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
     default="questions.xml",
     help="Moodle XML (.xml), or a page to print, with the answers at its end (.html).",
 )
+@click.option(
+    "--inventory",
+    is_flag=True,
+    help="Write the concept inventory instead: thirty questions to ask before and after the course.",
+)
 @jobs_option
-def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
+def questions(*, notebooks: tuple[str, ...], out: Path, inventory: bool, jobs: int) -> None:
     """Write a question bank from the predictions of the notebooks.
 
     NOTEBOOK is the name or the number of a notebook of hdrlab, such as 04, or the path of a
@@ -263,6 +268,9 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     The bank contains each question with a choice or a number as its answer. hdrlab runs the
     notebooks, which compute the right answers. Import the file into the question bank of a Moodle
     course as Moodle XML.
+
+    With --inventory, hdrlab runs no notebook. `hdrlab course gain` compares the answers that
+    students gave before and after the course.
 
     hdrlab keeps the executed notebooks in .NAME.cache next to the file. The next run executes only
     notebooks that have changed.
@@ -276,8 +284,15 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     from hdrlab.course.slides import decks
     from hdrlab.io import files
 
-    chosen = decks.find_notebooks(notebooks)
     bank.require_format(out)
+    if inventory:
+        if notebooks:
+            raise InputError("--inventory uses no notebooks; leave out their names")
+        lesson = bank.inventory_lesson()
+        bank.write([lesson], out)
+        click.echo(f"{out}: {len(lesson.questions)} questions")
+        return
+    chosen = decks.find_notebooks(notebooks)
     files.require_other([out], chosen)
     # Jupyter needs a working folder; if it is gone, stop here and not in the middle
     os.getcwd()
@@ -291,6 +306,43 @@ def questions(*, notebooks: tuple[str, ...], out: Path, jobs: int) -> None:
     bank.write(lessons, out)
     count = sum(len(lesson.questions) for lesson in lessons)
     click.echo(f"{out}: {count} questions of {len(lessons)} notebooks")
+
+
+@course.command()
+@click.argument("before", type=common.EXISTING_FILE)
+@click.argument("after", type=common.EXISTING_FILE)
+@click.option(
+    "-o",
+    "--out",
+    type=common.OUTPUT_PATH,
+    default="gain.html",
+    help="Page about the class.",
+)
+def gain(*, before: Path, after: Path, out: Path) -> None:
+    """Compare the answers of a class to the concept inventory before and after the course.
+
+    BEFORE and AFTER are tables (CSV) with a line for each student: Moodle's quiz report
+    "Responses", or a table with the columns student, q1, q2, ... and the letters of the answers.
+    hdrlab matches the students by their ids, which the page does not name.
+
+    The page shows the percentage of right answers before and after the course, the normalized gain
+    of each concept, and the wrong answer that remains most frequent, with the section of the
+    notebook to read again. `hdrlab course questions --inventory` writes the questions.
+    """
+    from hdrlab.course.question_bank import answers, gain as gains
+    from hdrlab.io import files
+
+    files.require_other([out], [before, after])
+    answers_before = answers.read_answers(before)
+    answers_after = answers.read_answers(after)
+    matched = answers.match_students(answers_before, answers_after)
+    class_gain = gains.compute_gain(answers_before, answers_after, matched)
+    files.write(out, gains.gain_page(class_gain, gains.describe_left_out(class_gain, matched)))
+    common.echo_notes(answers.describe_unmatched(matched, before, after))
+    total = class_gain.total
+    shown = "" if total.gain is None else f", gain {total.gain:.2f}"
+    students = "1 student" if class_gain.students == 1 else f"{class_gain.students} students"
+    click.echo(f"{out}: {students} answered before and after{shown}")
 
 
 @course.command()

@@ -1,4 +1,4 @@
-"""Run notebooks, collect their questions, and write them in the format of a file's suffix."""
+"""Collect the questions of notebooks or of the inventory, and write them in a file's format."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -7,12 +7,25 @@ import nbformat
 
 from hdrlab.course.authoring import execute
 from hdrlab.course.question_bank import moodle, paper
-from hdrlab.course.question_bank.questions import LessonQuestions, collect_questions
+from hdrlab.course.question_bank.inventory import all_questions
+from hdrlab.course.question_bank.inventory.question import ConceptQuestion
+from hdrlab.course.question_bank.questions import (
+    ChoiceQuestion,
+    LessonQuestions,
+    collect_questions,
+)
 from hdrlab.course.site import pages
 from hdrlab.errors import InputError
 from hdrlab.io import files
 
 WRITERS = {".xml": moodle.to_moodle, ".html": paper.to_page}
+INVENTORY_TITLE = "Concept inventory"
+INVENTORY_INSTRUCTIONS = (
+    "Choose one answer to each question. You may use a calculator, but no notes, books or other "
+    "help. You will answer the same questions before and after the course, to show what the course "
+    "teaches. They do not count for your grade. If you do not know an answer, say so instead of "
+    "guessing."
+)
 
 
 def require_format(out: Path) -> None:
@@ -35,8 +48,29 @@ def collect_steps(
         yield LessonQuestions(title, tuple(collect_questions(notebook, name)))
 
 
+def inventory_lesson() -> LessonQuestions:
+    """Return the questions of the concept inventory as choices."""
+    questions = tuple(_to_choices(question) for question in all_questions())
+    return LessonQuestions(
+        INVENTORY_TITLE, questions, instructions=INVENTORY_INSTRUCTIONS, is_asked_again=True
+    )
+
+
+def _to_choices(question: ConceptQuestion) -> ChoiceQuestion:
+    options = question.options
+    return ChoiceQuestion(
+        name=f"inventory-{question.name}",
+        context="",
+        text=question.stem,
+        because=question.because,
+        labels=options,
+        right=options.index(question.right),
+        misconceptions=tuple(question.misconceptions.get(text, "") for text in options),
+    )
+
+
 def write(lessons: Sequence[LessonQuestions], out: Path) -> None:
-    """Write the questions of notebooks, sorted by their titles."""
+    """Write questions, sorted by the titles of their notebooks."""
     require_format(out)
     in_order = sorted(lessons, key=lambda lesson: lesson.title)
     files.write(out, WRITERS[out.suffix.lower()](in_order))

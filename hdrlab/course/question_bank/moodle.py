@@ -32,16 +32,19 @@ def to_moodle(lessons: Sequence[LessonQuestions]) -> str:
     lessons : the questions of each notebook
     """
     quiz = ET.Element("quiz")
-    for title, questions in lessons:
+    for lesson in lessons:
         category = ET.SubElement(quiz, "question", type="category")
-        _add_text(category, "category", f"{BANK}/{title.replace('/', '//')}")
-        for number, question in enumerate(questions, 1):
-            _add_question(quiz, question, f"{title}, question {number}")
+        _add_text(category, "category", f"{BANK}/{lesson.title.replace('/', '//')}")
+        # Moodle sorts questions by name: 02 comes before 10
+        digits = len(str(len(lesson.questions)))
+        for number, question in enumerate(lesson.questions, 1):
+            name = f"{lesson.title}, question {number:0{digits}}"
+            _add_question(quiz, question, name, is_asked_again=lesson.is_asked_again)
     ET.indent(quiz)
     return ET.tostring(quiz, "unicode", xml_declaration=True) + "\n"
 
 
-def _add_question(quiz: ET.Element, question: Question, name: str) -> None:
+def _add_question(quiz: ET.Element, question: Question, name: str, *, is_asked_again: bool) -> None:
     is_choice = isinstance(question, ChoiceQuestion)
     element = ET.SubElement(quiz, "question", type="multichoice" if is_choice else "numerical")
     _add_text(element, "name", name)
@@ -49,19 +52,20 @@ def _add_question(quiz: ET.Element, question: Question, name: str) -> None:
     if isinstance(question, NumberQuestion):
         asked += f"<p>{escape(question.instruction)}</p>"
     _add_html(element, "questiontext", _to_html(question.context) + asked)
-    _add_html(element, "generalfeedback", f"<p>{escape(question.because)}</p>")
+    explanation = "" if is_asked_again else f"<p>{escape(question.because)}</p>"
+    _add_html(element, "generalfeedback", explanation)
     ET.SubElement(element, "defaultgrade").text = "1"
     ET.SubElement(element, "idnumber").text = f"hdrlab-{question.name}"
     if isinstance(question, ChoiceQuestion):
-        _add_choices(element, question)
+        _add_choices(element, question, shuffled=not is_asked_again)
     else:
         answer = _add_answer(element, RIGHT_PERCENT, f"{question.truth:.6g}", "moodle_auto_format")
         ET.SubElement(answer, "tolerance").text = f"{question.tolerance:.6g}"
 
 
-def _add_choices(element: ET.Element, question: ChoiceQuestion) -> None:
+def _add_choices(element: ET.Element, question: ChoiceQuestion, *, shuffled: bool) -> None:
     ET.SubElement(element, "single").text = "true"
-    ET.SubElement(element, "shuffleanswers").text = "true"
+    ET.SubElement(element, "shuffleanswers").text = "true" if shuffled else "false"
     ET.SubElement(element, "answernumbering").text = "abc"
     for index, label in enumerate(question.labels):
         fraction = RIGHT_PERCENT if index == question.right else WRONG_PERCENT

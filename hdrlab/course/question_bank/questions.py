@@ -37,6 +37,7 @@ class ChoiceQuestion:
     labels : the answers
     right : index of the right answer
     images : an image of each answer, or none
+    misconceptions : the misconception that leads to each wrong answer, or none
     """
 
     name: str
@@ -46,6 +47,7 @@ class ChoiceQuestion:
     labels: tuple[str, ...]
     right: int
     images: tuple[Image, ...] = ()
+    misconceptions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -85,10 +87,20 @@ Question = ChoiceQuestion | NumberQuestion
 
 
 class LessonQuestions(NamedTuple):
-    """The title of a notebook, and its questions in order."""
+    """The title of a notebook or of a test, and its questions in order.
+
+    Attributes
+    ----------
+    title, questions : see above
+    instructions : what students read before the first question
+    is_asked_again : whether students answer the same questions a second time. Then the answers keep
+        their order, and a quiz shows no explanations.
+    """
 
     title: str
     questions: tuple[Question, ...]
+    instructions: str = ""
+    is_asked_again: bool = False
 
 
 def collect_questions(notebook: Any, name: str) -> Iterator[Question]:

@@ -8,9 +8,10 @@ spreadsheets hide. Numbers, including negative ones, stay numbers.
 import csv
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
+from typing import NamedTuple
 
 from hdrlab.errors import InputError
 from hdrlab.io.files import write
@@ -22,6 +23,20 @@ FORMULA = re.compile(r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]")
 NUMBER = re.compile(r"^[+-]?\d+(\.\d+)?([eE][+-]?\d+)?$", re.ASCII)
 CONTROL_CHARACTERS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 ESCAPE = "'"
+
+
+class CsvRow(NamedTuple):
+    """A row of a table: the line of the file where it begins, and its cells by column."""
+
+    line: int
+    cells: dict[str, str]
+
+
+class CsvTable(NamedTuple):
+    """The lower-case names of a table's columns, as often as they occur, and its rows."""
+
+    columns: list[str]
+    rows: list[CsvRow]
 
 
 def escape_cell(cell: Cell) -> str:
@@ -90,6 +105,19 @@ def read_csv(path: str | Path, *, max_bytes: int = MAX_TABLE_BYTES) -> list[dict
     Raises
     ------
     InputError
+        As `read_table` does.
+    """
+    return [row.cells for row in read_table(path, max_bytes=max_bytes).rows]
+
+
+def read_table(path: str | Path, *, max_bytes: int = MAX_TABLE_BYTES) -> CsvTable:
+    """Read a CSV file with the line of each row, for messages that name it.
+
+    Empty lines are left out.
+
+    Raises
+    ------
+    InputError
         For a file of more than `max_bytes`, that is not UTF-8, or with a row longer than its
         header.
     """
@@ -99,19 +127,29 @@ def read_csv(path: str | Path, *, max_bytes: int = MAX_TABLE_BYTES) -> list[dict
         raise InputError(f"{path}: expected a table of at most {max_bytes} bytes, got {size}")
     try:
         text = path.read_text(encoding="utf-8-sig")
-        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+        rows = list(_nonempty_rows(text))
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: expected a table in UTF-8 ({error})") from None
     if not rows:
         raise InputError(f"{path}: expected a header and rows, but it is empty")
-    header = [name.strip().lower() for name in rows[0]]
-    max_cells = max(len(row) for row in rows)
+    header = [name.strip().lower() for name in rows[0][1]]
+    max_cells = max(len(cells) for _, cells in rows)
     if max_cells > len(header):
         raise InputError(
             f"{path}: expected {len(header)} cells in each row, as in its header, got {max_cells}"
         )
     table = []
-    for row in rows[1:]:
+    for line, row in rows[1:]:
         cells = [cell.strip() for cell in row]
-        table.append(dict(zip_longest(header, cells, fillvalue="")))
-    return table
+        table.append(CsvRow(line, dict(zip_longest(header, cells, fillvalue=""))))
+    return CsvTable(header, table)
+
+
+def _nonempty_rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows of a table that have a cell with text, each with the line where it begins."""
+    reader = csv.reader(io.StringIO(text))
+    line = 1
+    for row in reader:
+        if any(cell.strip() for cell in row):
+            yield line, row
+        line = reader.line_num + 1
