@@ -333,6 +333,7 @@ def gain(*, before: Path, after: Path, out: Path) -> None:
     from hdrlab.io import files
 
     files.require_other([out], [before, after])
+    files.require_suffix(out, [".html"], "a page")
     answers_before = answers.read_answers(before)
     answers_after = answers.read_answers(after)
     matched = answers.match_students(answers_before, answers_after)

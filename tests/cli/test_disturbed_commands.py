@@ -146,6 +146,9 @@ COMMANDS = {
         "course export --gradescope out/b --plan plan.toml --secret-file out/secret.txt",
         same={"secret.txt": without_random_words, ".zip": members_without_random_words},
     ),
+    "course gain": Command(
+        "course gain answers.csv answers.csv -o out/a.html", output="out/a.html"
+    ),
     "course move": Command("course move 2027-04-05 -o out/plan.toml", output="out/plan.toml"),
     "course new-task": Command("course new-task flat -o out/ours", refuses_twice=True),
     "course new-task for the second time": Command(
@@ -221,6 +224,7 @@ def made(tmp_path_factory):
     for team in ("team1", "team2"):
         photos.write_picture(here / f"{team}.png", rng.integers(0, 256, (90, 120, 3), np.uint8))
     (here / "roster.csv").write_text("student,name,team\nann,Ann,team1\nben,Ben,team2\n")
+    (here / "answers.csv").write_text("student,q1,q2\nann,a,b\nben,c,\n")
     (here / "plan.toml").write_text(hats.PLAN)
     (here / "secret.txt").write_text("a secret\n")
     levels = np.arange(1, 257) / 256

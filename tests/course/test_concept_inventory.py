@@ -118,6 +118,7 @@ def test_answers_are_distinct_after_rounding_and_each_wrong_one_has_its_misconce
 @pytest.mark.parametrize("question", QUESTIONS, ids=lambda question: question.name)
 def test_a_question_is_short_and_its_section_exists(question):
     assert len(question.stem.split()) <= MAX_STEM_WORDS and "?" in question.stem
+    assert "{" not in question.stem + question.because + "".join(question.options)
     notebook = json.loads((NOTEBOOKS / f"{question.notebook}.ipynb").read_text("utf-8"))
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "markdown"]
     lines = "\n".join("".join(cell["source"]) for cell in cells).splitlines()

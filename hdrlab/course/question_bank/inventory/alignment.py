@@ -23,8 +23,8 @@ def thresholds_that_agree() -> ConceptQuestion:
     return ConceptQuestion(
         name="thresholds-that-agree",
         stem=f"Five places have the values {join(A)} in photo A. Photo B gets twice the light: "
-        f"{join(B)} (no value can be larger). In each photo, places above a threshold become "
-        "white, the others black. Which thresholds for A and B make the same places white?",
+        f"{join(B)} ({TOP} is the largest possible value). In each photo, places above a threshold "
+        "become white, the others black. Which thresholds for A and B make the same places white?",
         right=f"{medians[0]} and {medians[1]}",
         because="The median has as many places above it in both photos, whatever the exposure is. "
         "The mean moves when a value is clipped.",

@@ -19,9 +19,9 @@ def shared_exponent() -> ConceptQuestion:
     return ConceptQuestion(
         name="shared-exponent",
         stem="A file stores the red, green and blue of a pixel as three whole numbers from 0 to "
-        f"{TOP}, all times one common factor. The factor is a power of two, as small as the "
-        f"largest color allows. A pixel has red {red:g}, green {green:g}, blue {blue:g}. Which "
-        "blue does the file hold?",
+        f"{TOP}, all times one common factor. The factor is a power of two (1, 2, 4, ...), "
+        f"as small as the largest color allows. A pixel has red {red:g}, green {green:g}, blue "
+        f"{blue:g}. Which blue does the file hold?",
         right=f"blue {stored[2]:g}",
         because=f"For red, the factor must be {step:g}, so blue can only be 0, {step:g}, "
         f"{2 * step:g} and so on.",
@@ -44,9 +44,9 @@ def checkerboard() -> ConceptQuestion:
     middle_gray = 0.18
     return ConceptQuestion(
         name="checkerboard",
-        stem=f"The light of a display is proportional to the pixel value (0 to {TOP}) to the power "
-        f"of {GAMMA}. From afar, a fine checkerboard of black (0) and white ({TOP}) looks evenly "
-        "gray. Which single pixel value gives the same gray?",
+        stem=f"The light of a display is proportional to value^{GAMMA}, the pixel value (0 to {TOP}) "
+        f"to the power of {GAMMA}. From afar, a fine checkerboard of black (0) and white ({TOP}) "
+        "looks evenly gray. Which single pixel value gives the same gray?",
         right=f"about {TOP * white_fraction ** (1 / GAMMA):.0f}",
         because="The eye averages light, not pixel values. Half of the light needs 255 times 0.5 to "
         f"the power of 1/{GAMMA}.",

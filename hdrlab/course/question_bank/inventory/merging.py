@@ -56,7 +56,8 @@ def clipped_pixel() -> ConceptQuestion:
         name="clipped-pixel",
         stem="A camera's pixel values are proportional to the collected light, up to the largest "
         f"value {TOP}. Photos of {times[0]:g}, {times[1]:g} and {times[2]:g} s show a lamp with "
-        f"the values {Z[0]}, {Z[1]} and {Z[2]}. What is the best estimate of its value per second?",
+        f"the values {Z[0]}, {Z[1]} and {Z[2]}. By the best estimate, how fast does the lamp's value "
+        "grow?",
         right=f"{float(E[0, 0]):.3g} per second",
         because="The last photo is clipped: it says only that there was at least that much light. "
         "The other two agree.",

@@ -17,9 +17,9 @@ def twice_the_light() -> ConceptQuestion:
     factor = 2
     return ConceptQuestion(
         name="twice-the-light",
-        stem=f"In a certain photo file, a pixel value (0 to {TOP}) is proportional to the light to "
-        f"the power of 1/{GAMMA}. A wall has the value {value}. In a second photo, the same wall "
-        "gets twice the light. Which value does it have there?",
+        stem=f"In a photo file, a pixel value (0 to {TOP}) is proportional to light^(1/{GAMMA}), the "
+        f"light to the power of 1/{GAMMA}. A wall has the value {value}. In a second photo, it gets "
+        "twice the light. Which value does it have there?",
         right=f"about {value * factor ** (1 / GAMMA):.0f}",
         because=f"2 to the power of 1/{GAMMA} is {factor ** (1 / GAMMA):.2f}: the curve makes the "
         "step smaller.",

@@ -82,8 +82,8 @@ def one_curve_for_two_rooms() -> ConceptQuestion:
         name="one-curve-for-two-rooms",
         stem=f"A room has brightnesses from 1 to {room}, the view through its window from {room} to "
         f"{room * view:,}. A display shows contrasts of up to {display}:1. A single rising curve, "
-        "used for all pixels, gives the room and the view the same contrast. How much can each "
-        "have?",
+        "used for all pixels, gives the room and the view the same contrast. How much is left "
+        "for each?",
         right=describe_contrast(left),
         because="With one curve the contrasts multiply: 10:1 for the room, and 10:1 above it for "
         "the view.",
