@@ -4,8 +4,12 @@ import numpy as np
 
 from hdrlab.align import mtb
 from hdrlab.core.arrays import Array
-from hdrlab.course.checks.mistakes import threshold as threshold_mistakes
-from hdrlab.course.question_bank.inventory.question import Concept, ConceptQuestion, WrongAnswer
+from hdrlab.course.question_bank.inventory.question import (
+    Concept,
+    ConceptQuestion,
+    WrongAnswer,
+    known_mistake,
+)
 
 NOTEBOOK = "03_alignment_mtb"
 TOP = 255
@@ -17,7 +21,8 @@ def thresholds_that_agree() -> ConceptQuestion:
     B = np.minimum(2 * A, TOP)
     histograms = [np.bincount(Z, minlength=TOP + 1) for Z in (A, B)]
     medians = [int(mtb.threshold(h, 0.5)) for h in histograms]
-    means = [threshold_mistakes.mean(h, 0.5) for h in histograms]
+    mean = known_mistake("threshold", "threshold_mean")
+    means = [mean(h, 0.5) for h in histograms]
     half_of_largest = [Z.max() // 2 for Z in (A, B)]
     middle = (TOP + 1) // 2
     return ConceptQuestion(

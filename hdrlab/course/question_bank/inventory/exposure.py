@@ -2,11 +2,12 @@
 
 from hdrlab.capture import metering
 from hdrlab.capture.exposure import equivalent_time
-from hdrlab.course.checks.mistakes import (
-    equivalent_time as time_mistakes,
-    optimum as meter_mistakes,
+from hdrlab.course.question_bank.inventory.question import (
+    Concept,
+    ConceptQuestion,
+    WrongAnswer,
+    known_mistake,
 )
-from hdrlab.course.question_bank.inventory.question import Concept, ConceptQuestion, WrongAnswer
 
 NOTEBOOK = "02_exposure_and_metering"
 SETTINGS = "The exposure value: three settings, one number"
@@ -17,20 +18,23 @@ def time_of_a_smaller_aperture() -> ConceptQuestion:
     time = 1 / 100
     F = 4
     F_new = 8
+    right_time = float(equivalent_time(time, F, F_new))
+    aperture_once = known_mistake("equivalent_time", "equivalent_time_aperture_once")
+    inverted = known_mistake("equivalent_time", "equivalent_time_inverted")
     return ConceptQuestion(
         name="time-of-a-smaller-aperture",
         stem="The f-number of a lens is its focal length divided by the diameter of its opening. "
         f"At f/{F}, an exposure time of {format_time(time)} gives a photo of the right "
         f"brightness. Which time gives the same brightness at f/{F_new}?",
-        right=format_time(equivalent_time(time, F, F_new)),
+        right=format_time(right_time),
         because="Half the diameter is a quarter of the area, so the light needs four times as long.",
         wrong=(
             WrongAnswer(
-                format_time(time_mistakes.aperture_once(time, F, F_new)),
+                format_time(aperture_once(time, F, F_new)),
                 "Takes the diameter of the opening instead of its area.",
             ),
             WrongAnswer(
-                format_time(time_mistakes.inverted(time, F, F_new)),
+                format_time(inverted(time, F, F_new)),
                 "Takes a larger f-number for a larger opening.",
             ),
             WrongAnswer(
@@ -74,6 +78,8 @@ def snow_and_the_meter() -> ConceptQuestion:
     snow = 0.9
     # the change of the exposure value that the meter makes, where 0 is the right exposure of snow
     change = metering.optimum(0.0, snow)
+    wrong_way = known_mistake("optimum", "optimum_wrong_way")
+    natural_logarithm = known_mistake("optimum", "optimum_natural_logarithm")
     return ConceptQuestion(
         name="snow-and-the-meter",
         stem="An automatic camera exposes each photo as if the scene reflected "
@@ -85,11 +91,11 @@ def snow_and_the_meter() -> ConceptQuestion:
         "that it should have.",
         wrong=(
             WrongAnswer(
-                describe_change(meter_mistakes.wrong_way(0.0, snow)),
+                describe_change(wrong_way(0.0, snow)),
                 "Thinks that a bright scene makes the camera expose more.",
             ),
             WrongAnswer(
-                describe_change(meter_mistakes.natural_logarithm(0.0, snow)),
+                describe_change(natural_logarithm(0.0, snow)),
                 "Takes the natural logarithm; stops are the logarithm to base 2.",
             ),
             WrongAnswer(

@@ -12,7 +12,7 @@ TOP = 255
 
 def shared_exponent() -> ConceptQuestion:
     """Ask what a file with a common factor for three colors makes of a small one."""
-    color = np.float32([1600, 800, 3])
+    color = np.array([1600, 800, 3], np.float32)
     red, green, blue = color
     stored = rgbe.to_radiance(rgbe.to_pixels(color[None, None]))[0, 0]
     step = red / rgbe.to_pixels(color[None, None])[0, 0, 0]

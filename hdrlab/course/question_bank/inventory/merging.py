@@ -4,8 +4,12 @@ import numpy as np
 
 from hdrlab.core.arrays import F64
 from hdrlab.core.weights import flat, hat
-from hdrlab.course.checks.mistakes import hat as weight_mistakes
-from hdrlab.course.question_bank.inventory.question import Concept, ConceptQuestion, WrongAnswer
+from hdrlab.course.question_bank.inventory.question import (
+    Concept,
+    ConceptQuestion,
+    WrongAnswer,
+    known_mistake,
+)
 from hdrlab.radiance import merge
 
 NOTEBOOK = "10_radiance_map"
@@ -16,6 +20,8 @@ def weighted_mean() -> ConceptQuestion:
     """Ask for the mean of two estimates with the weights of their pixel values."""
     Z = np.array([120, 215])
     estimates = np.array([12.0, 8.0])
+    ramp = known_mistake("hat", "hat_ramp")
+    zero_in_the_middle = known_mistake("hat", "hat_zero_in_the_middle")
 
     def mean_with(weights: F64) -> str:
         mean = merge.frame_mean(weights[Z], estimates, np.ones(2))
@@ -32,11 +38,11 @@ def weighted_mean() -> ConceptQuestion:
         wrong=(
             WrongAnswer(mean_with(flat()), "Gives both photos the same weight."),
             WrongAnswer(
-                mean_with(weight_mistakes.ramp()),
+                mean_with(ramp()),
                 "Gives bright pixel values the largest weight, up to the clipped ones.",
             ),
             WrongAnswer(
-                mean_with(weight_mistakes.zero_in_the_middle()),
+                mean_with(zero_in_the_middle()),
                 "Gives the largest weight to the ends, where a pixel measures worst.",
             ),
         ),

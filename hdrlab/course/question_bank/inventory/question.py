@@ -1,8 +1,11 @@
 """A question of the concept inventory: its right answer and three wrong ones, all computed."""
 
 import random
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from hdrlab.course.checks.mistakes import mistakes_of
 
 DONT_KNOW = "I don't know"
 
@@ -48,6 +51,12 @@ class ConceptQuestion:
     def misconceptions(self) -> dict[str, str]:
         """The misconception that leads to each wrong answer."""
         return dict(self.wrong)
+
+
+def known_mistake(task: str, name: str) -> Callable[..., Any]:
+    """Return the wrong function of a known mistake, by the id of its task and its full name."""
+    functions = {known.name: known.function for known in mistakes_of(task)}
+    return functions[name]
 
 
 class Concept(NamedTuple):

@@ -3,8 +3,12 @@
 import numpy as np
 
 from hdrlab.capture import planning, ranges
-from hdrlab.course.checks.mistakes import count as known_mistakes
-from hdrlab.course.question_bank.inventory.question import Concept, ConceptQuestion, WrongAnswer
+from hdrlab.course.question_bank.inventory.question import (
+    Concept,
+    ConceptQuestion,
+    WrongAnswer,
+    known_mistake,
+)
 
 SENSOR = "01_dynamic_range_and_the_sensor"
 
@@ -74,6 +78,9 @@ def photos_for_a_scene() -> ConceptQuestion:
     usable = 8
     step = 2
     overlap = usable - step
+    first_forgotten = known_mistake("count", "count_first_forgotten")
+    overlap_forgotten = known_mistake("count", "count_overlap_forgotten")
+    rounded_down = known_mistake("count", "count_rounded_down")
     return ConceptQuestion(
         name="photos-for-a-scene",
         stem=f"Photographers call a factor of two in light a stop. One photo covers {usable} stops, "
@@ -84,15 +91,15 @@ def photos_for_a_scene() -> ConceptQuestion:
         "incomplete step needs a photo, too.",
         wrong=(
             WrongAnswer(
-                f"{known_mistakes.first_forgotten(scene, usable, overlap)} photos",
+                f"{first_forgotten(scene, usable, overlap)} photos",
                 "Forgets that the first photo covers its whole range.",
             ),
             WrongAnswer(
-                f"{known_mistakes.overlap_forgotten(scene, usable, overlap)} photos",
+                f"{overlap_forgotten(scene, usable, overlap)} photos",
                 "Ignores that neighboring photos cover mostly the same part of the scene.",
             ),
             WrongAnswer(
-                f"{known_mistakes.rounded_down(scene, usable, overlap)} photos",
+                f"{rounded_down(scene, usable, overlap)} photos",
                 "Leaves the last stops of the scene without a photo.",
             ),
         ),

@@ -2,8 +2,12 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import log_average as average_mistakes
-from hdrlab.course.question_bank.inventory.question import Concept, ConceptQuestion, WrongAnswer
+from hdrlab.course.question_bank.inventory.question import (
+    Concept,
+    ConceptQuestion,
+    WrongAnswer,
+    known_mistake,
+)
 from hdrlab.tonemap import reinhard
 
 NOTEBOOK = "16_reinhard"
@@ -11,7 +15,7 @@ NOTEBOOK = "16_reinhard"
 
 def contrast_of_highlights() -> ConceptQuestion:
     """Ask how much contrast a compressing curve leaves in the highlights."""
-    L = np.float32([100, 200])
+    L = np.array([100, 200], np.float32)
     shown = reinhard.display(L, L)
     ratio = float(L[1] / L[0])
     return ConceptQuestion(
@@ -43,8 +47,9 @@ def contrast_of_highlights() -> ConceptQuestion:
 def average_of_a_scene() -> ConceptQuestion:
     """Ask how a scene with a lamp is scaled by its geometric mean."""
     key = 0.18
-    L = np.float32([1, 1, 1, 10_000])
+    L = np.array([1, 1, 1, 10_000], np.float32)
     wall = L[0]
+    arithmetic_mean = known_mistake("log_average", "log_average_linear")
     scaled = reinhard.scale_to_key(L, key=key)
     twice = scaled[0] * key
     return ConceptQuestion(
@@ -58,7 +63,7 @@ def average_of_a_scene() -> ConceptQuestion:
         "than the arithmetic mean.",
         wrong=(
             WrongAnswer(
-                describe_part(key * wall / average_mistakes.linear(L)),
+                describe_part(key * wall / arithmetic_mean(L)),
                 "Takes the arithmetic mean, which the lamp alone decides.",
             ),
             WrongAnswer(describe_part(twice), f"Multiplies by {key:.0%} twice."),
