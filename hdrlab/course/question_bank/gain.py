@@ -70,7 +70,8 @@ class Gain:
     title : of the concept or the question
     before, after : percent of right answers
     gain : the normalized gain; None if all answers were right before the course
-    interval : of the gain; None if there are too few students, or if it has no bounds
+    interval : of the gain; None for a single question, for too few students, and if it has no
+        bounds
     unknown_before, unknown_after : percent of answers that are missing or "I don't know"
     remaining : the most frequent wrong answer after the course; None if there is none
     """
@@ -163,7 +164,7 @@ def compute_gain(before: ClassAnswers, after: ClassAnswers, matched: MatchedAnsw
             concepts.append(_gain(concept.title, members, matched))
     by_question = {}
     for index in asked:
-        by_question[index + 1] = _gain(questions[index].stem, [index], matched)
+        by_question[index + 1] = _gain(questions[index].stem, [index], matched, with_interval=False)
     return ClassGain(
         students=len(matched.before),
         total=_gain(ALL_CONCEPTS, asked, matched),
@@ -173,7 +174,9 @@ def compute_gain(before: ClassAnswers, after: ClassAnswers, matched: MatchedAnsw
     )
 
 
-def _gain(title: str, indices: Sequence[int], matched: MatchedAnswers) -> Gain:
+def _gain(
+    title: str, indices: Sequence[int], matched: MatchedAnswers, *, with_interval: bool = True
+) -> Gain:
     """Return the gain over the questions with these indices."""
     before = 100 * _is_right(matched.before, indices).mean(axis=1)
     after = 100 * _is_right(matched.after, indices).mean(axis=1)
@@ -184,7 +187,7 @@ def _gain(title: str, indices: Sequence[int], matched: MatchedAnswers) -> Gain:
         before=before_mean,
         after=after_mean,
         gain=normalized_gain(before_mean, after_mean),
-        interval=bootstrap_interval(before, after),
+        interval=bootstrap_interval(before, after) if with_interval else None,
         unknown_before=_unknown_percent(matched.before, indices),
         unknown_after=_unknown_percent(matched.after, indices),
         remaining=_most_frequent_wrong(matched.after, indices),
