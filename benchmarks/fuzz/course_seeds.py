@@ -53,6 +53,15 @@ def received(folder: Path) -> None:
     csv_tables.write_csv(folder / "a.csv", ["file", "received"], rows)
 
 
+def answers(folder: Path) -> None:
+    """Write what a class answered to the concept inventory."""
+    letters: list[list[csv_tables.Cell]] = [["b01", "a", "b"], ["o'hara", "e", ""]]
+    csv_tables.write_csv(folder / "a.csv", ["student", "q1", "q2"], letters)
+    texts: list[list[csv_tables.Cell]] = [["o'hara@x.edu", "Finished", "10 stops", "-"]]
+    columns = ["Email address", "State", "Response 1", "Response 2"]
+    csv_tables.write_csv(folder / "b.csv", columns, texts)
+
+
 def gradebook(folder: Path) -> None:
     """Write a gradebook."""
     row: list[csv_tables.Cell] = [

@@ -15,6 +15,7 @@ from hdrlab.course.classroom import marks
 from hdrlab.course.gallery import collect, pictures, tokens
 from hdrlab.course.grading import results
 from hdrlab.course.projects import project, words
+from hdrlab.course.question_bank import answers
 from hdrlab.course.students import roster
 from hdrlab.course.submissions import class_folder, reader
 from hdrlab.course.submissions.archives import unpack
@@ -110,6 +111,12 @@ def read_jxl(path: Path) -> object:
 def read_exif(path: Path) -> None:
     """Read EXIF, and what it tells."""
     metadata.keep_exposure_tags(path.read_bytes())
+
+
+def read_class_answers(path: Path) -> object:
+    """Read the answers of a class, and match the students with themselves."""
+    found = answers.read_answers(path)
+    return answers.match_students(found, found)
 
 
 def read_result(path: Path) -> None:
@@ -209,6 +216,7 @@ ALL: Sequence[Reader] = (
     Reader("roster", ".csv", course_seeds.roster, roster.read),
     Reader("received", ".csv", course_seeds.received, class_folder.read_times),
     Reader("gradebook", ".csv", course_seeds.gradebook, lambda path: marks.read([path])),
+    Reader("answers", ".csv", course_seeds.answers, read_class_answers),
     Reader("project", ".toml", course_seeds.project, read_project, named=False),
     Reader("result", ".json", course_seeds.result, read_result, named=False, damaged="results"),
     Reader("notebook", ".ipynb", course_seeds.notebook, read_submission, damaged="words"),

@@ -21,7 +21,7 @@ from hdrlab.course.students.roster import fold
 from hdrlab.errors import InputError
 
 ID_COLUMNS = ("student", *moodle.ID_COLUMNS)  # the first one that both files have counts
-QUESTION_COLUMN = re.compile(r"(?:q|response) ?(\d+)", re.ASCII)
+QUESTION_COLUMN = re.compile(r"(?:q|response) ?(\d{1,4})", re.ASCII)
 LETTER = re.compile(r"([a-z])[).]?", re.ASCII | re.IGNORECASE)
 NO_ANSWER = ("", "-")
 LETTERS = "abcde"
