@@ -168,12 +168,14 @@ def _build(
         "edition": edition,
     }
     texts["index.md"] = render_page(PAGES, "index.md", **first)
-    guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
+    guides = [page for page in PAGES.rglob("*.md") if page.name != "index.md"]
     for page in guides:
-        texts[page.name] = unlink_missing_notebooks(page.read_text("utf-8"), known)
+        name = page.relative_to(PAGES).as_posix()
+        texts[name] = unlink_missing_notebooks(page.read_text("utf-8"), known)
     texts |= more
     files = {name: text.encode() for name, text in texts.items()}
-    files |= {f"cases/{image.name}": image.read_bytes() for image in PAGES.glob("cases/*.webp")}
+    for image in [*PAGES.glob("cases/*.webp"), *PAGES.glob("teachers_sheets/*.svg")]:
+        files[image.relative_to(PAGES).as_posix()] = image.read_bytes()
     for name, content in files.items():
         live.write_changed(source / name, content)
     _remove_other_files(source, set(files))
