@@ -7,6 +7,7 @@ It shows the notebooks as they were run for the tests of notebooks, where these 
 import functools
 import http.server
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -23,6 +24,7 @@ OTHERS = [
     *("index", "photographs", "verdicts", "instructors", "map", "commands", "assignments/hw2"),
     *("reference/index", "reference/tonemap", "reference/tonemap.durand"),
     *("reference/capture.planning", "reference/show.widgets"),
+    *("teachers_sheets", "teachers_sheets/10_radiance_map"),
 ]
 MINOR = "empty-table-header"  # the empty corner of a table with names on two sides
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
@@ -166,6 +168,13 @@ def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(open
     for place in page.locator(".live").all():
         open_widget(page, place)
     assert_it_fits(page, axe)
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_teachers_sheet_prints_on_one_page(opened, name):
+    page = opened(f"teachers_sheets/{name}")
+    printed = page.pdf(prefer_css_page_size=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 1
 
 
 @pytest.mark.parametrize(
