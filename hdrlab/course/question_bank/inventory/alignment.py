@@ -90,9 +90,10 @@ def moved_between_photos() -> ConceptQuestion:
     dark, bright, clipped = (np.minimum(light * times, TOP) for light in (20, 60, 100))
     return ConceptQuestion(
         name="moved-between-photos",
-        stem=f"Photos of {times[0]} s, {times[1]} s and {times[2]} s are taken from a tripod. Pixel "
+        stem=f"Photos of {times[0]} s, {times[1]} s and {times[2]} s are taken from a tripod, "
+        "in constant light. Pixel "
         f"values are proportional to the collected light, up to the largest value {TOP}. Here are "
-        "the three values of four places. At which of them did something move?",
+        "the three values of four places. At which of them must something have moved?",
         right=join(moved),
         because="The collected light must double from photo to photo, up to the largest value. "
         f"Values that stay at {moved[0]} mean that the light changed.",

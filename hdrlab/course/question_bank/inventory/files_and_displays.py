@@ -18,10 +18,10 @@ def shared_exponent() -> ConceptQuestion:
     step = red / rgbe.to_pixels(color[None, None])[0, 0, 0]
     return ConceptQuestion(
         name="shared-exponent",
-        stem="A file stores the red, green and blue of a pixel as three whole numbers from 0 to "
-        f"{TOP}, all times one common factor. The factor is a power of two (1, 2, 4, ...), "
-        f"as small as the largest color allows. A pixel has red {red:g}, green {green:g}, blue "
-        f"{blue:g}. Which blue does the file hold?",
+        stem=f"A file stores red, green and blue as whole numbers from 0 to {TOP}, with one common "
+        "factor that multiplies all three. The factor is the smallest power of two (1, 2, 4, ...) "
+        "for which all three numbers fit. Numbers are rounded down. A pixel has red "
+        f"{red:g}, green {green:g}, blue {blue:g}. Which blue is read back?",
         right=f"blue {stored[2]:g}",
         because=f"For red, the factor must be {step:g}, so blue can only be 0, {step:g}, "
         f"{2 * step:g} and so on.",
@@ -78,7 +78,8 @@ def absolute_code() -> ConceptQuestion:
     ratio = brighter_peak / peak
     return ConceptQuestion(
         name="absolute-code",
-        stem="A film is coded with PQ, the usual code for HDR. On an ideal display whose brightest "
+        stem="A film for HDR displays is coded with PQ (the standard ST 2084). On an ideal "
+        "display whose brightest "
         f"white has {peak:,} cd/m² (the unit of luminance), a wall has {luminance}. The same film "
         f"runs on an ideal display with up to {brighter_peak:,}. Which luminance does the wall have"
         " there?",

@@ -20,8 +20,9 @@ def number_of_unknowns() -> ConceptQuestion:
     return ConceptQuestion(
         name="number-of-unknowns",
         stem=f"You look for a camera's curve, one number for each of the {levels} pixel values. You "
-        f"use {places} places of a scene in {photos} photos with known exposure times. You do not "
-        "know how much light the places send. How many numbers are unknown?",
+        f"use {places} places of a scene in {photos} photos with known exposure times. The light "
+        "does not change between the photos, but you do not know how much light the places send. "
+        "How many numbers are unknown?",
         right=f"{A.shape[1]} numbers",
         because=f"Unknown are the {levels} numbers of the curve, and one light for each of the "
         f"{places} places. Each place gives {photos} equations.",

@@ -87,7 +87,8 @@ def two_sources_of_noise() -> ConceptQuestion:
         name="two-sources-of-noise",
         stem=f"A pixel collects {electrons} electrons on average. By chance, their number scatters "
         f"by {photon_noise:.0f}. Reading the pixel adds another, independent scatter of "
-        f"{read_noise}. How large is the signal, compared with its total scatter?",
+        f"{read_noise}. How large is the average signal, compared with its total "
+        "scatter?",
         right=f"{snr_of(electrons, read_noise=read_noise):.2g} times as large",
         because="The squares of independent scatters add: the total is the root of 200, about 14.",
         wrong=(

@@ -52,7 +52,7 @@ def levels_of_the_brightest_stop() -> ConceptQuestion:
         "two in light, from half of the largest light up to the largest?",
         right=f"about {levels[0]} numbers",
         because="The numbers are proportional to light, so the upper half of the light has half of "
-        "the numbers. Each darker factor of two has half as many again.",
+        "the numbers. Each darker factor of two has half as many as the one above it.",
         wrong=(
             WrongAnswer(
                 f"about {total / bits:.0f} numbers",
@@ -83,8 +83,9 @@ def photos_for_a_scene() -> ConceptQuestion:
     rounded_down = known_mistake("count", "count_rounded_down")
     return ConceptQuestion(
         name="photos-for-a-scene",
-        stem=f"Photographers call a factor of two in light a stop. One photo covers {usable} stops, "
-        f"and the scene spans {scene}. Each further photo gets {step} stops more light than the "
+        stem=f"Photographers call a factor of two in light a stop. One photo records a range of "
+        f"{usable} stops, and the scene spans {scene}. Each further photo gets {step} "
+        "stops more light than the "
         "one before. How many photos cover the whole scene?",
         right=f"{planning.count(scene, usable, overlap)} photos",
         because=f"The first photo covers {usable} stops. Each further one adds {step}, and the last "

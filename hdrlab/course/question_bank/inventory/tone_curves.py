@@ -54,10 +54,10 @@ def average_of_a_scene() -> ConceptQuestion:
     twice = scaled[0] * key
     return ConceptQuestion(
         name="average-of-a-scene",
-        stem="Three quarters of a scene have the brightness "
-        f"{wall:g}, and a lamp in the last quarter has {L[-1]:,.0f}. A program takes the geometric "
-        f"mean (the fourth root of the product of the four) as average and shows it as {key:.0%} "
-        f"of white. How is the brightness {wall:g} shown?",
+        stem=f"Three of four places have the brightness {wall:g}, and a lamp at the fourth has "
+        f"{L[-1]:,.0f}. A program multiplies all brightnesses by one factor, so that their "
+        "geometric mean (the fourth root of the product of the four) becomes "
+        f"{key:.0%} of white. How is the brightness {wall:g} shown?",
         right=describe_part(scaled[0]),
         because="The geometric mean is 10, and the rest is a tenth of it. A lamp moves it far less "
         "than the arithmetic mean.",
@@ -87,8 +87,8 @@ def one_curve_for_two_rooms() -> ConceptQuestion:
         name="one-curve-for-two-rooms",
         stem=f"A room has brightnesses from 1 to {room}, the view through its window from {room} to "
         f"{room * view:,}. A display shows contrasts of up to {display}:1. A single rising curve, "
-        "used for all pixels, gives the room and the view the same contrast. How much is left "
-        "for each?",
+        "used for all pixels, gives the room and the view the same contrast. How much "
+        "contrast can each get at most?",
         right=describe_contrast(left),
         because="With one curve the contrasts multiply: 10:1 for the room, and 10:1 above it for "
         "the view.",
