@@ -12,15 +12,16 @@ so a pixel that is clipped in any color becomes white.
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hdrlab.core import arrays, optional
-from hdrlab.errors import FileFormatError
+from hdrlab.errors import FileFormatError, InputError
 from hdrlab.io.exif_exposure import Exposure
-from hdrlab.io.files import check_size
+from hdrlab.io.files import check_size, replacing
 
 SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})
 # The value of a clipped pixel.
@@ -36,7 +37,34 @@ QUARTER_TURNS = (5, 6)
 # Bytes of pixels for one byte of the file, at most.
 BEST_COMPRESSION_RATIO = 64
 
+# Photometric interpretation of a DNG whose pixels have one color filter each [DNG 1.7.1].
+PHOTOMETRIC_CFA = 32803
+# Numerator and denominator of the rational numbers that we write.
+DENOMINATOR = 1_000_000
+
 Balance = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RawMosaic:
+    """A RAW photo before demosaicing, and what its file says about it.
+
+    Attributes
+    ----------
+    levels : (H, W) uint16, one color filter each; not rotated, whatever the file's orientation is
+    pattern : (2, 2) int, channels of the filters at the top left corner: 0 red, 1 green, 2 blue
+    black : level of no light; a number, or (H, W) where the four filters have different ones
+    white : level at which a pixel is full
+    gains : (3,) of the white balance that the camera chose, green 1
+    conversion : (3, 3), from balanced channels of the camera to linear sRGB, as LibRaw computes it
+    """
+
+    levels: arrays.NDArray[np.uint16]
+    pattern: arrays.Indices
+    black: arrays.ArrayLike
+    white: float
+    gains: arrays.F64
+    conversion: arrays.F64
 
 
 def read_shape_and_exposure(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
@@ -106,6 +134,104 @@ def to_srgb(camera: arrays.NDArray[np.uint16], matrix: arrays.F32) -> arrays.NDA
         is_clipped = (band == WHITE_LEVEL).any(axis=-1, keepdims=True)
         Z[y : y + BAND_ROWS] = np.where(is_clipped, WHITE_LEVEL, mixed)
     return Z
+
+
+def read_mosaic(path: str | Path) -> RawMosaic:
+    """Read the levels of a RAW photo before demosaicing, with its pattern, gains and matrix.
+
+    `capture.development.develop` makes an image of them.
+
+    Raises
+    ------
+    FileFormatError
+        For a file that LibRaw cannot read, or a sensor without a Bayer pattern.
+    """
+    white_balance = np.array(balance(path)[:3])
+    with _open(path) as file:
+        if file.num_colors != 3 or file.raw_pattern is None or file.raw_pattern.shape != (2, 2):
+            raise FileFormatError(
+                f"{path}: expected a Bayer pattern of red, green and blue; read it with read_photo"
+            )
+        filters = file.raw_colors_visible
+        black_levels = np.array(file.black_level_per_channel, np.float32)
+        has_one_black_level = np.ptp(black_levels) == 0
+        channel_of_filter = np.array([0, 1, 2, 1])  # LibRaw counts the second green as 3
+        return RawMosaic(
+            levels=file.raw_image_visible.copy(),
+            pattern=channel_of_filter[filters[:2, :2]],
+            black=float(black_levels[0]) if has_one_black_level else black_levels[filters],
+            white=float(file.white_level),
+            gains=white_balance / white_balance[1],
+            conversion=file.color_matrix[:, :3].astype(np.float64),
+        )
+
+
+def write_dng(
+    path: str | Path,
+    levels: arrays.NDArray[np.uint16],
+    *,
+    pattern: arrays.ArrayLike,
+    black: int,
+    white: int,
+    gains: arrays.ArrayLike,
+    matrix: arrays.ArrayLike,
+) -> None:
+    """Write a RAW photo as a DNG, which LibRaw and RAW developers can open, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    levels : (H, W) uint16, one color filter each
+    pattern : (2, 2) int, channels of the filters at the top left corner: 0 red, 1 green, 2 blue
+    black, white : levels of no light and of full pixels
+    gains : (3,) of white balance, only their ratios count
+    matrix : (3, 3), from XYZ under D65 to the channels of the camera
+
+    Raises
+    ------
+    InputError
+        For levels of another kind.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "gray.dng"
+    >>> levels = np.full((64, 64), 1000, np.uint16)
+    >>> numbers = dict(pattern=[[0, 1], [1, 2]], black=64, white=4095, matrix=np.eye(3))
+    >>> write_dng(path, levels, **numbers, gains=[2, 1, 1.5])
+    >>> path.stat().st_size > levels.nbytes
+    True
+    """
+    levels = np.asarray(levels)
+    if levels.ndim != 2 or levels.dtype != np.uint16:
+        raise InputError(f"expected RAW levels (H, W) uint16, got {arrays.describe(levels)}")
+    gray = np.min(gains) / np.asarray(gains, np.float64)
+    tags = [
+        (33421, "H", 2, (2, 2), True),  # rows and columns of the pattern
+        (33422, "B", 4, tuple(np.ravel(pattern).tolist()), True),  # the pattern
+        (50706, "B", 4, (1, 4, 0, 0), True),  # version of DNG
+        (50708, "s", 0, "hdrlab", True),  # model of the camera
+        (50714, "H", 1, black, True),
+        (50717, "H", 1, white, True),
+        (50721, "2i", 9, _as_rationals(matrix), True),
+        (50728, "2I", 3, _as_rationals(gray), True),  # a gray card in the camera's channels
+        (50778, "H", 1, 21, True),  # the light of the matrix, D65
+    ]
+    with replacing(path) as name:
+        optional.tifffile.imwrite(
+            name,
+            levels,
+            photometric=PHOTOMETRIC_CFA,
+            extratags=tags,
+            metadata=None,
+            software=False,
+        )
+
+
+def _as_rationals(values: arrays.ArrayLike) -> tuple[int, ...]:
+    """Return numerators and denominators, one after the other, as TIFF stores numbers."""
+    pairs = [(round(float(value) * DENOMINATOR), DENOMINATOR) for value in np.ravel(values)]
+    return tuple(number for pair in pairs for number in pair)
 
 
 @contextmanager
