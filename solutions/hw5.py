@@ -8,8 +8,8 @@
 # compression at each scale without a base layer (the local Laplacian filter), and PQ coding and
 # gain maps for HDR screens. The others are parts of the lecture that no other homework covers: the
 # gain of a sensor, the brightness transfer between two histograms, the signal-to-noise ratio of a
-# pixel value, the weights of exposure fusion, metering, flat patches, and least squares by the
-# singular value decomposition. You write the core of each.
+# pixel value, the weights of exposure fusion, metering, flat patches, least squares by the singular
+# value decomposition, and the colors of a RAW photo. You write the core of each.
 #
 # {choice}
 #
@@ -527,6 +527,58 @@ print(
     solve_by_svd(chain, np.array([1.0, 1, 2])),
     "has the differences 1, 1 and 2, and the mean 0",
 )
+
+# %% [markdown] about="balance_white"
+# ## 17 · White balance on a RAW mosaic ({points})
+#
+# A RAW file holds one number for each pixel: `X`, the exposure behind one color filter, where 1 is a
+# full pixel. `c` is the channel of its filter: 0 red, 1 green, 2 blue. A white card has a different
+# exposure behind each filter. The gains $g$ = `gains` correct this: multiply each pixel by the
+# gain of its filter.
+#
+# Only the ratios of the gains count, so first divide all three by the smallest. What exceeds 1 after
+# the multiplication becomes 1: a pixel that is full behind all filters is white. Noise around no
+# light is negative half of the time; leave values below 0 as they are.
+#
+# (`X` and `c` have the shape (H, W), and `gains` are three positive numbers. The filters of `c` can
+# be in any order. Return the balanced mosaic, (H, W).)
+
+# %% task="balance_white"
+# Return the mosaic X (H, W), each pixel multiplied by the gain of its filter c, and at most 1.
+
+# %% about="balance_white"
+filters = np.tile([[0, 1], [1, 2]], (120, 160))
+seen = np.take_along_axis(room * [0.44, 1, 0.7], filters[..., None], axis=-1)[..., 0]
+mosaic = np.minimum(0.3 * seen / np.quantile(seen, 0.7), 1)
+balanced = balance_white(mosaic, filters, np.array([2.25, 1, 1.42]))
+pictures.picture(
+    colour.to_8bit(np.hstack([mosaic, balanced])[60:120].repeat(2, axis=0).repeat(2, axis=1)),
+    alt="The mosaic of the room: a checkerboard, and nearly without it after white balance",
+)
+
+# %% [markdown] about="screen_from_camera"
+# ## 18 · From the colors of a camera to those of a screen ({points})
+#
+# The matrix $M$ takes XYZ to the channels of a camera, and $P$ takes linear RGB of a screen to XYZ.
+# Together they take RGB to the camera:
+#
+# $$A = M P.$$
+#
+# White, (1, 1, 1), becomes the sums of $A$'s rows. White balance has divided each channel by just
+# that, so divide each row of $A$ by its sum. The inverse of the result takes balanced
+# channels back to the screen:
+#
+# $$C = \Bigl(\frac{A}{\text{row sums}}\Bigr)^{-1}.$$
+#
+# ($M$, $P$ and $C$ are (3, 3). The row sums are positive, and $A$ has an inverse.)
+
+# %% task="screen_from_camera"
+# Return C (3, 3), from the balanced channels of a camera to linear RGB of a screen.
+
+# %% about="screen_from_camera"
+canon = np.array([[0.6722, -0.0635, -0.0963], [-0.4287, 1.2460, 0.2028], [-0.0908, 0.2162, 0.5668]])
+srgb = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+print(screen_from_camera(canon, srgb).round(3), "takes the colors of a camera to sRGB")
 
 # %% [markdown]
 # ## All checks

@@ -17,6 +17,8 @@ PAPERS = {
     r"Farbman, Fattal, Lischinski and Szeliski \(SIGGRAPH 2008\)": DOI + "10.1145/1360612.1360666",
     r"Fattal, Lischinski and Werman \(SIGGRAPH 2002\)": DOI + "10.1145/566570.566573",
     r"Gallo and others \(ICCP 2009\)": DOI + "10.1109/ICCPHOT.2009.5559003",
+    r"Getreuer \(2011\)": DOI + "10.5201/ipol.2011.g_mhcd",
+    r"Gharbi and others \(2016\)": DOI + "10.1145/2980179.2982399",
     r"Granados and others \(CVPR 2010\)": DOI + "10.1109/CVPR.2010.5540208",
     r"Grossberg and Nayar \(CVPR 2003\)": DOI + "10.1109/CVPR.2003.1211522",
     r"Grossberg and Nayar \(PAMI 2003\)": DOI + "10.1109/TPAMI.2003.1240119",
@@ -30,6 +32,7 @@ PAPERS = {
     r"Kang, Uyttendaele, Winder and Szeliski \(SIGGRAPH 2003\)": DOI + "10.1145/882262.882270",
     r"Khan, Akyüz and Reinhard \(ICIP 2006\)": DOI + "10.1109/ICIP.2006.312892",
     r"Levin and others, 2008": DOI + "10.1145/1360612.1360670",
+    r"Malvar, He and Cutler \(2004\)": DOI + "10.1109/ICASSP.2004.1326587",
     r"Mantiuk and others \(SIGGRAPH 2011\)": DOI + "10.1145/1964921.1964935",
     r"Mantiuk, Myszkowski and Seidel \(ACM TAP 2006\)": DOI + "10.1145/1166087.1166095",
     r"Mertens, Kautz and Van Reeth \((Pacific Graphics )?2007\)": DOI + "10.1109/PG.2007.17",
@@ -54,4 +57,5 @@ PAPERS = {
     r"Ward Larson, Rushmeier and Piatko, 1997": DOI + "10.1109/2945.646233",
     r"Yasuma and others \(2010\)": DOI + "10.1109/TIP.2010.2046811",
     r"Yeganeh and Wang, 2013": DOI + "10.1109/TIP.2012.2221725",
+    r"Wronski and others \(2019\)": DOI + "10.1145/3306346.3323024",
 }

@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 
 from hdrlab.capture.sensor import balance
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Indices, describe
@@ -137,7 +138,9 @@ def find_pattern(X: ArrayLike, gains: ArrayLike) -> Indices:
     >>> find_pattern(gray_card, gains=[2, 1, 3]).tolist()
     [[0, 1], [1, 2]]
     """
-    g = as_gains(gains)
+    g = np.asarray(gains, np.float64)
+    if g.shape != (3,) or not np.all((g > 0) & np.isfinite(g)):
+        raise InputError(f"expected three positive gains, got {describe(g)}")
     candidates = find_candidates(X)
     planes = cell_planes(X)
     is_measured = (planes < 1).all(axis=(0, 1))
@@ -151,14 +154,14 @@ def find_pattern(X: ArrayLike, gains: ArrayLike) -> Indices:
 
 
 def gray_world(X: ArrayLike, c: ArrayLike) -> F64:
-    """Return gains (3,) that make the mean of the scene gray; clipped pixels do not count."""
+    """Return gains (3,) that make the mean of the scene gray, without what is clipped."""
     return balance([pixels.mean() for pixels in _measured_pixels(X, c)])
 
 
 def white_patch(X: ArrayLike, c: ArrayLike, *, quantile: float = 0.99) -> F64:
     """Return gains (3,) that make the brightest pixels white, those at a quantile of each channel.
 
-    Clipped pixels do not count: they are white already, whatever the light was.
+    Clipped pixels and their neighbors do not count: they are white already, whatever the light was.
     """
     if not 0 < quantile <= 1:
         raise InputError(f"expected a quantile above 0, at most 1, got {quantile}")
@@ -172,7 +175,7 @@ def gray_patch(X: ArrayLike, c: ArrayLike, *, rows: slice, columns: slice) -> F6
     return gray_world(X[rows, columns], c[rows, columns])
 
 
-def balance_white(X: ArrayLike, c: ArrayLike, gains: ArrayLike) -> F32:
+def balance_white(X: ArrayLike, c: ArrayLike, gains: ArrayLike) -> Array:
     """Return min(g_c X, 1), each pixel times the gain of its filter, for gains of at least 1.
 
     Gains are divided by the smallest of them. With gains below 1, a pixel that is full in all
@@ -193,45 +196,46 @@ def balance_white(X: ArrayLike, c: ArrayLike, gains: ArrayLike) -> F32:
     --------
     >>> balance_white([[0.3, 0.4], [0.4, 1.0]], [[0, 1], [1, 2]], [1.0, 0.5, 0.75])
     array([[0.6, 0.4],
-           [0.4, 1. ]], dtype=float32)
+           [0.4, 1. ]])
     """
-    X = _as_mosaic(X)
-    c = as_channels(c, X.shape)
-    g = as_gains(gains)
-    g = g / g.min()
-    return np.minimum(X * g[c], 1).astype(np.float32)
+    if np.shape(c) != np.shape(X) or np.shape(gains) != (3,) or not np.min(gains) > 0:
+        raise InputError("expected a mosaic (H, W), its channels (H, W) and three positive gains")
+    if not np.isin(c, (0, 1, 2)).all():
+        raise InputError(f"expected channels 0, 1 and 2, got {describe(np.asarray(c))}")
+    g = np.asarray(gains) / np.min(gains)
+    return np.minimum(X * g[np.asarray(c)], 1)
 
 
-def srgb_from_camera(M: ArrayLike) -> F64:
-    """Return C (3, 3), from balanced channels of a camera to linear sRGB, from its color matrix M.
+def screen_from_camera(M: ArrayLike, P: ArrayLike) -> F64:
+    """Return C (3, 3), from balanced channels of a camera to linear RGB of a screen.
 
-    A = M XYZ_OF_SRGB takes linear sRGB to the channels of the camera. White, (1, 1, 1), becomes the
+    A = M P takes RGB of the screen to the channels of the camera. White, (1, 1, 1), becomes the
     sums of A's rows, and white balance divides by just these sums. So each row of A is divided by
     its sum before A is inverted: C = (A / row sums)^-1. Then C keeps (1, 1, 1), and gray stays gray.
 
     Parameters
     ----------
-    M : (3, 3), from XYZ under D65 to the channels of the camera
+    M : (3, 3), color matrix, from XYZ under D65 to the channels of the camera
+    P : (3, 3), XYZ of the screen's linear red, green and blue, one a column: `XYZ_OF_SRGB`
 
     Raises
     ------
     InputError
-        For a matrix that is not (3, 3), has no inverse, or makes no positive channels of white.
+        For matrices that are not (3, 3), have no inverse, or make no positive channels of white.
 
     Examples
     --------
     >>> camera = [[0.67, -0.06, -0.10], [-0.43, 1.25, 0.20], [-0.09, 0.22, 0.57]]
-    >>> srgb_from_camera(camera).sum(axis=1).round(6).tolist()
+    >>> screen_from_camera(camera, XYZ_OF_SRGB).sum(axis=1).round(6).tolist()
     [1.0, 1.0, 1.0]
     """
-    M = np.asarray(M, np.float64)
-    if M.shape != (3, 3) or not np.all(np.isfinite(M)):
-        raise InputError(f"expected a finite color matrix (3, 3), got {describe(M)}")
-    A = M @ XYZ_OF_SRGB
-    sums = A.sum(axis=1, keepdims=True)
-    if not np.all(sums > 0) or abs(np.linalg.det(A)) < 1e-9:
-        raise InputError("expected a color matrix with an inverse, and positive channels of white")
-    return np.linalg.inv(A / sums)
+    if np.shape(M) != (3, 3) or np.shape(P) != (3, 3):
+        raise InputError(f"expected matrices (3, 3), got {np.shape(M)} and {np.shape(P)}")
+    if np.linalg.matrix_rank(np.dot(M, P)) < 3 or np.dot(M, P).sum(axis=1).min() <= 0:
+        raise InputError("expected matrices with inverses, under which white is positive")
+    A = np.asarray(M) @ np.asarray(P)
+    A = A / A.sum(axis=1, keepdims=True)
+    return np.linalg.inv(A)
 
 
 def convert(E: ArrayLike, C: ArrayLike) -> F32:
@@ -260,7 +264,7 @@ def develop_steps(
     c = tile(pattern, Z.shape)
     X = normalize(Z, black=black, white=white)
     yield Step("levels", X)
-    X = balance_white(X, c, gains)
+    X = balance_white(X, c, gains).astype(np.float32)
     yield Step("white balance", X)
     E = demosaic(X, c)
     yield Step("demosaiced", E)
@@ -288,7 +292,7 @@ def develop(
     black : level of no light; a number, or (H, W) if the filters have different ones
     white : level at which a pixel is full
     gains : (3,) of white balance, only their ratios count
-    conversion : (3, 3), C of the camera, see `srgb_from_camera`
+    conversion : (3, 3), C of the camera, see `screen_from_camera`
     demosaic : function of a mosaic and its channels, `malvar.demosaic` or `mosaic.demosaic`
 
     Returns
@@ -303,7 +307,8 @@ def develop(
     Examples
     --------
     >>> card = np.tile([[300, 500], [500, 200]], (4, 4))
-    >>> C = srgb_from_camera([[0.67, -0.06, -0.10], [-0.43, 1.25, 0.20], [-0.09, 0.22, 0.57]])
+    >>> camera = [[0.67, -0.06, -0.10], [-0.43, 1.25, 0.20], [-0.09, 0.22, 0.57]]
+    >>> C = screen_from_camera(camera, XYZ_OF_SRGB)
     >>> levels = dict(pattern=[[0, 1], [1, 2]], black=100, white=1100)
     >>> develop(card, **levels, gains=[2, 1, 4], conversion=C)[3, 3].round(3)
     array([0.665, 0.665, 0.665], dtype=float32)
@@ -320,26 +325,23 @@ def develop(
     return last(steps).image
 
 
-def as_gains(gains: ArrayLike) -> F64:
-    """Return gains (3,) of white balance, or raise an InputError."""
-    g = np.asarray(gains, np.float64)
-    if g.shape != (3,) or not np.all((g > 0) & np.isfinite(g)):
-        raise InputError(f"expected three positive gains, got {describe(g)}")
-    return g
-
-
 def _measured_pixels(X: ArrayLike, c: ArrayLike) -> list[Array]:
-    """Return the pixels of each channel that are not clipped."""
+    """Return the pixels of each channel that have no clipped pixel next to them.
+
+    Leaving out the clipped pixels alone would not do: green clips first, so that the brightest
+    places would count in red and blue only.
+    """
     X = _as_mosaic(X)
     c = as_channels(c, X.shape)
-    channels = [X[(c == k) & (X < 1)] for k in range(3)]
+    is_measured = maximum_filter(X, size=3) < 1
+    channels = [X[(c == k) & is_measured] for k in range(3)]
     if min(pixels.size for pixels in channels) == 0:
         raise InputError("expected pixels of each color below 1, got a channel without them")
     return channels
 
 
 def _as_mosaic(X: ArrayLike) -> Array:
-    """Return the mosaic (H, W) as floats, or raise an InputError."""
+    """Return a mosaic (H, W) as floats, or raise an InputError."""
     X = np.asarray(X)
     if X.ndim != 2 or min(X.shape) < 1 or X.dtype.kind not in "iuf":
         raise InputError(f"expected a mosaic (H, W) of numbers, got {describe(X)}")

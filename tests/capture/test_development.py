@@ -21,7 +21,7 @@ PATTERNS = {
 CANON = np.array([[0.6722, -0.0635, -0.0963], [-0.4287, 1.2460, 0.2028], [-0.0908, 0.2162, 0.5668]])
 CANON_OF_SRGB = CANON @ development.XYZ_OF_SRGB
 GAINS = sensor.balance(CANON_OF_SRGB.sum(axis=1))
-CONVERSION = development.srgb_from_camera(CANON)
+CONVERSION = development.screen_from_camera(CANON, development.XYZ_OF_SRGB)
 SENSOR = Sensor(full_well=40_000, read_noise=4, gain=2.5, bits=14, black=512)
 FULL_LEVEL = 512 + 15871  # the converter ends below the full well
 NUMBERS = dict(black=512, white=FULL_LEVEL, gains=GAINS, conversion=CONVERSION)
@@ -179,7 +179,9 @@ def test_gray_stays_gray_and_colors_become_those_of_the_scene():
 
 
 def test_a_color_matrix_in_another_unit_gives_the_same_conversion():
-    assert np.allclose(development.srgb_from_camera(7 * CANON), CONVERSION)
+    assert np.allclose(
+        development.screen_from_camera(7 * CANON, development.XYZ_OF_SRGB), CONVERSION
+    )
 
 
 # LibRaw
@@ -257,8 +259,8 @@ def test_libraw_computes_the_same_conversion_from_the_color_matrix(tmp_path):
         lambda: development.balance_white(np.ones((4, 4)), np.full((4, 4), 3), [1, 1, 1]),
         lambda: development.gray_world(np.ones((4, 4)), mosaic.tile(mosaic.BAYER, (4, 4))),
         lambda: development.white_patch(np.zeros((4, 4)), np.ones((4, 4), int), quantile=2),
-        lambda: development.srgb_from_camera(np.eye(4)),
-        lambda: development.srgb_from_camera(np.ones((3, 3))),
+        lambda: development.screen_from_camera(np.eye(4), development.XYZ_OF_SRGB),
+        lambda: development.screen_from_camera(np.ones((3, 3)), development.XYZ_OF_SRGB),
         lambda: development.convert(np.ones((4, 4)), np.eye(3)),
     ],
 )

@@ -216,3 +216,19 @@ def solve_by_svd(A, b, *, rtol=1e-10):
     return sum(
         (c[i] / s[i] * Vt[i] for i in range(len(s)) if s[i] > rtol * s[0]), np.zeros(A.shape[1])
     ).tolist()
+
+
+# %% task="balance_white"
+
+
+def balance_white(X, c, gains):
+    g = np.asarray(gains, f32) / f32(np.min(gains))
+    return np.minimum(np.asarray(X, f32) * np.take(g, c), f32(1))
+
+
+# %% task="screen_from_camera"
+
+
+def screen_from_camera(M, P):
+    A = np.dot(M, P)
+    return np.linalg.solve(A / A.sum(1)[:, None], np.eye(3))

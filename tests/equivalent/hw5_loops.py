@@ -268,3 +268,22 @@ def solve_by_svd(A, b, *, rtol=1e-10):
         if s[i] > rtol * s[0]:
             x += U[:, i] @ b / s[i] * Vt[i]
     return x
+
+
+# %% task="balance_white"
+
+
+def balance_white(X, c, gains):
+    smallest = min(float(gain) for gain in gains)
+    balanced = np.zeros(np.shape(X))
+    for place in np.ndindex(balanced.shape):
+        balanced[place] = min(float(X[place]) * float(gains[c[place]]) / smallest, 1.0)
+    return balanced
+
+
+# %% task="screen_from_camera"
+
+
+def screen_from_camera(M, P):
+    A = [[sum(M[i][j] * P[j][k] for j in range(3)) for k in range(3)] for i in range(3)]
+    return np.linalg.inv([[value / sum(row) for value in row] for row in A])

@@ -204,3 +204,21 @@ def solve_by_svd(A, b, rtol=1e-10):
     large = s > rtol * s.max()
     inverse = np.where(large, 1 / np.where(large, s, 1), 0)
     return Vh.T @ np.diag(inverse) @ U.T @ b[:, None]
+
+
+# %% task="balance_white"
+
+
+def balance_white(X, c, gains):
+    g = np.asarray(gains) / min(gains)
+    factor = sum(g[k] * (np.asarray(c) == k) for k in range(3))
+    return np.where(X * factor > 1, 1.0, X * factor)
+
+
+# %% task="screen_from_camera"
+
+
+def screen_from_camera(M, P):
+    A = np.einsum("ij,jk->ik", M, P)
+    white = A @ np.ones(3)
+    return np.linalg.inv(A) @ np.diag(white)

@@ -6,6 +6,7 @@ A function's name begins with the id of its task.
 import numpy as np
 from scipy.ndimage import uniform_filter
 
+from hdrlab.capture.development import XYZ_OF_SRGB, balance_white, screen_from_camera
 from hdrlab.capture.metering import centre, optimum, spot
 from hdrlab.core.filters.guided import guided
 from hdrlab.core.gainmap import apply_gain, gain_map
@@ -248,3 +249,25 @@ def snr_least_absolute_unit(g, *, least=0.01, span=4):
 
 def inverse_variance_merge_of_E_alone(X, D, measured, t, N, R):
     return inverse_variance_merge(X, D, measured, t, N, R)[0]
+
+
+def balance_white_blue_for_red(X, c, gains):
+    return balance_white(X, c, np.asarray(gains)[::-1])
+
+
+def balance_white_divided_by_green(X, c, gains):
+    return np.minimum(X * (np.asarray(gains) / gains[1])[c], 1)
+
+
+def balance_white_clipped_before(X, c, gains):
+    return np.minimum(X, 1) * (np.asarray(gains) / np.min(gains))[c]
+
+
+def balance_white_always_rggb(X, c, gains):
+    height, width = X.shape
+    rggb = np.tile([[0, 1], [1, 2]], (height // 2 + 1, width // 2 + 1))[:height, :width]
+    return balance_white(X, rggb, gains)
+
+
+def screen_from_camera_always_srgb(M, P):
+    return screen_from_camera(M, XYZ_OF_SRGB)
