@@ -271,3 +271,8 @@ def balance_white_always_rggb(X, c, gains):
 
 def screen_from_camera_always_srgb(M, P):
     return screen_from_camera(M, XYZ_OF_SRGB)
+
+
+def screen_from_camera_columns(M, P):
+    A = np.asarray(M) @ P
+    return np.linalg.inv(A / A.sum(axis=0, keepdims=True))

@@ -27,17 +27,6 @@ def normalized_after_inverting(M, P):
 
 
 @mistake(
-    "screen_from_camera_columns",
-    says="You divide the columns of A by their sums. White is (1, 1, 1), and A takes it to the sums of "
-    "the rows: divide each row by its sum.",
-    misses_method=True,
-)
-def columns(M, P):
-    A = np.asarray(M) @ P
-    return np.linalg.inv(A / A.sum(axis=0, keepdims=True))
-
-
-@mistake(
     "screen_from_camera_not_inverted",
     says="Your matrix takes the screen's RGB to the camera's channels. C is the other direction: "
     "invert it.",

@@ -26,6 +26,17 @@ def test_each_pixel_is_multiplied_by_the_gain_of_its_filter(subject, rng):
     agree(subject, rng, gains, brightest=0.35)
 
 
+@points(2)
+def test_equal_gains_change_nothing(subject, rng):
+    """If the three gains are equal, the channels are balanced already.
+
+    Only the ratios of the gains count, and here the ratios are 1.
+
+    After you divide by the smallest, all gains are 1.
+    """
+    agree(subject, rng, np.full(3, rng.uniform(1.5, 2.5)), brightest=0.35)
+
+
 @points(4)
 def test_gains_are_divided_by_the_smallest(subject, rng):
     """Two files can state the same white balance as (2, 1, 1.5) and as (1, 0.5, 0.75).

@@ -31,6 +31,21 @@ def test_gray_stays_gray(subject, rng):
     same(came @ np.ones(3), np.ones(3), 1e-6, what="C (1, 1, 1)")
 
 
+@points(3)
+def test_a_camera_whose_channels_are_balanced_needs_the_inverse_alone(subject, rng):
+    """If white is (1, 1, 1) in the camera without gains, dividing by the sums changes nothing.
+
+    A takes RGB of the screen to the camera. C goes back.
+
+    Then C is the inverse of A = M P.
+    """
+    P = random_screen(rng)
+    A = random_camera(rng) @ P
+    A = A / A.sum(axis=1, keepdims=True)
+    came = subject.screen_from_camera(A @ np.linalg.inv(P), P)
+    same(came, np.linalg.inv(A), 1e-6, what="C")
+
+
 @points(6)
 def test_colors_of_the_screen_come_back(subject, rng):
     """A color of the screen, seen by the camera and balanced, must be the same color after C.
