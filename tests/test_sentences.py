@@ -133,6 +133,11 @@ def quality(n, name):
     return n.quality.tmqi(n.L, n.changed[name])
 
 
+def wrong_colors(n, order):
+    """Return in which share of the pixels of notebook 26 an order gives a color half a stop off."""
+    return np.mean(np.abs(n.errors[n.ORDERS[order]]) > 0.5)
+
+
 SENTENCES = {
     "00": {
         "Here are seven photos, two stops apart": lambda n: apart(n.times, 7, 2),
@@ -946,6 +951,28 @@ SENTENCES = {
         "over eight stops a code is a thirtieth of a stop": lambda n: round(255 / 8) == 32,
         "At 2 it applies a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
         "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
+    },
+    "26": {
+        "Without subtracting the black level it would be 6.3 %": lambda n: (
+            round(100 * 1024 / n.WHITE, 1) == 6.3
+        ),
+        "Both estimates come close to the file's gains": lambda n: all(
+            np.allclose(n.GAINS[name], n.gains, rtol=0.1) for name in ("gray world", "white patch")
+        ),
+        r"$\sqrt{1.96^2 + 1.12^2 + 0.16^2} = 2.3$ times as large": lambda n: (
+            np.abs(n.C[0]).round(2).tolist() == [1.96, 1.12, 0.16]
+            and round(np.linalg.norm(n.C[0]), 1) == 2.3
+        ),
+        "the curve of sRGB lifts 0.05 to 0.25": lambda n: (
+            round(float(n.colour.encode_srgb(0.05)), 2) == 0.25
+        ),
+        "Only rounding: LibRaw computes in whole numbers": lambda n: (
+            n.theirs is None or n.apart <= 12
+        ),
+        "only about half as many colors are wrong": lambda n: (
+            0.4 < wrong_colors(n, 2) / wrong_colors(n, 0) < 0.6
+            and 0.4 < wrong_colors(n, 2) / wrong_colors(n, 1) < 0.6
+        ),
     },
 }
 

@@ -19,7 +19,7 @@ def random_screen(rng):
 
 
 @points(4)
-def test_gray_stays_gray(subject, rng):
+def test_gray_of_the_camera_is_gray_on_the_screen(subject, rng):
     """After white balance, white is (1, 1, 1) in the camera, and it is (1, 1, 1) on the screen.
 
     C must take (1, 1, 1) to (1, 1, 1). What does this say about the sum of each of its rows?
