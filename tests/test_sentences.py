@@ -953,6 +953,10 @@ SENTENCES = {
         "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
     },
     "26": {
+        "Each cell of 2 × 2 pixels has two green filters on one diagonal": lambda n: (
+            n.mosaic.BAYER.shape == (2, 2) and np.sum(n.mosaic.BAYER == 1) == 2
+        ),
+        "Here are three photos, three stops apart.": lambda n: apart(n.TIMES, 3, 3),
         "Without subtracting the black level it would be 6.3 %": lambda n: (
             round(100 * 1024 / n.WHITE, 1) == 6.3
         ),
