@@ -15,6 +15,8 @@ balance is a little blue show blue gray, and sepia photos show brown. Next to th
 equal channels would have another color.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_mask, as_radiance, as_stack
@@ -48,7 +50,11 @@ MIN_BLACK_FRACTION = 0.05
 
 
 def measure_color_certainty(
-    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    valid: ArrayLike | None = None,
+    noise: float | None = None,
 ) -> F32 | None:
     """Return how certain the color of each pixel is, from 0 to 1.
 
@@ -59,6 +65,8 @@ def measure_color_certainty(
         Exposure times in seconds.
     valid : (P, H, W) bool, optional
         False where a photo shows nothing of the scene.
+    noise : float, optional
+        What `measure_noise` returns for the longest photo, if it is known.
 
     Returns
     -------
@@ -80,25 +88,52 @@ def measure_color_certainty(
     stack = as_stack(images)
     mask = as_mask(valid, stack)
     longest = int(np.argmax(np.asarray(times)))
-    image = stack[longest].reshape(*stack.shape[1:3], -1)
-    noise = measure_noise(image)
-    full_level = FULL_SIGNAL_TO_NOISE * noise
+    photos = stack.reshape(*stack.shape[:3], -1)
+    image = photos[longest]
+    if noise is None:
+        noise = measure_noise(image)
+    full_level = int(np.ceil(FULL_SIGNAL_TO_NOISE * noise))
     certainty = np.ones(image.shape[:2], np.float32)
-    rows_per_band = max(1, MAX_BAND_SAMPLES // max(image[0].size, 1))
-    for top in range(0, len(image), rows_per_band):
-        rows = slice(top, min(top + rows_per_band, len(image)))
-        is_dark = _find_largest(image[rows]) < full_level
-        if mask is not None:
-            is_dark &= mask[longest, rows]
+    for rows in split_rows(image):
         # Something that moved may be bright in another photo.
         band_mask = None if mask is None else mask[:, rows]
-        is_dark &= ~_find_bright(stack[:, rows], is_dark, full_level, band_mask)
+        is_dark = _find_largest(find_brightest(photos[:, rows], band_mask)) < full_level
+        if mask is not None:
+            is_dark &= mask[longest, rows]
         if not is_dark.any():
             continue
         signal_to_noise = _average_windows(image, rows)[is_dark] / np.float32(noise)
         span = FULL_SIGNAL_TO_NOISE - MIN_SIGNAL_TO_NOISE
         certainty[rows][is_dark] = np.clip((signal_to_noise - MIN_SIGNAL_TO_NOISE) / span, 0, 1)
     return None if np.all(certainty == 1) else certainty
+
+
+def split_rows(image: Array) -> Iterator[slice]:
+    """Yield the rows of bands of an image (H, W, C) that take little memory.
+
+    Examples
+    --------
+    >>> list(split_rows(np.zeros((3, 2**18, 3))))
+    [slice(0, 1, None), slice(1, 2, None), slice(2, 3, None)]
+    """
+    rows_per_band = max(1, MAX_BAND_SAMPLES // max(image[0].size, 1))
+    for top in range(0, len(image), rows_per_band):
+        yield slice(top, min(top + rows_per_band, len(image)))
+
+
+def find_brightest(photos: Array, mask: Mask | None = None) -> Array:
+    """Return the highest value (H, W, C) of each pixel in photos (P, H, W, C) that show it.
+
+    It is 0 where the mask (P, H, W) is False in every photo.
+
+    Examples
+    --------
+    >>> find_brightest(np.array([[[[3, 40]]], [[[5, 20]]]])).tolist()
+    [[[5, 40]]]
+    """
+    if mask is None:
+        return np.asarray(photos.max(axis=0))
+    return np.asarray(photos.max(axis=0, where=mask[..., None], initial=0))
 
 
 def _find_largest(image: Array) -> Array:
@@ -185,7 +220,13 @@ def measure_neutral(E: ArrayLike, certainty: ArrayLike) -> F32:
     return color / luminance(color[None, None])[0, 0]
 
 
-def fade_to_neutral(E: ArrayLike, certainty: ArrayLike, *, neutral: ArrayLike = (1, 1, 1)) -> F32:
+def fade_to_neutral(
+    E: ArrayLike,
+    certainty: ArrayLike,
+    *,
+    neutral: ArrayLike = (1, 1, 1),
+    in_place: bool = False,
+) -> F32:
     """Return the map in which uncertain pixels are gray, with the same luminance.
 
     Parameters
@@ -196,6 +237,8 @@ def fade_to_neutral(E: ArrayLike, certainty: ArrayLike, *, neutral: ArrayLike = 
         See `measure_color_certainty`.
     neutral : (3,)
         Color of gray, with a luminance of 1; see `measure_neutral`.
+    in_place : bool
+        Whether E, an array of float32, may be overwritten, which saves a copy of it.
 
     Returns
     -------
@@ -215,14 +258,17 @@ def fade_to_neutral(E: ArrayLike, certainty: ArrayLike, *, neutral: ArrayLike = 
     True
     """
     radiance = as_radiance(E)
-    is_uncertain = np.asarray(certainty) < 1
-    if radiance.ndim == 2 or not is_uncertain.any():
+    if radiance.ndim == 2 or np.all(np.asarray(certainty) == 1):
         return radiance
-    faded = radiance.copy()
-    colored = radiance[is_uncertain]
-    gray = luminance(colored[None])[0][:, None] * np.asarray(neutral, np.float32)
-    color_weight = np.asarray(certainty, np.float32)[is_uncertain][:, None]
-    faded[is_uncertain] = gray + color_weight * (colored - gray)
+    faded = radiance if in_place else radiance.copy()
+    for rows in split_rows(faded):
+        color_weight = np.asarray(certainty, np.float32)[rows]
+        is_uncertain = color_weight < 1
+        if not is_uncertain.any():
+            continue
+        colored = faded[rows][is_uncertain]
+        gray = luminance(colored[None])[0][:, None] * np.asarray(neutral, np.float32)
+        faded[rows][is_uncertain] = gray + color_weight[is_uncertain][:, None] * (colored - gray)
     return faded
 
 
@@ -242,9 +288,8 @@ def measure_noise(image: ArrayLike) -> float:
     is_byte = image.dtype == np.uint8
     dark_level = MAX_DARK_LEVEL if is_byte else 257 * MAX_DARK_LEVEL
     counts = np.zeros(dark_level, np.int64)
-    rows_per_band = max(1, MAX_BAND_SAMPLES // max(image[0].size, 1))
-    for top in range(0, len(image), rows_per_band):
-        counts += _count_dark_differences(image[top : top + rows_per_band], dark_level)
+    for rows in split_rows(image):
+        counts += _count_dark_differences(image[rows], dark_level)
     if not counts.any():
         return MIN_NOISE_LEVELS
     noise = DEVIATION_PER_MAD * _median_of_counts(counts) / np.sqrt(2)
@@ -270,16 +315,3 @@ def _median_of_counts(counts: Array) -> float:
     # Of an even number of values, the mean of the two in the middle.
     middle = np.searchsorted(cumulative, [(number - 1) // 2, number // 2], side="right")
     return float(middle.mean())
-
-
-def _find_bright(stack: np.ndarray, is_dark: Mask, level: float, mask: Mask | None) -> Mask:
-    """Return the dark pixels of the longest photo that another photo shows brighter than `level`."""
-    is_bright = np.zeros(is_dark.shape, bool)
-    for j, image in enumerate(stack):
-        values = image[is_dark]
-        brightest = values if values.ndim == 1 else values.max(axis=1)
-        is_over = brightest >= level
-        if mask is not None:
-            is_over &= mask[j][is_dark]
-        is_bright[is_dark] |= is_over
-    return is_bright

@@ -12,10 +12,13 @@ and dark colors turned gray. The longest photo collected the most light. Up to i
 upper limit.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from hdrlab.core.arrays import Array, ArrayLike, Mask, as_mask, as_response, as_stack, levels
 from hdrlab.fast.merge import merge_with_quality
+from hdrlab.pipeline import dark_pixels
 from hdrlab.radiance.merge import Merged, Quality
 
 # pixel values of 8-bit photos below which noise decides what a short photo shows
@@ -26,6 +29,13 @@ NOISE_DEVIATIONS = 2.0
 LONGEST_FACTOR = 1.2
 # methods of the merge that know that a long exposure measures dark pixels better
 LIMITED_METHODS = ("shot", "likelihood")
+
+
+class _DarkBand(NamedTuple):
+    """Rows of a bracket, and the values (h, W, C) that the longest photo shows in dark pixels."""
+
+    rows: slice
+    values: Array
 
 
 def merge_photos(
@@ -79,39 +89,43 @@ def merge_photos(
     stack = as_stack(images)
     mask = as_mask(valid, stack)
     # The dark pixels are found first, because the merge may free the photos.
-    is_dark, dark_levels, time = _find_dark(stack, np.asarray(times, np.float64), mask)
+    bands, time = _find_dark(stack, np.asarray(times, np.float64), mask)
     merged = merge_with_quality(images, times, g, w, method=method, repair=repair, valid=valid)
-    if not len(dark_levels):
-        return merged
-    E = merged.E.reshape(is_dark.shape)
-    curves = as_response(g, levels(stack), is_dark.shape[-1])
+    E = merged.E.reshape(*stack.shape[1:3], -1)
+    curves = as_response(g, levels(stack), E.shape[-1])
     delta = max(1, round(NOISE_DEVIATIONS * noise))
     limits = np.exp(curves[delta:]).astype(np.float32) / np.float32(time)
-    channels = np.nonzero(is_dark)[-1]
-    limited = np.minimum(E[is_dark], limits[dark_levels, channels])
-    is_stuck = (merged.quality & Quality.STUCK > 0)[..., None] & is_dark
-    E[is_dark] = np.where(is_stuck[is_dark], E[is_dark], limited)
+    limits[_dark_level(stack)] = np.inf  # pixels that are not dark have this value
+    for band in bands:
+        is_kept = merged.quality[band.rows] & Quality.STUCK == 0
+        for channel, channel_limits in enumerate(limits.T):
+            radiance = E[band.rows, :, channel]
+            band_limits = channel_limits.take(band.values[..., channel])
+            np.minimum(radiance, band_limits, out=radiance, where=is_kept)
     return merged
 
 
-def _find_dark(stack: Array, times: Array, mask: Mask | None) -> tuple[Mask, Array, float]:
-    """Return which values (H, W, C) are dark in all photos, those of the longest, and its time.
+def _dark_level(stack: Array) -> int:
+    """Return the lowest pixel value that is not dark."""
+    return MAX_DARK_LEVEL if stack.dtype == np.uint8 else 257 * MAX_DARK_LEVEL
+
+
+def _find_dark(stack: Array, times: Array, mask: Mask | None) -> tuple[list[_DarkBand], float]:
+    """Return the rows with pixels that are dark in all photos, and the time of the longest photo.
 
     A pixel that is dark only in the longest photo moved, or the photo is damaged.
     """
-    dark_level = MAX_DARK_LEVEL if stack.dtype == np.uint8 else 257 * MAX_DARK_LEVEL
-    values = stack.reshape(*stack.shape[:3], -1)
+    dark_level = _dark_level(stack)
+    photos = stack.reshape(*stack.shape[:3], -1)
     is_longest = times * LONGEST_FACTOR >= times.max()
-    time = float(times[is_longest].min())
-    longest = np.flatnonzero(is_longest)
-    if mask is None:
-        brightest = values.max(axis=0)
+    bands = []
+    for rows in dark_pixels.split_rows(photos[0]):
+        band_mask = None if mask is None else mask[:, rows]
+        brightest = dark_pixels.find_brightest(photos[:, rows], band_mask)
         is_dark = brightest < dark_level
-    else:
-        brightest = values.max(axis=0, where=mask[..., None], initial=0)
-        is_shown = np.asarray(mask[longest].all(axis=0))
-        is_dark = (brightest < dark_level) & is_shown[..., None]
-    dark_levels = values[longest[0]][is_dark]
-    for j in longest[1:]:
-        np.maximum(dark_levels, values[j][is_dark], out=dark_levels)
-    return is_dark, dark_levels, time
+        if band_mask is not None:
+            is_dark &= band_mask[is_longest].all(axis=0)[..., None]
+        if is_dark.any():
+            values = dark_pixels.find_brightest(photos[is_longest, rows])
+            bands.append(_DarkBand(rows, np.where(is_dark, values, values.dtype.type(dark_level))))
+    return bands, float(times[is_longest].min())

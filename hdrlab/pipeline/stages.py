@@ -286,13 +286,14 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state = replace(state, bracket=replace(state.bracket, images=images[:0].copy()))
         images = images.view(Expendable)
     # The certainty is measured first, because the merge may free the photos.
-    certainty = dark_pixels.measure_color_certainty(images, times, valid=valid)
+    certainty = dark_pixels.measure_color_certainty(images, times, valid=valid, noise=noise)
     merged = merge(images, times, response.g, pixel_weights, valid=valid)
     state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
     neutral = np.ones(3, np.float32)
     if certainty is not None:
         neutral = dark_pixels.measure_neutral(state.E, certainty)
-        state = replace(state, E=dark_pixels.fade_to_neutral(state.E, certainty, neutral=neutral))
+        E = dark_pixels.fade_to_neutral(merged.E, certainty, neutral=neutral, in_place=True)
+        state = replace(state, E=E)
         black_fraction = dark_pixels.measure_black_fraction(certainty)
         if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
             state = state.with_doubt(warning_text("black", percent=100 * black_fraction))

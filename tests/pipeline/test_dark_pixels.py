@@ -115,6 +115,24 @@ def test_the_gray_case_has_the_color_of_its_photos_in_every_tone(shared):
     assert np.abs(measure_ratios_by_tone(found.E) - photo_ratios).max() < 0.1
 
 
+def test_a_large_map_fades_in_place_as_a_small_one_does():
+    rng = np.random.default_rng(1)
+    E = rng.uniform(0.1, 1, (900, 800, 3)).astype(np.float32)
+    certainty = np.ones(E.shape[:2], np.float32)  # the middle of the map has all of its color
+    certainty[:9] = rng.uniform(0, 1, (9, 800))
+    certainty[-9:] = 0
+    ends = np.concatenate([E[:9], E[-9:]])
+    expected = E.copy()
+    faded_ends = dark_pixels.fade_to_neutral(ends, np.concatenate([certainty[:9], certainty[-9:]]))
+    expected[:9] = faded_ends[:9]
+    expected[-9:] = faded_ends[9:]
+    kept = E.copy()
+    assert np.allclose(dark_pixels.fade_to_neutral(E, certainty), expected, rtol=1e-6)
+    assert np.array_equal(E, kept)
+    dark_pixels.fade_to_neutral(E, certainty, in_place=True)
+    assert np.allclose(E, expected, rtol=1e-6)
+
+
 def test_the_noise_of_a_large_photo_is_its_standard_deviation():
     rng = np.random.default_rng(3)
     level, deviation = 8 * 257, 1.2 * 257
