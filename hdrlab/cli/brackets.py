@@ -14,6 +14,7 @@ from hdrlab.pipeline import catalogue
 if TYPE_CHECKING:
     from hdrlab.core.arrays import F64
     from hdrlab.core.bracket import Bracket
+    from hdrlab.io.album import Selection
 
 TIMES_KEYWORDS = ("exif", "estimate")
 CURVE_SUFFIXES = ".csv or .m (pfstools)"
@@ -74,8 +75,8 @@ def read_bracket(
     color = common.parse_color(mask)
     selection = album.select(photos)
     bracket = photo_files.read_bracket(
-        photos,
-        _find_times(selection.paths, times, stops, detail),
+        selection,
+        _find_times(selection, times, stops, detail),
         mask=color,
         note=note,
         detail=detail,
@@ -88,19 +89,17 @@ def read_bracket(
 
 
 def _find_times(
-    paths: list[Path], times: str, stops: float | None, detail: Callable[[str], object]
+    selection: "Selection", times: str, stops: float | None, detail: Callable[[str], object]
 ) -> Path | list[float] | None:
     """Return a list of times, or the file that has one, or None if the photos' EXIF has them."""
-    from hdrlab.io.decode import read_header
-
-    unknown_times = [1.0] * len(paths)
+    unknown_times = [1.0] * len(selection.headers)
     if stops:
         return unknown_times
     if times not in TIMES_KEYWORDS:
         return Path(times)
-    if all(read_header(path).exposure.seconds for path in paths):
+    if all(header.exposure.seconds for header in selection.headers):
         return None
-    list_file = _find_list(paths)
+    list_file = _find_list(selection.paths)
     if list_file is not None:
         detail(f"the exposure times are those of {list_file}")
         return list_file

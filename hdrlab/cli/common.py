@@ -167,7 +167,8 @@ class Command(click.Command):
                 checks += [partial(param.type.check, path) for path in paths]
         if written:
             require_distinct(written)
-            photos = [photo for path in read for photo in _photos_in(path)]
+            existing = [path for path in written if path.exists()]
+            photos = [photo for path in read for photo in _find_photos(path, existing)]
             require_other(written, [*read, *photos])
         for check in checks:
             check()
@@ -207,19 +208,25 @@ def _paths(value: object) -> list[Path]:
     return [Path(item) for item in values if isinstance(item, str | Path)]
 
 
-def _photos_in(folder: Path) -> list[Path]:
-    """Return the photos in a folder: a command that gets the folder reads them. Files have none.
+def _find_photos(folder: Path, outputs: list[Path]) -> list[Path]:
+    """Return the photos in a folder that are among the outputs of a command. Files have none.
 
-    Pictures that hdrlab wrote there, and radiance maps, are no photos, so that a command can be
-    repeated.
+    A command that gets the folder reads these photos. Pictures that hdrlab wrote there, and radiance
+    maps, are no photos, so that a command can be repeated.
     """
+    if not outputs or not os.path.isdir(folder):
+        return []
     from hdrlab.io import album
     from hdrlab.io.own_pictures import is_own_picture, is_radiance_map
 
-    if not os.path.isdir(folder):
-        return []
-    photos = [path for path in folder.iterdir() if path.suffix.lower() in album.SUFFIXES]
-    return [path for path in photos if not is_own_picture(path) and not is_radiance_map(path)]
+    found = []
+    for path in folder.iterdir():
+        if path.suffix.lower() not in album.SUFFIXES or not path.exists():
+            continue
+        is_output = any(os.path.samefile(path, output) for output in outputs)
+        if is_output and not is_own_picture(path) and not is_radiance_map(path):
+            found.append(path)
+    return found
 
 
 def choice_option(

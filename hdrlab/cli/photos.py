@@ -281,7 +281,8 @@ def _assemble_each(ctx: click.Context, photos: tuple[Path, ...]) -> None:
 
     if len(photos) != 1 or not photos[0].is_dir():
         raise InputError("--all needs one folder; pass the folder that holds the photos")
-    bracket_paths, selection = album.select_brackets(photos)
+    all_headers, selection = album.select_brackets(photos)
+    bracket_paths = [[header.path for header in headers] for headers in all_headers]
     common.echo_notes(selection.notes)
     common.echo_warnings(selection.damaged)
     outputs = []

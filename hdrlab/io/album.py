@@ -41,6 +41,8 @@ APPLE_EDITED_NAME = re.compile(r"(img_)e(\d{4})", re.I)
 Paths = str | Path | Sequence[str | Path]
 # The photos, and a sentence on each group of photos that was skipped.
 KeptAndNotes = tuple[list[Path], list[str]]
+# The header of each photo, or an error that says which pixels it has instead of gray or RGB.
+StatedHeaders = dict[Path, decode.PhotoHeader | files.OtherPixels]
 
 
 @dataclass(frozen=True)
@@ -49,8 +51,8 @@ class Selection:
 
     Attributes
     ----------
-    paths
-        The photos.
+    headers
+        What each photo states before its pixels.
     notes
         A sentence on each group of photos that was skipped.
     damaged
@@ -59,10 +61,15 @@ class Selection:
         A sentence on each picture that was skipped because hdrlab made it.
     """
 
-    paths: list[Path]
+    headers: list[decode.PhotoHeader]
     notes: list[str]
     damaged: list[FileFormatError]
     details: tuple[str, ...] = ()
+
+    @property
+    def paths(self) -> list[Path]:
+        """The photos."""
+        return [header.path for header in self.headers]
 
 
 def select(paths: Paths, *, split: bool = True) -> Selection:
@@ -91,46 +98,56 @@ def select(paths: Paths, *, split: bool = True) -> Selection:
         For a folder among other paths, and if fewer than two photos are left.
     FileFormatError
         For a damaged photo, if fewer than two others are left.
+    OtherPixels
+        For a photo among several paths that has other pixels than gray or RGB.
     """
     brackets, selection = select_brackets(paths)
     if not split or len(brackets) == 1:
         return selection
     notes = [*selection.notes, _describe_brackets(brackets)]
-    return replace(selection, paths=brackets[0], notes=notes)
+    return replace(selection, headers=brackets[0], notes=notes)
 
 
-def select_brackets(paths: Paths) -> tuple[list[list[Path]], Selection]:
+def select_brackets(paths: Paths) -> tuple[list[list[decode.PhotoHeader]], Selection]:
     """Return the photos of each bracket of a folder, and the selection of all of them.
 
     `select` has the parameters and errors. Several paths are one bracket.
     """
-    selected, damaged = _leave_out_damaged(photographs(paths))
+    selected, stated, damaged = _read_headers(photographs(paths))
     is_folder = isinstance(paths, str | Path) or len(paths) == 1
     if not is_folder:
-        return [selected], Selection(selected, [], damaged)
-    selected, skipped = _skip_own_pictures(selected)
+        headers = [_require_header(stated[path]) for path in selected]
+        return [headers], Selection(headers, [], damaged)
+    selected, skipped = _skip_own_pictures(selected, stated)
     details = tuple(skipped)
     notes: list[str] = []
-    for skip in (_skip_edited_copies, _skip_other_formats, _skip_other_sizes):
+    for skip in (_skip_edited_copies, _skip_other_formats):
         selected, more_notes = skip(selected)
         notes += more_notes
-    _require_two(selected, [*details, *notes, *map(str, damaged)])
-    groups = splitting.split_into_brackets([decode.read_header(path) for path in selected])
+    headers, more_notes = _skip_other_sizes({path: stated[path] for path in selected})
+    notes += more_notes
+    _require_two([header.path for header in headers], [*details, *notes, *map(str, damaged)])
+    groups = splitting.split_into_brackets(headers)
     brackets = [
-        sorted(header.path for header in group) for group in groups if len(group) >= MIN_PHOTOS
+        sorted(group, key=lambda header: header.path)
+        for group in groups
+        if len(group) >= MIN_PHOTOS
     ]
     if not brackets or len(groups) == 1:
-        return [selected], Selection(selected, notes, damaged, details)
+        return [headers], Selection(headers, notes, damaged, details)
     for group in groups:
         if len(group) < MIN_PHOTOS:
             notes.append(f"{group[0].path.name}: skipped, because it belongs to no bracket")
-    used = [path for bracket in brackets for path in bracket]
+    used = [header for bracket in brackets for header in bracket]
     return brackets, Selection(used, notes, damaged, details)
 
 
-def _describe_brackets(brackets: list[list[Path]]) -> str:
+def _describe_brackets(brackets: list[list[decode.PhotoHeader]]) -> str:
     """Return the note that lists the brackets of a folder, of which hdrlab uses the first."""
-    ranges = [f"{paths[0].name} to {paths[-1].name}" for paths in brackets[:MAX_LISTED_BRACKETS]]
+    ranges = [
+        f"{bracket[0].path.name} to {bracket[-1].path.name}"
+        for bracket in brackets[:MAX_LISTED_BRACKETS]
+    ]
     if len(brackets) > MAX_LISTED_BRACKETS:
         ranges.append(f"{len(brackets) - MAX_LISTED_BRACKETS} more")
     listed = "; ".join(ranges)
@@ -180,35 +197,45 @@ def _require_two(paths: list[Path], notes: Sequence[str] = ()) -> None:
         raise InputError(f"expected two photographs or more, got {got}")
 
 
-def _skip_own_pictures(paths: list[Path]) -> KeptAndNotes:
+def _skip_own_pictures(paths: list[Path], stated: StatedHeaders) -> KeptAndNotes:
     """Skip pictures that hdrlab wrote, and radiance maps, whoever wrote them."""
     kept = []
     notes = []
     for path in paths:
         if is_own_picture(path):
             notes.append(f"{path.name}: skipped, because hdrlab made this picture")
-        elif is_radiance_map(path):
+        elif isinstance(stated[path], files.OtherPixels) and is_radiance_map(path):
             notes.append(f"{path.name}: skipped, because it is a radiance map, not a photo")
         else:
             kept.append(path)
     return kept, notes
 
 
-def _leave_out_damaged(paths: list[Path]) -> tuple[list[Path], list[FileFormatError]]:
-    """Return the photos whose headers can be read, and the errors of the others."""
+def _read_headers(
+    paths: list[Path],
+) -> tuple[list[Path], StatedHeaders, list[FileFormatError]]:
+    """Return the photos whose headers can be read, their headers, and the errors of the others."""
     kept = []
+    stated: StatedHeaders = {}
     errors = []
     for path in paths:
         try:
-            decode.read_header(path)
-        except files.OtherPixels:  # they are not damaged
-            kept.append(path)
+            stated[path] = decode.read_header(path)
+        except files.OtherPixels as error:  # the photo is not damaged
+            stated[path] = error
         except FileFormatError as error:
             errors.append(error)
-        else:
-            kept.append(path)
+            continue
+        kept.append(path)
     require_enough_sound(errors, len(kept))
-    return kept, errors
+    return kept, stated, errors
+
+
+def _require_header(stated: decode.PhotoHeader | files.OtherPixels) -> decode.PhotoHeader:
+    """Return the header of a photo, or raise the error that says which pixels it has instead."""
+    if isinstance(stated, files.OtherPixels):
+        raise stated
+    return stated
 
 
 def require_enough_sound(errors: Sequence[FileFormatError], count: int) -> None:
@@ -262,18 +289,18 @@ def _skip_other_formats(paths: list[Path]) -> KeptAndNotes:
     return kept, [f"{len(chosen)} photos exist in several formats; hdrlab uses {suffixes}"]
 
 
-def _skip_other_sizes(paths: list[Path]) -> KeptAndNotes:
+def _skip_other_sizes(stated: StatedHeaders) -> tuple[list[decode.PhotoHeader], list[str]]:
     """Keep the photos of one size and kind, if these are more than half of them."""
     kinds: dict[Path, Hashable] = {}
+    headers: list[decode.PhotoHeader] = []
     skipped: dict[str, list[Path]] = defaultdict(list)
-    for path in paths:
-        try:
-            header = decode.read_header(path)
-        except files.OtherPixels as error:
-            skipped[str(error).removeprefix(f"{path}: ")].append(path)
+    for path, header in stated.items():
+        if isinstance(header, files.OtherPixels):
+            skipped[str(header).removeprefix(f"{path}: ")].append(path)
             continue
         sides = tuple(sorted(header.shape[:2]))
         kinds[path] = (sides, header.shape[2:], header.dtype, header.kind == "RAW")
+        headers.append(header)
     sentences = [f"{_name_group(group)}: {reason}" for reason, group in skipped.items()]
     if not kinds and len(sentences) == 1:
         raise files.OtherPixels(sentences[0])
@@ -282,14 +309,14 @@ def _skip_other_sizes(paths: list[Path]) -> KeptAndNotes:
         return [], notes
     most_frequent, count = Counter(kinds.values()).most_common(1)[0]
     if count <= max(1, len(kinds) / 2):
-        return list(kinds), notes
+        return headers, notes
     kept = []
-    for path, kind in kinds.items():
-        if kind == most_frequent:
-            kept.append(path)
+    for header in headers:
+        if kinds[header.path] == most_frequent:
+            kept.append(header)
         else:
             notes.append(
-                f"{path.name}: skipped, because its size or type differs from the other photos"
+                f"{header.path.name}: skipped, because its size or type differs from the other photos"
             )
     return kept, notes
 

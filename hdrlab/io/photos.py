@@ -87,7 +87,7 @@ def read_photo(path: str | Path) -> Array:
 
 
 def read_bracket(
-    paths: album.Paths,
+    paths: album.Paths | album.Selection,
     times: Times | None = None,
     *,
     mask: tuple[int, int, int] | None = None,
@@ -105,7 +105,7 @@ def read_bracket(
     Parameters
     ----------
     paths : the photos, or one folder, from which hdrlab uses the photos that form one bracket; see
-        `hdrlab.io.album.select`
+        `hdrlab.io.album.select`, whose result can be passed instead
     times : None for the times in EXIF, or in file names such as 1_250.jpg; without either, all times
         are 1, and `pipeline.assemble` estimates relative ones. Else seconds of equivalent exposure,
         in the order of the photos or by file name, or the path of a list (see
@@ -138,11 +138,15 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    selection = album.select(paths)
-    if _are_in_order(times) and len(times) > len(selection.paths):
-        # the caller knows that all photos of the folder are one bracket
-        selection = album.select(paths, split=False)
-    headers, more_notes = album.turn_alike([read_header(path) for path in selection.paths])
+    if isinstance(paths, album.Selection):
+        selection = paths
+    else:
+        selection = album.select(paths)
+        if _are_in_order(times) and len(times) > len(selection.headers):
+            # the caller knows that all photos of the folder are one bracket
+            selection = album.select(paths, split=False)
+        times = _drop_times_of_damaged(times, paths, selection)
+    headers, more_notes = album.turn_alike(selection.headers)
     _check_alike(headers)
     if detail is not None:
         for sentence in selection.details:
@@ -151,7 +155,6 @@ def read_bracket(
         note(sentence)
     names = [header.path.name for header in headers]
     exposures, fill_notes = fill_missing(names, [header.exposure for header in headers])
-    times = _drop_times_of_damaged(times, paths, selection)
     times_source, times_notes = _find_source_of_times(names, exposures, times)
     for sentence in (*(fill_notes if times is None else ()), *times_notes):
         note(sentence)

@@ -12,7 +12,7 @@ from PIL import Image
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.cli import run
-from hdrlab.io import album, photos, radiance
+from hdrlab.io import album, decode, photos, radiance
 from hdrlab.io.own_pictures import is_own_picture, is_radiance_map
 
 SHAPE = (64, 96)
@@ -41,6 +41,19 @@ def run_command(*words):
 
 def select_names(folder):
     return [path.stem for path in album.select(folder).paths]
+
+
+def test_assemble_reads_the_header_of_each_photo_once(folder, monkeypatch):
+    opened = []
+    read_header = decode.read_header
+
+    def count(path, **options):
+        opened.append(path.name)
+        return read_header(path, **options)
+
+    monkeypatch.setattr(decode, "read_header", count)
+    run_command("assemble", folder, "--times", folder / "times.txt", "-o", folder / "map.hdr")
+    assert sorted(opened) == ["photo0.jpg", "photo1.jpg", "photo2.jpg"]
 
 
 @pytest.mark.parametrize(
