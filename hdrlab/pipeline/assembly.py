@@ -2,13 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics.noise import Noise
+from hdrlab.errors import CalibrationError
+from hdrlab.pipeline.merging import MergeRecord
+
+if TYPE_CHECKING:
+    from hdrlab.pipeline.explanation import PixelExplanation
 
 # The name of a method, or a function with the same signature.
 Method = str | Callable[..., Any]
@@ -52,6 +59,9 @@ class Assembly:
     fallback : str
         Why the map is not worth tone mapping, so that a picture is made by exposure fusion of the
         photos instead; "" if the map is usable.
+    record : MergeRecord or None
+        How the pixels were merged, which `why` needs; None before the merge, and if the photos were
+        released.
     """
 
     stage: str
@@ -70,6 +80,7 @@ class Assembly:
     glare: NDArray[np.bool_] | None = None
     s: NDArray[np.float32] | None = None
     fallback: str = ""
+    record: MergeRecord | None = None
 
     @property
     def spread(self) -> float:
@@ -77,6 +88,55 @@ class Assembly:
         if self.medians is None:
             return float("nan")
         return consistency.measure_spread(self.medians)
+
+    @cached_property
+    def sensor_noise(self) -> Noise | None:
+        """The noise of the camera, estimated from the photos; None if they do not show it."""
+        from hdrlab.pipeline.certainty import estimate_sensor_noise
+
+        if self.record is not None and self.record.sensor_noise is not None:
+            return self.record.sensor_noise
+        try:
+            return estimate_sensor_noise(self)
+        except CalibrationError:
+            return None
+
+    def why(self, y: int, x: int) -> "PixelExplanation":
+        """Explain the value of one pixel: what each photo says there, and what became of it.
+
+        Parameters
+        ----------
+        y, x : int
+            Row and column, as in E[y, x].
+
+        Returns
+        -------
+        PixelExplanation
+            Its `sentence` sums it up; print it for a table.
+
+        Raises
+        ------
+        InputError
+            If the pixel is outside of the map, or if the photos are no longer there.
+
+        Examples
+        --------
+        >>> from hdrlab import pipeline
+        >>> from hdrlab.core.bracket import bracket
+        >>> ramp = np.linspace(2, 120, 48 * 64).reshape(48, 64).astype(np.uint8)
+        >>> photos = bracket([ramp, 2 * ramp], [1, 2])
+        >>> assembly = pipeline.assemble(photos, align="none", response="linear")
+        >>> explanation = assembly.why(24, 32)
+        >>> [photo.levels for photo in explanation.photos]
+        [(62,), (124,)]
+        >>> print(explanation.sentence)
+        The two photos that measured this pixel say 0.484. The map says 0.484.
+        """
+        from hdrlab.pipeline.explanation import explain_pixel
+        from hdrlab.pipeline.pixel_claims import require_record
+
+        require_record(self)
+        return explain_pixel(self, y, x, self.sensor_noise)
 
     def with_note(self, note: str) -> "Assembly":
         """Return a copy with one more note."""

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import F64, Array, Mask
 from hdrlab.core.threads import map_in_threads
-from hdrlab.diagnostics.noise import estimate_noise
+from hdrlab.diagnostics.noise import Noise, estimate_noise
 from hdrlab.errors import CalibrationError
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.merge import Quality
-from hdrlab.radiance.uncertainty import merge_with_deviation
+from hdrlab.radiance.uncertainty import Sure, merge_with_deviation
 
 # rows that one thread merges at a time
 ROWS_PER_STRIP = 64
@@ -26,18 +26,16 @@ def measure_deviation(state: Assembly) -> Assembly:
     removed. If the noise cannot be estimated from the photos, s is infinite everywhere, and a note
     says so.
     """
-    images = state.bracket.images
-    times = state.bracket.times
-    valid = state.bracket.valid
-    if valid is not None:
-        # Masked pixels measure as little as clipped ones.
-        images = images.copy()
-        images[~valid] = np.iinfo(images.dtype).max
     try:
-        noise = estimate_noise(images, times, state.g, state.E)
+        noise = estimate_sensor_noise(state)
     except CalibrationError as error:
         unknown = replace(state, s=np.full_like(state.E, np.inf))
         return unknown.with_note(f"the uncertainty of the map is unknown: {error}")
+
+    if state.record is not None:
+        state = replace(state, record=replace(state.record, sensor_noise=noise))
+    images = _clip_masked_pixels(state.bracket.images, state.bracket.valid)
+    times = state.bracket.times
 
     def merge_strip(strip: Array) -> tuple[Array, Array]:
         return merge_with_deviation(strip, times, state.g, *noise)
@@ -52,3 +50,35 @@ def measure_deviation(state: Assembly) -> Assembly:
             is_unknown = is_unknown | (changed > 0)
     s[is_unknown] = np.inf
     return replace(state, E=np.where(np.isfinite(s), E, state.E), s=s)
+
+
+def estimate_sensor_noise(state: Assembly) -> Noise:
+    """Return the noise of the camera, from the photos of an Assembly and its map.
+
+    Raises
+    ------
+    CalibrationError
+        If two photos measure too few flat pixels.
+    """
+    bracket = state.bracket
+    images = _clip_masked_pixels(bracket.images, bracket.valid)
+    E = state.E
+    if state.record is not None:
+        E = E / np.float32(state.record.unit_factor)
+    return estimate_noise(images, bracket.times, state.g, E)
+
+
+def merge_pixels_with_deviation(
+    images: Array, valid: Mask | None, times: F64, g: F64, noise: Noise
+) -> Sure:
+    """Return the radiance of pixels (P, H, W[, 3]) by inverse variance, and its standard deviation."""
+    return merge_with_deviation(_clip_masked_pixels(images, valid), times, g, *noise)
+
+
+def _clip_masked_pixels(images: Array, valid: Mask | None) -> Array:
+    """Return photos whose masked pixels measure as little as clipped ones."""
+    if valid is None:
+        return images
+    images = images.copy()
+    images[~valid] = np.iinfo(images.dtype).max
+    return images

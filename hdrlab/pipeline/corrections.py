@@ -116,7 +116,17 @@ def remove_ghosts(
     if certainty is not None:
         is_new = np.reshape(state.E != E, (*E.shape[:2], -1)).any(axis=-1)
         E = dark_pixels.fade_to_neutral(E, np.where(is_new, certainty, 1), neutral=neutral)
-    state = replace(state, stage="ghosts", E=E, quality=result.quality, moving=result.labels)
+    record = state.record
+    if record is not None:
+        record = replace(record, used=result.used, references=result.references, alpha=result.alpha)
+    state = replace(
+        state,
+        stage="ghosts",
+        E=E,
+        quality=result.quality,
+        moving=result.labels,
+        record=record,
+    )
     if is_widespread:
         text = warning_text("widespread", percent=percent)
         if mode != "reference":

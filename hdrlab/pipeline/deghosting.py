@@ -81,11 +81,19 @@ def remove_ghosts(
     )
     labels = small.enlarge(found.labels)
     used = np.ones(images.shape[:3], bool) if bracket.valid is None else bracket.valid.copy()
+    alpha_of_pixels = np.zeros(labels.shape, np.float32)
     if not len(found.references):
-        return replace(found, E=merged.E, quality=merged.quality, labels=labels, used=used)
-    references = _map_references(found)
+        return replace(
+            found,
+            E=merged.E,
+            quality=merged.quality,
+            labels=labels,
+            used=used,
+            alpha=alpha_of_pixels,
+        )
+    block_references = _map_references(found)
     # A block that is clipped in part has no mean, but its other pixels are those of the reference.
-    chosen = found.used | (np.arange(len(compared))[:, None, None] == references)
+    chosen = found.used | (np.arange(len(compared))[:, None, None] == block_references)
     seams = regions.feather(found.labels, SEAM_WIDTH)
     E = merged.E.copy()
     quality = merged.quality.copy()
@@ -94,8 +102,8 @@ def remove_ghosts(
         photos = np.stack([images[frame, y, x] for frame in compared])
         shown = np.stack([used[frame, y, x] for frame in compared])
         frames = np.stack([small.enlarge(photo, box) for photo in chosen]) & shown
-        reference = small.enlarge(references, box)
-        filled = _fill_pixels(photos, times, g, frames, shown, reference, top)
+        reference = small.enlarge(block_references, box)
+        filled = fill_pixels(photos, times, g, frames, shown, reference, top)
         frames |= filled.frames
         still = merge(photos, times, g, pixel_weights, valid=frames)
         is_white = filled.white > 0
@@ -108,10 +116,12 @@ def remove_ghosts(
         E[y, x][changed] = still.E[changed]
         E[y, x][seam] = blended[0]
         quality[y, x][changed] = still.quality[changed]
+        alpha_of_pixels[y, x][changed] = alpha[changed]
         used[:, y, x][:, changed] = False
         for frame, is_merged in zip(compared, frames, strict=True):
             used[frame, y, x][changed] = is_merged[changed]
-    return Ghosts(E, quality, labels, compared[found.references], used, found.score)
+    references = compared[found.references]
+    return Ghosts(E, quality, labels, references, used, found.score, alpha_of_pixels)
 
 
 def _map_references(found: Ghosts) -> Labels:
@@ -128,16 +138,16 @@ def _divide_into_bands(labels: Labels) -> Iterator[regions.Box]:
             yield rows, slice(int(columns[0]), int(columns[-1]) + 1)
 
 
-class _Filled(NamedTuple):
+class Filled(NamedTuple):
     """Photos (P, H, W) for pixels that no chosen photo measures, and white (H, W[, C]), or 0."""
 
     frames: Mask
     white: F32
 
 
-def _fill_pixels(
+def fill_pixels(
     photos: Array, times: F64, g: F64, chosen: Mask, shown: Mask, reference: Labels, top: int
-) -> _Filled:
+) -> Filled:
     """Return what to show in the pixels that no chosen photo measures.
 
     It is the longest photo in which no channel is clipped. But where the reference is clipped, a
@@ -170,4 +180,4 @@ def _fill_pixels(
             is_left &= ~is_taken
         is_white = is_left & is_clipped.any(axis=-1)
         white[missing] = np.where(is_white[:, None], np.exp(bounds), 0)
-    return _Filled(frames, white.reshape(photos.shape[1:]))
+    return Filled(frames, white.reshape(photos.shape[1:]))

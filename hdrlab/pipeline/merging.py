@@ -12,11 +12,24 @@ and dark colors turned gray. The longest photo collected the most light. Up to i
 upper limit.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import Array, ArrayLike, Mask, as_mask, as_response, as_stack, levels
+from hdrlab.core.arrays import (
+    F32,
+    F64,
+    Array,
+    ArrayLike,
+    Indices,
+    Mask,
+    as_mask,
+    as_response,
+    as_stack,
+    levels,
+)
+from hdrlab.diagnostics.noise import Noise
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import dark_pixels
 from hdrlab.radiance.merge import Merged, Quality
@@ -36,6 +49,46 @@ class _DarkBand(NamedTuple):
 
     rows: slice
     values: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MergeRecord:
+    """How the pixels of a map were merged, so that each of them can be merged and explained again.
+
+    Attributes
+    ----------
+    method : str
+        See `merge_photos`.
+    pixel_weights : (n,)
+        Weights of the pixel values.
+    noise : float
+        See `merge_photos`.
+    certainty : (h, w) float32 or None
+        How certain the color of each pixel is, see `dark_pixels.measure_color_certainty`.
+    neutral : (3,)
+        The color to which uncertain pixels faded.
+    used : (P, h, w) bool or None
+        The photos that make each pixel, if ghosts were removed; None if these are all that show it.
+    references : (R,) int or None
+        The reference photo of each region that moved.
+    alpha : (h, w) float32 or None
+        How much of a pixel is made of `used`, see `radiance.deghosting.ghosts.Ghosts`.
+    sensor_noise : Noise or None
+        Noise of the camera, if it was estimated from the photos.
+    unit_factor : float
+        What the map was multiplied by after the merge, see `stages.calibrate`.
+    """
+
+    method: str
+    pixel_weights: F64
+    noise: float
+    certainty: F32 | None
+    neutral: F32
+    used: Mask | None = None
+    references: Indices | None = None
+    alpha: F32 | None = None
+    sensor_noise: Noise | None = None
+    unit_factor: float = 1.0
 
 
 def merge_photos(

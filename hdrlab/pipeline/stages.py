@@ -22,7 +22,7 @@ from hdrlab.fast.merge import Expendable
 from hdrlab.pipeline import checks, corrections, dark_pixels, recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.checks import MAX_EXPLAINED_SPREAD
-from hdrlab.pipeline.merging import merge_photos
+from hdrlab.pipeline.merging import MergeRecord, merge_photos
 from hdrlab.pipeline.options import FLARE, GHOSTS, MERGES, TIMES, WEIGHTS, Options
 from hdrlab.radiance import scales
 
@@ -297,6 +297,15 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         black_fraction = dark_pixels.measure_black_fraction(certainty)
         if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
             state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
+    if not options.release:
+        record = MergeRecord(
+            method=options.merge,
+            pixel_weights=pixel_weights,
+            noise=noise,
+            certainty=certainty,
+            neutral=neutral,
+        )
+        state = replace(state, record=record)
     yield state
 
     if removes_ghosts:
@@ -344,11 +353,15 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     if state.quality[y : y + 1, x : x + 1].any():
         raise InputError(f"no photo is well exposed at {x},{y}; choose another pixel")
     factor = np.float32(scales.fit_unit(state.E, x, y, reading))
+    record = state.record
+    if record is not None:
+        record = replace(record, unit_factor=record.unit_factor * float(factor))
     calibrated = replace(
         state,
         bracket=replace(state.bracket, luminance_of_unit=1.0),
         E=state.E * factor,
         s=None if state.s is None else state.s * factor,
+        record=record,
     )
     return calibrated.with_note(
         f"1 in the map is 1 cd/m^2: the light meter read {reading:g} cd/m^2 at {x},{y}"

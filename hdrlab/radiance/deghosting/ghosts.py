@@ -72,6 +72,8 @@ class Ghosts:
     references : (R,) int, the reference frame of each region
     used : (P, H, W) bool, the frames that contribute to each pixel, in the order of the images
     score : (H, W) float32, contradiction over the part that noise and edges explain
+    alpha : (H, W) float32, how much of E is made of `used`: 1 inside the regions, 0 outside, and
+        between them in the seams, where the rest is the plain map
     """
 
     E: F32
@@ -80,6 +82,7 @@ class Ghosts:
     references: Indices
     used: Mask
     score: F32
+    alpha: F32
 
 
 def detect_motion(
@@ -240,7 +243,7 @@ def remove_ghosts(
         E[wide][inside] = regions.blend(E[wide], still.E, alpha[wide])[inside]
         quality[wide][inside] = still.quality[inside]
         used[:, y, x][:, inside] = frames[:, inside]
-    return Ghosts(E, quality, labels, references, used, score)
+    return Ghosts(E, quality, labels, references, used, score, alpha)
 
 
 def note(result: Ghosts, names: Sequence[str]) -> str:
