@@ -409,6 +409,20 @@ def parse_meter_reading(text: str) -> tuple[int, int, float]:
     return int(match[1]), int(match[2]), float(match[3])
 
 
+def parse_pixel(text: str) -> tuple[int, int]:
+    """Return the column and the row of a pixel X,Y.
+
+    Examples
+    --------
+    >>> parse_pixel("640,360")
+    (640, 360)
+    """
+    match = re.fullmatch(r"(\d{1,6}),(\d{1,6})", text, re.ASCII)
+    if not match:
+        raise InputError(f"expected a pixel as X,Y, such as 640,360, got {text[:40]!r}")
+    return int(match[1]), int(match[2])
+
+
 def parse_setting(text: str) -> tuple[str, float | str | bool | None]:
     """Return the name and the value of a setting NAME=VALUE.
 

@@ -249,6 +249,36 @@ def convert(*, source: Path, out: Path, half: bool, clean: bool) -> None:
     click.echo(f"{out}: {common.describe_map(E)}")
 
 
+@click.command(cls=common.Command)
+@click.argument("source", type=common.INPUT_PATH)
+@click.argument("pixel", metavar="X,Y")
+def why(*, source: Path, pixel: str) -> None:
+    """Explain the pixel X,Y of the radiance map SOURCE.
+
+    X counts the columns from the left, and Y the rows from the top, both from 0, as in `hdrlab
+    assemble --calibrate`. hdrlab prints a table of the photos: the pixel values, their weight in the
+    merge, the photo's share of the mean, the radiance that it claims, and whether it is believed. It
+    also prints the standard deviation, what the other merges would say, and a summary.
+
+    The table needs the photos. `hdrlab assemble PHOTOS -o room.exr --why` stores them aligned in
+    room.why.npz, next to the map. Keep the two files together.
+    """
+    from hdrlab.io import radiance
+    from hdrlab.pipeline import evidence_file
+
+    x, y = common.parse_pixel(pixel)
+    E = radiance.read_radiance(source)
+    path = evidence_file.evidence_path(source)
+    if not path.is_file():
+        raise InputError(
+            f"{source} has no file {path.name} beside it, which has what its photos say; "
+            "assemble them again with --why"
+        )
+    explanation = evidence_file.explain_map_pixel(path, E, y, x, map_name=str(source))
+    for line in str(explanation).splitlines():
+        click.echo(terminal.visible(line))
+
+
 def _describe_light(path: Path) -> dict[str, str]:
     """Return the range and the unit of a radiance map; nothing for photos and unreadable maps."""
     from hdrlab.core.extremes import decades

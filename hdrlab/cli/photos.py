@@ -93,6 +93,12 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     help="File for the map and its standard deviation, as two layers: .exr.",
 )
 @click.option(
+    "--why",
+    is_flag=True,
+    help="Write a file next to the map, with which `hdrlab why` explains its pixels. The file is about "
+    "as large as the photos.",
+)
+@click.option(
     "--strict",
     is_flag=True,
     help=f"Exit with code {EXIT_DOUBTFUL_MAP} if there are warnings. hdrlab still writes the map.",
@@ -128,6 +134,7 @@ def assemble(
     picture: Path | None,
     report: Path | None,
     uncertainty: Path | None,
+    why: bool,
     strict: bool,
     all_brackets: bool,
     verbose: bool,
@@ -162,8 +169,9 @@ def assemble(
 
     from hdrlab import pipeline
     from hdrlab.io import photos as photo_files, radiance
-    from hdrlab.io.files import require_folder_name, require_suffix
+    from hdrlab.io.files import require_folder_name, require_replaceable, require_suffix
     from hdrlab.io.maps import layers
+    from hdrlab.pipeline import evidence_file
 
     # bad options are reported before the work starts
     if times == "stated":
@@ -176,6 +184,8 @@ def assemble(
         require_folder_name(report)
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
+    if why:
+        require_replaceable(evidence_file.evidence_path(out))
     if all_brackets:
         _assemble_each(ctx, photos)
         return
@@ -200,7 +210,7 @@ def assemble(
     steps = pipeline.assemble_steps(
         bracket,
         in_place=True,
-        release=not (report or uncertainty),
+        release=not (report or uncertainty or why),
         align=align,
         response=recover,
         times=times_mode,
@@ -245,6 +255,8 @@ def assemble(
             both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
             unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
             layers.write_layers(uncertainty, both, comments=[*unit_comments, *comments])
+        if why:
+            evidence_file.write_evidence(evidence_file.evidence_path(out), assembly)
         if developed and picture:
             photo_files.write_picture(picture, developed.picture, is_result=True)
             remarks.detail(f"{picture}: {developed.settings}")
@@ -268,6 +280,8 @@ def assemble(
         outputs.append(_describe_picture(picture, assembly, operator))
     if uncertainty:
         outputs.append(_describe_uncertainty(uncertainty, assembly))
+    if why:
+        outputs.append(_describe_evidence(evidence_file.evidence_path(out)))
     if report:
         outputs.append(str(report / "report.html"))
     click.echo(_summarize(assembly, outputs))
@@ -411,6 +425,12 @@ def _describe_uncertainty(path: Path, assembly: "Assembly") -> str:
     if assembly.s is None:
         return str(path)
     return f"{path} ({wording.certainty(assembly.E, assembly.s)})"
+
+
+def _describe_evidence(path: Path) -> str:
+    """Return the name of the file for `hdrlab why`, and its size."""
+    megabytes = path.stat().st_size / 1e6
+    return f"{path} ({megabytes:.2g} MB)" if megabytes < 10 else f"{path} ({megabytes:.0f} MB)"
 
 
 def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:

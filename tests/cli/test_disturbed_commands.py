@@ -103,7 +103,7 @@ GRADE = (
 COMMANDS = {
     "assemble": Command(
         "assemble photos --stops 2 -o out/room.hdr --picture out/room.png --report out/report "
-        "--uncertainty out/error.exr",
+        "--uncertainty out/error.exr --why",
         output="out/room.hdr",
         is_slow=True,
     ),
