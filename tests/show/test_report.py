@@ -1,6 +1,7 @@
 """The report on a radiance map: one HTML page without outside parts."""
 
 import base64
+import hashlib
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -48,7 +49,7 @@ class Page(HTMLParser):
             self.wrong.append(tag)
 
     def handle_data(self, data):
-        if self.open and self.open[-1] != "style":
+        if self.open and self.open[-1] not in ("style", "script"):
             self.text += re.sub(r"\s+", " ", data)
         if self.open and self.open[-1] in ("h1", "h2"):
             self.headings.append(data.strip())
@@ -99,12 +100,39 @@ def test_report_is_well_formed_html_with_a_language_and_a_title(page):
     assert re.search(r"<title>6 photos, ", page.source)
 
 
-def test_report_fetches_nothing_and_runs_no_script(page):
+def test_report_fetches_nothing_and_runs_no_script_but_its_own(page):
     addresses = re.findall(
         r"""(?:src|href|action|data|poster)=["']?([^"'\s>]{0,20})""", page.source
     )
     assert addresses and all(address.startswith("data:") for address in addresses)
-    assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", page.source)
+    scripts = re.findall(r"<script>(.*?)</script>", page.source, re.DOTALL)
+    others = re.sub(r"<script.*?</script>", "", page.source, flags=re.DOTALL)
+    assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", others)
+    assert len(scripts) == 1
+    assert not re.search(r"fetch\(|XMLHttpRequest|import\(|https?:|innerHTML", scripts[0])
+
+
+def test_the_report_allows_its_own_script_by_its_hash_and_no_other(page):
+    policy = next(attrs["content"] for tag, attrs in page.tags if "http-equiv" in attrs)
+    script = re.search(r"<script>(.*?)</script>", page.source, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert policy.endswith(f"; script-src 'sha256-{digest}'")
+    assert policy.startswith("default-src 'none'; ")
+
+
+def test_the_report_explains_one_pixel_without_its_script(room, tmp_path):
+    assembly = room[0]
+    shown = report(tmp_path, assembly)
+    pixel = re.search(r"Pixel x (\d+), y (\d+)", shown.text)
+    explanation = assembly.why(int(pixel[2]), int(pixel[1]))
+    assert explanation.sentence in shown.text
+    for photo in explanation.photos:
+        assert photo.name in shown.text and photo.claim in shown.text
+
+
+def test_the_report_of_a_map_without_its_record_has_no_pixels_to_press(room, tmp_path):
+    shown = report(tmp_path, replace(room[0], record=None))
+    assert "<script" not in shown.source and "script-src" not in shown.source
 
 
 def test_report_states_relative_exposures_in_stops_and_never_in_seconds(room, tmp_path):
@@ -249,7 +277,9 @@ def test_file_names_and_notes_cannot_inject_html(tmp_path):
     assembly = replace(flat(names=evil), doubts=("<b>bold</b>",), notes=("<img src=x>",))
     shown = report(tmp_path, assembly, recipe={"<i>": "</style>"})
     assert shown.wrong == [] and shown.open == []
-    assert not {"script", "i"} & {tag for tag, attrs in shown.tags if "style" not in attrs}
+    assert not [attrs for tag, attrs in shown.tags if tag == "i" and not attrs]
+    # the data of the pixels, and the page's own script
+    assert [tag for tag, _ in shown.tags].count("script") == 2
     assert all(
         image["src"].startswith("data:") and "onerror" not in image for image in shown.images
     )

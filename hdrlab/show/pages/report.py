@@ -1,7 +1,8 @@
 """Write the report on a radiance map: one HTML page with figures, errors and warnings.
 
 The template `report.html` calls the functions of `sections`. All images are embedded. The page
-fetches nothing and runs no script.
+fetches nothing. Its one script explains the pixel that the reader presses, see `pressed_pixels`; the
+page's content security policy allows no other script.
 """
 
 import platform
@@ -18,8 +19,9 @@ from hdrlab.core.metrics import Truth
 from hdrlab.errors import InputError
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
+from hdrlab.pipeline.explanation import shorten
 from hdrlab.radiance.merge import Quality
-from hdrlab.show.pages import sections, templates, wording
+from hdrlab.show.pages import pressed_pixels, sections, templates, wording
 from hdrlab.show.plots import figures
 
 # The name of the template, and of the page.
@@ -82,6 +84,7 @@ def write_report(
     if recipe and isinstance(recipe, str):
         recipe = {"how": recipe}
     modules = {module.__name__: module for module in (hdrlab, np, scipy, platform)}
+    script, script_hash = pressed_pixels.read_script()
     text = templates.render_page(
         Path(__file__).parent,
         REPORT_FILE_NAME,
@@ -89,6 +92,10 @@ def write_report(
         picture=picture,
         truth=truth,
         picture_illustration=figures.photograph(picture, MAX_PICTURE_SIDE, alt),
+        pressed=pressed_pixels.describe_pixels(assembly),
+        shorten=shorten,
+        script=script,
+        script_hash=script_hash,
         sections=sections,
         wording=wording,
         recipe=recipe,
