@@ -19,6 +19,8 @@ from hdrlab.io.files import write
 SKIPPED_SUFFIXES = (".pyc", ".ipynb")
 # large files that no check needs
 SKIPPED_FILES = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")
+# packages for reading notebooks in a browser, which no check needs and which take long to install
+NOTEBOOK_PACKAGES = ("jupyterlab", "ipywidgets", "anywidget")
 SCRIPTS_FOLDER = Path(__file__).parent / "gradescope_files"
 EXECUTABLE_FILES = ("setup.sh", "run_autograder")
 
@@ -70,9 +72,11 @@ def _own_task_files(task: Task) -> Iterator[tuple[str, bytes]]:
 
 
 def requirements() -> list[str]:
-    """Return the packages that hdrlab needs, without its extras."""
+    """Return the packages that grading needs: those of hdrlab without its extras and notebooks."""
     return [
-        requirement for requirement in requires("hdrlab") or () if "extra ==" not in requirement
+        requirement
+        for requirement in requires("hdrlab") or ()
+        if "extra ==" not in requirement and not requirement.startswith(NOTEBOOK_PACKAGES)
     ]
 
 
