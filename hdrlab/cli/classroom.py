@@ -1,7 +1,7 @@
 """Grade all submissions of a class: the work of `hdrlab grade FOLDER` and `hdrlab regrade`."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from hdrlab.course import plan as plans
     from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
     from hdrlab.course.classroom.run import GradingContext
-    from hdrlab.course.submissions.class_folder import Submission, SubmissionScan
+    from hdrlab.course.students.anonymity import Anonymity
+    from hdrlab.course.submissions.class_folder import SubmissionScan
 
 # in a class's results: the folder of the submissions and the ClassOptions, for `hdrlab regrade`
 OPTIONS_FILE = "asked.json"
@@ -35,7 +36,7 @@ class ClassOptions:
     roster, received, before : CSV files: the class, when files came in, earlier gradebooks
     file_times : whether the files' own times tell who is late
     moodle : the assignment's grading worksheet
-    adjustments : the instructor's decisions about students, a CSV file
+    adjustments : the instructor's decisions about students, CSV files
     plan : the course plan, or None for the package's
     """
 
@@ -52,7 +53,7 @@ class ClassOptions:
     moodle: Path | None
     plan: Path | None
     file_times: bool = False
-    adjustments: Path | None = None
+    adjustments: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,7 @@ class RunOptions:
     only, since : which submissions to grade
     regrade : grade again what was graded before
     jobs, cluster : how many at a time, and on which Dask cluster
+    anonymous : write pages with codes instead of names, and none with names
     """
 
     out: Path
@@ -73,6 +75,7 @@ class RunOptions:
     regrade: bool = False
     jobs: int | None = None
     cluster: str | None = None
+    anonymous: bool = False
 
     def __post_init__(self) -> None:
         if self.cluster is not None and self.jobs is not None:
@@ -84,13 +87,23 @@ class RunOptions:
 
 @dataclass(frozen=True)
 class GradedClass:
-    """A class with its submissions, a grading job for each of them, and the options."""
+    """A class with its submissions, a grading job for each of them, and the options.
+
+    Attributes
+    ----------
+    anonymity : codes of the class, if the readers must not see names
+    """
 
     course: "GradingContext"
     scan: "SubmissionScan"
     jobs: "list[GradingJob]"
     options: ClassOptions
     run: RunOptions
+    anonymity: "Anonymity | None" = None
+
+    def shown(self, text: str) -> str:
+        """Return a text as its readers may see it."""
+        return text if self.anonymity is None else self.anonymity.redact(text)
 
 
 def load_class(
@@ -98,8 +111,8 @@ def load_class(
 ) -> GradedClass:
     """Read the roster, the plan and the submissions of a class."""
     from hdrlab.course import plan as plans
-    from hdrlab.course.classroom import marks, moodle, run
-    from hdrlab.course.students import adjustments, roster
+    from hdrlab.course.classroom import anonymous, marks, moodle, run
+    from hdrlab.course.students import adjustments, anonymity, roster
     from hdrlab.course.submissions import class_folder
 
     if options.roster is None:
@@ -110,7 +123,15 @@ def load_class(
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
     plan = plans.read(options.plan)
     students = roster.read(options.roster, team_size=plan.team_size)
-    decisions = adjustments.read(options.adjustments, students) if options.adjustments else {}
+    ids_by_code = {}
+    codes = None
+    if conditions.secret:
+        words = anonymous.words_of_assignment(homework.name)
+        codes = anonymity.make_anonymity(students, conditions.secret, words)
+        ids_by_code = {code: id for id, code in codes.students.items()}
+    decisions = adjustments.merge(
+        adjustments.read(path, students, ids_by_code) for path in options.adjustments
+    )
     course = run.GradingContext(
         roster=students,
         homework=homework,
@@ -131,7 +152,8 @@ def load_class(
         teams_by_number=teams_by_number,
     )
     jobs = run.make_jobs(scan.submissions, homework, conditions)
-    return GradedClass(course, scan, jobs, options, run_options)
+    anonymity_of_class = codes if run_options.anonymous else None
+    return GradedClass(course, scan, jobs, options, run_options, anonymity_of_class)
 
 
 def grade_class(graded_class: GradedClass) -> None:
@@ -145,15 +167,16 @@ def grade_class(graded_class: GradedClass) -> None:
     if since is not None:
         since = since.replace(tzinfo=UTC)
     selected = run.select_submissions(submissions, course.roster, graded_class.run.only, since)
-    common.echo_notes([*graded_class.scan.notes, _describe_lateness(graded_class)])
+    notes = [graded_class.shown(note) for note in graded_class.scan.notes]
+    common.echo_notes([*notes, _describe_lateness(graded_class)])
     with grading_jobs.lock_folder(out):
         grading_jobs.write_private_file(out / OPTIONS_FILE, _options_to_json(graded_class.options))
         jobs = [job for job in graded_class.jobs if job.owner in selected]
         results = run_jobs(graded_class, jobs, out)
         failures = describe_failures(results)
-        common.echo_warnings(failures)
+        common.echo_warnings(graded_class.shown(failure) for failure in failures)
         page, graded_count = write_books(graded_class, failures)
-        _compare(out, course, submissions)
+        _compare(page.parent, graded_class)
     fresh = sum(result.is_new for result in results if result.path)
     click.echo(f"{page}: {graded_count} of {len(submissions)} graded, {fresh} of them now")
 
@@ -175,7 +198,8 @@ def _describe_lateness(graded_class: GradedClass) -> str:
             "nobody is late; set the first day of your term with `hdrlab course move`"
         )
     source = "the files' modification times" if options.received is None else str(options.received)
-    late = marks.describe_late(graded_class.course, graded_class.scan.submissions)
+    codes = graded_class.anonymity.students if graded_class.anonymity else {}
+    late = marks.describe_late(graded_class.course, graded_class.scan.submissions, codes)
     return f"by {source}, {late or 'nobody is late'}"
 
 
@@ -185,13 +209,28 @@ def describe_failures(results: "Sequence[JobResult]") -> list[str]:
 
 
 def write_books(graded_class: GradedClass, failures: Sequence[str] = ()) -> tuple[Path, int]:
-    """Write the gradebooks and the page of a class; return the page and the number of results."""
-    from hdrlab.course.classroom import moodle, overview, run
+    """Write the gradebooks and the page of a class; return the page and the number of results.
+
+    With --anonymous, hdrlab writes the anonymous folder instead.
+    """
+    from hdrlab.course.classroom import anonymous, moodle, overview, run
 
     course = graded_class.course
     out = graded_class.run.out
     worksheet = graded_class.options.moodle
     statistics = overview.collect_statistics(run.read_results(out, graded_class.jobs))
+    if graded_class.anonymity is not None:
+        page = anonymous.write_class(
+            out,
+            course.homework,
+            overview.gradebook_rows(course, graded_class.scan, statistics),
+            statistics,
+            run.read_results(out, graded_class.jobs),
+            graded_class.scan.submissions,
+            [*graded_class.scan.notes, *failures],
+            graded_class.anonymity,
+        )
+        return page, len(statistics.points)
     *_, page = overview.write_class_files(out, course, graded_class.scan, statistics, failures)
     if worksheet:
         rows = overview.gradebook_rows(course, graded_class.scan, statistics)
@@ -215,14 +254,15 @@ def run_jobs(
         remaining = list(jobs)
     else:
         finished, remaining = grading_jobs.split_finished(folder, jobs)
-    results = [run.write_feedback(out, result) for result in finished]
+    is_anonymous = graded_class.anonymity is not None  # then `write_books` writes the feedback
+    results = [result if is_anonymous else run.write_feedback(out, result) for result in finished]
     if finished:
         click.echo(f"{len(finished)} of {len(jobs)} were graded before", err=True)
     if remaining:
         with _executor(graded_class.course, graded_class.run) as executor:
             grading_jobs.delete_results(folder, remaining)
             steps = (
-                run.write_feedback(out, result)
+                result if is_anonymous else run.write_feedback(out, result)
                 for result in grading_jobs.run_jobs(remaining, executor, folder)
             )
             name = graded_class.course.homework.name
@@ -230,8 +270,10 @@ def run_jobs(
     return results
 
 
-def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Submission]") -> None:
+def _compare(out: Path, graded_class: GradedClass) -> None:
     """Write similar.html, which compares all submissions of the class, old and new."""
+    course = graded_class.course
+    submissions = graded_class.scan.submissions
     try:
         from hdrlab.course.similarity import report
     except ImportError as error:
@@ -242,7 +284,9 @@ def _compare(out: Path, course: "GradingContext", submissions: "Mapping[str, Sub
             [f"no similar.html: hdrlab compares at most {report.MAX_SUBMISSIONS:,} submissions"]
         )
         return
-    steps = report.write_steps(out, course.homework, submissions, course.conditions.secret)
+    steps = report.write_steps(
+        out, course.homework, submissions, course.conditions.secret, graded_class.anonymity
+    )
     for _ in common.progress(steps, "comparing", len(submissions)):
         pass
 
@@ -318,7 +362,7 @@ def _read_options(results: Path) -> ClassOptions:
             plan=_path_or_none(values["plan"]),
             # options without this entry are of a class that was graded by the files' times
             file_times=values.get("file_times", True),
-            adjustments=_path_or_none(values.get("adjustments")),
+            adjustments=tuple(Path(path) for path in values.get("adjustments") or ()),
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(

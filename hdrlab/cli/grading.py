@@ -119,8 +119,14 @@ def check(
 @click.option(
     "--adjustments",
     type=common.EXISTING_FILE,
+    multiple=True,
     help="Your own decisions: a CSV file with the column student and any of extension (days), "
-    "points, comment and hold.",
+    "points, comment and hold. Repeatable.",
+)
+@click.option(
+    "--anonymous",
+    is_flag=True,
+    help="Write pages and tables with codes instead of names. Requires --secret-file.",
 )
 @click.option(
     "--only",
@@ -157,7 +163,8 @@ def grade(
     file_times: bool,
     before: tuple[Path, ...],
     moodle: Path | None,
-    adjustments: Path | None,
+    adjustments: tuple[Path, ...],
+    anonymous: bool,
     only: tuple[str, ...],
     since: datetime | None,
     regrade: bool,
@@ -179,6 +186,9 @@ def grade(
     also writes a gradebook and a page about the class. If you interrupt it, run it again to grade
     the rest. The options from --roster to --cluster apply only to a folder, which requires
     --roster.
+
+    With --anonymous, hdrlab writes the folder anonymous, in which each student has a code, and
+    no page or table with names. To put the names back, run it again without --anonymous.
     """
     from hdrlab.course import plan as plans
     from hdrlab.course.reports import feedback, gradebook
@@ -193,6 +203,11 @@ def grade(
             f"--student is for a single submission, but {submission} is a folder; "
             "leave --student out: the roster has the names"
         )
+    if anonymous and secret_file is None:
+        raise InputError(
+            "--anonymous needs --secret-file, because without a secret anybody with the roster can "
+            "compute the codes"
+        )
     class_options = {
         "--roster": roster,
         "--received": received,
@@ -200,6 +215,7 @@ def grade(
         "--before": before,
         "--moodle": moodle,
         "--adjustments": adjustments,
+        "--anonymous": anonymous,
         "--only": only,
         "--since": since,
         "--regrade": regrade,
@@ -234,7 +250,13 @@ def grade(
             plan=plan,
         )
         run_options = classroom.RunOptions(
-            out=out, only=only, since=since, regrade=regrade, jobs=jobs, cluster=cluster
+            out=out,
+            only=only,
+            since=since,
+            regrade=regrade,
+            jobs=jobs,
+            cluster=cluster,
+            anonymous=anonymous,
         )
         with temporary_folder():
             classroom.grade_class(classroom.load_class(conditions, options, run_options))

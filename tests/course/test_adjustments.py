@@ -84,6 +84,22 @@ def test_a_comment_reaches_its_student_in_moodle_and_no_other_comment_is_lost(ro
     assert [row["Grade"] for row in written] == ["50.0", "50.0", ""]
 
 
+def test_several_tables_add_up_and_an_anonymous_reader_writes_codes(tmp_path):
+    texts = (
+        "student,extension,points,comment\nb1,2,5,Ill.\n",
+        "student,points,comment,hold\nSCODE,-1.5,Good curve.,yes\nb3,4,,\n",
+    )
+    tables = []
+    for number, text in enumerate(texts):
+        path = tmp_path / f"{number}.csv"
+        path.write_text(text)
+        tables.append(adjustments.read(path, ROSTER, {"SCODE": "b1"}))
+    assert adjustments.merge(tables) == {
+        "b1": adjustments.Adjustment(2, 3.5, "Ill. Good curve.", True),
+        "b3": adjustments.Adjustment(points=4),
+    }
+
+
 def test_points_by_hand_reach_moodle_also_without_a_submission(read, tmp_path):
     course = classroom.GradingContext(
         ROSTER, HOMEWORK, GradingOptions(), adjustments=read("student,points\nb3,40\n")

@@ -5,7 +5,7 @@ term.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
@@ -183,10 +183,20 @@ def _late_records(
             yield LateRecord(homework.name, late, (student,), points.get(team, 0.0))
 
 
-def describe_late(context: GradingContext, submissions: Mapping[str, Submission]) -> str:
-    """Return who is late, by how many days, and what it costs at most; "" if nobody is."""
+def describe_late(
+    context: GradingContext,
+    submissions: Mapping[str, Submission],
+    codes: Mapping[str, str] = MappingProxyType({}),
+) -> str:
+    """Return who is late, by how many days, and what it costs at most; "" if nobody is.
+
+    With codes, by student, they are shown instead of the ids, and in their order.
+    """
     full_points = dict.fromkeys(submissions, context.homework.points)
     rows = gradebook_rows(context, submissions, full_points)
+    if codes:
+        rows = [replace(row, student=codes[row.student]) for row in rows]
+        rows.sort(key=lambda row: row.student)
     late = [row for row in rows if row.late]
     if not late:
         return ""

@@ -18,6 +18,7 @@ from hdrlab.course import plan
 from hdrlab.course.similarity import comparison, student_code
 from hdrlab.course.source_code import inline
 from hdrlab.course.students import csv_tables
+from hdrlab.course.students.anonymity import Anonymity
 from hdrlab.course.submissions.class_folder import Submission
 from hdrlab.course.variants import rewording
 from hdrlab.io.files import write
@@ -53,7 +54,11 @@ class Row:
 
 
 def write_steps(
-    out: Path, homework: plan.Homework, submissions: Mapping[str, Submission], secret: str = ""
+    out: Path,
+    homework: plan.Homework,
+    submissions: Mapping[str, Submission],
+    secret: str = "",
+    anonymity: Anonymity | None = None,
 ) -> Iterator[str]:
     """Yield each team once its code is read, then write the report and the table of a class.
 
@@ -63,14 +68,21 @@ def write_steps(
     homework : the assignment
     submissions : the submission of each team that counts
     secret : the secret of the course, which draws the variants of tasks
+    anonymity : codes of the teams, if the readers must not see names
     """
     codes = []
-    for code in comparison.fingerprint_steps(read_codes(homework, submissions)):
+    asked = {}
+    shown_codes = []
+    for team_code in read_codes(homework, submissions):
+        shown = team_code if anonymity is None else hide_names(team_code, anonymity)
+        asked[shown.team] = asked_variants(homework, team_code, secret)
+        shown_codes.append(shown)
+    shown_codes.sort(key=lambda code: code.team)
+    for code in comparison.fingerprint_steps(shown_codes):
         codes.append(code)
         yield code.code.team
     handout = student_code.handout_code(homework.name)
     result = comparison.compare(codes, handout, library_code(homework))
-    asked = {code.code.team: asked_variants(homework, code.code, secret) for code in codes}
     rows = []
     for pair in result.pairs[:MAX_TABLE_ROWS]:
         first = codes[pair.first].code.team
@@ -80,6 +92,15 @@ def write_steps(
         rows.append((first, second, *(f"{value:.3f}" for value in fractions), str(swapped)))
     csv_tables.write_csv(out / "similar.csv", COLUMNS, rows, private=True)
     write(out / "similar.html", render(homework, codes, result, asked), private=True)
+
+
+def hide_names(code: student_code.TeamCode, anonymity: Anonymity) -> student_code.TeamCode:
+    """Return a team's code under the code of the team, without the names of the class."""
+    return code._replace(
+        team=anonymity.teams[code.team],
+        texts={task: anonymity.redact_code(text) for task, text in code.texts.items()},
+        notes=tuple(anonymity.redact(note) for note in code.notes),
+    )
 
 
 def asked_variants(

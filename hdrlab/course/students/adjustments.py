@@ -1,6 +1,7 @@
 """Read an instructor's own decisions about students: more time, points by hand, comments, held grades.
 
-The table is a CSV file with the column `student` and any of these:
+The table is a CSV file with the column `student`, which holds ids or the codes of anonymous
+grading, and any of these:
 
 extension   days by which the due date moves for this student
 points      added to the score by hand, such as for a report or as extra credit; may be negative
@@ -9,7 +10,9 @@ hold        "yes" keeps the score out of the tables for Canvas and Moodle
 """
 
 import math
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from hdrlab.course.sanitize import sanitize_line
@@ -40,8 +43,16 @@ class Adjustment(NamedTuple):
     hold: bool = False
 
 
-def read(path: Path, roster: Roster) -> dict[str, Adjustment]:
+def read(
+    path: Path, roster: Roster, ids_by_code: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, Adjustment]:
     """Read a table of adjustments, by the students' ids.
+
+    Parameters
+    ----------
+    path : the table
+    roster : the class
+    ids_by_code : the students of the codes that an anonymous reader writes instead of ids
 
     Raises
     ------
@@ -58,13 +69,34 @@ def read(path: Path, roster: Roster) -> dict[str, Adjustment]:
                 f"got {', '.join(row)}"
             )
         try:
-            student = roster.find(csv_tables.unescape_cell(row["student"])).id
+            name = csv_tables.unescape_cell(row["student"])
+            student = roster.find(ids_by_code.get(name, name)).id
             if student in adjustments:
                 raise InputError(f"expected each student once, got {student} twice")
             adjustments[student] = _read_row(row)
         except InputError as error:
             raise InputError(f"{path}, line {line}: {error}") from None
     return adjustments
+
+
+def merge(tables: Iterable[Mapping[str, Adjustment]]) -> dict[str, Adjustment]:
+    """Return the adjustments of several tables together, by the students' ids.
+
+    Extensions and points add up, comments follow each other, and a score is held back if any table
+    says so.
+    """
+    merged: dict[str, Adjustment] = {}
+    for table in tables:
+        for student, adjustment in table.items():
+            before = merged.get(student, Adjustment())
+            comments = [comment for comment in (before.comment, adjustment.comment) if comment]
+            merged[student] = Adjustment(
+                extension=before.extension + adjustment.extension,
+                points=before.points + adjustment.points,
+                comment=" ".join(comments),
+                hold=before.hold or adjustment.hold,
+            )
+    return merged
 
 
 def _read_row(row: dict[str, str]) -> Adjustment:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from hdrlab.course import materials
 from hdrlab.course.sandbox import in_process, subprocess_runner
@@ -46,6 +46,21 @@ MAX_SHOWN_NAMES = 5
 # "exclusion": "compared/above/four", in a sheet's call of use_plan
 VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"')
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
+
+
+class TextCell(NamedTuple):
+    """A cell of a submission as a Python file in the percent format has it.
+
+    Attributes
+    ----------
+    header : the line before the cell, such as "# %% [markdown]", or ""
+    text : its code, or its text as a comment
+    is_code : whether it is code
+    """
+
+    header: str
+    text: str
+    is_code: bool
 
 
 @dataclass(frozen=True)
@@ -156,6 +171,64 @@ def _read_as_json(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.
         "variants": code.variants,
     }
     return json.dumps(answer).encode()
+
+
+def read_text(path: Path, homework: str) -> list[TextCell]:
+    """Return all cells of a submission, code and text, without outputs and attached files.
+
+    They are read in a process with limits. A submission that cannot be read has no cells; `read`
+    says why.
+
+    Parameters
+    ----------
+    path : the file that was handed in
+    homework : name of the homework; it tells which file of an archive is meant
+    """
+    limits = {"CPU": READING_CPU_SECONDS + UNPACKING_CPU_SECONDS, "AS": READING_MEMORY_BYTES}
+    with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
+        order = (path, Path(scratch), homework)
+        try:
+            answer = subprocess_runner.run(
+                _read_text_as_json, order, timeout=READING_TIMEOUT_SECONDS, limits=limits
+            )
+        except subprocess_runner.ProcessFailed:
+            return []
+    return [TextCell(*cell) for cell in json.loads(answer)]
+
+
+def _read_text_as_json(order: tuple[Path, Path, str]) -> bytes:
+    """Return all cells of a submission as JSON: what the process with limits runs."""
+    path, scratch, homework = order
+    code_path, refusal = extract_code_file(path, scratch, homework)
+    data, problems = _bytes_of(code_path)
+    cells: list[TextCell] = []
+    if not (refusal or problems):
+        try:
+            cells = _text_cells(_decode(data))
+        except (UnicodeError, LookupError, SyntaxError, ValueError, RecursionError):
+            cells = []
+    if sum(len(cell.text) for cell in cells) > MAX_CODE_CHARACTERS:
+        cells = []
+    return json.dumps(cells).encode()
+
+
+def _text_cells(text: str) -> list[TextCell]:
+    """Return the cells of a notebook; a Python file is one cell."""
+    if text.lstrip()[:1] != "{":
+        return [TextCell("", text, is_code=True)]
+    cells = []
+    for number, cell in enumerate(_cells_as_json(json.loads(text)) or (), 1):
+        if not isinstance(cell, dict):
+            continue
+        read = _code_cell(number, cell)
+        if cell.get("cell_type") == "code":
+            task = f' task="{read.task}"' if re.fullmatch(r"\w+", read.task) else ""
+            given = " given=true" if read.given else ""
+            cells.append(TextCell(f"# %%{task}{given}", read.text, is_code=True))
+        else:
+            comment = "\n".join(f"# {line}".rstrip() for line in read.text.splitlines())
+            cells.append(TextCell("# %% [markdown]", comment, is_code=False))
+    return cells
 
 
 def extract_code_file(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
