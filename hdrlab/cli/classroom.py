@@ -37,6 +37,7 @@ class ClassOptions:
     file_times : whether the files' own times tell who is late
     moodle : the assignment's grading worksheet
     adjustments : the instructor's decisions about students, CSV files
+    explain_hidden : whether feedback says why hidden checks failed
     plan : the course plan, or None for the package's
     """
 
@@ -54,6 +55,7 @@ class ClassOptions:
     plan: Path | None
     file_times: bool = False
     adjustments: tuple[Path, ...] = ()
+    explain_hidden: bool = False
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,8 @@ def load_class(
             "pass the class list with --roster"
         )
     homework = assignments.find_homework(options.submissions, options.homework, options.plan)
+    if options.explain_hidden:
+        _require_due_date_passed(homework)
     plan = plans.read(options.plan)
     students = roster.read(options.roster, team_size=plan.team_size)
     ids_by_code = {}
@@ -154,6 +158,15 @@ def load_class(
     jobs = run.make_jobs(scan.submissions, homework, conditions)
     anonymity_of_class = codes if run_options.anonymous else None
     return GradedClass(course, scan, jobs, options, run_options, anonymity_of_class)
+
+
+def _require_due_date_passed(homework: "plans.Homework") -> None:
+    """Raise an InputError if students can still hand in what hidden checks would tell them."""
+    if isinstance(homework.due, datetime) and datetime.now(UTC) < homework.due:
+        raise InputError(
+            f"{homework.name} is due on {homework.due:%Y-%m-%d %H:%M %Z}; "
+            "pass --explain-hidden after that"
+        )
 
 
 def grade_class(graded_class: GradedClass) -> None:
@@ -254,17 +267,20 @@ def run_jobs(
         remaining = list(jobs)
     else:
         finished, remaining = grading_jobs.split_finished(folder, jobs)
-    is_anonymous = graded_class.anonymity is not None  # then `write_books` writes the feedback
-    results = [result if is_anonymous else run.write_feedback(out, result) for result in finished]
+
+    def write_feedback(result: "JobResult") -> "JobResult":
+        if graded_class.anonymity is not None:  # `write_books` writes it, in the order of the codes
+            return result
+        explain_hidden = graded_class.options.explain_hidden
+        return run.write_feedback(out, result, explain_hidden=explain_hidden)
+
+    results = [write_feedback(result) for result in finished]
     if finished:
         click.echo(f"{len(finished)} of {len(jobs)} were graded before", err=True)
     if remaining:
         with _executor(graded_class.course, graded_class.run) as executor:
             grading_jobs.delete_results(folder, remaining)
-            steps = (
-                result if is_anonymous else run.write_feedback(out, result)
-                for result in grading_jobs.run_jobs(remaining, executor, folder)
-            )
+            steps = map(write_feedback, grading_jobs.run_jobs(remaining, executor, folder))
             name = graded_class.course.homework.name
             results.extend(common.progress(steps, name, len(remaining)))
     return results
@@ -363,6 +379,7 @@ def _read_options(results: Path) -> ClassOptions:
             # options without this entry are of a class that was graded by the files' times
             file_times=values.get("file_times", True),
             adjustments=tuple(Path(path) for path in values.get("adjustments") or ()),
+            explain_hidden=values.get("explain_hidden", False),
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(

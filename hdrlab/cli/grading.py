@@ -124,6 +124,11 @@ def check(
     "points, comment and hold. Repeatable.",
 )
 @click.option(
+    "--explain-hidden",
+    is_flag=True,
+    help="Say in the feedback why hidden checks failed. Only after the due date.",
+)
+@click.option(
     "--anonymous",
     is_flag=True,
     help="Write pages and tables with codes instead of names. Requires --secret-file.",
@@ -164,6 +169,7 @@ def grade(
     before: tuple[Path, ...],
     moodle: Path | None,
     adjustments: tuple[Path, ...],
+    explain_hidden: bool,
     anonymous: bool,
     only: tuple[str, ...],
     since: datetime | None,
@@ -215,6 +221,7 @@ def grade(
         "--before": before,
         "--moodle": moodle,
         "--adjustments": adjustments,
+        "--explain-hidden": explain_hidden,
         "--anonymous": anonymous,
         "--only": only,
         "--since": since,
@@ -247,6 +254,7 @@ def grade(
             before=before,
             moodle=moodle,
             adjustments=adjustments,
+            explain_hidden=explain_hidden,
             plan=plan,
         )
         run_options = classroom.RunOptions(
@@ -355,7 +363,8 @@ def regrade(
             )
             common.echo_warnings(notes)
             for result in grading_jobs.split_finished(results / "results", all_jobs)[0]:
-                run.write_feedback(results, result)
+                explain_hidden = graded_class.options.explain_hidden
+                run.write_feedback(results, result, explain_hidden=explain_hidden)
             page, _ = classroom.write_books(graded_class)
             click.echo(page)
 

@@ -187,7 +187,7 @@ def run(graded):
             cwd=graded,
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=900,
         )
         assert ran.returncode == 0, ran.stdout + ran.stderr
         return ran.stdout + ran.stderr

@@ -350,6 +350,33 @@ def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade)
     ]
 
 
+HIDDEN_CHECK = """
+import pytest
+
+@pytest.mark.points(1)
+def test_seven_levels_have_a_weight_of_42(subject):
+    assert subject.hat(7)[0] == 42, "the first weight is not 42"
+"""
+
+
+@pytest.mark.grading
+def test_after_the_due_date_feedback_explains_hidden_checks_and_nothing_is_graded_anew(
+    folder, grade, capsys
+):
+    (folder / "checks").mkdir()
+    (folder / "checks" / "test_hat.py").write_text(HIDDEN_CHECK)
+    page = folder / "out" / "feedback" / "t" / "feedback.html"
+    passed = PLAN.replace("2026-10-23", "2020-10-23")
+    (folder / "plan.toml").write_text(passed.replace("2020", "2999"))
+    said = grade("--hidden", "checks", "--explain-hidden", code=2)
+    assert "due on 2999-10-23" in said and not page.exists()
+    (folder / "plan.toml").write_text(passed)
+    grade("--hidden", "checks")
+    assert "the first weight is not 42" not in page.read_text()
+    assert "0 of them now" in grade("--hidden", "checks", "--explain-hidden")
+    assert "the first weight is not 42" in page.read_text()
+
+
 @pytest.mark.grading
 def test_nobody_is_late_for_a_plan_without_dates_and_it_is_said(folder, capsys):
     in_week = 'due = { week = 5, day = "Friday", time = "23:59Z" }'

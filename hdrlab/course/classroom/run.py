@@ -203,17 +203,21 @@ def select_submissions(
     return selected
 
 
-def write_feedback(out: Path, result: JobResult) -> JobResult:
+def write_feedback(out: Path, result: JobResult, *, explain_hidden: bool = False) -> JobResult:
     """Write the feedback of a team, unless it exists and belongs to this result.
 
     The team's copy of the result, result.json, is deleted first and written last: while it exists
     and is equal, the feedback is complete. If writing fails, the returned JobResult has a `problem`,
-    and the other teams still get their feedback.
+    and the other teams still get their feedback. With `explain_hidden`, it also says why hidden
+    checks failed.
     """
     if result.path is None:
         return result
     try:
-        _write_team_folder(out / "feedback" / result.job.owner, result.path.read_bytes())
+        data = result.path.read_bytes()
+        if explain_hidden:
+            data = results.reveal_hidden_checks(data)
+        _write_team_folder(out / "feedback" / result.job.owner, data)
     except Exception as error:
         problem = sanitize_line(f"{type(error).__name__}: {error}", 200)
         return replace(result, problem=f"its feedback could not be written: {problem}")

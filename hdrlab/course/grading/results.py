@@ -8,7 +8,7 @@ import json
 import math
 import re
 from collections.abc import Collection
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
@@ -205,6 +205,13 @@ def for_team(data: bytes) -> bytes:
     shown = {name: result[name] for name in TEAM_FIELDS}
     shown["checks"] = [_shown_fields(check) for check in result["checks"]]
     return _dump(shown)
+
+
+def reveal_hidden_checks(data: bytes) -> bytes:
+    """Return a Result's JSON in which hidden checks say as much as public ones."""
+    result = from_json(data)
+    checks = tuple(replace(check, hidden=False) for check in result.checks)
+    return to_json(replace(result, checks=checks))
 
 
 def _shown_fields(check: dict[str, Any]) -> dict[str, Any]:
