@@ -23,7 +23,7 @@ from hdrlab.course.similarity.student_code import TeamCode
 from hdrlab.course.source_code import closure, inline
 from hdrlab.course.students import csv_tables
 from hdrlab.course.students.roster import Roster
-from hdrlab.course.submissions.class_folder import Submission
+from hdrlab.course.submissions.class_folder import Submission, SubmissionScan
 
 pytestmark = pytest.mark.grading
 
@@ -362,7 +362,8 @@ def compared(folder, capsys):
     (folder / "a.py").write_text(LOOPS)
     handins = {team: Submission(team, (team,), folder / "a.py", NOW, "digest") for team in "ab"}
     course = classroom.GradingContext(Roster(()), HW2, GradingOptions())
-    commands._compare(folder, course, handins)
+    scan = SubmissionScan(handins, (), {})
+    commands._compare(folder, commands.GradedClass(course, scan, [], None, None))
     return capsys.readouterr().err
 
 
