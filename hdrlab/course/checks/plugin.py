@@ -10,10 +10,13 @@ import base64
 import inspect
 import json
 import re
+import time
 import warnings
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from dataclasses import asdict
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -23,7 +26,7 @@ import pytest
 
 from hdrlab.core.arrays import describe
 from hdrlab.course import plan
-from hdrlab.course.checks import compare, inprocess, misconceptions
+from hdrlab.course.checks import compare, counterexamples, inprocess, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import in_process, tiers
 from hdrlab.course.sandbox.inside import system
@@ -32,6 +35,11 @@ from hdrlab.course.sandbox.session import Unavailable
 MAX_MESSAGE_CHARACTERS = 1500
 # why a check has no answer, where the student's code was never called or has no time left
 NOT_TRIED_AGAIN = ("missing", "late", "killed")
+# how a check may fail so that a counterexample is looked for: by a wrong answer, or an exception
+EXPLICABLE_KINDS = ("", "raised")
+# processor time of this process for the counterexamples of a submission; no search begins after it.
+# The guarantees in SECURITY.md contain it.
+ALL_SEARCHES_CPU_SECONDS = 8.0
 # of what a function printed
 MAX_PRINTED_CHARACTERS = 4000
 # values of an image that is drawn
@@ -77,6 +85,8 @@ class GradingPlugin:
         self.open = ExitStack()
         self.calls: dict[str, list[misconceptions.CheckedCalls]] = {}
         self.failed: set[str] = set()
+        # public checks that failed with an answer, or by an exception of the student's function
+        self.explicable: list[tuple[pytest.Function, bool]] = []
         self.late: set[str] = set()
 
     def pytest_sessionstart(self) -> None:
@@ -148,6 +158,8 @@ class GradingPlugin:
             return self._write(ended=_id(item), outcome="broken", message=problem, said=said)
         if not self._is_hidden(item):
             self.failed.add(task_of(item))
+            if kind in EXPLICABLE_KINDS and isinstance(item, pytest.Function):
+                self.explicable.append((item, kind == "raised"))
         if kind == "late":
             self.late.add(task_of(item))
         told = {"outcome": "no answer" if kind else "fails", "kind": kind}
@@ -221,6 +233,32 @@ class GradingPlugin:
                         explains_all=diagnosis.explains_all,
                         once=diagnosis.costs_half_at_most,
                     )
+        functions = self._find_solutions()
+        deadline = time.process_time() + ALL_SEARCHES_CPU_SECONDS
+        for item, raised in self.explicable:
+            if time.process_time() > deadline:
+                return
+            # all checks have ended: nothing that the search does changes their outcomes
+            with suppress(Exception):
+                self._find_counterexample(item, functions, raised=raised)
+
+    def _find_counterexample(
+        self, item: pytest.Function, functions: dict[str, Callable[..., Any]], *, raised: bool
+    ) -> None:
+        """Write a line with the smallest input for which a check's function answers wrongly."""
+        task_id = task_of(item)
+        if task_id in self.late or task_id not in functions:
+            return
+        found = counterexamples.find(
+            task_id,
+            item.module,
+            partial(_run_check, item),
+            self.submission,
+            functions[task_id],
+            raised=raised,
+        )
+        if found is not None:
+            self._write(counterexample=_id(item), **asdict(found))
 
     def pytest_unconfigure(self) -> None:
         """Close the sandbox."""
@@ -232,6 +270,15 @@ class GradingPlugin:
     def _write(self, **line: Any) -> None:
         with open(self.job["out"], "a", encoding="utf8") as out:
             out.write(json.dumps(line) + "\n")
+
+
+def _run_check(item: pytest.Function, subject: Any, rng: np.random.Generator) -> None:
+    """Run a check on a subject, with inputs from a random generator."""
+    callspec = getattr(item, "callspec", None)
+    arguments = dict(callspec.params) if callspec else {}
+    arguments |= {"subject": subject, "rng": rng}
+    names = inspect.signature(item.obj).parameters
+    item.obj(**{name: arguments[name] for name in names})
 
 
 def _id(item: pytest.Item) -> str:

@@ -171,6 +171,10 @@ class Subject:
         self.printed = ""
         self._check_seconds_left = CHECK_TIMEOUT_FACTOR * self._timeout
 
+    def limit_check(self, seconds: float) -> None:
+        """Let the further calls until `fresh` take at most so many seconds together."""
+        self._check_seconds_left = min(self._check_seconds_left, seconds)
+
     @property
     def seconds_left(self) -> float:
         """Seconds that are left for all calls: processor time or clock time, whichever is less."""

@@ -27,7 +27,7 @@ from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION
 from hdrlab.course.checks.pytest_process import run_pytest, run_pytest_here
 from hdrlab.course.grading import scoring
-from hdrlab.course.grading.results import Check, Drawing, Result
+from hdrlab.course.grading.results import Check, Counterexample, Drawing, Result
 from hdrlab.course.plan import GradingOptions, Homework, Task
 from hdrlab.course.sandbox import in_process, tiers
 from hdrlab.course.sandbox.session import Unavailable
@@ -273,6 +273,11 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
         if "check" in event:
             cases.setdefault((event["task"], event["name"], event["hidden"]), []).append(event)
     ends = _ends(events)
+    examples = {
+        event["counterexample"]: _counterexample(event)
+        for event in events
+        if "counterexample" in event
+    }
     mistakes = {event["recognised"]: event for event in events if "recognised" in event}
     for task in homework.tasks:
         of_task = [events for (id, _, _), events in cases.items() if id == task.id]
@@ -281,7 +286,7 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
         weights = [Fraction(first["points"]) for first, *_ in of_task]
         points = scoring.split_points(Fraction(str(task.points)), weights)
         checks = [
-            _check(of_check, ends, max_points)
+            _check(of_check, ends, examples, max_points)
             for of_check, max_points in zip(of_task, points, strict=True)
         ]
         needs = {first["name"]: first["needs"] for first, *_ in of_task}
@@ -305,9 +310,24 @@ def _ends(events: Sequence[Event]) -> dict[str, Event]:
     return ends
 
 
-def _check(cases: Sequence[Event], ends: dict[str, Event], max_points: Fraction) -> Check:
+def _counterexample(event: Event) -> Counterexample:
+    """Return the counterexample of an event, with text that a page can show."""
+    return Counterexample(
+        code=sanitize_text("\n".join([*event["inputs"], event["call"]]), MAX_MESSAGE_LENGTH),
+        yours=sanitize_text(event["yours"], MAX_MESSAGE_LENGTH),
+        correct=sanitize_text(event["correct"], MAX_MESSAGE_LENGTH),
+    )
+
+
+def _check(
+    cases: Sequence[Event],
+    ends: dict[str, Event],
+    examples: dict[str, Counterexample],
+    max_points: Fraction,
+) -> Check:
     """Return a check with the end of its first case that does not hold; its points come later."""
     ends_of_cases = [ends.get(case["check"], NO_ANSWER) for case in cases]
+    examples_of_cases = [examples[case["check"]] for case in cases if case["check"] in examples]
     failures = [end for end in ends_of_cases if end["outcome"] != "holds"]
     shown = failures[0] if failures else ends_of_cases[0]
     case = cases[0]
@@ -324,4 +344,5 @@ def _check(cases: Sequence[Event], ends: dict[str, Event], max_points: Fraction)
         said=sanitize_text(shown["said"], MAX_PRINTED_LENGTH),
         hidden=case["hidden"],
         kind=shown.get("kind", ""),
+        counterexample=examples_of_cases[0] if examples_of_cases else None,
     )

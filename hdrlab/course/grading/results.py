@@ -45,12 +45,13 @@ PUBLIC_CHECK_FIELDS = (
     "drawing",
     "said",
     "follows",
+    "counterexample",
 )
 # exact points, as str() writes a Fraction
 EXACT_POINTS = re.compile(r"-?\d{1,30}(/\d{1,30})?", re.ASCII)
 # fields that results of early versions of hdrlab do not have
 EARLY_RESULT = {"at_most": None}
-EARLY_CHECK = {"kind": "", "follows": ""}
+EARLY_CHECK = {"kind": "", "follows": "", "counterexample": None}
 Outcome = Literal["holds", "fails", "no answer", "broken"]
 
 
@@ -60,6 +61,14 @@ class Drawing(NamedTuple):
     frames: tuple[bytes, ...] = ()
     alts: tuple[str, ...] = ()
     captions: tuple[str, ...] = ()
+
+
+class Counterexample(NamedTuple):
+    """The smallest input that was found for which the answer is wrong, and both answers, as text."""
+
+    code: str
+    yours: str
+    correct: str
 
 
 @dataclass(frozen=True)
@@ -83,6 +92,7 @@ class Check:
     kind : why there is no answer: "missing", "raised", "late", "died", "refused", "damaged", or
         "killed" if something outside ended the sandbox
     follows : the promise of the check of the same task whose failure explains this one
+    counterexample : the smallest input that was found for which the answer is wrong, or None
     """
 
     task: str
@@ -98,6 +108,7 @@ class Check:
     hidden: bool = False
     kind: str = ""
     follows: str = ""
+    counterexample: Counterexample | None = None
 
 
 @dataclass(frozen=True)
@@ -236,6 +247,7 @@ def _check_to_json(check: Check) -> dict[str, Any]:
         "max_points": _number(check.max_points),
         "exact": {"points": str(check.points), "max_points": str(check.max_points)},
         "drawing": drawing_to_json(check.drawing),
+        "counterexample": check.counterexample and check.counterexample._asdict(),
     }
 
 
@@ -303,6 +315,9 @@ def _check_from_json(written: dict[str, Any]) -> Check:
     values["max_points"] = _read_points(written["exact"]["max_points"])
     values["hints"] = _require_texts("hints", written["hints"])
     values["drawing"] = drawing_from_json(written["drawing"])
+    if values["counterexample"] is not None:
+        example = Counterexample(**values["counterexample"])
+        values["counterexample"] = Counterexample(*_require_texts("counterexample", example))
     for name in ("task", "name", "promise", "outcome", "message", "said", "kind", "follows"):
         _require_texts(name, [values[name]])
     if not isinstance(values["hidden"], bool):

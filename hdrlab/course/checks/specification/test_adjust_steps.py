@@ -38,6 +38,10 @@ def asked(subject, h, db, D, **knobs):
     return found
 
 
+# right iterations may differ in their steps, which small inputs show most
+check_one_input = None
+
+
 @points(4)
 def test_nothing_stays_above_the_ceiling(subject, rng):
     """A trim lowers T, and so it lowers the ceiling. Bins that were just below the old ceiling can

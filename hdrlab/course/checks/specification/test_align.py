@@ -45,6 +45,10 @@ def drawn(rng, least, most):
     return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
 
 
+# on a few pixels many offsets are equally good, and right functions find different ones
+check_one_input = None
+
+
 @points(1, needs="test_a_shift_of_one_pixel_is_found")
 def test_identical_images_have_offsets_of_zero(subject, rng):
     """Nothing has to move here.

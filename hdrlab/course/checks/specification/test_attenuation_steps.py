@@ -29,6 +29,10 @@ def asked(subject, lL, **knobs):
     return came, np.log(Phi)
 
 
+# right iterations may differ in their steps, which small inputs show most
+check_one_input = None
+
+
 def test_there_is_a_state_for_each_level(subject, rng):
     """Halve the image as long as its shorter side stays at 32 pixels or more.
 

@@ -40,6 +40,10 @@ def same_radius(subject, A, B, *, radius, what="the radius", **knobs):
     same(subject.circle(A, B, **knobs), radius, TOLERANCE, what=f"{what}, in pixels")
 
 
+# few pixels fill few of the bins, and right functions treat nearly empty bins in different ways
+check_one_input = None
+
+
 @points(6)
 def test_the_circle_ends_where_the_second_photo_gets_darker(subject, rng):
     """Which value does a pixel of A have in B? How do you know, without the camera's response?

@@ -25,6 +25,10 @@ def same_window(subject, L, what="Ld", **knobs):
     same(subject.equalise(L, **knobs), Ld, TOLERANCE, what=what, picture=True)
 
 
+# in an image of a few pixels the result depends on where the edges of the bins are
+check_one_input = None
+
+
 @points(6)
 def test_all_codes_are_equally_frequent(subject, rng):
     """Which curve uses all codes of the display equally often?

@@ -15,6 +15,11 @@ def drawn(rng):
     return score.astype(np.float32)
 
 
+def is_valid_input(score):
+    """Return whether the image is as large as the squares that are looked for."""
+    return min(score.shape) >= regions.SEED_SIDE
+
+
 @points(3)
 def test_squares_that_are_entirely_above_1_are_marked(subject, rng):
     """A moving object covers an area. Noise and edges do not.

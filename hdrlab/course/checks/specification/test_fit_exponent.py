@@ -23,6 +23,11 @@ def same_exponent(subject, ladders, alpha=0.0, what="gamma"):
     same(subject.fit_exponent(ladders, alpha=alpha), gamma, 1e-3 * gamma, what=what)
 
 
+def is_valid_input(ladders, *, alpha=0.0):
+    """Return whether every series has a slope."""
+    return all(len(values) >= 2 for values, _ in ladders)
+
+
 @points(4)
 def test_the_exponent_of_one_series_is_its_slope(subject, rng):
     """Which line is a power law on logarithmic paper?

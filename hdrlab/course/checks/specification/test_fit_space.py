@@ -24,6 +24,10 @@ def answer(subject, curves, count):
     return mean, H, finite(sd, (count,), what="sd").astype(float)
 
 
+# the components of a few values are not unique
+check_one_input = None
+
+
 @points(1, needs="test_the_components_span_the_directions_of_largest_spread")
 def test_the_mean_is_that_of_all_curves(subject, rng):
     """At each place, the space starts from one value. From which?

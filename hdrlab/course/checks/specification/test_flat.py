@@ -24,6 +24,10 @@ def same_patches(subject, A, psi, **knobs):
     same(subject.flat(A, psi=psi, **knobs), low, 0, what="flat", picture=True, where=low == high)
 
 
+# near the limit of the test, right functions differ
+check_one_input = None
+
+
 @points(6)
 def test_a_patch_is_flat_if_noise_explains_its_variance(subject, rng):
     """A uniform surface has a variance, too: that of the noise. How large can it become?

@@ -16,6 +16,19 @@ def file(E, scale="-1.0", order="<f4", gap=b"\n"):
     return head + b"\n" + E[::-1].astype(order).tobytes()
 
 
+SMALL_INPUTS = [
+    (file(np.array([[1]], np.float32)),),
+    (file(np.array([[1], [2]], np.float32)),),
+    (file(np.array([[1, 2, 3]], np.float32)),),
+    (file(np.array([[[1, 2, 3], [4, 5, 6]]], np.float32)),),
+    (file(np.array([[1]]), "1.0", ">f4"),),
+    (file(np.array([[1]], np.float32), gap=b" "),),
+    (file(np.array([[1]], np.float32), gap=b"\t"),),
+    (file(np.array([[1]], np.float32), gap=b" \n"),),
+    (file(np.array([0x0A0A2020], "<u4").view("<f4").reshape(1, 1)),),
+]
+
+
 @points(4)
 def test_the_first_row_of_the_file_is_the_bottom_row(subject, rng):
     """Is your image upside down?

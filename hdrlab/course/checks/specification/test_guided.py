@@ -26,6 +26,10 @@ def inside(radius):
     return mask
 
 
+# near a border, where all pixels of a small image are, right filters differ
+check_one_input = None
+
+
 @points(6)
 def test_an_image_is_smoothed_along_its_guide(subject, rng):
     """Each window has its own model, q = a I + b. A pixel is in many windows: average their models.

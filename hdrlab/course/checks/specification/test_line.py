@@ -11,6 +11,11 @@ def drawn(rng, M=9):
     return S, S / rng.uniform(1, 4) + rng.uniform(3, 12)
 
 
+def is_valid_input(S, V):
+    """Return whether there is a dark pair and two others."""
+    return len(np.unique(S)) == len(S) >= 3
+
+
 @points(2)
 def test_the_line_starts_at_the_dark_pair(subject, rng):
     """By how much does the variance grow with the signal, beyond the variance of the dark pair?

@@ -50,6 +50,17 @@ def same_map(came, truth, tolerance=0.01, **knobs):
     same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
 
 
+def is_valid_input(images, times, g, w=None):
+    """Return whether every pixel is measured in some frame."""
+    table = weights.hat() if w is None else w
+    return bool((table[images].sum(axis=0) > 0).all())
+
+
+def check_one_input(subject, images, times, g, w=None):
+    """Compare the logarithms of the map with those of the solution."""
+    same_map(subject.merge(images, times, g, w), merge(images, times, g, w))
+
+
 def test_every_pixel_has_a_finite_radiance(subject, rng):
     """The map has the size of a photo.
 

@@ -1,5 +1,7 @@
 """Checks of peaks(c, count), the shifts of the highest peaks of a correlation: (count, 2)."""
 
+import numpy as np
+
 from hdrlab.align import cerman
 from hdrlab.course.checks.compare import points, same
 
@@ -13,6 +15,12 @@ def drawn(rng):
         y, x = rng.integers(8, 28), rng.integers(8, 42)
         c[y - 1 : y + 2, x - 1 : x + 2] = height + rng.uniform(0, 0.8, (3, 3))
     return c
+
+
+def is_valid_input(c, count):
+    """Return whether no two values tie for a peak, and the map has an inside."""
+    above = c[c > 0]
+    return min(c.shape) >= 5 and 0 < len(np.unique(above)) == len(above)
 
 
 @points(4)

@@ -23,6 +23,10 @@ def asked(subject, found, **knobs):
     return [parts(one, 3, what="a state") for one in came], list(ratios.ratio_steps(found, **knobs))
 
 
+# right iterations may differ in their steps, which small inputs show most
+check_one_input = None
+
+
 @points(3)
 def test_the_first_ratio_is_that_of_least_squares(subject, rng):
     """Which k minimizes the sum of (v (y - k x))^2?

@@ -46,6 +46,10 @@ def asked(subject, Z, t, **knobs):
     return found
 
 
+# right iterations may differ in their steps, which small inputs show most
+check_one_input = None
+
+
 @points(5)
 def test_the_iterations_converge_to_the_curve_of_the_camera(subject, rng):
     """Plot f^-1 after every iteration. Does it approach the curve of the camera?

@@ -37,6 +37,10 @@ def same_adaptation(came, truth, what, sure):
     )
 
 
+# right iterations may differ in their steps, which small inputs show most
+check_one_input = None
+
+
 @points(4)
 def test_each_response_compares_a_width_with_the_next(subject, rng):
     """The surround of one width is the center of the next width, so nine blurs give eight

@@ -19,6 +19,10 @@ def asked(subject, g, **knobs):
     return w / w[len(g) // 2]
 
 
+# the slope of a short curve depends on how its ends are treated
+check_one_input = None
+
+
 @points(5)
 def test_the_weight_is_the_signal_over_its_slope(subject, rng):
     """The noise has the same size at all pixel values. How large is the error of the exposure that

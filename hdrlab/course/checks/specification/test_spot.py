@@ -14,6 +14,12 @@ def drawn(rng):
     return (H, W), {"at": at, "share": int(rng.integers(20, 60)) / (H * W)}
 
 
+def is_valid_input(shape, *, share=0.03, **_):
+    """Return whether the share of the pixels is a whole number of them."""
+    count = share * shape[0] * shape[1]
+    return abs(count - round(count)) < 1e-6
+
+
 @points(4)
 def test_the_nearest_pixels_are_used(subject, rng):
     """Which pixels are in a disc around a position?

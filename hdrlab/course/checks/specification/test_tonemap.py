@@ -26,6 +26,10 @@ def drawn(rng, shape=(96, 128)):
     return np.exp(1.5 * soft / soft.std() + 0.2 * rng.standard_normal(shape)).astype(np.float32)
 
 
+# right operators may blur in different ways, which small images show most
+check_one_input = None
+
+
 @points(14)
 def test_it_is_the_photographic_operator(subject, rng):
     """What are Lm and Ld of a pixel with L = Lav, the log average?
