@@ -60,6 +60,7 @@ class NumberQuestion:
     truth : the right answer
     low, high : the ends of the scale on which students answer
     unit : its unit, "" if it has none
+    misconceptions : none; a wrong number does not say how it came about
     """
 
     name: str
@@ -70,6 +71,7 @@ class NumberQuestion:
     low: float
     high: float
     unit: str
+    misconceptions: tuple[()] = ()
 
     @property
     def tolerance(self) -> float:
