@@ -178,7 +178,8 @@ def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_
 def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
     site = made[1]
     parts = {path.name for path in site.iterdir()} - {page.name for page in site.glob("*.html")}
-    folders = {"notebooks", "reference", "_images", "_modules", "_static", "_widgets"}
+    folders = {"notebooks", "reference", "teachers_sheets"}
+    folders |= {"_images", "_modules", "_static", "_widgets"}
     assert parts == folders | {"searchindex.js", "objects.inv", ".nojekyll"}
     assert {path.name for path in site.rglob(".*")} == {".nojekyll"}
     kinds = [".html", ".js", ".css", ".svg", ".png", ".jpg", ".jpeg", ".webp", ".inv"]
