@@ -61,8 +61,8 @@ def test_a_saved_notebook_that_is_opened_again_answers_at_every_position_before_
     reader.open(page, file.name)  # with a kernel that knows nothing of it
     widget = widget_of(page)
     for name, key, words in (
-        ("level", "End", "level = 200, side = 40"),
-        ("side", "End", "level = 200, side = 60"),
+        ("level", "End", "level 200, side 40"),
+        ("side", "End", "level 200, side 60"),
     ):
         widget.get_by_role("slider", name=name).press(key)
         expected = f"A square, {words}"
