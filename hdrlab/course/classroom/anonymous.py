@@ -98,11 +98,21 @@ def _hide_check(check: results.Check, anonymity: Anonymity) -> results.Check:
         check,
         message=anonymity.redact(check.message),
         said=anonymity.redact(check.said),
+        counterexample=_redact_counterexample(check.counterexample, anonymity),
         drawing=check.drawing._replace(
             alts=tuple(anonymity.redact(alt) for alt in check.drawing.alts),
             captions=tuple(anonymity.redact(caption) for caption in check.drawing.captions),
         ),
     )
+
+
+def _redact_counterexample(
+    counterexample: results.Counterexample | None, anonymity: Anonymity
+) -> results.Counterexample | None:
+    """Return a counterexample without names, which a student's answer or error may contain."""
+    if counterexample is None:
+        return None
+    return results.Counterexample(*(anonymity.redact(text) for text in counterexample))
 
 
 def hide_row(row: GradebookRow, anonymity: Anonymity) -> GradebookRow:
