@@ -26,7 +26,8 @@ def test_gray_of_the_camera_is_gray_on_the_screen(subject, rng):
 
     Divide each row of A = M P by its sum before you invert it.
     """
-    M, P = random_camera(rng), random_screen(rng)
+    M = random_camera(rng)
+    P = random_screen(rng)
     came = np.asarray(subject.screen_from_camera(M, P))
     same(came @ np.ones(3), np.ones(3), 1e-6, what="C (1, 1, 1)")
 
@@ -54,7 +55,8 @@ def test_colors_of_the_screen_come_back(subject, rng):
 
     C is the inverse of A, after each row of A was divided by its sum.
     """
-    M, P = random_camera(rng), random_screen(rng)
+    M = random_camera(rng)
+    P = random_screen(rng)
     expected = development.screen_from_camera(M, P)
     same(subject.screen_from_camera(M, P), expected, 1e-6, what="C")
 
