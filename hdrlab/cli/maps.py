@@ -257,8 +257,8 @@ def why(*, source: Path, pixel: str) -> None:
 
     X counts the columns from the left, and Y the rows from the top, both from 0, as in `hdrlab
     assemble --calibrate`. hdrlab prints a table of the photos: the pixel values, their weight in the
-    merge, the photo's share of the mean, the radiance that it claims, and whether it is believed. It
-    also prints the standard deviation, what the other merges would say, and a summary.
+    merge, the photo's share of the mean, the radiance that it gives, and whether it agrees with the
+    map. It also prints the standard deviation, what the other merges would give, and a summary.
 
     The table needs the photos. `hdrlab assemble PHOTOS -o room.exr --why` stores them aligned in
     room.why.npz, next to the map. Keep the two files together.
@@ -271,7 +271,7 @@ def why(*, source: Path, pixel: str) -> None:
     path = evidence_file.evidence_path(source)
     if not path.is_file():
         raise InputError(
-            f"{source} has no file {path.name} beside it, which has what its photos say; "
+            f"{source} has no file {path.name} beside it, which holds its photos; "
             "assemble them again with --why"
         )
     explanation = evidence_file.explain_map_pixel(path, E, y, x, map_name=str(source))

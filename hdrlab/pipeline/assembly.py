@@ -102,7 +102,7 @@ class Assembly:
             return None
 
     def why(self, y: int, x: int) -> "PixelExplanation":
-        """Explain the value of one pixel: what each photo says there, and what became of it.
+        """Explain the value of one pixel: what each photo shows there, and how the merge used it.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class Assembly:
         >>> [photo.levels for photo in explanation.photos]
         [(62,), (124,)]
         >>> print(explanation.sentence)
-        The two photos that measured this pixel say 0.484. The map says 0.484.
+        The two photos that measured this pixel give 0.484. The map has 0.484.
         """
         from hdrlab.pipeline.explanation import explain_pixel
         from hdrlab.pipeline.pixel_claims import require_record

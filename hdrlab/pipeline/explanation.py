@@ -68,7 +68,7 @@ CHANGE_WORDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class PhotoClaim:
-    """What one photo says about a pixel.
+    """What one photo shows of a pixel, and which radiance that means.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class PhotoClaim:
     share : float
         The mean of the shares over the channels, by their weights in the luminance.
     role : Role
-        What the photo can say about the pixel.
+        What the photo can measure of the pixel.
     contradicts : bool
         Whether its claim contradicts the map, beyond noise and a quarter of a stop.
     """
@@ -137,7 +137,7 @@ class PhotoClaim:
 
 @dataclass(frozen=True, kw_only=True)
 class PixelExplanation:
-    """What each photo says about a pixel of a map, and how the map's value came from that.
+    """What each photo shows of a pixel of a map, and how the map's value came from that.
 
     Attributes
     ----------
@@ -292,7 +292,7 @@ def average_shares(shares: F64) -> F64:
 def describe_pixel(claims: PixelClaims, i: int, method: str) -> str:
     """Return the sentences about the pixel number i of some claims."""
     if (claims.roles[:, i] == Role.MASKED).all():
-        return "No photo shows this pixel. The map says 0."
+        return "No photo shows this pixel. The map has 0."
     text = "; ".join([*_describe_bounds(claims, i), *_describe_measurements(claims, i)])
     sentences = [f"{text[0].upper()}{text[1:]}."]
     for change in claims.changes:
@@ -301,7 +301,7 @@ def describe_pixel(claims: PixelClaims, i: int, method: str) -> str:
             sentences.append(CHANGE_WORDS[change.kind].format(value=value))
     L = float(luminance(claims.E[i]))
     value = describe_value(L, float(luminance(claims.s[i])))
-    sentences.append(f"The map says {value}.")
+    sentences.append(f"The map has {value}.")
     sentences += _describe_others(claims, i, method)
     return " ".join(sentences)
 
@@ -313,19 +313,23 @@ def _describe_bounds(claims: PixelClaims, i: int) -> list[str]:
     clauses = []
     count = int((roles == Role.FLOOR).sum())
     if count:
-        stand = "stand" if count > 1 else "stands"
-        say = _say(count, values[roles == Role.FLOOR])
-        clauses.append(f"{_count_photos(count)} {stand} on the black floor and {say}")
+        verb = "show" if count > 1 else "shows"
+        values_text = _describe_values(count, values[roles == Role.FLOOR])
+        clauses.append(f"{_count_photos(count)} {verb} only the black floor and {values_text}")
     count = int((roles == Role.BLACK).sum())
     if count:
         # the longest one has the tightest upper bound
-        say = _say(count, values[roles == Role.BLACK][-1:], "at most ")
-        clauses.append(f"{_count_photos(count)} {'are' if count > 1 else 'is'} black and {say}")
+        values_text = _describe_values(count, values[roles == Role.BLACK][-1:], "at most ")
+        clauses.append(
+            f"{_count_photos(count)} {'are' if count > 1 else 'is'} black and {values_text}"
+        )
     count = int((roles == Role.CLIPPED).sum())
     if count:
         # the shortest one has the tightest lower bound
-        say = _say(count, values[roles == Role.CLIPPED][:1], "at least ")
-        clauses.append(f"{_count_photos(count)} {'are' if count > 1 else 'is'} clipped and {say}")
+        values_text = _describe_values(count, values[roles == Role.CLIPPED][:1], "at least ")
+        clauses.append(
+            f"{_count_photos(count)} {'are' if count > 1 else 'is'} clipped and {values_text}"
+        )
     count = int((roles == Role.MOVED).sum())
     if count:
         was = "were" if count > 1 else "was"
@@ -346,15 +350,17 @@ def _describe_measurements(claims: PixelClaims, i: int) -> list[str]:
         believed = is_agreeing & is_counting
         if not believed.any():
             believed = is_agreeing
-        say = _say(count, values[believed])
-        clauses.append(f"the {_count_photos(count)} that measured this pixel {say}")
+        values_text = _describe_values(count, values[believed])
+        clauses.append(f"the {_count_photos(count)} that measured this pixel {values_text}")
     if is_contrary.any():
         count = int(is_contrary.sum())
         subject = f"the {_count_photos(count)} that measured this pixel"
         if is_agreeing.any():
             subject = f"{_number(count)} {'others' if count > 1 else 'other'}"
         contradict = "contradict" if count > 1 else "contradicts"
-        clauses.append(f"{subject} {contradict} the map and {_say(count, values[is_contrary])}")
+        clauses.append(
+            f"{subject} {contradict} the map and {_describe_values(count, values[is_contrary])}"
+        )
     if not is_measured.any() and not (claims.roles[:, i] == Role.FLOOR).any():
         clauses.append("no photo measured this pixel")
     return clauses
@@ -369,7 +375,7 @@ def _describe_others(claims: PixelClaims, i: int, method: str) -> list[str]:
         if min(own, other) <= 0 or abs(np.log2(other / own)) <= MIN_DIFFERENT_STOPS:
             continue
         texts.append(f"{name} {shorten(other)}")
-    return [f"Other merges would say: {', '.join(texts)}."] if texts else []
+    return [f"Other merges would give: {', '.join(texts)}."] if texts else []
 
 
 def describe_claim(value: float, role: Role | int) -> str:
@@ -384,12 +390,12 @@ def describe_claim(value: float, role: Role | int) -> str:
 
 
 def describe_verdict(role: Role | int, contradicts: bool, share: float) -> str:
-    """Return the role of a photo in words, and whether it is believed or contradicts the map."""
+    """Return the role of a photo in words, and whether it agrees with the map."""
     words = ROLE_WORDS[Role(role)]
     if contradicts:
         return f"{words}, contradicts the map"
     if role == Role.MEASURED:
-        return "believed" if share >= MIN_COUNTING_SHARE else "agrees, hardly counts"
+        return "agrees" if share >= MIN_COUNTING_SHARE else "agrees, counts below 1 %"
     return words
 
 
@@ -432,9 +438,9 @@ def _count_photos(count: int) -> str:
     return f"{_number(count)} {'photo' if count == 1 else 'photos'}"
 
 
-def _say(count: int, values: Array, limit: str = "") -> str:
-    """Return what a group of photos says: one value, or the smallest and the largest."""
-    verb = "say" if count > 1 else "says"
+def _describe_values(count: int, values: Array, limit: str = "") -> str:
+    """Return the radiance that a group of photos gives: one value, or the smallest and the largest."""
+    verb = "give" if count > 1 else "gives"
     low = float(np.min(values))
     high = float(np.max(values))
     if high <= MAX_SINGLE_RATIO * low:

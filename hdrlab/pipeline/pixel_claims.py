@@ -10,7 +10,6 @@ Weights, bounds and means come from `radiance.merge` and `fast.merge`, and each 
 function that changed the map. Applied to these pixels alone, they give the map's values again.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -25,7 +24,9 @@ from hdrlab.fast.merge import FACTORS, merge_with_quality
 from hdrlab.pipeline import dark_pixels
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.pipeline.certainty import merge_pixels_with_deviation
+from hdrlab.pipeline.deghosting import MAX_COMPARED_PHOTOS, fill_pixels
 from hdrlab.pipeline.merging import NOISE_DEVIATIONS, MergeRecord, merge_photos
+from hdrlab.radiance.deghosting import regions
 from hdrlab.radiance.merge import CLIPPING_LEVEL, METHODS, Quality, as_tables, weigh
 from hdrlab.radiance.stuck import neighbours_median
 
@@ -40,7 +41,7 @@ FLOOR_NOISE_LEVELS = NOISE_DEVIATIONS * dark_pixels.MAX_NOISE_LEVELS
 
 
 class Role(IntEnum):
-    """What a photo can say about a pixel."""
+    """What a photo can measure of a pixel."""
 
     MEASURED = 0
     # as dark as shorter photos, so that the value is that of the scanner or of noise
@@ -65,7 +66,6 @@ class ChangeKind(IntEnum):
     FADED = 4
     REWEIGHTED = 5
     DEGLARED = 6
-    SCALED = 7
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,17 +145,12 @@ def collect_claims(state: Assembly, y: Indices, x: Indices, noise: Noise | None)
         If the photos, or the record of the merge, are missing.
     """
     record = require_record(state)
-    times = state.bracket.times
-    photos = state.bracket.images[:, y, x][:, None]  # one row of pixels
-    shown = np.ones(photos.shape[:3], bool)
-    if state.bracket.valid is not None:
-        shown = state.bracket.valid[:, y, x][:, None]
-    used = shown if record.used is None else record.used[:, y, x][:, None]
+    row = _read_row(state, record, y, x)
     _, t, w, curves, top = as_tables(
-        photos, times, state.g, record.pixel_weights, record.method, CLIPPING_LEVEL
+        row.photos, row.times, state.g, record.pixel_weights, record.method, CLIPPING_LEVEL
     )
-    Z = photos.reshape(len(photos), 1, len(y), -1)
-    weights = weigh(Z, w, top, used[..., None])[:, 0]
+    Z = row.photos.reshape(len(t), 1, len(y), -1)
+    weights = weigh(Z, w, top, row.used[..., None])[:, 0]
     totals = np.array([FACTORS[record.method](float(time)).total for time in t])
     shares = weights * totals[:, None, None]
     sums = shares.sum(axis=0)
@@ -166,8 +161,8 @@ def collect_claims(state: Assembly, y: Indices, x: Indices, noise: Noise | None)
     claimed = np.clip(levels, 1, top)
     claims = _expose(claimed, curves) / t[:, None, None] * record.unit_factor
     delta = max(1, round(NOISE_DEVIATIONS * record.noise))
-    roles = _find_roles(levels, t, shown[:, 0], used[:, 0], top)
-    trace = _trace_changes(state, record, y, x, photos, shown, used, noise)
+    roles = _find_roles(levels, t, row.shown[:, 0], row.used[:, 0], top)
+    trace = _trace_changes(row, noise)
     return PixelClaims(
         y=y,
         x=x,
@@ -216,10 +211,10 @@ def _find_roles(levels: Array, t: F64, shown: Mask, used: Mask, top: int) -> Fla
 
 
 def _find_floor(levels: Array, t: F64, is_open: Mask) -> Mask:
-    """Return where photos (P, M) stand on a black floor.
+    """Return where photos (P, M) show only a black floor.
 
     From the shortest photo on, their values stay near the lowest one, while the exposure grows by
-    MIN_FLOOR_EXPOSURE_FACTOR or more. So these values say nothing about the light.
+    MIN_FLOOR_EXPOSURE_FACTOR or more. So these values do not depend on the light.
     """
     highest = np.iinfo(levels.dtype).max
     cap = MAX_FLOOR_FRACTION * (highest + 1)
@@ -291,88 +286,129 @@ class _Trace:
         self.changes.append(Change(kind=kind, is_changed=is_changed, radiance=radiance))
 
 
-def _trace_changes(
-    state: Assembly,
-    record: MergeRecord,
-    y: Indices,
-    x: Indices,
-    photos: Array,
-    shown: Mask,
-    used: Mask,
-    noise: Noise | None,
-) -> _Trace:
-    """Repeat the merge of one row of pixels, and each step after it."""
-    is_mixed = (used != shown).any(axis=0)[0]
-    compared = np.arange(len(photos))
-    if is_mixed.any():
-        from hdrlab.pipeline.deghosting import MAX_COMPARED_PHOTOS
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _PixelRow:
+    """The M pixels as an image of one row, which the functions of the merge take.
 
-        compared = choose_spread_frames(state.bracket.times, MAX_COMPARED_PHOTOS)
+    Attributes
+    ----------
+    state, record : the Assembly, and the record of its merge
+    y, x : (M,) int, rows and columns in the map
+    photos : (P, 1, M[, 3]) uint8 or uint16
+    shown : (P, 1, M) bool, the photos that show each pixel
+    used : (P, 1, M) bool, those of them that removal of ghosts left
+    compared : (Q,) int, the photos that removal of ghosts looked at
+    """
 
-    def merge(merge_row: Callable[..., F32], method: str) -> F32:
-        """Merge the photos that make each pixel by a function of photos, times, mask and method."""
-        E = merge_row(photos, state.bracket.times, shown, method)
+    state: Assembly
+    record: MergeRecord
+    y: Indices
+    x: Indices
+    photos: Array
+    shown: Mask
+    used: Mask
+    compared: Indices
+
+    @property
+    def times(self) -> F64:
+        """Exposure times (P,) in seconds."""
+        return self.state.bracket.times
+
+    @property
+    def is_mixed(self) -> Mask:
+        """Whether only some of the photos that show a pixel make it (M,)."""
+        return np.asarray((self.used != self.shown).any(axis=0)[0])
+
+    def merge(self, method: str, *, limited: bool) -> F32:
+        """Return the merge (1, M[, 3]) of the photos that make each pixel.
+
+        If `limited`, the longest photo limits what is dark, see `merge_photos`.
+        """
+        is_mixed = self.is_mixed
+        E = self._merge_photos(np.arange(len(self.photos)), self.shown, method, limited=limited)
         if is_mixed.any():
-            times = state.bracket.times[compared]
-            still = merge_row(photos[compared], times, used[compared], method)
+            still = self._merge_photos(self.compared, self.used, method, limited=limited)
             E[:, is_mixed] = still[:, is_mixed]
         return E
 
-    def merge_plainly(images: Array, times: F64, valid: Mask, method: str) -> F32:
-        return merge_with_quality(
-            images,
-            times,
-            state.g,
-            record.pixel_weights,
-            method=method,
-            valid=valid,
-            repair=False,
-        ).E
+    def merge_shown(self) -> F32:
+        """Return the merge of all photos that show a pixel, also of those that were left out."""
+        everything = np.arange(len(self.photos))
+        return self._merge_photos(everything, self.shown, self.record.method, limited=True)
 
-    def merge_and_limit(images: Array, times: F64, valid: Mask, method: str) -> F32:
+    def _merge_photos(self, chosen: Indices, valid: Mask, method: str, *, limited: bool) -> F32:
+        """Merge some photos by the functions of the pipeline. Stuck pixels stay as they are."""
+        photos = self.photos[chosen]
+        times = self.times[chosen]
+        g = self.state.g
+        weights = self.record.pixel_weights
+        if not limited:
+            return merge_with_quality(
+                photos, times, g, weights, method=method, valid=valid[chosen], repair=False
+            ).E
         return merge_photos(
-            images,
+            photos,
             times,
-            state.g,
-            record.pixel_weights,
+            g,
+            weights,
             method=method,
-            noise=record.noise,
-            valid=valid,
+            noise=self.record.noise,
+            valid=valid[chosen],
             repair=False,
         ).E
 
+
+def _read_row(state: Assembly, record: MergeRecord, y: Indices, x: Indices) -> _PixelRow:
+    """Return the pixels E[y, x] of all photos as a row."""
+    photos = state.bracket.images[:, y, x][:, None]
+    shown = np.ones(photos.shape[:3], bool)
+    if state.bracket.valid is not None:
+        shown = state.bracket.valid[:, y, x][:, None]
+    used = shown if record.used is None else record.used[:, y, x][:, None]
+    return _PixelRow(
+        state=state,
+        record=record,
+        y=y,
+        x=x,
+        photos=photos,
+        shown=shown,
+        used=used,
+        compared=choose_spread_frames(state.bracket.times, MAX_COMPARED_PHOTOS),
+    )
+
+
+def _trace_changes(row: _PixelRow, noise: Noise | None) -> _Trace:
+    """Repeat the merge of a row of pixels, and each step after it."""
+    state = row.state
+    record = row.record
+    count = len(row.y)
     factor = np.float32(record.unit_factor)
-    everywhere = np.ones(len(y), bool)
-    mean = merge(merge_plainly, record.method)
+    mean = row.merge(record.method, limited=False)
     alternatives = {}
     for method in METHODS:
-        limited = merge(merge_and_limit, method)
-        alternatives[method] = (limited * factor).reshape(len(y), -1)
+        limited = row.merge(method, limited=True)
+        alternatives[method] = (limited * factor).reshape(count, -1)
     trace = _Trace(
         values=mean,
-        mean=(mean * factor).reshape(len(y), -1),
+        mean=(mean * factor).reshape(count, -1),
         changes=[],
-        s=np.full((len(y), photos[0, 0, 0].size), np.inf, np.float32),
+        s=np.full((count, row.photos[0, 0, 0].size), np.inf, np.float32),
         alternatives=alternatives,
     )
-    is_stuck = state.quality[y, x] == Quality.STUCK
-    trace.change(ChangeKind.LIMITED, merge(merge_and_limit, record.method), ~is_stuck)
+    is_stuck = state.quality[row.y, row.x] == Quality.STUCK
+    trace.change(ChangeKind.LIMITED, row.merge(record.method, limited=True), ~is_stuck)
     if is_stuck.any():
-        repaired = trace.values.copy()
-        for i in np.flatnonzero(is_stuck):
-            repaired[0, i] = _repair(state, record, int(y[i]), int(x[i]), mixed=bool(is_mixed[i]))
-        trace.change(ChangeKind.STUCK, repaired, is_stuck)
-    if is_mixed.any():
-        plain = merge_and_limit(photos, state.bracket.times, shown, record.method)
-        _blend_regions(state, record, trace, y, x, photos, shown, used, compared, plain, is_mixed)
+        trace.change(ChangeKind.STUCK, _repair_stuck(row, trace.values, is_stuck), is_stuck)
+    if row.is_mixed.any():
+        _blend_regions(row, trace)
     elif record.certainty is not None:
-        faded = _fade(trace.values, record, record.certainty[y, x])
-        trace.change(ChangeKind.FADED, faded, everywhere)
+        faded = _fade(trace.values, record, record.certainty[row.y, row.x])
+        trace.change(ChangeKind.FADED, faded, np.ones(count, bool))
     if noise is not None:
-        _measure_deviation(state, noise, trace, y, x, photos, shown)
-    from_map = state.E[y, x][None] / factor
+        _measure_deviation(row, trace, noise)
     if state.glare is not None:
-        trace.change(ChangeKind.DEGLARED, from_map, state.glare[y, x])
+        from_map = state.E[row.y, row.x][None] / factor
+        trace.change(ChangeKind.DEGLARED, from_map, state.glare[row.y, row.x])
     trace.s *= factor
     # Every radiance is stated in the unit of the map, so that the unit is no change.
     trace.changes = [
@@ -380,6 +416,15 @@ def _trace_changes(
         for change in trace.changes
     ]
     return trace
+
+
+def _repair_stuck(row: _PixelRow, values: F32, is_stuck: Mask) -> F32:
+    """Return a row of pixels in which the stuck ones are the median of their neighbors."""
+    repaired = values.copy()
+    for i in np.flatnonzero(is_stuck):
+        mixed = bool(row.is_mixed[i])
+        repaired[0, i] = _repair(row.state, row.record, int(row.y[i]), int(row.x[i]), mixed=mixed)
+    return repaired
 
 
 def _fade(E: F32, record: MergeRecord, certainty: F32) -> F32:
@@ -407,49 +452,45 @@ def _repair(state: Assembly, record: MergeRecord, y: int, x: int, *, mixed: bool
     return np.asarray(neighbours_median(planes, is_center)[0].reshape(window.shape[2:]), np.float32)
 
 
-def _blend_regions(
-    state: Assembly,
-    record: MergeRecord,
-    trace: _Trace,
-    y: Indices,
-    x: Indices,
-    photos: Array,
-    shown: Mask,
-    used: Mask,
-    compared: Indices,
-    plain: F32,
-    is_mixed: Mask,
-) -> None:
+def _blend_regions(row: _PixelRow, trace: _Trace) -> None:
     """Repeat what `deghosting.remove_ghosts` does after the merge of the photos that it uses."""
-    from hdrlab.pipeline.deghosting import fill_pixels
-    from hdrlab.radiance.deghosting import regions
-
+    state = row.state
+    record = row.record
     if record.alpha is None or record.references is None or state.moving is None:
         raise InputError("the record of the merge has no regions; assemble the photos again")
-    everywhere = np.ones(len(y), bool)
-    times = state.bracket.times[compared]
+    is_mixed = row.is_mixed
+    compared = row.compared
     numbers = np.searchsorted(compared, record.references)
-    reference = np.concatenate([[-1], numbers])[state.moving[y, x]].astype(np.int32)
-    top = as_tables(photos, state.bracket.times, state.g, None, record.method, CLIPPING_LEVEL)[4]
+    reference = np.concatenate([[-1], numbers])[state.moving[row.y, row.x]].astype(np.int32)
+    tables = as_tables(row.photos, row.times, state.g, None, record.method, CLIPPING_LEVEL)
+    top = tables[4]
     white = fill_pixels(
-        photos[compared], times, state.g, used[compared], shown[compared], reference[None], top
+        row.photos[compared],
+        row.times[compared],
+        state.g,
+        row.used[compared],
+        row.shown[compared],
+        reference[None],
+        top,
     ).white
     whitened = np.where(white > 0, white, trace.values)
     trace.change(ChangeKind.WHITE, whitened, is_mixed)
 
-    alpha = np.where(is_mixed, record.alpha[y, x], 0)
-    certainty = np.ones(len(y), np.float32)
+    alpha = np.where(is_mixed, record.alpha[row.y, row.x], 0)
+    certainty = np.ones(len(row.y), np.float32)
     if record.certainty is not None:
-        certainty = record.certainty[y, x]
+        certainty = record.certainty[row.y, row.x]
+    plain = row.merge_shown()
     faded_plain = np.where(
         _column(is_mixed, plain), _fade(plain, record, certainty), trace.values
     ).astype(np.float32)
     blended = regions.blend(faded_plain, trace.values, alpha[None].astype(np.float32))
     trace.change(ChangeKind.BLENDED, blended, is_mixed & (alpha < 1))
     # Where the region changed nothing, the map around it is as it was, and has already faded.
-    is_old = is_mixed & (faded_plain == trace.values).reshape(len(y), -1).all(axis=-1)
+    is_same = (faded_plain == trace.values).reshape(len(row.y), -1).all(axis=-1)
+    is_old = is_mixed & is_same
     faded = _fade(trace.values, record, np.where(is_old, np.float32(1), certainty))
-    trace.change(ChangeKind.FADED, faded, everywhere)
+    trace.change(ChangeKind.FADED, faded, np.ones(len(row.y), bool))
 
 
 def _column(mask: Mask, like: Array) -> Mask:
@@ -457,23 +498,18 @@ def _column(mask: Mask, like: Array) -> Mask:
     return mask[None] if like.ndim == 2 else mask[None, :, None]
 
 
-def _measure_deviation(
-    state: Assembly,
-    noise: Noise,
-    trace: _Trace,
-    y: Indices,
-    x: Indices,
-    photos: Array,
-    shown: Mask,
-) -> None:
+def _measure_deviation(row: _PixelRow, trace: _Trace, noise: Noise) -> None:
     """Compute s, and repeat the merge by inverse variance if the map was made by it."""
-    changed = [layer[y, x] > 0 for layer in (state.moving, state.glare) if layer is not None]
-    is_unknown = np.any([state.quality[y, x] != Quality.MEASURED, *changed], axis=0)
-    sure = merge_pixels_with_deviation(photos, shown, state.bracket.times, state.g, noise)
-    s = sure.s.reshape(len(y), -1)
+    state = row.state
+    is_unknown = state.quality[row.y, row.x] != Quality.MEASURED
+    for layer in (state.moving, state.glare):
+        if layer is not None:
+            is_unknown |= layer[row.y, row.x] > 0
+    sure = merge_pixels_with_deviation(row.photos, row.shown, row.times, state.g, noise)
+    s = sure.s.reshape(len(row.y), -1)
     s[is_unknown] = np.inf
     trace.s = s
     if state.s is not None:
         is_finite = np.isfinite(s).reshape(trace.values.shape)
         values = np.where(is_finite, sure.E, trace.values)
-        trace.change(ChangeKind.REWEIGHTED, values, np.ones(len(y), bool))
+        trace.change(ChangeKind.REWEIGHTED, values, np.ones(len(row.y), bool))

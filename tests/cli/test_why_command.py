@@ -43,7 +43,7 @@ def test_why_explains_column_x_of_row_y(folder, capsys):
     L = radiance.read_radiance(folder / "room.exr")[20, 70] @ [0.2126, 0.7152, 0.0722]
     assert float(title.split(": ")[1].split()[0]) == pytest.approx(L, rel=6e-3)
     value = title.split(": ")[1]
-    assert f"The map says {value}." in table[-1]
+    assert f"The map has {value}." in table[-1]
 
 
 def test_assemble_names_the_file_and_its_size(folder, tmp_path, capsys):

@@ -151,10 +151,10 @@ def test_the_sentence_names_the_photos_on_a_black_floor_and_what_the_others_say(
     )
     explanation = state.why(30, 40)
     assert [photo.role for photo in explanation.photos][:4] == [Role.FLOOR] * 4
-    assert explanation.sentence.startswith("Four photos stand on the black floor and say ")
+    assert explanation.sentence.startswith("Four photos show only the black floor and give ")
     assert "three photos that measured" in explanation.sentence
     # the mean of all radiances believes the shortest photo most
-    others = explanation.sentence.partition("Other merges would say: ")[2]
+    others = explanation.sentence.partition("Other merges would give: ")[2]
     assert f"mean {shorten(explanation.alternatives['mean'])}" in others
 
 
@@ -179,7 +179,7 @@ def test_a_photo_with_a_wrong_time_contradicts_the_map():
     )
     contrary = [photo.name for photo in state.why(5, 5).photos if photo.contradicts]
     assert contrary == ["wrong"]
-    assert "; one other contradicts the map and says " in state.why(5, 5).sentence
+    assert "; one other contradicts the map and gives " in state.why(5, 5).sentence
 
 
 def test_a_pixel_that_is_clipped_everywhere_is_explained_by_its_bound():

@@ -1,4 +1,4 @@
-// The pixel of a report that is pressed, or reached with the arrow keys: what each photo says about it.
+// The pixel of a report that is pressed, or reached with the arrow keys: what each photo shows there.
 // The data come from pressed_pixels.py. Where no script runs, the page shows the first pixel.
 
 const FAR_STEP = 8;
