@@ -171,7 +171,6 @@ def assemble(
     from hdrlab.io import photos as photo_files, radiance
     from hdrlab.io.files import require_folder_name, require_replaceable, require_suffix
     from hdrlab.io.maps import layers
-    from hdrlab.pipeline import evidence_file
 
     # bad options are reported before the work starts
     if times == "stated":
@@ -185,7 +184,11 @@ def assemble(
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
     if why:
-        require_replaceable(evidence_file.evidence_path(out))
+        # imported only here, because it imports more of SciPy than the other options need
+        from hdrlab.pipeline import evidence_file
+
+        evidence = evidence_file.evidence_path(out)
+        require_replaceable(evidence)
     if all_brackets:
         _assemble_each(ctx, photos)
         return
@@ -256,7 +259,7 @@ def assemble(
             unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
             layers.write_layers(uncertainty, both, comments=[*unit_comments, *comments])
         if why:
-            evidence_file.write_evidence(evidence_file.evidence_path(out), assembly)
+            evidence_file.write_evidence(evidence, assembly)
         if developed and picture:
             photo_files.write_picture(picture, developed.picture, is_result=True)
             remarks.detail(f"{picture}: {developed.settings}")
@@ -281,7 +284,7 @@ def assemble(
     if uncertainty:
         outputs.append(_describe_uncertainty(uncertainty, assembly))
     if why:
-        outputs.append(_describe_evidence(evidence_file.evidence_path(out)))
+        outputs.append(_describe_evidence(evidence))
     if report:
         outputs.append(str(report / "report.html"))
     click.echo(_summarize(assembly, outputs))

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency
-from hdrlab.diagnostics.noise import Noise
 from hdrlab.errors import CalibrationError
 from hdrlab.pipeline.merging import MergeRecord
 
 if TYPE_CHECKING:
+    from hdrlab.diagnostics.noise import Noise
     from hdrlab.pipeline.explanation import PixelExplanation
 
 # The name of a method, or a function with the same signature.
@@ -90,7 +90,7 @@ class Assembly:
         return consistency.measure_spread(self.medians)
 
     @cached_property
-    def sensor_noise(self) -> Noise | None:
+    def sensor_noise(self) -> "Noise | None":
         """The noise of the camera, estimated from the photos; None if they do not show it."""
         from hdrlab.pipeline.certainty import estimate_sensor_noise
 

@@ -13,7 +13,7 @@ upper limit.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -29,10 +29,13 @@ from hdrlab.core.arrays import (
     as_stack,
     levels,
 )
-from hdrlab.diagnostics.noise import Noise
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import dark_pixels
 from hdrlab.radiance.merge import Merged, Quality
+
+if TYPE_CHECKING:
+    # it imports scipy.optimize, which a merge does not need
+    from hdrlab.diagnostics.noise import Noise
 
 # pixel values of 8-bit photos below which noise decides what a short photo shows
 MAX_DARK_LEVEL = 16
@@ -87,7 +90,7 @@ class MergeRecord:
     used: Mask | None = None
     references: Indices | None = None
     alpha: F32 | None = None
-    sensor_noise: Noise | None = None
+    sensor_noise: "Noise | None" = None
     unit_factor: float = 1.0
 
 
