@@ -14,7 +14,7 @@ def agree(subject, rng, gains, *, brightest, darkest=0.0):
     same(came, expected, 1e-5, what="X")
 
 
-@points(5)
+@points(6)
 def test_each_pixel_is_multiplied_by_the_gain_of_its_filter(subject, rng):
     """Each pixel has one filter. Which of the three gains does it get?
 
@@ -26,7 +26,7 @@ def test_each_pixel_is_multiplied_by_the_gain_of_its_filter(subject, rng):
     agree(subject, rng, gains, brightest=0.35)
 
 
-@points(2)
+@points(1)
 def test_equal_gains_change_nothing(subject, rng):
     """If the three gains are equal, the channels are balanced already.
 
