@@ -101,7 +101,7 @@ def text_of(control):
 def until_answered(page, widget):
     """Wait until the picture is of the last position."""
     controls = widget.locator(".hdrlab-controls > *").all()
-    wanted = ", ".join(f"{name_of(control)} = {text_of(control)}" for control in controls)
+    wanted = ", ".join(f"{name_of(control)} {text_of(control)}" for control in controls)
     page.wait_for_function(
         """([el, wanted]) => el.querySelector("canvas").getAttribute("aria-label").endsWith(wanted)
             && el.querySelector("[role=status]").textContent === "" """,
