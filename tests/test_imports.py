@@ -25,6 +25,7 @@ print(*sorted(blocked))
 """
 
 
+@pytest.mark.wheel
 def test_importing_hdrlab_leaves_every_other_package_importable():
     command = [sys.executable, "-W", "ignore", "-c", IMPORT_EVERYTHING]
     result = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import results
 import threadpoolctl
-from tiers import LONG_FILES
+from tiers import LONG_FILES, TIERS, may_hold
 
 ROOT = Path(__file__).parents[1]
 
@@ -19,6 +19,7 @@ def test_a_file_that_begins_first_exists(file):
     assert (ROOT / file).is_file()
 
 
+FILE_MARK = "pytestmark = pytest.mark.browser"
 TESTS = """
 import pytest
 
@@ -40,34 +41,39 @@ class TestGrading:
     def test_nearest(self):
         pass
 """
-WITHOUT_MARK = {
-    "quick": {"test_of_the_file", "test_nearest"},
-    "papers": {"test_on_paper"},
-    "grading": {"test_of_the_class"},
-    "browser": set(),
+# the tests above in a file without a mark, test_plain.py, and in one marked as browser, test_marked.py
+SELECTED = {
+    "quick": {"plain: test_of_the_file", "plain: test_nearest", "marked: test_nearest"},
+    "grading": {"plain: test_of_the_class", "marked: test_of_the_class"},
 }
 
 
-@pytest.mark.parametrize("tier", WITHOUT_MARK)
+@pytest.mark.parametrize("tier", SELECTED)
 def test_the_nearest_marker_names_the_tier(tier, tmp_path):
-    assert collected(tmp_path, tier, mark="") == WITHOUT_MARK[tier]
+    assert collected(tmp_path, tier) == SELECTED[tier]
 
 
-def test_a_marked_file_gives_its_tier_to_the_tests_without_a_marker(tmp_path):
-    mark = "pytestmark = pytest.mark.browser"
-    assert collected(tmp_path, "browser", mark) == {"test_of_the_file"}
-    assert collected(tmp_path, "quick", mark) == {"test_nearest"}
-    assert collected(tmp_path, "wheel", mark) == set()
+def test_a_file_without_tests_of_a_tier_is_not_imported(tmp_path):
+    path = tmp_path / "test_marked.py"
+    path.write_text(TESTS.format(mark=FILE_MARK), "utf8")
+    assert {tier for tier in TIERS if may_hold(path, tier)} == {
+        "quick",
+        "papers",
+        "grading",
+        "browser",
+    }
 
 
-def collected(folder, tier, mark):
-    """Return the names of the tests that pytest selects in a file with these tests."""
+def collected(folder, tier):
+    """Return the tests of a tier that pytest selects in both files."""
     for name in ("conftest.py", "tiers.py"):
         (folder / name).write_text((ROOT / "tests" / name).read_text("utf8"), "utf8")
-    (folder / "test_toy.py").write_text(TESTS.format(mark=mark), "utf8")
+    (folder / "test_plain.py").write_text(TESTS.format(mark=""), "utf8")
+    (folder / "test_marked.py").write_text(TESTS.format(mark=FILE_MARK), "utf8")
     command = [sys.executable, "-m", "pytest", "--collect-only", "-q", f"--tier={tier}"]
     output = subprocess.run(command, cwd=folder, capture_output=True, text=True).stdout
-    return set(re.findall(r"::(test_\w+)$", output, re.MULTILINE))
+    names = re.findall(r"test_(\w+)\.py::(?:\w+::)?(test_\w+)$", output, re.MULTILINE)
+    return {f"{file}: {test}" for file, test in names}
 
 
 def test_ctrl_c_reaches_what_a_test_starts():

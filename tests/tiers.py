@@ -1,7 +1,7 @@
 """The tiers of tests: `python -m pytest` runs the quick one, `--tier=papers` another, `--tier=all` all.
 
 A test belongs to the tier that its nearest marker names: `@pytest.mark.papers` on the test, on its
-class, or `pytestmark` of its file. Without a marker it is quick, and takes at most 5 s.
+class, or `pytestmark` of its file. Without a marker it is quick, and takes about a second at most.
 """
 
 import re
@@ -19,7 +19,7 @@ TIERS = {
     "papers": "published experiments, real brackets, films, tethered cameras, 12 megapixels",
     "scenes": "the embedded scenes, rendered and computed again",
     "wasm": "notebooks and checks in WebAssembly, as a browser runs them; where its test bed is",
-    "wheel": "the wheel, installed elsewhere",
+    "wheel": "the wheel, installed elsewhere; what importing hdrlab changes",
 }
 # Files with long tests begin first, in this order: begun last, one worker would be busy alone.
 LONG_FILES = (
@@ -47,7 +47,7 @@ LONG_FILES = (
     "tests/diagnostics/test_times_estimate.py",
     "tests/cli/test_faults.py",
 )
-FILE_MARK = re.compile(r"^pytestmark = \[?pytest\.mark\.(\w+)", re.MULTILINE)
+FILE_MARK = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.(\w+)", re.MULTILINE)
 
 
 def start_order(address: str) -> int:

@@ -244,6 +244,7 @@ def test_black_at_level_0_changes_neither_read_noise_nor_gain(read_noise):
     assert found.black == pytest.approx(0, abs=0.1)
 
 
+@pytest.mark.papers
 def test_the_interval_of_the_read_noise_contains_it_in_about_95_of_100_walls():
     inside = 0
     for seed in range(60):

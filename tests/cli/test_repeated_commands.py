@@ -56,6 +56,7 @@ def test_assemble_reads_the_header_of_each_photo_once(folder, monkeypatch):
     assert sorted(opened) == ["photo0.jpg", "photo1.jpg", "photo2.jpg"]
 
 
+@pytest.mark.papers
 @pytest.mark.parametrize(
     ("folder", "map_name"),
     [(".jpg", "map.tif"), (".tif", "photo0_hdr.tiff"), (".png", "map.exr")],

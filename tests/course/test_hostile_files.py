@@ -108,7 +108,6 @@ def test_an_archive_is_read_within_the_same_limits(tmp_path):
     assert problem.startswith("The archive is refused: ")
 
 
-@pytest.mark.quick
 def test_a_killed_reader_is_an_error_and_not_the_fault_of_the_file(tmp_path, monkeypatch):
     monkeypatch.setattr(reader, "_read_as_json", _killed)
     (tmp_path / "hw2.py").write_text(GOOD)
@@ -120,7 +119,6 @@ def _killed(order):
     os.kill(os.getpid(), 9)
 
 
-@pytest.mark.quick
 def test_a_killed_reader_is_restarted(tmp_path, monkeypatch):
     (tmp_path / "hw2.py").write_text(GOOD)
     monkeypatch.setattr(reader, "_read_as_json", _killed_twice)

@@ -28,10 +28,13 @@ CELLS = [
     "code:predict.place('Where?', gray[1] > 9, gray[1], alt='Gray')",
     "code:predict.curve('Draw it.', [0, 1], [0, 2], names=('level', 'light'))",
 ]
-pytestmark = pytest.mark.skipif(
-    any(find_spec(name) is None for name in NEEDS),
-    reason='question banks need pip install ".[site]"',
-)
+pytestmark = [
+    pytest.mark.notebooks,
+    pytest.mark.skipif(
+        any(find_spec(name) is None for name in NEEDS),
+        reason='question banks need pip install ".[site]"',
+    ),
+]
 
 
 @pytest.fixture(scope="module")

@@ -113,6 +113,7 @@ def test_other_notebooks_have_no_boxes():
     assert len(notebook.cells) == number
 
 
+@pytest.mark.grading
 @pytest.mark.usefixtures("in_this_process")
 def test_a_right_function_gets_all_points_and_a_wrong_one_feedback_with_a_figure():
     right = json.loads(in_browser.check_as_json("hat", RIGHT_HAT, draw=True))
@@ -123,6 +124,7 @@ def test_a_right_function_gets_all_points_and_a_wrong_one_feedback_with_a_figure
     assert "<img" not in words["html"] and words["summary"] == wrong["summary"]
 
 
+@pytest.mark.grading
 @pytest.mark.usefixtures("in_this_process")
 def test_a_text_that_is_no_python_or_lacks_the_function_is_answered_in_words():
     broken = json.loads(in_browser.check_as_json("hat", "def hat(n=256)\n    return n", draw=False))

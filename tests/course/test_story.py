@@ -95,6 +95,7 @@ FROM_OUTSIDE = {
 }
 
 
+@pytest.mark.notebooks
 @pytest.mark.parametrize("sentence", CLAIMS)
 def test_what_the_story_states_is_what_its_cells_compute(names, sentence):
     assert sentence in " ".join(TEXT.split())

@@ -81,6 +81,7 @@ def measure_peak_bytes(taken):
     return peak
 
 
+@pytest.mark.papers
 def test_more_photos_need_no_more_memory_than_their_pixels():
     some = shoot(100)
     many = shoot(300)
@@ -110,6 +111,7 @@ def test_merge_of_many_photos_is_that_of_the_lesson(method, dtype):
     assert np.array_equal(merged.quality, expected.quality)
 
 
+@pytest.mark.papers
 def test_something_that_moved_through_many_photos_is_found_and_removed():
     many = shoot(80)
     images = many.images.copy()
