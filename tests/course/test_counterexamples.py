@@ -297,3 +297,25 @@ def test_feedback_leads_with_the_counterexample_and_escapes_it():
     hidden = replace(RESULT, checks=(replace(CHECK, hidden=True),))
     assert "shrink(Y)" not in feedback.fragment(hidden)
     assert b"shrink(Y)" not in results.for_team(results.to_json(hidden))
+
+
+def test_feedback_states_an_error_that_was_raised_once():
+    error = "shrink raised IndexError: index 9"
+    example = EXAMPLE._replace(yours=error)
+    check = replace(
+        CHECK, outcome="no answer", kind="raised", message=error, counterexample=example
+    )
+    result = replace(RESULT, checks=(check,))
+    for text in (feedback.fragment(result), feedback.text(result)):
+        assert "your function raises an error" in text
+        assert "wrong answer" not in text
+        assert text.count(error) == 1
+
+
+def test_checks_of_a_task_that_have_the_same_counterexample_show_it_once():
+    source = "def threshold(h, q):\n    return h[999]\n"
+    result = graded("threshold", source, GradingOptions(tier=in_process.TIER, draw=False))
+    codes = [check.counterexample.code for check in result.checks if check.counterexample]
+    assert codes
+    assert len(codes) == len(set(codes))
+    assert all(check.message for check in result.checks if check.outcome == "no answer")

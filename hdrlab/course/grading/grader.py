@@ -289,6 +289,7 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
             _check(of_check, ends, examples, max_points)
             for of_check, max_points in zip(of_task, points, strict=True)
         ]
+        checks = _without_repeated_counterexamples(checks)
         needs = {first["name"]: first["needs"] for first, *_ in of_task}
         yield from scoring.attribute_failures(
             checks,
@@ -296,6 +297,20 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
             named=task.id in mistakes and mistakes[task.id]["explains_all"],
             once=mistakes.get(task.id, {}).get("once", False),
         )
+
+
+def _without_repeated_counterexamples(checks: Sequence[Check]) -> list[Check]:
+    """Return the checks of a task. Only the first of those with the same counterexample keeps it."""
+    shown: set[str] = set()
+    unrepeated = []
+    for check in checks:
+        if check.counterexample and check.counterexample.code in shown:
+            unrepeated.append(replace(check, counterexample=None))
+        else:
+            unrepeated.append(check)
+        if check.counterexample:
+            shown.add(check.counterexample.code)
+    return unrepeated
 
 
 def _ends(events: Sequence[Event]) -> dict[str, Event]:
