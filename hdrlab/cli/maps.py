@@ -84,7 +84,8 @@ def tonemap(
 
     A bright color may exceed the range of a display in one channel. --gamut hue keeps its hue and
     makes it a little darker and paler. --gamut ratio clips the channel: the image stays more
-    colorful, but a bright blue turns toward cyan.
+    colorful, but a bright blue turns toward cyan. The view transforms agx and khronos map colors by
+    themselves: they do not use --gamut, and they have no --saturation.
 
     --to ultrahdr writes an Ultra HDR .jpg (ISO 21496-1). Every program can show it. On an HDR
     screen, its gain map restores the radiance, up to --headroom. Such a .jpg can also be SOURCE.

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         develop,
         develop_and_describe,
         find_operator,
+        find_view_transform,
         resolve_settings,
     )
     from hdrlab.pipeline.registration import align_bracket, apply_alignment
@@ -42,6 +43,7 @@ __all__ = [
     "develop",
     "develop_and_describe",
     "find_operator",
+    "find_view_transform",
     "measure_deviation",
     "resolve_settings",
     "space_by_stops",
@@ -56,6 +58,7 @@ _MODULES = {
     "develop": "pictures",
     "develop_and_describe": "pictures",
     "find_operator": "pictures",
+    "find_view_transform": "pictures",
     "resolve_settings": "pictures",
     "align_bracket": "registration",
     "apply_alignment": "registration",

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, as_radiance
+from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.pipeline.photograph import choose_settings, measure_scene_ev, photograph
@@ -56,10 +57,12 @@ def develop(
         defaults of its paper; or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
     saturation : float, optional
         1 keeps the ratios of the channels, 0 is gray. By default, "photograph" chooses it, and
-        another operator has the SATURATION of its module, or else 1.
+        another operator has the SATURATION of its module, or else 1. A view transform ("agx",
+        "khronos") maps colors by itself, and has none.
     way : {"hue", "ratio"}
         How colors are restored, and what happens to colors that the display cannot show: "hue"
-        makes them a little darker and paler, "ratio" clips a channel; see `core.colour`.
+        makes them a little darker and paler, "ratio" clips a channel; see `core.colour`. View
+        transforms do not use it.
     luminance_of_unit : float, optional
         cd/m^2 of a surface with E = 1. With it, "photograph" knows a night and keeps it dark.
     max_luminance_of_unit : float, optional
@@ -109,12 +112,19 @@ def develop_and_describe(
     'reinhard, key 0.36, saturation 1'
     """
     operator = find_operator(tonemap)
+    name = _name_operator(tonemap)
+    view_transform = find_view_transform(operator)
+    if view_transform is not None and saturation is not None:
+        raise InputError(f"{name} maps colors by itself and has no saturation; leave it out")
     E, scale = scale_into_range(E)
     is_bound = luminance_of_unit is None
     unit = max_luminance_of_unit if is_bound else luminance_of_unit
     if unit is not None:
         unit = unit / scale
     settings, default_saturation = resolve_settings(operator, E, knobs, unit)
+    if view_transform is not None and E.ndim == 3:
+        picture = colour.to_8bit(view_transform(E, **settings))
+        return Developed(picture, _describe(name, settings))
     if saturation is None:
         saturation = default_saturation
     L = colour.luminance(E)
@@ -122,13 +132,11 @@ def develop_and_describe(
     if np.count_nonzero(L) <= MAX_FRACTION_OF_FEW_LIGHTS * L.size:
         Ld = np.where(L > 0, Ld, np.float32(0))
     picture = colour.render(E, L, Ld, saturation=float(saturation), way=way)
-    name = _name_operator(tonemap)
-    described = settings | {"saturation": float(saturation)}
-    parts = [name, *(_describe_setting(knob, value) for knob, value in described.items())]
+    description = _describe(name, settings | {"saturation": float(saturation)})
     if operator is photograph and unit is not None:
         at_most = " at most" if is_bound else ""
-        parts.append(f"for a scene of EV {measure_scene_ev(E, unit):z.0f}{at_most}")
-    return Developed(picture, ", ".join(parts))
+        description += f", for a scene of EV {measure_scene_ev(E, unit):z.0f}{at_most}"
+    return Developed(picture, description)
 
 
 def scale_into_range(E: ArrayLike) -> tuple[F32, float]:
@@ -158,6 +166,11 @@ def _name_operator(tonemap: Method) -> str:
     return getattr(tonemap, "__name__", "your own operator")
 
 
+def _describe(name: str, settings: Mapping[str, Any]) -> str:
+    """Return the name of an operator and its settings in words."""
+    return ", ".join([name, *(_describe_setting(knob, settings[knob]) for knob in settings)])
+
+
 def _describe_setting(knob: str, value: object) -> str:
     if isinstance(value, float):
         return f"{knob} {value:.2g}"
@@ -169,6 +182,24 @@ def find_operator(tonemap: Method) -> Callable[..., Any]:
     if isinstance(tonemap, str) and tonemap == AUTO:
         return photograph
     return catalogue.method("tonemap", tonemap)
+
+
+def find_view_transform(operator: Callable[..., Any]) -> Callable[..., Any] | None:
+    """Return the function `tonemap_rgb` of an operator that is a view transform, and else None.
+
+    The module that defines such an operator has two functions: `tonemap` maps gray light, and
+    `tonemap_rgb` maps colors.
+
+    Examples
+    --------
+    >>> find_view_transform(find_operator("agx")).__name__
+    'tonemap_rgb'
+    >>> find_view_transform(find_operator("reinhard")) is None
+    True
+    """
+    if getattr(operator, "__name__", "") != "tonemap":
+        return None
+    return getattr(_find_module(operator), "tonemap_rgb", None)
 
 
 def resolve_settings(
@@ -192,14 +223,20 @@ def resolve_settings(
 def _default_saturation(operator: Callable[..., Any]) -> float:
     """Return the SATURATION of the module that defines an operator, or else 1.
 
-    For an operator of `hdrlab.fast`, it is that of the chapter's module. A function of yours may
-    come from a file that is not importable by name, so its own globals count.
+    A function of yours may come from a file that is not importable by name, so its own globals
+    count.
+    """
+    own_globals = getattr(operator, "__globals__", {})
+    default = own_globals.get("SATURATION", DEFAULT_SATURATION)
+    return float(getattr(_find_module(operator), "SATURATION", default))
+
+
+def _find_module(operator: Callable[..., Any]) -> object:
+    """Return the module that defines an operator, or None if it is not imported by name.
+
+    For an operator of `hdrlab.fast`, it is the chapter's module.
     """
     name = getattr(operator, "__module__", None) or ""
     if name.startswith("hdrlab.fast."):
-        module: object = import_module(name.replace("hdrlab.fast.", "hdrlab.tonemap."))
-    else:
-        module = sys.modules.get(name)
-    own_globals = getattr(operator, "__globals__", {})
-    default = own_globals.get("SATURATION", DEFAULT_SATURATION)
-    return float(getattr(module, "SATURATION", default))
+        return import_module(name.replace("hdrlab.fast.", "hdrlab.tonemap."))
+    return sys.modules.get(name)

@@ -19,6 +19,7 @@ OPERATORS = {name: catalogue.method("tonemap", name) for name in catalogue.names
 LESSONS = {name: import_module(f"hdrlab.tonemap.{name}").tonemap for name in OPERATORS}
 LESSONS = {name: lesson for name, lesson in LESSONS.items() if lesson is not OPERATORS[name]}
 VARIED = {
+    "agx": [{"key": 0.02}, {"key": 3.0}],
     "brush": [{"bins": 1}, {"bins": 64, "limit": 1}, {"limit": np.inf}],
     "chiu": [
         {"headroom": 2},
@@ -31,6 +32,7 @@ VARIED = {
         {"curve": "gamma", "gamma": 0.5},
         {"cut": 0.2, "encoded": False},
     ],
+    "drago": [{"bias": 0.5}, {"bias": 0.7}, {"bias": 1}],
     "durand": [
         {"contrast": 1.5, "sigma_s": 8},
         {"contrast": 1e4, "cut": 0},
@@ -42,6 +44,7 @@ VARIED = {
         {"black": 0, "white": 0},
         {"black": 0.1},
     ],
+    "khronos": [{"key": 0.02}, {"key": 3.0}],
     "local_laplacian": [
         {"sigma": 0.3, "samples": 2},
         {"alpha": 0.5, "beta": 1},

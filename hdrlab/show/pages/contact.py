@@ -69,9 +69,15 @@ def entry_steps(
         settings, saturation = pipeline.resolve_settings(
             tonemap, E, luminance_of_unit=luminance_of_unit
         )
-        Ld = tonemap(L, **settings)
-        seconds = perf_counter() - start
-        picture = colour.render(E, L, Ld, saturation=saturation, way=way)
+        view_transform = pipeline.find_view_transform(tonemap)
+        if view_transform is not None and E.ndim == 3:
+            display = view_transform(E, **settings)
+            seconds = perf_counter() - start
+            picture = colour.to_8bit(display)
+        else:
+            Ld = tonemap(L, **settings)
+            seconds = perf_counter() - start
+            picture = colour.render(E, L, Ld, saturation=saturation, way=way)
         yield Entry(
             name=name,
             picture=picture,
