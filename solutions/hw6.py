@@ -7,8 +7,8 @@
 # power-law response from repeated comparison, registration by correlation and simplex, adding light
 # along a simulated response, veiling glare, assorted pixels, coded exposure, several sensors behind
 # one lens, video, the space of response curves, joining blends of light, finding a chart, the Detail
-# Brush, curves and operators, contrast, focus and skin as measures of what matters in a photo, and
-# the circle without vignetting. You write the core of each.
+# Brush, curves and operators, contrast, focus and skin as measures of what matters in a photo, the
+# circle without vignetting, and a logarithm whose base changes. You write the core of each.
 #
 # {choice}
 #
@@ -25,6 +25,7 @@
 # | $B$, $D$; $u$, $P$ | radiance from two sensors; fraction of full pixels, prediction | (H, W) |
 # | $x$, $h$, $y$ | object, shutter, photo of the moving object | (n,), (m,), (n + m - 1,) |
 # | $H$, $\mathrm{sd}$ | principal components of response curves, and the spread along each | (K, n), (K,) |
+# | $L$, $L_{wa}$, $L_d$; $b$ | luminance, its log average, display luminance; bias | any shape |
 # | $V$, $Q$ | powers of the brightness; quadratic form of the error | (l, d + 1), (d + 1, d + 1) |
 #
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what
@@ -953,6 +954,48 @@ steady = np.clip(0.3 * L / np.quantile(L, 0.8), 0.01, 0.6)
 small = np.rint(255 * steady ** (1 / 2.2)).astype(np.uint8)
 wide = np.rint(255 * (1.5 * steady * darkening) ** (1 / 2.2)).astype(np.uint8)
 print(f"the lens darkens beyond 50 pixels; the photos agree up to {circle(small, wide):.0f} pixels")
+
+# %% [markdown] about="adaptive_log"
+# ## 28 · A logarithm whose base changes ({points})
+#
+# A logarithm compresses luminance as the eye does. With base 2, dark places keep their contrast, but
+# lamps are far too bright. With base 10, the lamps fit, and the rest is dark. The curve of [Drago,
+# Myszkowski, Annen and Chiba (2003)](https://doi.org/10.1111/1467-8659.00689) changes the base from
+# pixel to pixel.
+#
+# The eye is adapted to the log average $L_{wa}$ of the scene. So divide luminance by it, and the
+# largest luminance $L_{max}$ of the scene as well:
+#
+# $$L_w = L / L_{wa}, \qquad L_{wmax} = L_{max} / L_{wa}.$$
+#
+# The base is 2 for black, and 10 for the largest luminance. The bias $b$ = `bias` shapes it in
+# between:
+#
+# $$B = 2 + 8 \Bigl(\frac{L_w}{L_{wmax}}\Bigr)^{\ln b / \ln 0.5}.$$
+#
+# The display luminance is a logarithm to this base. It is 0 for black, and 1 for the largest
+# luminance:
+#
+# $$L_d = \frac{\log_B (L_w + 1)}{\log_{10} (L_{wmax} + 1)}, \qquad \log_B x = \frac{\ln x}{\ln B}.$$
+#
+# *Example*: $b = 0.85$, $L_{wa} = 1$ and $L_{max} = 100$. Half of $L_{max}$ has the base $2 + 8 \cdot
+# 0.85 = 8.8$, and $L_d = (\ln 51 / \ln 8.8) / \log_{10} 101 = 0.902$.
+#
+# (`L` has values from 0 to `Lmax`; `Lwa` and `Lmax` are numbers above 0, and $0 < b \le 1$. Return an
+# array with the shape of `L`.)
+
+# %% task="adaptive_log"
+# Return the display luminance of L, with the log average Lwa and the largest luminance Lmax.
+
+# %% about="adaptive_log"
+average = float(np.exp(np.log(L).mean()))
+mapped = [
+    adaptive_log(np.minimum(L, 60 * average), average, 60 * average, bias=b) for b in (1, 0.75)
+]
+pictures.picture(
+    colour.to_8bit(np.hstack(mapped)),
+    alt="The room twice: with base 10, and with a bias of 0.75, where the middle tones are brighter",
+)
 
 # %% [markdown]
 # ## All checks

@@ -40,7 +40,10 @@ NUMBERS = {
         "50": "half of the ratio 1 : 100, see 50.5",
     },
     "15": {"2 %": "of the image's size, the paper's width of the filter"},
-    "18": {"three stops": "0.4 times the level at the edge, as light"},
+    "18": {
+        "three stops": "0.4 times the level at the edge, as light",
+        "6.5": "stops, the upper end of AgX",
+    },
     "19": {"half a level": "the upper end of level 0, which holds all that is rounded to it"},
     "20": {"8 bits": "an example of a file"},
     "21": {"four percent": "an error of the speed in the figure"},
@@ -143,6 +146,11 @@ OPEN_TEXT = {
     "18": {
         "four decades": "see the map of the chapel",
         "two decades": "a screen of 1 : 100",
+        "0.04": "F90 of the specification of Khronos PBR Neutral",
+        "16.5": "stops, the range of AgX",
+        "4 stops": "where the ramp of the lamp begins",
+        "8 stops": "where it ends",
+        "240": "degrees, the blue of the display by the definition of hue",
     },
     "19": {
         "two levels": "the smoothing of the paper",

@@ -28,7 +28,7 @@ PAPERS = {
 HEAD = """# Methods and where to find them
 
 The course is based on the lecture's slides and four papers. The table lists all of their methods and
-seven newer ones. For each method, it links the functions of the library, the notebook sections that
+nine newer ones. For each method, it links the functions of the library, the notebook sections that
 step through the method, and the tasks in which students implement it. The letters name the source: """
 
 

@@ -749,6 +749,24 @@ SENTENCES = {
         ),
     },
     "18": {
+        "near black, its curve has 0.3 times the slope of a logarithm to base 2": lambda n: (
+            round(n.logarithm(1)[0] / n.logarithm(0.5)[0], 1) == 0.3
+        ),
+        "At 0.5 the curve is so steep that it reaches white": lambda n: (
+            n.logarithm(0.5).max() > 1 and np.mean(n.with_bias(0.5) == 1) > 0.01
+        ),
+        "the light is 38 degrees nearer to cyan": lambda n: (
+            round(n.hue(n.lamp)[0, 0] - n.halfway["by channel"]) == 38
+        ),
+        "*Khronos* moves each color straight toward white, so the hue stays": lambda n: (
+            abs(n.hue(n.lamp)[0, 0] - n.halfway["khronos"]) < 0.01
+        ),
+        "*AgX* turns it by 12 degrees": lambda n: (
+            round(n.hue(n.lamp)[0, 0] - n.halfway["agx"]) == 12
+        ),
+        "so that this light turns to cyan as well, and it never becomes white": lambda n: (
+            n.halfway["by luminance"] < 205 and n.color(n.by_luminance(n.lamp)).min() > 0.8
+        ),
         "but reduces $Q$ by only three hundredths": lambda n: (
             round(quality(n, "unchanged").Q - quality(n, "red and blue exchanged").Q, 2) == 0.03
         ),

@@ -27,35 +27,35 @@ def bias_power(t: ArrayLike, b: float) -> F64:
     return np.asarray(t, np.float64) ** (np.log(b) / np.log(0.5))
 
 
-def base(Lw: ArrayLike, high: float, *, bias: float = 0.85) -> F64:
-    """Return the base of the logarithm at each pixel, 2 + 8 bias_power(Lw / Lwmax) [Drago03]."""
-    return 2 + 8 * bias_power(np.asarray(Lw) / high, bias)
+def adaptive_log(L: ArrayLike, Lwa: float, Lmax: float, *, bias: float = 0.85) -> F64:
+    """Return Ld = log_B(Lw + 1) / log10(Lwmax + 1), where the base B rises from 2 to 10 [Drago03 eq. 4].
 
-
-def adaptive_log(Lw: ArrayLike, high: float, *, bias: float = 0.85) -> F64:
-    """Return Ld = log_base(Lw + 1) / log10(Lwmax + 1) [Drago03 eq. 4, for a white of 100 cd/m2].
-
-    log_base(x) is ln x / ln base, with the `base` of each pixel, so that Lwmax becomes 1.
+    Lw = L / Lwa and Lwmax = Lmax / Lwa. The base is B = 2 + 8 (Lw / Lwmax)^(ln b / ln 0.5), and
+    log_B(x) is ln x / ln B. The equation is that of a display whose white is 100 cd/m2.
 
     Parameters
     ----------
-    Lw : adapted luminance L / Lwa, 0 to `high`, any shape
-    high : Lwmax, the adapted luminance that becomes white, above 0
+    L : luminance, 0 to Lmax, any shape and any linear unit
+    Lwa : log average of the scene's luminance, above 0
+    Lmax : the luminance that becomes white, above 0
     bias : b, above 0 and at most 1
 
     Returns
     -------
-    Ld : float64, shape of Lw, 1 = white. It exceeds 1 just below Lwmax if log10(1 + Lwmax) is above
+    Ld : float64, shape of L, 1 = white. It exceeds 1 just below Lmax if log10(1 + Lwmax) is above
         1.25 ln 0.5 / ln b, because there the base grows faster than the luminance: above
         Lwmax = 2e5 with a bias of 0.85, and above 270 with 0.7.
 
     Examples
     --------
-    >>> adaptive_log([0, 1, 10, 100], 100).round(2)
+    >>> adaptive_log([0, 1, 10, 100], 1.0, 100.0).round(2)
     array([0.  , 0.22, 0.63, 1.  ])
     """
-    logarithm = np.log1p(Lw) / np.log(base(Lw, high, bias=bias))
-    return logarithm / np.log10(1 + high)
+    Lw = np.asarray(L, np.float64) / Lwa
+    Lwmax = Lmax / Lwa
+    base = 2 + 8 * bias_power(Lw / Lwmax, bias)
+    logarithm = np.log(Lw + 1) / np.log(base)
+    return logarithm / np.log10(Lwmax + 1)
 
 
 def tonemap(L: ArrayLike, *, bias: float = 0.85) -> F32:
@@ -99,6 +99,5 @@ def tonemap(L: ArrayLike, *, bias: float = 0.85) -> F32:
     if brightest == 0:
         return np.zeros_like(L)
     Lwa = log_average(L.astype(np.float64))
-    Lw = np.minimum(L, np.float32(brightest)).astype(np.float64) / Lwa
-    Ld = adaptive_log(Lw, brightest / Lwa, bias=bias)
+    Ld = adaptive_log(np.minimum(L, np.float32(brightest)), Lwa, brightest, bias=bias)
     return np.clip(Ld, 0, 1).astype(np.float32)

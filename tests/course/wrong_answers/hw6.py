@@ -13,6 +13,7 @@ from hdrlab.response.mann import descend
 from hdrlab.response.selection import circle
 from hdrlab.response.space import fit_space
 from hdrlab.tonemap.brush import clip_histogram, equalise
+from hdrlab.tonemap.drago import adaptive_log
 
 
 def descend_low_ignored(T, start, *, low):
@@ -96,3 +97,11 @@ def distance_dark_raised(Z, skin):
 
 def distance_one_row(Z, skin):
     return distance(Z, skin).ravel()
+
+
+def adaptive_log_always_bias_085(L, Lwa, Lmax, *, bias=0.85):
+    return adaptive_log(L, Lwa, Lmax)
+
+
+def adaptive_log_one_row(L, Lwa, Lmax, *, bias=0.85):
+    return adaptive_log(np.ravel(L), Lwa, Lmax, bias=bias)
