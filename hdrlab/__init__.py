@@ -24,6 +24,7 @@ A response from measured curves        response.space.recover, response.marginal
 ... without a bracket                  calibration.chart, calibration.display, calibration.motion_blur
 Ghosts, veiling glare, exposure ratios radiance.deghosting.ghosts, radiance.flare, radiance.ratios
 Local Laplacian filters                tonemap.local_laplacian.tonemap
+Drago's logarithm, view transforms     tonemap.drago, tonemap.agx, tonemap.khronos
 Transfer functions of screens: PQ, HLG tonemap.transfer
 Other cameras, patches, video          beyond.assorted, beyond.flutter, beyond.patches, beyond.video
 Fast versions of the same functions    fast.debevec, fast.merge, fast.durand

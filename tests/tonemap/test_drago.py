@@ -43,7 +43,7 @@ def test_the_bias_is_the_value_halfway(b):
 
 def test_dark_places_have_the_slope_of_the_logarithm_to_base_2():
     high = 1000.0
-    slope = drago.adaptive_log(1e-6, 1, high) / 1e-6
+    slope = drago.adaptive_log(1e-12, 1, high) / 1e-12
     assert slope == pytest.approx(1 / (np.log(2) * np.log10(high + 1)), rel=0.01)
 
 
