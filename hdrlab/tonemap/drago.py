@@ -28,7 +28,7 @@ def bias_power(t: ArrayLike, b: float) -> F64:
 
 
 def adaptive_log(L: ArrayLike, Lwa: float, Lmax: float, *, bias: float = 0.85) -> F64:
-    """Return Ld = log_B(Lw + 1) / log10(Lwmax + 1), where the base B rises from 2 to 10 [Drago03 eq. 4].
+    """Return Ld = log_B(Lw + 1) / log10(Lwmax + 1), where the base B rises from 2 to 10 [Drago03].
 
     Lw = L / Lwa and Lwmax = Lmax / Lwa. The base is B = 2 + 8 (Lw / Lwmax)^(ln b / ln 0.5), and
     log_B(x) is ln x / ln B. The equation is that of a display whose white is 100 cd/m2.
