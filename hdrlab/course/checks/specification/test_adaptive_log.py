@@ -26,7 +26,7 @@ def agree(subject, L, Lwa, Lmax, bias, *, what):
     same(came, expected, 1e-4, what=what, kind="curve")
 
 
-@points(4)
+@points(3)
 def test_with_a_bias_of_1_the_base_is_10(subject, rng):
     """With a bias of 1, the exponent is 0. What is the base of each pixel?
 
@@ -38,7 +38,7 @@ def test_with_a_bias_of_1_the_base_is_10(subject, rng):
     agree(subject, L, 1.0, Lmax, 1.0, what="Ld with a bias of 1")
 
 
-@points(4)
+@points(6)
 def test_the_bias_sets_the_base_of_the_middle_tones(subject, rng):
     """What is the base where Lw is half of Lwmax?
 
@@ -51,7 +51,7 @@ def test_the_bias_sets_the_base_of_the_middle_tones(subject, rng):
     agree(subject, L, 1.0, Lmax, bias, what=f"Ld with a bias of {bias:.2f}")
 
 
-@points(2)
+@points(1)
 def test_black_is_0_and_the_brightest_is_1(subject, rng):
     """What does the curve make of 0, and of Lmax?
 
