@@ -21,7 +21,7 @@ from xdist.scheduler import LoadScopeScheduling
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 
-pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
+pytest.register_assert_rewrite("support.laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -200,6 +200,6 @@ def kept(tmp_path_factory):
 @pytest.fixture(scope="session")
 def executed(kept):
     """executed(path) -> the notebook as it was run from the top: its file, and its untrue sentences."""
-    import runs  # it loads what runs notebooks, which takes a second
+    from support import executed_notebooks  # it loads what runs notebooks, which takes a second
 
-    return lambda path: runs.run_once(path, kept)
+    return lambda path: executed_notebooks.run_once(path, kept)

@@ -7,8 +7,8 @@ must be something that the page computes.
 
 import re
 
-import numbers_from_outside
 import pytest
+from support import numbers_from_outside
 from test_notebooks import NOTEBOOKS, cells_of
 from test_sentences import SENTENCES
 

@@ -5,11 +5,11 @@ import re
 import symtable
 from pathlib import Path
 
-import folds
 import nbformat
 import pytest
 
 from hdrlab.course.site import pages
+from tools import fold_cells
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip", "side_by_side")}
@@ -85,9 +85,11 @@ def test_a_cell_of_code_fits_the_page(path):
 
 def test_a_cell_is_folded_where_it_only_draws_and_open_where_its_code_is_the_lesson(path):
     cells = cells_of(path, "code")
-    should = folds.folded({"cells": cells})
+    should = fold_cells.choose_folded_cells({"cells": cells})
     for cell, fold in zip(cells, should, strict=True):
-        assert cell.metadata == (folds.FOLDED if fold else {}), f"{cell.id}: python tests/folds.py"
+        assert cell.metadata == (fold_cells.FOLDED_METADATA if fold else {}), (
+            f"{cell.id}: python -m tools.fold_cells"
+        )
 
 
 def test_every_picture_has_alt_text(path):

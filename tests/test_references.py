@@ -4,7 +4,7 @@ import json
 import re
 
 import pytest
-from references import PAPERS
+from support.paper_links import PAPERS
 from test_notebooks import NOTEBOOKS
 
 

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-import results
 import threadpoolctl
 from tiers import LONG_FILES, TIERS, may_hold
+
+from tools import junit_summary
 
 ROOT = Path(__file__).parents[1]
 
@@ -102,12 +103,12 @@ REPORT = """<testsuites><testsuite>
 
 def test_the_report_names_what_failed_and_the_slowest_first(tmp_path, capsys):
     (tmp_path / "quick.xml").write_text(REPORT)
-    assert results.main(tmp_path) == 1
+    assert junit_summary.print_summary(tmp_path) == 1
     said = capsys.readouterr().out
     assert "FAILED tests.a::test_two" in said and said.endswith("1 passed, 1 failed, 1 skipped\n")
     assert said.index("test_two") < said.index("test_one") < said.index("test_three")
 
 
 def test_a_report_of_no_tests_is_no_success(tmp_path, capsys):
-    assert results.main(tmp_path) == 1
+    assert junit_summary.print_summary(tmp_path) == 1
     assert capsys.readouterr().out.endswith("0 passed, 0 failed, 0 skipped\n")

@@ -6,7 +6,7 @@ mistake     a file of hdrlab/course/checks/mistakes in place of a function, all 
 half        the first tasks alone
 blank       the handout, an empty file, a notebook cut short, no notebook at all
 attack      hostile: a file of tests/attacks in place of a function
-trap        hostile: an archive of tests/traps.py
+trap        hostile: an archive of tests/support/malicious_archives.py
 
 Kinds take turns, so that a smaller class has the same mixture.
 """
@@ -119,10 +119,13 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         ]
         return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
     if kind == "attack":
-        siege = tests("siege")
-        aims = zip(islice(cycle(siege.NAMES), count), cycle(ids), strict=False)
-        return [(name, ".py", attack(siege.armed(name, target, PORT), id)) for name, id in aims]
-    return [(name, ".zip", trap(name)) for name in islice(cycle(tests("traps").TRAPS), count)]
+        attacks = tests("attack_fixtures")
+        aims = zip(islice(cycle(attacks.NAMES), count), cycle(ids), strict=False)
+        return [(name, ".py", attack(attacks.armed(name, target, PORT), id)) for name, id in aims]
+    return [
+        (name, ".zip", trap(name))
+        for name in islice(cycle(tests("malicious_archives").TRAPS), count)
+    ]
 
 
 def _right(homework: Homework) -> list[Made]:
@@ -162,14 +165,14 @@ def trap(name: str) -> bytes:
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder:
-        tests("traps").TRAPS[name](Path(folder) / "archive")
+        tests("malicious_archives").TRAPS[name](Path(folder) / "archive")
         return (Path(folder) / "archive").read_bytes()
 
 
 @cache
 def tests(name: str) -> ModuleType:
-    """Return a module of the tests; `tests` is no package."""
-    spec = spec_from_file_location(name, TESTS / f"{name}.py")
+    """Return a module of tests/support, which is not on the path of Python."""
+    spec = spec_from_file_location(name, TESTS / "support" / f"{name}.py")
     assert spec is not None and spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)

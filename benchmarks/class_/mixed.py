@@ -1,8 +1,8 @@
 """Every kind of hostile hand-in that the tests have, each by a student of its own, beside an honest class.
 
 attack  a file of tests/attacks in place of a function
-trap    an archive of tests/traps.py
-code    a function that takes time, memory or patience    } of tests/hostile.py
+trap    an archive of tests/support/malicious_archives.py
+code    a function that takes time, memory or patience    } of tests/support/hostile_submissions.py
 text    what breaks a page, a terminal or a table         }
 file    a notebook or a Python file that is hard to read  }
 name    a file's name that is no text, or no honest one   }
@@ -44,12 +44,14 @@ def hostile(target: Path, victim: Handed) -> list[Hostile]:
 
 
 def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
-    bad, siege, traps = (handed.tests(name) for name in ("hostile", "siege", "traps"))
+    bad = handed.tests("hostile_submissions")
+    attacks = handed.tests("attack_fixtures")
+    archives = handed.tests("malicious_archives")
     tasks = [task.id for task in plan.read().homeworks["hw2"].tasks]
-    for k, name in enumerate(siege.NAMES):
-        text = handed.attack(siege.armed(name, target, handed.PORT), tasks[k % len(tasks)])
+    for k, name in enumerate(attacks.NAMES):
+        text = handed.attack(attacks.armed(name, target, handed.PORT), tasks[k % len(tasks)])
         yield "attack", name, partial(_put, ".py", text)
-    for name in traps.TRAPS:
+    for name in archives.TRAPS:
         yield "trap", name, partial(_put, ".zip", handed.trap(name))
     for kind, each in (("code", bad.CODE), ("text", bad.TEXTS)):
         yield from (

@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 import pytest
-from brackets import bracket
 from hypothesis import given, settings, strategies as st
+from support.hand_held_photos import bracket
 
 from hdrlab.align import mtb
 from hdrlab.align.shift import shift

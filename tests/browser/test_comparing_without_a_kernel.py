@@ -4,8 +4,8 @@ import base64
 
 import numpy as np
 import pytest
-from halves import decoded
 from laboratory import open_widget
+from support.half_floats import decoded
 
 from hdrlab import scenes
 from hdrlab.core import colour

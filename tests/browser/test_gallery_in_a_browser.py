@@ -10,7 +10,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-import gallery_class as small
+from support import small_gallery as small
 
 from hdrlab.course.gallery import ballots, store
 

@@ -18,12 +18,10 @@ from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import disturbed
-import hats
 import numpy as np
-import processes
 import pytest
 from PIL import Image
+from support import interrupted_commands, linux_processes, one_task_homework
 
 from hdrlab import scenes
 from hdrlab.capture import camera
@@ -32,7 +30,10 @@ from hdrlab.io import photos, radiance, response_files
 pytestmark = [
     pytest.mark.grading,
     pytest.mark.skipif(
-        not (hasattr(disturbed.os, "fork") and hasattr(disturbed.os, "memfd_create")),
+        not (
+            hasattr(interrupted_commands.os, "fork")
+            and hasattr(interrupted_commands.os, "memfd_create")
+        ),
         reason="commands are forked and watched as on Linux",
     ),
 ]
@@ -202,7 +203,7 @@ FORMATS = {
 @pytest.fixture(scope="module")
 def commands(tmp_path_factory):
     """A process that runs commands."""
-    running = disturbed.Commands(tmp_path_factory.mktemp("matplotlib"))
+    running = interrupted_commands.Commands(tmp_path_factory.mktemp("matplotlib"))
     yield running
     running.close()
 
@@ -225,13 +226,13 @@ def made(tmp_path_factory):
         photos.write_picture(here / f"{team}.png", rng.integers(0, 256, (90, 120, 3), np.uint8))
     (here / "roster.csv").write_text("student,name,team\nann,Ann,team1\nben,Ben,team2\n")
     (here / "answers.csv").write_text("student,q1,q2\nann,a,b\nben,c,\n")
-    (here / "plan.toml").write_text(hats.PLAN)
+    (here / "plan.toml").write_text(one_task_homework.PLAN)
     (here / "secret.txt").write_text("a secret\n")
     levels = np.arange(1, 257) / 256
     response_files.write_curve(here / "curve.csv", np.log(levels))
-    (here / "hw2.py").write_text(hats.GOOD)
+    (here / "hw2.py").write_text(one_task_homework.GOOD)
     (here / "class").mkdir()
-    (here / "class/team1.py").write_text(hats.GOOD)
+    (here / "class/team1.py").write_text(one_task_homework.GOOD)
     (here / "class/ben.py").write_text("def hat(n=256):\n    return 1\n")
     make_project(here)
     return here
@@ -298,12 +299,14 @@ class Place:
     def run(self, *, words=None, **how):
         """Run the command, or another."""
         words = (words or self.command.words).split()
-        return self.commands.run(disturbed.Run(words=words, folder=str(self.here), **how))
+        return self.commands.run(
+            interrupted_commands.Run(words=words, folder=str(self.here), **how)
+        )
 
     def contents(self):
         """Return all files and folders, as far as two runs have them in common."""
         found = {}
-        for name, data in disturbed.files_below(self.here).items():
+        for name, data in interrupted_commands.files_below(self.here).items():
             if name.endswith(("-wal", "-shm")) or name == "out/ballast":
                 continue
             if name.endswith(".sqlite"):
@@ -364,7 +367,7 @@ def places(commands, made, tmp_path_factory):
 def wait_for_processes(folder):
     """Wait for the processes that a killed command has started, which end by themselves."""
     until = time.monotonic() + 60
-    while processes.of(folder / "tmp") and time.monotonic() < until:
+    while linux_processes.of(folder / "tmp") and time.monotonic() < until:
         time.sleep(0.02)
 
 

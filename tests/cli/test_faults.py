@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from lacking import POOR, turn_clock_back
 from PIL import Image
+from support.missing_environment import POOR, turn_clock_back
 
 from hdrlab import scenes
 from hdrlab.capture import camera

@@ -6,8 +6,8 @@ import imagecodecs
 import numpy as np
 import pytest
 import tifffile
-from abilities import require_avif, require_colors_of_avif
 from PIL import Image
+from support.codec_features import require_avif, require_colors_of_avif
 
 from hdrlab import scenes
 from hdrlab.capture import camera

@@ -11,7 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from hats import PLAN
+from support.one_task_homework import PLAN
 
 from hdrlab import cli
 from hdrlab.course.students import anonymity, csv_tables

@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 import pytest
-from small_class import CLASS, HOMEWORK, NOON, result
+from support.small_class import CLASS, HOMEWORK, NOON, result
 
 from hdrlab.course.classroom import jobs, marks, moodle, overview, run
 from hdrlab.course.classroom.jobs import GradingJob, JobResult

@@ -4,10 +4,10 @@ import base64
 from pathlib import Path
 from types import SimpleNamespace
 
-import checked
 import numpy as np
 import pytest
-from checked import Asked, item
+from support import fake_grading_plugin
+from support.fake_grading_plugin import Asked, item
 
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.compare import AnswerMismatch
@@ -20,7 +20,7 @@ from hdrlab.course.sandbox.session import Unavailable
 def checking(tmp_path):
     """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
     compare.notes.clear()
-    yield checked.checking(tmp_path)
+    yield fake_grading_plugin.checking(tmp_path)
     compare.notes.clear()
 
 

@@ -11,9 +11,8 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
-import hostile
-import siege
-from traps import TRAPS
+from support import attack_fixtures, hostile_submissions
+from support.malicious_archives import TRAPS
 
 from benchmarks import __main__ as command, class_
 from benchmarks.class_ import costs, grading, handed, judged, mixed
@@ -40,7 +39,7 @@ def test_a_class_of_300_contains_every_mistake_attack_and_trap(everybody):
     which = {kind: {one.which for one in everybody if one.kind == kind} for kind in handed.SHARES}
     assert len(everybody) == 300 == sum(handed.SHARES.values())
     assert which["mistake"] == {one.name for one in misconceptions.known() if one.task in HW2}
-    assert which["attack"] == set(siege.NAMES) and which["trap"] == set(TRAPS)
+    assert which["attack"] == set(attack_fixtures.NAMES) and which["trap"] == set(TRAPS)
     assert len(which["equivalent"]) == 3 and {"empty", "cut short"} < which["blank"]
 
 
@@ -168,8 +167,8 @@ def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path
     }
     taken = which.pop("taken")
     kinds = {"code": "CODE", "text": "TEXTS", "file": "FILES", "name": "NAMES", "odd": "ODD"}
-    expected = {kind: set(getattr(hostile, name)) for kind, name in kinds.items()}
-    assert which == {**expected, "attack": set(siege.NAMES), "trap": set(TRAPS)}
+    expected = {kind: set(getattr(hostile_submissions, name)) for kind, name in kinds.items()}
+    assert which == {**expected, "attack": set(attack_fixtures.NAMES), "trap": set(TRAPS)}
     assert len(others) >= 120 and each[0].file in taken
 
 

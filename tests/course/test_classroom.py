@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hats import GOOD, PLAN
+from support.one_task_homework import GOOD, PLAN
 
 from hdrlab import cli
 from hdrlab.course.classroom import marks, overview, run as classroom

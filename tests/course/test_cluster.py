@@ -15,9 +15,9 @@ from functools import partial
 from pathlib import Path
 from unittest import mock
 
-import errands
 import pytest
 from distributed import Client, LocalCluster
+from support import cluster_jobs
 
 import hdrlab
 from hdrlab.course.classroom import jobs
@@ -29,8 +29,9 @@ RUN = """
 import sys
 from pathlib import Path
 sys.path[:0] = [{tests!r}, {tests!r} + "/course"]
-import errands, test_cluster
-test_cluster.graded({address!r}, Path({folder!r}), errands.slow)
+import test_cluster
+from support import cluster_jobs
+test_cluster.graded({address!r}, Path({folder!r}), cluster_jobs.slow)
 """
 
 
@@ -73,11 +74,11 @@ def address():
         yield running.scheduler_address
 
 
-def graded(address, home, work=errands.grade, **knobs):
+def graded(address, home, work=cluster_jobs.grade, **knobs):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder = home / "results"
     with jobs.lock_folder(folder):
-        done, rest = jobs.split_finished(folder, errands.make_jobs(home / "class"))
+        done, rest = jobs.split_finished(folder, cluster_jobs.make_jobs(home / "class"))
         with cluster.Cluster(address, work, **knobs) as executor:
             done += jobs.run_jobs(rest, executor, folder)
     return done, contents(folder)
@@ -94,8 +95,8 @@ def contents(folder):
 
 def whole(home):
     """Return the results of the same class, done here."""
-    with processes.Processes(errands.grade, 2) as executor:
-        list(jobs.run_jobs(errands.make_jobs(home / "class"), executor, home / "here"))
+    with processes.Processes(cluster_jobs.grade, 2) as executor:
+        list(jobs.run_jobs(cluster_jobs.make_jobs(home / "class"), executor, home / "here"))
     return contents(home / "here")
 
 
@@ -108,15 +109,15 @@ def test_a_cluster_gives_the_same_results_as_the_local_machine(address, tmp_path
 
 def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
     def kill():
-        while not (noted := errands.begun(tmp_path / "class")):
+        while not (noted := cluster_jobs.begun(tmp_path / "class")):
             time.sleep(0.05)
         os.kill(noted[0][2], signal.SIGKILL)
 
     killer = threading.Thread(target=kill)
     killer.start()
-    done, results = graded(address, tmp_path, errands.slow)
+    done, results = graded(address, tmp_path, cluster_jobs.slow)
     killer.join()
-    noted = errands.begun(tmp_path / "class")
+    noted = cluster_jobs.begun(tmp_path / "class")
     first = [worker for owner, _, worker in noted if owner == noted[0][0]]
     assert len(noted) == 6 and len(set(first)) == 2
     assert results == whole(tmp_path) and all(one.path for one in done)
@@ -125,8 +126,8 @@ def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
 def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_graded(
     address, tmp_path
 ):
-    done, results = graded(address, tmp_path, errands.deadly)
-    owners = [owner for owner, *_ in errands.begun(tmp_path / "class")]
+    done, results = graded(address, tmp_path, cluster_jobs.deadly)
+    owners = [owner for owner, *_ in cluster_jobs.begun(tmp_path / "class")]
     (lost,) = [one for one in done if one.path is None]
     assert lost.job.owner == "s3" and "3 times" in lost.problem and "was lost" in lost.problem
     assert owners.count("s3") == 3 and len(owners) == 7
@@ -138,24 +139,24 @@ def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_grade
 def test_jobs_that_share_a_worker_with_a_fatal_one_are_still_graded(tmp_path):
     with clustered(1, 4) as running:
         assert not running.scheduler.workers
-        done, results = graded(running.scheduler_address, tmp_path, errands.crowded)
+        done, results = graded(running.scheduler_address, tmp_path, cluster_jobs.crowded)
     (lost,) = [one for one in done if one.path is None]
     assert lost.job.owner == "s3" and len(results) == 4
-    assert [owner for owner, *_ in errands.begun(tmp_path / "class")].count("s3") == 4
+    assert [owner for owner, *_ in cluster_jobs.begun(tmp_path / "class")].count("s3") == 4
 
 
 def test_no_worker_runs_more_jobs_than_it_has_threads(tmp_path):
     with clustered(
         2, 1, at_once=2
     ) as running:  # its own: where a worker was killed, there may be one too many
-        with cluster.Cluster(running.scheduler_address, errands.endless) as executor:
-            started = [executor.start(one) for one in errands.make_jobs(tmp_path / "class")]
+        with cluster.Cluster(running.scheduler_address, cluster_jobs.endless) as executor:
+            started = [executor.start(one) for one in cluster_jobs.make_jobs(tmp_path / "class")]
             assert started == [True, True, False, False, False]
-            while len(errands.begun(tmp_path / "class")) < 2:
+            while len(cluster_jobs.begun(tmp_path / "class")) < 2:
                 assert not executor.wait_for_attempts()
         until = time.monotonic() + 300
         while any(
-            map(alive, errands.begun(tmp_path / "class"))
+            map(alive, cluster_jobs.begun(tmp_path / "class"))
         ):  # they were cancelled with the run
             assert time.monotonic() < until
             time.sleep(0.1)
@@ -178,12 +179,12 @@ def test_the_next_run_finishes_a_killed_run_whose_jobs_have_ended(address, tmp_p
     run.wait()
     done, results = graded(address, tmp_path)
     assert results == whole(tmp_path) and 1 <= sum(not one.is_new for one in done) < 5
-    assert not any(map(alive, errands.begun(tmp_path / "class")))
+    assert not any(map(alive, cluster_jobs.begun(tmp_path / "class")))
 
 
 def test_a_submission_that_never_ends_is_stopped(address, tmp_path):
-    (one,) = errands.make_jobs(tmp_path / "class", 1)
-    with cluster.Cluster(address, errands.endless, timeout=0.5) as executor:
+    (one,) = cluster_jobs.make_jobs(tmp_path / "class", 1)
+    with cluster.Cluster(address, cluster_jobs.endless, timeout=0.5) as executor:
         (done,) = jobs.run_jobs([one], executor, tmp_path / "results")
     assert done.path is None and "3 times" in done.problem and "too long" in done.problem
 
@@ -201,7 +202,7 @@ def test_a_lost_cluster_is_an_error(tmp_path):
         pytest.raises(ValueError, match="is lost"),
     ):
         threading.Timer(2, running.close).start()
-        graded(running.scheduler_address, tmp_path, errands.endless)
+        graded(running.scheduler_address, tmp_path, cluster_jobs.endless)
 
 
 def rename(version):
@@ -222,8 +223,10 @@ def test_a_different_hdrlab_on_the_cluster_is_an_error_with_both_versions(addres
             assert hdrlab.__version__ in str(told.value)
         finally:
             client.run(rename, hdrlab.__version__)
-    job = errands.make_jobs(tmp_path / "class", 1)[0]
-    task = cluster.RemoteJob(errands.grade, cluster.version, job, b"", 1.0, "0.0.7 (of another)")
+    job = cluster_jobs.make_jobs(tmp_path / "class", 1)[0]
+    task = cluster.RemoteJob(
+        cluster_jobs.grade, cluster.version, job, b"", 1.0, "0.0.7 (of another)"
+    )
     with pytest.raises(ValueError, match=r"0\.0\.7 \(of another\)"):  # of a worker that joins later
         cluster.run_remote_job(task)
 

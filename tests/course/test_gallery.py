@@ -6,9 +6,9 @@ from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
 
-import gallery_class as small
 import pytest
 from hypothesis import given, strategies as st
+from support import small_gallery as small
 
 from hdrlab import cli
 from hdrlab.course.gallery import ballots, collect, store, tokens

@@ -21,9 +21,9 @@ from html.parser import HTMLParser
 from importlib.util import find_spec
 from urllib.parse import quote, urlencode
 
-import gallery_class as small
 import pytest
 from PIL import Image
+from support import small_gallery as small
 
 if find_spec("starlette") is None or find_spec("uvicorn") is None:
     pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from small_class import HOMEWORK, result
+from support.small_class import HOMEWORK, result
 
 from hdrlab.course.classroom import run
 from hdrlab.course.classroom.jobs import GradingJob

@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import processes
 import pytest
+from support import linux_processes
 
 from hdrlab.course import materials, plan
 from hdrlab.course.authoring import solutions
@@ -245,12 +245,12 @@ def test_stopping_the_grading_leaves_no_files_or_processes(tmp_path, monkeypatch
     steps = grader.grade_steps(file, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=60))
     next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
     time.sleep(2)
-    assert processes.of(scratch) and list(scratch.iterdir())
+    assert linux_processes.of(scratch) and list(scratch.iterdir())
     steps.close()
     end = time.monotonic() + 300
-    while processes.of(scratch) and time.monotonic() < end:
+    while linux_processes.of(scratch) and time.monotonic() < end:
         time.sleep(0.05)
-    assert processes.of(scratch) == [] and list(scratch.iterdir()) == []
+    assert linux_processes.of(scratch) == [] and list(scratch.iterdir()) == []
 
 
 def test_an_unavailable_tier_is_an_error_without_a_fallback(graded, monkeypatch):

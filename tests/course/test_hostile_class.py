@@ -2,9 +2,9 @@
 
 import os
 
-import hostile
 import pytest
-from hats import GOOD, PLAN
+from support import hostile_submissions
+from support.one_task_homework import GOOD, PLAN
 
 from hdrlab import cli
 from hdrlab.course.grading import doctor
@@ -12,7 +12,7 @@ from hdrlab.course.students import csv_tables
 
 pytestmark = pytest.mark.grading
 
-HONEST = {"h1": ("h1_hw2.ipynb", hostile.notebook(GOOD))}
+HONEST = {"h1": ("h1_hw2.ipynb", hostile_submissions.notebook(GOOD))}
 CODE = ("ends by itself",)
 FILES = ("NUL",)
 TEXTS = ("half a character, raised",)
@@ -26,18 +26,20 @@ def written(folder):
     each = {}
     for name in [*CODE, *TEXTS]:
         each[student := next(who)] = name
-        (folder / f"{student}_hw2.py").write_text((hostile.CODE | hostile.TEXTS)[name])
+        (folder / f"{student}_hw2.py").write_text(
+            (hostile_submissions.CODE | hostile_submissions.TEXTS)[name]
+        )
     for name in FILES:
         each[student := next(who)] = name
-        ending, made = hostile.FILES[name]
+        ending, made = hostile_submissions.FILES[name]
         (folder / f"{student}_hw2{ending}").write_bytes(made())
     for name in NAMES:
         each[student := next(who)] = name
-        with open(os.fsencode(folder / student) + hostile.NAMES[name], "w") as file:
+        with open(os.fsencode(folder / student) + hostile_submissions.NAMES[name], "w") as file:
             file.write("def hat(n=256:\n")
     for name in ODD:
         each[student := next(who)] = name
-        ending, made = hostile.ODD[name]
+        ending, made = hostile_submissions.ODD[name]
         made(folder / f"{student}_hw2{ending}")
     return each
 

@@ -7,10 +7,10 @@ import re
 import zipfile
 from pathlib import Path
 
-import hostile
 import pytest
-from hats import GOOD
-from traps import TRAPS
+from support import hostile_submissions
+from support.malicious_archives import TRAPS
+from support.one_task_homework import GOOD
 
 from hdrlab.course.students.roster import Roster, Student
 from hdrlab.course.submissions import class_folder, reader
@@ -44,9 +44,9 @@ def spent():
     return told.ru_utime + told.ru_stime
 
 
-@pytest.mark.parametrize("name", hostile.FILES)
+@pytest.mark.parametrize("name", hostile_submissions.FILES)
 def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
-    ending, made = hostile.FILES[name]
+    ending, made = hostile_submissions.FILES[name]
     file = tmp_path / f"hat{ending}"
     file.write_bytes(made())
     before = spent()
@@ -64,9 +64,9 @@ def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
 
 RIGHT = {  # an honest file, as its author's editor has saved it
     "a byte order mark": (".py", codecs.BOM_UTF8 + GOOD.encode()),
-    "a byte order mark, notebook": (".ipynb", codecs.BOM_UTF8 + hostile.notebook(GOOD)),
+    "a byte order mark, notebook": (".ipynb", codecs.BOM_UTF8 + hostile_submissions.notebook(GOOD)),
     "UTF-16": (".py", GOOD.encode("utf-16")),
-    "UTF-16, notebook": (".ipynb", hostile.notebook(GOOD).decode().encode("utf-16")),
+    "UTF-16, notebook": (".ipynb", hostile_submissions.notebook(GOOD).decode().encode("utf-16")),
     "Latin-1 with its coding": (
         ".py",
         ("# -*- coding: latin-1 -*-\n# für Müller\n" + GOOD).encode("latin-1"),
@@ -82,7 +82,7 @@ RIGHT = {  # an honest file, as its author's editor has saved it
         b"from numpy import *\ndef hat(n=256):\n    return n - 1 - abs(2 * arange(n) - n + 1)\n",
     ),
     "pictures that are not there": (".py", b"from pylab import *\n" + GOOD.encode()),
-    "capitals": (".IPYNB", hostile.notebook(GOOD)),
+    "capitals": (".IPYNB", hostile_submissions.notebook(GOOD)),
     "lines of a Macintosh": (".py", GOOD.replace("\n", "\r").encode()),
 }
 
@@ -98,7 +98,7 @@ def test_an_unusual_but_valid_file_is_read_correctly(name, tmp_path):
 
 
 def test_an_archive_is_read_within_the_same_limits(tmp_path):
-    ending, made = hostile.FILES["blank lines"]
+    ending, made = hostile_submissions.FILES["blank lines"]
     with zipfile.ZipFile(tmp_path / "b1.zip", "w") as archive:
         archive.writestr("hw2.py", made())
     assert set(reader.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
@@ -140,9 +140,9 @@ def _killed_twice(order):
 ROSTER = Roster((Student("b1", "Ada", "b1"), Student("b2", "Bo", "b2")))
 
 
-@pytest.mark.parametrize("name", hostile.ODD)
+@pytest.mark.parametrize("name", hostile_submissions.ODD)
 def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
-    ending, made = hostile.ODD[name]
+    ending, made = hostile_submissions.ODD[name]
     made(tmp_path / f"b1_hw2{ending}")
     (tmp_path / "b2_hw2.py").write_text(GOOD)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
@@ -161,7 +161,7 @@ def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
 def test_a_readable_file_counts_if_a_later_one_is_refused(tmp_path):
     (tmp_path / "b1_hw2.py").write_text(GOOD)
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
-    hostile.sparse(tmp_path / "b1_later.ipynb")
+    hostile_submissions.sparse(tmp_path / "b1_later.ipynb")
     found = class_folder.find(tmp_path, ROSTER)
     assert found.submissions["b1"].path.name == "b1_hw2.py"
     assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes

@@ -17,10 +17,10 @@ from datetime import UTC, datetime
 from itertools import zip_longest
 from pathlib import Path
 
-import processes
 import pytest
 import test_cluster
-from hats import GOOD, PLAN
+from support import linux_processes
+from support.one_task_homework import GOOD, PLAN
 
 from hdrlab.course.classroom import jobs, run as classroom
 from hdrlab.course.grading import doctor, grader, results
@@ -111,7 +111,7 @@ def family(pid):
     """Return the processes that have come from this one."""
     parents = {
         one: int(said.rpartition(b")")[2].split()[1])
-        for one, said in processes.told("stat").items()
+        for one, said in linux_processes.told("stat").items()
     }
     found = [pid]
     for one in found:
@@ -173,9 +173,9 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
         assert different(results, whole) == {}
         kills += more
     until = time.monotonic() + 300
-    while processes.of(folder / "scratch") and time.monotonic() < until:
+    while linux_processes.of(folder / "scratch") and time.monotonic() < until:
         time.sleep(0.05)
-    assert not processes.of(folder / "scratch")
+    assert not linux_processes.of(folder / "scratch")
 
 
 @PROC
@@ -192,7 +192,7 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole):
 
 def workers():
     """Return the processes of a cluster that this one has started, and what they have started."""
-    said = processes.told("cmdline")
+    said = linux_processes.told("cmdline")
     spawned = [child for child in family(os.getpid()) if b"spawn_main" in said.get(child, b"")]
     return [one for child in spawned for one in (child, *family(child))]
 
@@ -214,7 +214,7 @@ def killing():
 def _kill(words, below):
     until = time.monotonic() + 300
     while time.monotonic() < until:
-        said = processes.told("cmdline")
+        said = linux_processes.told("cmdline")
         for one in family(os.getpid()):
             victims = family(one) if below else [one]
             if victims and all(word in said.get(one, b"") for word in words):

@@ -10,7 +10,7 @@ from hashlib import sha256
 from pathlib import Path
 
 import pytest
-from hats import PLAN
+from support.one_task_homework import PLAN
 
 from hdrlab import cli
 from hdrlab.cli import classroom as command

@@ -19,7 +19,7 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
-from lacking import POOR, turn_clock_back
+from support.missing_environment import POOR, turn_clock_back
 
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, pages as build, reference

@@ -3,10 +3,10 @@
 import math
 from functools import partial
 
-import answering
 import numpy as np
 import pytest
-from answering import right, silence
+from support import fake_student_process
+from support.fake_student_process import right, silence
 
 from hdrlab.course.checks import subject as module
 
@@ -14,7 +14,7 @@ from hdrlab.course.checks import subject as module
 @pytest.fixture
 def opened(monkeypatch):
     """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
-    return partial(answering.opened, monkeypatch)
+    return partial(fake_student_process.opened, monkeypatch)
 
 
 @pytest.mark.parametrize("timeout", [2.0, 10.0])

@@ -2,9 +2,9 @@
 
 from functools import partial
 
-import answering
 import pytest
-from answering import right, silence
+from support import fake_student_process
+from support.fake_student_process import right, silence
 
 from hdrlab.course.sandbox.inside import channel
 
@@ -14,7 +14,7 @@ KILL = 9
 @pytest.fixture
 def opened(monkeypatch):
     """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
-    return partial(answering.opened, monkeypatch)
+    return partial(fake_student_process.opened, monkeypatch)
 
 
 def is_late(subject, limit):

@@ -8,9 +8,9 @@ import tarfile
 from functools import partial
 
 import pytest
-import unpacking
-from traps import info
-from unpacking import refused
+from support import archive_unpacking
+from support.archive_unpacking import refused
+from support.malicious_archives import info
 
 from hdrlab.course.submissions.archives import tarball
 from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRejected
@@ -19,7 +19,7 @@ from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRej
 @pytest.fixture
 def taken(tmp_path):
     """taken(data) -> what is unpacked of an archive of these bytes."""
-    return partial(unpacking.taken, tmp_path)
+    return partial(archive_unpacking.taken, tmp_path)
 
 
 def header(name="a", kind=b"0", size=0):

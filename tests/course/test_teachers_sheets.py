@@ -5,11 +5,11 @@ from functools import cache
 
 import nbformat
 import pytest
-import teachers_sheets as sheets
-import timetable
+
+from tools import course_minutes, teachers_sheets
 
 pytestmark = pytest.mark.skipif(
-    not timetable.COPY.exists(), reason="reads a clone, and this is an installed package"
+    not course_minutes.COPY.exists(), reason="reads a clone, and this is an installed package"
 )
 MAX_WORDS = 500  # about one printed page; the tests in a browser print it
 # minutes of an exercise by its difficulty; on average the ten minutes of the course plan
@@ -31,14 +31,14 @@ OWN_NUMBERS = {
 }
 
 
-@pytest.fixture(params=sorted(sheets.sheets()))
+@pytest.fixture(params=sorted(teachers_sheets.sheet_paths()))
 def name(request):
     return request.param
 
 
 @pytest.fixture
 def text(name):
-    return sheets.sheets()[name].read_text(encoding="utf8")
+    return teachers_sheets.sheet_paths()[name].read_text(encoding="utf8")
 
 
 def part(text, heading):
@@ -64,15 +64,15 @@ def plain(text):
 @cache
 def source(name):
     """Return the text and the code of a notebook in one line, with strings that span lines joined."""
-    lines = "\n".join("".join(cell["source"]) for cell in sheets.cells_of(name))
+    lines = "\n".join("".join(cell["source"]) for cell in teachers_sheets.read_cells(name))
     joined = re.sub(r'"\n\w+ \+= f?"', "", lines)
     return " ".join(joined.split())
 
 
 def test_every_notebook_has_a_sheet_with_its_title_and_a_sketch():
-    titles = {name: title for name, (title, _) in timetable.notebooks().items()}
-    assert sorted(sheets.sheets()) == sorted(titles)
-    for name, path in sheets.sheets().items():
+    titles = {name: planned.title for name, planned in course_minutes.plan_notebooks().items()}
+    assert sorted(teachers_sheets.sheet_paths()) == sorted(titles)
+    for name, path in teachers_sheets.sheet_paths().items():
         text = path.read_text(encoding="utf8")
         assert text.startswith(f"# Teach {titles[name]}\n")
         assert re.findall(r"^## (.+)$", text, re.M) == HEADINGS, name
@@ -81,41 +81,43 @@ def test_every_notebook_has_a_sheet_with_its_title_and_a_sketch():
 
 
 def test_a_sheet_has_the_minutes_and_the_prerequisites_of_the_course_plan(name, text):
-    assert text == sheets.with_minutes(text, name), "run python tests/teachers_sheets.py"
-    total = sheets.plan_rows()[name][1]
-    assert sum(int(minutes) for minutes, _, _ in sheets.ROW.findall(text)) == total
+    assert text == teachers_sheets.with_minutes(text, name), "run python -m tools.teachers_sheets"
+    total = teachers_sheets.read_plan_rows()[name][1]
+    assert sum(int(minutes) for minutes, _, _ in teachers_sheets.ROW.findall(text)) == total
 
 
 def test_a_sheet_expects_no_notebook_that_the_course_plan_does_not_name(name, text):
     expected = set(re.findall(r"\((\d\d)\)", text.split("**Already known:**")[1].split("\n\n")[0]))
-    assert expected <= set(re.findall(r"\d\d", with_spans(sheets.plan_rows()[name][0])))
+    assert expected <= set(
+        re.findall(r"\d\d", with_spans(teachers_sheets.read_plan_rows()[name][0]))
+    )
 
 
 def test_the_minute_plan_has_every_section_once_and_in_order(name, text):
     planned = [
         section.heading
-        for _, quotes, _ in sheets.ROW.findall(text)
-        for section in sheets.sections_of_row(quotes, name)
+        for _, quotes, _ in teachers_sheets.ROW.findall(text)
+        for section in teachers_sheets.sections_of_row(quotes, name)
     ]
-    assert planned == [section.heading for section in sheets.sections(name)]
+    assert planned == [section.heading for section in teachers_sheets.read_sections(name)]
 
 
 def test_each_figure_that_a_row_names_is_in_its_sections(name, text):
-    for _, quotes, what in sheets.ROW.findall(text):
-        code = "".join(section.code for section in sheets.sections_of_row(quotes, name))
+    for _, quotes, what in teachers_sheets.ROW.findall(text):
+        code = "".join(section.code for section in teachers_sheets.sections_of_row(quotes, name))
         for figure in LIBRARY_NAME.findall(what):
             assert re.search(rf"\b{figure}\b", code), f"{quotes}: no {figure}"
 
 
 def test_what_to_leave_out_are_sections_of_the_notebook(name, text):
-    quotes, minutes = sheets.SKIP.findall(part(text, "If time is short").strip())[0]
-    headings = [section.heading for section in sheets.sections(name)]
-    assert set(sheets.QUOTED.findall(quotes)) <= set(headings)
-    assert int(minutes) < sheets.plan_rows()[name][1]
+    quotes, minutes = teachers_sheets.SKIP.findall(part(text, "If time is short").strip())[0]
+    headings = [section.heading for section in teachers_sheets.read_sections(name)]
+    assert set(teachers_sheets.QUOTED.findall(quotes)) <= set(headings)
+    assert int(minutes) < teachers_sheets.read_plan_rows()[name][1]
 
 
 def test_each_wrong_prediction_answers_a_question_of_the_notebook(name, text):
-    predictions = sheets.PREDICTION.findall(part(text, "Two wrong predictions"))
+    predictions = teachers_sheets.PREDICTION.findall(part(text, "Two wrong predictions"))
     assert len(predictions) == 2
     for question, _ in predictions:
         assert " ".join(question.split()) in source(name)
@@ -128,13 +130,13 @@ def test_a_wrong_prediction_is_an_answer_that_the_notebook_offers_and_a_wrong_on
     pytest.importorskip("myst_nb", reason='the questions need pip install ".[site]"')
     from hdrlab.course.question_bank.questions import ChoiceQuestion, collect_questions
 
-    notebook = nbformat.read(executed(sheets.notebook_path(name)).executed, as_version=4)
+    notebook = nbformat.read(executed(teachers_sheets.notebook_path(name)).executed, as_version=4)
     choices = [
         question
         for question in collect_questions(notebook, name)
         if isinstance(question, ChoiceQuestion)
     ]
-    for asked, wrong in sheets.PREDICTION.findall(part(text, "Two wrong predictions")):
+    for asked, wrong in teachers_sheets.PREDICTION.findall(part(text, "Two wrong predictions")):
         for question in choices:
             if " ".join(asked.split()) in question.text:
                 assert wrong in question.labels
@@ -142,15 +144,17 @@ def test_a_wrong_prediction_is_an_answer_that_the_notebook_offers_and_a_wrong_on
 
 
 def test_the_exercises_are_those_of_the_notebook_and_take_ten_minutes_on_average(name, text):
-    listed = sheets.EXERCISE.findall(part(text, "Exercises"))
-    last = "".join(sheets.cells_of(name)[-1]["source"]).split("## Exercises")[1]
+    listed = teachers_sheets.EXERCISE.findall(part(text, "Exercises"))
+    last = "".join(teachers_sheets.read_cells(name)[-1]["source"]).split("## Exercises")[1]
     assert sorted(number for _, _, number in listed) == re.findall(r"^(\d)\. ", last, re.M)
     assert {kind: int(minutes) for kind, minutes, _ in listed} == MINUTES
 
 
 def test_each_number_of_a_sheet_is_in_its_notebook(name, text):
     text = re.sub(r"^\| \d+ \|", "", text, flags=re.M)
-    text = sheets.EXERCISE.sub("", sheets.SKIP.sub("", sheets.TOP.sub("", text)))
+    text = teachers_sheets.EXERCISE.sub(
+        "", teachers_sheets.SKIP.sub("", teachers_sheets.TOP.sub("", text))
+    )
     text = re.sub(
         r"(?:notebooks?|homework) \d+(?: to \d+)?|\(\d\d[^)]*\)|^# .*$", "", text, flags=re.M
     )
@@ -168,5 +172,5 @@ def test_a_sheet_is_short_enough_for_one_page(name, text):
 
 def test_the_guides_for_instructors_lead_to_the_sheets():
     for page in ("teaching.md", "instructors.md", "course.md", "index.md"):
-        assert "](teachers_sheets.md)" in (sheets.PAGES / page).read_text(encoding="utf8")
-    assert "teachers_sheets/*" in sheets.INDEX.read_text(encoding="utf8")
+        assert "](teachers_sheets.md)" in (teachers_sheets.PAGES / page).read_text(encoding="utf8")
+    assert "teachers_sheets/*" in teachers_sheets.INDEX.read_text(encoding="utf8")

@@ -1,8 +1,8 @@
 """Archives with traps in what a class has handed in: each is refused in one line, the others are graded."""
 
 import pytest
-from hats import GOOD, PLAN
-from traps import TRAPS, zipped
+from support.malicious_archives import TRAPS, zipped
+from support.one_task_homework import GOOD, PLAN
 
 from hdrlab import cli
 from hdrlab.course.grading import results

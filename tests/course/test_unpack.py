@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 import pytest
-from traps import FILES, TRAPS, info, tarred, zipped
+from support.malicious_archives import FILES, TRAPS, info, tarred, zipped
 
 from hdrlab.course.submissions.archives.members import (
     LIMITS,

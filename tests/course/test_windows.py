@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-import windows
-from hats import GOOD, PLAN
+from support import simulated_windows
+from support.one_task_homework import GOOD, PLAN
 
 import hdrlab
 
@@ -35,7 +35,7 @@ def on_windows(tmp_path):
     """on_windows(*words) -> (exit code, stdout, stderr) of Python with these words, as if on Windows."""
     python = tmp_path / "python"
     python.mkdir()
-    launcher, environment = windows.build(python)
+    launcher, environment = simulated_windows.build(python)
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf8")
     (tmp_path / "hw2.py").write_text(GOOD, encoding="utf8")
 

@@ -3,9 +3,9 @@
 from functools import partial
 
 import pytest
-import workers
 from distributed import KilledWorker
-from workers import ADDRESS
+from support import fake_cluster
+from support.fake_cluster import ADDRESS
 
 from hdrlab.course.classroom.executors import cluster
 from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
@@ -14,7 +14,7 @@ from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
 @pytest.fixture
 def clustered(monkeypatch):
     """clustered(a=2, b=1) -> a Cluster of these workers and their threads, and its client."""
-    return partial(workers.clustered, monkeypatch)
+    return partial(fake_cluster.clustered, monkeypatch)
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import PurePosixPath
 
 import pytest
-import unpacking
-from traps import entry, zipped
-from unpacking import TOLD, refused
+from support import archive_unpacking
+from support.archive_unpacking import TOLD, refused
+from support.malicious_archives import entry, zipped
 
 from hdrlab.course.submissions.archives import tarball
 from hdrlab.course.submissions.archives.members import ArchiveRejected
@@ -20,7 +20,7 @@ from hdrlab.course.submissions.archives.members import ArchiveRejected
 @pytest.fixture
 def taken(tmp_path):
     """taken(data) -> what is unpacked of an archive of these bytes."""
-    return partial(unpacking.taken, tmp_path)
+    return partial(archive_unpacking.taken, tmp_path)
 
 
 def archive(*files, **knobs):

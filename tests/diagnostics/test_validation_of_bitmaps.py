@@ -4,10 +4,10 @@ import cv2
 import imageio.v3 as iio
 import numpy as np
 import pytest
-from brackets import bracket
 from hypothesis import given, settings, strategies as st
 from scipy.ndimage import gaussian_filter1d, rotate
 from skimage.data import astronaut, coffee
+from support.hand_held_photos import bracket
 
 from hdrlab.pipeline.alignment import best_percentile, photograph_pairs, register
 

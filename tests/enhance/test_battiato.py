@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from computed_skin import synthetic
 from hypothesis import given, strategies as st
 from skimage import data
+from support.synthetic_skin import synthetic
 
 from hdrlab.capture import exposure
 from hdrlab.core.colour import decode_srgb, encode_srgb, to_8bit

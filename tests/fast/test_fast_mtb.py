@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from brackets import bracket
 from hypothesis import given, settings, strategies as st
 from scipy.ndimage import zoom
 from skimage.data import camera
+from support.hand_held_photos import bracket
 
 from hdrlab.align import mtb as lesson
 from hdrlab.errors import InputError

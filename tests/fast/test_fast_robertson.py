@@ -2,10 +2,10 @@
 
 from functools import partial
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling, weights

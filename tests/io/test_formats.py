@@ -12,8 +12,8 @@ import imagecodecs
 import numpy as np
 import pytest
 import tifffile
-from abilities import require_avif, require_colors_of_avif, require_gains_of_channels
 from PIL import Image
+from support.codec_features import require_avif, require_colors_of_avif, require_gains_of_channels
 
 import hdrlab
 from hdrlab.cli import run

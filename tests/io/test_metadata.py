@@ -11,10 +11,10 @@ import imagecodecs
 import numpy as np
 import pytest
 import tifffile
-from abilities import require_avif
 from hypothesis import given, strategies as st
 from PIL import Image, ImageCms
 from PIL.PngImagePlugin import PngInfo
+from support.codec_features import require_avif
 
 from hdrlab.io import metadata
 from hdrlab.io.decode import read_header

@@ -7,8 +7,8 @@ import cv2
 import imagecodecs
 import numpy as np
 import pytest
-from abilities import require_avif, require_colors_of_avif
 from PIL import Image
+from support.codec_features import require_avif, require_colors_of_avif
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run

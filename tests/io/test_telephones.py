@@ -8,9 +8,9 @@ import numpy as np
 import pillow_heif
 import pytest
 import tifffile
-from abilities import require_avif, require_colors_of_avif
 from PIL import Image
 from scipy.ndimage import gaussian_filter
+from support.codec_features import require_avif, require_colors_of_avif
 
 from hdrlab.core import gamut
 from hdrlab.core.colour import decode_srgb, encode_srgb

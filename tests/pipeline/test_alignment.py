@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from brackets import MARGIN, H, W, bracket as shoot, photograph, radiance
 from scipy.ndimage import gaussian_filter
 from skimage.data import astronaut, coffee
+from support.hand_held_photos import MARGIN, H, W, bracket as shoot, photograph, radiance
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, hand_motion

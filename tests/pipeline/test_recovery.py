@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-import laws
 import numpy as np
 import pytest
+from support import laws
 
 from hdrlab import pipeline
 from hdrlab.capture import camera

@@ -1,9 +1,9 @@
 """Debevec and Malik's response: the slide's system, its solution, and a curve it finds."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.capture import responses
 from hdrlab.core import weights

@@ -1,8 +1,8 @@
 """Responses from histograms: transfer functions, the two models, and the comparison of Cerman and Hlavac."""
 
-import laws
 import numpy as np
 import pytest
+from support import laws
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import transfer, weights

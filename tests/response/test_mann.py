@@ -1,9 +1,9 @@
 """Mann and Picard's power law: the ladder of comparisons and its slope."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.capture import camera, responses
 from hdrlab.errors import InputError

@@ -1,10 +1,10 @@
 """Self-calibration as published: the linear system, the ratios, the stop, the experiments of the paper."""
 
-import laws
 import numpy as np
 import pytest
-from laws import photographs as shots
 from numpy.polynomial.polynomial import polyval
+from support import laws
+from support.laws import photographs as shots
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g

@@ -1,7 +1,7 @@
 """Every recovery of a response obeys the laws; a new one is tested by existing."""
 
-import laws
 import pytest
+from support import laws
 
 from hdrlab.capture.responses import RESPONSES
 from hdrlab.pipeline import catalogue, recovery

@@ -1,8 +1,8 @@
 """Robertson's response: the slide's two means, and the steps that take them in turn."""
 
-import laws
 import numpy as np
 import pytest
+from support import laws
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling, weights

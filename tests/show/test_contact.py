@@ -2,11 +2,11 @@
 
 import re
 
-import laws
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
+from support import laws
 
 from hdrlab import pipeline
 from hdrlab.core import colour

@@ -1,13 +1,13 @@
 """Plots of skin colors."""
 
-import computed_skin
 import numpy as np
 import pytest
+from support import synthetic_skin
 
 from hdrlab.enhance import skin
 from hdrlab.show.plots.lectures import skins
 
-TRAINING = computed_skin.synthetic(3000)
+TRAINING = synthetic_skin.synthetic(3000)
 
 
 def test_ellipse_has_the_given_mahalanobis_distance_from_the_mean():

@@ -10,8 +10,8 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 import threadpoolctl
-from halves import decoded
 from matplotlib.figure import Figure
+from support.half_floats import decoded
 
 from hdrlab import errors, scenes
 from hdrlab.capture.sensor import Sensor

@@ -1,9 +1,9 @@
 """hdrlab.tonemap.brush: equalisation of a window, the clipped histogram, the lens."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.core.colour import decode_srgb, encode_srgb
 from hdrlab.errors import InputError

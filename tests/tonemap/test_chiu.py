@@ -1,10 +1,10 @@
 """hdrlab.tonemap.chiu: scale, clamp, smoothing passes, halos."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from scipy.ndimage import convolve, gaussian_filter
+from support import laws
 
 from hdrlab.core.steps import last
 from hdrlab.errors import InputError

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.core import colour
 from hdrlab.core.extremes import robust_maximum, robust_minimum

@@ -1,9 +1,9 @@
 """hdrlab.tonemap.durand: layers, compression, the fix where k is small."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.filters.bilateral import bilateral

@@ -5,11 +5,11 @@ import subprocess
 import tracemalloc
 from functools import partial
 
-import laws
 import numpy as np
 import pytest
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
+from support import laws
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.filters import poisson, pyramid

@@ -1,9 +1,9 @@
 """hdrlab.tonemap.local_laplacian: the remapping, and samples against a pyramid for each coefficient."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from support import laws
 
 from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last

@@ -1,11 +1,11 @@
 """hdrlab.tonemap.quality: TMQI against its definition, its closed cases, and what must lower it."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from scipy.ndimage import gaussian_filter
 from scipy.stats import beta, norm
+from support import laws
 
 from hdrlab.core.colour import to_8bit
 from hdrlab.tonemap import quality, reinhard

@@ -5,11 +5,11 @@ import subprocess
 from functools import partial
 
 import cv2
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from scipy.ndimage import gaussian_filter
+from support import laws
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last

@@ -7,11 +7,11 @@ too.
 from functools import partial
 from importlib import import_module
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from support import laws
 
 from hdrlab.pipeline import catalogue
 

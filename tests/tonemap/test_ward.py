@@ -1,9 +1,9 @@
 """hdrlab.tonemap.ward: foveal image, trims, ceiling, the linear map where the display has range enough."""
 
-import laws
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from support import laws
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last

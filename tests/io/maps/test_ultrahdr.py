@@ -7,8 +7,8 @@ import struct
 import imagecodecs
 import numpy as np
 import pytest
-from abilities import require_gains_of_channels
 from PIL import Image
+from support.codec_features import require_gains_of_channels
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run

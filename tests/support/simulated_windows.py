@@ -17,7 +17,7 @@ import sys
 import threading
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SYSTEM = ROOT / "hdrlab/course/sandbox/inside/system.py"
 MODULES = ("fcntl", "resource", "pwd", "pyseccomp")
 CALLS = (

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import hdrlab
 
-HERE = Path(__file__).parent / "attacks"
+HERE = Path(__file__).parents[1] / "attacks"
 NAMES = sorted(path.stem for path in HERE.glob("a*.py"))
 HONEST = "def double(x):\n    return 2 * x\n"
 # past Python's own refusals

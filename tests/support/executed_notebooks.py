@@ -11,7 +11,7 @@ import nbformat
 from hdrlab.course.authoring import execute
 from hdrlab.io.files import replacing
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 SENTENCES = HERE / "test_sentences.py"
 # behind the last cell of a notebook: what its names say of its sentences, and whether its sliders
 # answer

@@ -1,9 +1,11 @@
-"""Teacher's sheets: one page about each notebook, for an instructor who has an hour before the class.
+"""Write the minutes and prerequisites of the course plan into the teacher's sheets.
 
-    python tests/teachers_sheets.py     # writes minutes and prerequisites into the sheets
+    python -m tools.teachers_sheets
 
-The course plan says how many minutes a notebook takes and what to read before it. A sheet divides
-these minutes among its rows in proportion to the minutes of their sections (see `timetable`).
+A teacher's sheet is a page about one notebook, for an instructor who has an hour before the class.
+The course plan says how many minutes a notebook takes and what to read before it. The script divides
+these minutes among the rows of a sheet, in proportion to the minutes of their sections (see
+`course_minutes`).
 """
 
 import json
@@ -11,9 +13,9 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
-import timetable
+from tools import course_minutes
 
-PAGES = timetable.PAGE.parent
+PAGES = course_minutes.PAGE.parent
 FOLDER = PAGES / "teachers_sheets"
 INDEX = PAGES / "teachers_sheets.md"
 TOP = re.compile(r"^\d+ minutes, with \[notebook (\d\d)\]\(.*$", re.M)
@@ -34,27 +36,29 @@ class Section:
     code: str
 
 
-def sheets():
+def sheet_paths():
     """Return the path of each sheet by the name of its notebook."""
     return {path.stem: path for path in sorted(FOLDER.glob("*.md"))}
 
 
 def notebook_path(name):
-    return timetable.ROOT / "notebooks" / f"{name}.ipynb"
+    """Return the path of a notebook."""
+    return course_minutes.ROOT / "notebooks" / f"{name}.ipynb"
 
 
 @cache
-def cells_of(name):
+def read_cells(name):
+    """Return the cells of a notebook."""
     return json.loads(notebook_path(name).read_text(encoding="utf8"))["cells"]
 
 
 @cache
-def sections(name):
+def read_sections(name):
     """Return the sections of a notebook; the text before the first one belongs to the first one."""
-    minutes = timetable.sections(notebook_path(name))
+    minutes = course_minutes.section_minutes(notebook_path(name))
     code = dict.fromkeys(minutes, "")
     heading = ""
-    for cell in cells_of(name):
+    for cell in read_cells(name):
         text = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
             heading = next(iter(re.findall(r"^## (.+)$", text, re.M)), heading)
@@ -71,10 +75,10 @@ def sections(name):
 
 
 @cache
-def plan_rows():
+def read_plan_rows():
     """Return what to read before a notebook, and its minutes, by the name of the notebook."""
-    page = timetable.PAGE.read_text(encoding="utf8")
-    rows = re.findall(timetable.NOTEBOOK, page, re.M)
+    page = course_minutes.PAGE.read_text(encoding="utf8")
+    rows = re.findall(course_minutes.NOTEBOOK_ROW, page, re.M)
     return {name: (before.strip(), int(minutes)) for _, name, before, minutes in rows}
 
 
@@ -86,46 +90,51 @@ def sections_of_row(quotes, name):
     ValueError
         If a section is not in the notebook.
     """
-    every = sections(name)
-    headings = [section.heading for section in every]
+    sections = read_sections(name)
+    headings = [section.heading for section in sections]
     first, *last = QUOTED.findall(quotes)
     start = headings.index(first)
     end = headings.index(last[0]) if last else start
-    return every[start : end + 1]
+    return sections[start : end + 1]
 
 
-def divide(total, shares):
-    """Return whole minutes that add up to a total, in proportion to shares, and at least 1 each."""
-    exact = [total * share / sum(shares) for share in shares]
+def divide_minutes(total, weights):
+    """Return whole minutes that add up to a total, in proportion to weights, and at least 1 each."""
+    exact = [total * weight / sum(weights) for weight in weights]
     whole = [max(1, int(minutes)) for minutes in exact]
-    by_rest = sorted(range(len(exact)), key=lambda k: whole[k] - exact[k])
-    for k in by_rest[: total - sum(whole)]:
+    by_remainder = sorted(range(len(exact)), key=lambda k: whole[k] - exact[k])
+    for k in by_remainder[: total - sum(whole)]:
         whole[k] += 1
     return whole
 
 
 def with_minutes(text, name):
-    """Return a sheet with its minutes, and with what to read before, as the course plan has them."""
-    before, total = plan_rows()[name]
-    rows = ROW.findall(text)
-    shares = [
-        sum(section.minutes for section in sections_of_row(quotes, name)) for _, quotes, _ in rows
-    ]
-    minutes = iter(divide(total, shares))
-    scale = total / sum(shares)
-    by_heading = {section.heading: section.minutes for section in sections(name)}
+    """Return a sheet with the minutes and the prerequisites of the course plan."""
+    prerequisites, total_minutes = read_plan_rows()[name]
+    row_weights = []
+    for _, quotes, _ in ROW.findall(text):
+        row_weights.append(sum(section.minutes for section in sections_of_row(quotes, name)))
+    row_minutes = iter(divide_minutes(total_minutes, row_weights))
+    scale = total_minutes / sum(row_weights)
+    minutes_by_heading = {section.heading: section.minutes for section in read_sections(name)}
 
-    def skip(found):
-        saved = sum(by_heading[heading] for heading in QUOTED.findall(found[1])) * scale
-        saved = max(1, round(saved))
-        return f"Leave out {found[1]} ({saved} minute{'s' * (saved > 1)})"
+    def write_skipped_sections(match):
+        headings = QUOTED.findall(match[1])
+        saved = max(1, round(scale * sum(minutes_by_heading[heading] for heading in headings)))
+        unit = "minute" if saved == 1 else "minutes"
+        return f"Leave out {match[1]} ({saved} {unit})"
 
     link = f"[notebook {name[:2]}](../notebooks/{name}.ipynb)"
-    text = TOP.sub(f"{total} minutes, with {link}. Read before: {before}.", text)
-    text = ROW.sub(lambda row: f"| {next(minutes)} | {row[2]} |{row[3]}|", text)
-    return SKIP.sub(skip, text)
+    text = TOP.sub(f"{total_minutes} minutes, with {link}. Read before: {prerequisites}.", text)
+    text = ROW.sub(lambda row: f"| {next(row_minutes)} | {row[2]} |{row[3]}|", text)
+    return SKIP.sub(write_skipped_sections, text)
+
+
+def main():
+    """Write all sheets."""
+    for name, path in sheet_paths().items():
+        path.write_text(with_minutes(path.read_text(encoding="utf8"), name), encoding="utf8")
 
 
 if __name__ == "__main__":
-    for name, path in sheets().items():
-        path.write_text(with_minutes(path.read_text(encoding="utf8"), name), encoding="utf8")
+    main()

@@ -1,6 +1,6 @@
-"""`tests/distance.py` counts the files and lines that a reader needs for a function."""
+"""`tools.reading_distance` counts the files and lines of code that a reader needs for a function."""
 
-import distance
+from tools.reading_distance import Distance, Library
 
 A = """
 from toy import b
@@ -35,16 +35,16 @@ def half(
 ):
     return x / 2
 """
-TOY = distance.Library({"toy": "", "toy.a": A, "toy.b": B, "toy.c": C})
+TOY = Library({"toy": "", "toy.a": A, "toy.b": B, "toy.c": C})
 
 
 def test_lines_are_those_of_what_a_function_calls_without_docstrings_and_comments():
-    assert TOY.needs("toy.a.f") == {
+    assert TOY.needed_definitions("toy.a.f") == {
         ("toy.a", "f"),
         ("toy.a", "TWO"),
         ("toy.b", "double"),
         ("toy.c", "half"),
     }
-    assert TOY.distance("toy.a.f") == (3, 2 + 1 + 2 + 4)
-    assert TOY.distance("toy.b.g") == (2, 2 + 4)
-    assert TOY.rooms() == {"(top)": 0, "a": 7, "b": 5, "c": 4}
+    assert TOY.distance("toy.a.f") == Distance(file_count=3, line_count=2 + 1 + 2 + 4)
+    assert TOY.distance("toy.b.g") == Distance(file_count=2, line_count=2 + 4)
+    assert TOY.folder_line_counts() == {"(top)": 0, "a": 7, "b": 5, "c": 4}

@@ -1,19 +1,20 @@
-"""The planned course names the notebooks and the tasks that there are, in an order that can be taught."""
+"""The course plan lists all notebooks and tasks with their minutes, in an order that can be taught."""
 
 import json
 import re
 
 import pytest
-import timetable
+
+from tools import course_minutes
 
 pytestmark = pytest.mark.skipif(
-    not timetable.COPY.exists(), reason="reads a clone, and this is an installed package"
+    not course_minutes.COPY.exists(), reason="reads a clone, and this is an installed package"
 )
 
 
 @pytest.fixture(scope="module")
 def page():
-    return timetable.PAGE.read_text(encoding="utf8")
+    return course_minutes.PAGE.read_text(encoding="utf8")
 
 
 def rows(pattern, page):
@@ -27,25 +28,30 @@ def numbers(text):
     return between | set(re.findall(r"\b\d\d\b", text))
 
 
-def before(page):
-    return {title[:2]: numbers(needs) for title, _, needs, _ in rows(timetable.NOTEBOOK, page)}
+def prerequisites(page):
+    """Return the notebooks that each notebook builds on."""
+    return {
+        title[:2]: numbers(needs) for title, _, needs, _ in rows(course_minutes.NOTEBOOK_ROW, page)
+    }
 
 
 def section(page, heading):
     return page.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
 
 
-def test_the_timetable_lists_every_notebook_by_its_title(page):
-    listed = {name: title for title, name, _, _ in rows(timetable.NOTEBOOK, page)}
-    assert listed == {name: title for name, (title, _) in timetable.notebooks().items()}
+def test_the_course_plan_lists_every_notebook_by_its_title(page):
+    listed = {name: title for title, name, _, _ in rows(course_minutes.NOTEBOOK_ROW, page)}
+    assert listed == {
+        name: planned.title for name, planned in course_minutes.plan_notebooks().items()
+    }
 
 
-def test_a_notebook_begins_with_its_minutes_what_comes_before_it_and_what_one_can_do_afterwards(
+def test_a_notebook_begins_with_its_minutes_its_prerequisites_and_what_the_reader_can_do_afterwards(
     page,
 ):
-    for _, name, needs, minutes in rows(timetable.NOTEBOOK, page):
+    for _, name, needs, minutes in rows(course_minutes.NOTEBOOK_ROW, page):
         notebook = json.loads(
-            (timetable.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8")
+            (course_minutes.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8")
         )
         said = "".join(notebook["cells"][0]["source"]).split("\n\n")[1].replace("\n", " ")
         begin, what = said.split(". Afterwards you can ")
@@ -55,45 +61,49 @@ def test_a_notebook_begins_with_its_minutes_what_comes_before_it_and_what_one_ca
 
 
 def test_the_first_page_has_every_notebook_in_one_chapter_with_a_picture(page):
-    first = timetable.PAGE.with_name("index.md").read_text(encoding="utf8")
+    first = course_minutes.PAGE.with_name("index.md").read_text(encoding="utf8")
     listed = re.findall(r'"(\d\d_\w+)"', first)
-    assert sorted(listed) == sorted(timetable.notebooks())
-    cards = timetable.PAGE.parents[1] / "theme" / "static" / "cards"
+    assert sorted(listed) == sorted(course_minutes.plan_notebooks())
+    cards = course_minutes.PAGE.parents[1] / "theme" / "static" / "cards"
     assert sorted(listed) == sorted(card.stem for card in cards.iterdir())
 
 
-def test_the_timetable_lists_every_task_with_its_points(page):
+def test_the_course_plan_lists_every_task_with_its_points(page):
     listed = [
-        (sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)
+        (sheet, name, int(points))
+        for sheet, name, _, points, _ in rows(course_minutes.TASK_ROW, page)
     ]
     assert listed == [
-        (sheet, name, points) for name, (sheet, points, _) in timetable.tasks().items()
+        (task.assignment, name, task.points) for name, task in course_minutes.plan_tasks().items()
     ]
 
 
-def test_the_minutes_are_those_of_the_rule_within_ten(page):
+def test_the_minutes_in_the_course_plan_follow_the_rule_within_ten_minutes(page):
     said, counted = (
-        list(map(int, re.findall(r"\d+", text))) for text in (page, timetable.with_minutes(page))
+        list(map(int, re.findall(r"\d+", text)))
+        for text in (page, course_minutes.with_minutes(page))
     )
     far = [pair for pair in zip(said, counted, strict=True) if abs(pair[0] - pair[1]) > 10]
-    assert not far, "run python tests/timetable.py"
+    assert not far, "run python -m tools.course_minutes"
 
 
-def test_the_copy_of_the_timetable_is_the_same(page):
-    assert timetable.COPY.read_text(encoding="utf8") == timetable.copy_of(page), (
-        "run python tests/timetable.py"
-    )
+def test_the_copy_of_the_course_plan_is_up_to_date(page):
+    assert course_minutes.COPY.read_text(encoding="utf8") == course_minutes.with_links_from_root(
+        page
+    ), "run python -m tools.course_minutes"
 
 
-def test_the_links_of_the_copy_lead_somewhere():
-    links = re.findall(r"\]\(([^)#]+)\)", timetable.COPY.read_text(encoding="utf8"))
-    assert len(links) > 23 and not [link for link in links if not (timetable.ROOT / link).exists()]
+def test_the_links_of_the_copy_lead_to_existing_files():
+    links = re.findall(r"\]\(([^)#]+)\)", course_minutes.COPY.read_text(encoding="utf8"))
+    assert len(links) > 23 and not [
+        link for link in links if not (course_minutes.ROOT / link).exists()
+    ]
 
 
 def test_the_semester_has_every_notebook_once_after_those_it_builds_on(page):
-    weeks = [sorted(numbers(row[1])) for row in rows(timetable.WEEK, page)]
+    weeks = [sorted(numbers(row[1])) for row in rows(course_minutes.WEEK_ROW, page)]
     taught = [number for week in weeks for number in week]
-    needs = before(page)
+    needs = prerequisites(page)
     assert sorted(taught) == sorted(needs)
     for number, earlier in needs.items():
         late = [one for one in earlier if taught.index(one) > taught.index(number)]
@@ -101,13 +111,13 @@ def test_the_semester_has_every_notebook_once_after_those_it_builds_on(page):
 
 
 def test_no_week_of_the_semester_takes_more_than_its_two_hours(page):
-    assert all(int(minutes) <= 120 for _, _, minutes, _, _ in rows(timetable.WEEK, page))
+    assert all(int(minutes) <= 120 for _, _, minutes, _, _ in rows(course_minutes.WEEK_ROW, page))
 
 
 def test_a_homework_is_due_in_its_week_and_after_the_notebooks_that_explain_it(page):
-    weeks = rows(timetable.WEEK, page)
-    explained = rows(timetable.TASK, page)
-    for name, homework in timetable.plan_of_the_course().items():
+    weeks = rows(course_minutes.WEEK_ROW, page)
+    explained = rows(course_minutes.TASK_ROW, page)
+    for name, homework in course_minutes.read_course_tables().items():
         if name != "late":
             week = homework["due"]["week"]
             assert f"{name}, due" in weeks[week - 1][3], name
@@ -117,9 +127,9 @@ def test_a_homework_is_due_in_its_week_and_after_the_notebooks_that_explain_it(p
             } <= taught
 
 
-def test_the_lab_and_the_project_skip_nothing_they_build_on(page):
-    needs = before(page)
-    lab = [number for number, _, _ in rows(timetable.PART, page)]
+def test_the_lab_and_the_project_include_all_prerequisites_of_their_notebooks(page):
+    needs = prerequisites(page)
+    lab = [number for number, _, _ in rows(course_minutes.LAB_ROW, page)]
     project = [
         one
         for row in rows(r"^\| \d \| ([\d, ]+) \| [^|]+ \|$", section(page, "Three weeks"))
@@ -131,36 +141,36 @@ def test_the_lab_and_the_project_skip_nothing_they_build_on(page):
             assert needs[number] - {"22"} <= set(path[: path.index(number)])
 
 
-def test_the_lab_fits_two_hours_and_says_what_is_left(page):
-    taken = sum(int(minutes) for _, _, minutes in rows(timetable.PART, page))
+def test_the_lab_fits_two_hours_and_states_the_minutes_left(page):
+    taken = sum(int(minutes) for _, _, minutes in rows(course_minutes.LAB_ROW, page))
     assert f"That leaves {120 - taken} minutes" in page and taken <= 110
 
 
 def test_reading_a_question_and_a_figure_take_a_minute_each(tmp_path):
     words = {
         "cell_type": "markdown",
-        "source": ["## One\n", "word " * (2 * timetable.WORDS_A_MINUTE - 2)],
+        "source": ["## One\n", "word " * (2 * course_minutes.WORDS_PER_MINUTE - 2)],
     }
     asked = {
         "cell_type": "markdown",
-        "source": ["**Predict.** " + "word " * (timetable.WORDS_A_MINUTE - 1)],
+        "source": ["**Predict.** " + "word " * (course_minutes.WORDS_PER_MINUTE - 1)],
     }
     drawn = {"cell_type": "code", "source": ["pictures.picture(x)"]}
     path = tmp_path / "x.ipynb"
     path.write_text(json.dumps({"cells": [words, asked, drawn]}), encoding="utf8")
-    assert timetable.sections(path) == {"": 0, "One": 2 + 2 + 1}
+    assert course_minutes.section_minutes(path) == {"": 0, "One": 2 + 2 + 1}
 
 
 def test_the_first_notebook_links_to_the_others_by_their_titles():
-    cells = json.loads((timetable.ROOT / "notebooks/00_welcome.ipynb").read_text(encoding="utf8"))[
-        "cells"
-    ]
+    cells = json.loads(
+        (course_minutes.ROOT / "notebooks/00_welcome.ipynb").read_text(encoding="utf8")
+    )["cells"]
     text = "\n".join("".join(cell["source"]) for cell in cells)
     named = {
         name: title
         for title, name in re.findall(r"\| \[(\d\d · [^\]]+)\]\((\w+)\.ipynb\) \|", text)
     }
-    titles = {name: title for name, (title, _) in timetable.notebooks().items()}
+    titles = {name: planned.title for name, planned in course_minutes.plan_notebooks().items()}
     assert named == {name: title for name, title in titles.items() if name != "00_welcome"}
 
 
@@ -170,7 +180,7 @@ def test_no_page_points_to_a_slide_that_its_reader_does_not_have():
         r"\b(?:the|on the|a) slides?(?:'s|')?\b(?! the edge)|\bthe overview\b|[Ll]ecture 21", re.I
     )
     found = []
-    for path in sorted((timetable.ROOT / "notebooks").glob("*.ipynb")):
+    for path in sorted((course_minutes.ROOT / "notebooks").glob("*.ipynb")):
         for cell in json.loads(path.read_text(encoding="utf8"))["cells"]:
             if cell["cell_type"] == "markdown":
                 found += [

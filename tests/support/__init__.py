@@ -1,0 +1,1 @@
+"""What several test files use; `from support import malicious_archives` works in every test."""
