@@ -1,7 +1,7 @@
-"""The tests by name: `nox -l` lists them, `nox -s grading` runs one tier, `nox` the quick one.
+"""Run the tiers of tests: `nox -l` lists them, `nox -s grading` runs one tier, `nox` the quick tier.
 
-Each makes an environment of its own; `nox --no-venv` takes the one at hand.
-tests/tiers.py says which test is where.
+Each session creates its own environment; `nox --no-venv` uses the active one. tests/tiers.py describes
+the tiers.
 """
 
 import os
@@ -17,16 +17,23 @@ from tiers import QUICK, TIERS  # noqa: E402
 
 nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cover"}
-# in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with
-# one worker (in a browser they need not: what is dear there, the site, is one for all workers)
-TOGETHER = ("notebooks", "jupyterlab", "grading", "papers", "scenes", "wheel")
+# In these tiers, all tests of a module or class run in the same worker, so that slow fixtures are made
+# only once. The tier "browser" does not need it: all workers share its slowest fixture, the site.
+TIERS_BY_MODULE = ("notebooks", "jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
 def test(session: nox.Session, tier: str, *options: str, under: Sequence[str] = ()) -> None:  # noqa: PT028
-    """Run the tests of a tier, `under` a module that watches; what stands behind -- goes to pytest."""
+    """Run the tests of a tier.
+
+    Parameters
+    ----------
+    tier : see tests/tiers.py
+    options : options of pytest; the words after -- on nox's command line are added
+    under : options of Python that run pytest inside another module, such as a coverage tool
+    """
     if session.virtualenv.is_sandboxed:
         session.install("--editable", f".[{EXTRAS.get(session.name, 'test')}]")
-    if tier in TOGETHER:
+    if tier in TIERS_BY_MODULE:
         options = (*options, "--dist=loadscope", "--no-loadscope-reorder")
     if results := os.environ.get("HDRLAB_RESULTS"):
         options = (*options, f"--junitxml={results}/{tier}.xml")
@@ -39,13 +46,11 @@ for tier in TIERS:
 
 @nox.session
 def coverage(session: nox.Session) -> None:
-    """Run the quick tier, and print which branches of hdrlab it takes, file by file, and in all.
+    """Run the quick tier and print which branches of hdrlab it covers, for each file and in total.
 
-    By slipcover, which stops watching what was seen: coverage.py takes half as long again. Its own
-    module is loaded before pytest can rewrite asserts in it, and it reads none of the tests: it
-    warns of both.
+    slipcover stops observing code that it has seen; coverage.py would take half as long again.
     """
-    watched = (
+    slipcover = (
         "-m",
         "slipcover",
         "--branch",
@@ -54,15 +59,16 @@ def coverage(session: nox.Session) -> None:
         "--skip-covered",
         "--dont-wrap-pytest",
     )
-    unheard = (
+    # slipcover is imported before pytest can rewrite its asserts, and it does not observe the tests
+    ignored_warnings = (
         "-Wignore:Module already imported",
         "-Wignore:Unable to activate pytest:RuntimeWarning",
     )
-    test(session, QUICK, *unheard, under=watched)
+    test(session, QUICK, *ignored_warnings, under=slipcover)
 
 
 @nox.session(venv_backend="uv")
 def lowest(session: nox.Session) -> None:
-    """Run the quick tier with the lowest versions that pyproject.toml names, whose warnings are let be."""
+    """Run the quick tier with the lowest versions that pyproject.toml allows; warnings are not errors."""
     session.install("--resolution=lowest-direct", "--editable", ".[test]")
     session.run("python", "-m", "pytest", "-W", "default", *session.posargs)

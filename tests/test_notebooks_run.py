@@ -1,6 +1,6 @@
-"""Every notebook is run once, from the top; what came of it is kept for the pages that show it.
+"""Every notebook runs from its first cell to its last without an error or a warning.
 
-So are the answers to the exercises, which are shown nowhere.
+So do the answers to the exercises. The executed notebooks are kept for the tests of the site.
 """
 
 from pathlib import Path
@@ -14,47 +14,42 @@ from hdrlab.course.authoring import execute
 ANSWERS = sorted((Path(__file__).parents[1] / "solutions" / "exercises").glob("*.ipynb"))
 pytestmark = pytest.mark.notebooks
 
-LONG = (
-    "13",
-    "02",
-    "17",
-    "09",
-)  # these are begun first: begun last, one would be run while a worker stands by
+# These take longest and start first; otherwise one worker would run one of them while the other waits.
+LONG_NOTEBOOKS = ("13", "02", "17", "09")
 
 
 @pytest.fixture(
     scope="module",
-    params=sorted(NOTEBOOKS, key=lambda path: path.stem[:2] not in LONG),
+    params=sorted(NOTEBOOKS, key=lambda path: path.stem[:2] not in LONG_NOTEBOOKS),
     ids=lambda path: path.stem,
 )
-def ran(request, executed):
-    """All tests of a notebook come one after the other, and so with one worker."""
-    return executed(request.param)
+def run(request, execute_notebook):
+    """Return the NotebookRun of a notebook; its tests follow one another in the same worker."""
+    return execute_notebook(request.param)
 
 
-def assert_ran_without_complaint(executed_notebook):
-    notebook = nbformat.read(executed_notebook, as_version=4)
+def assert_ran_without_errors_or_warnings(path):
+    notebook = nbformat.read(path, as_version=4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     outputs = [output for cell in cells for output in cell.outputs]
     assert all(cell.execution_count for cell in cells if cell.source.strip())
-    assert [
-        one for one in outputs if one.output_type == "error" or one.get("name") == "stderr"
-    ] == []
+    assert [output for output in outputs if output.output_type == "error"] == []
+    assert [output for output in outputs if output.get("name") == "stderr"] == []
 
 
-def test_every_cell_of_a_notebook_runs_and_none_complains(ran):
-    assert_ran_without_complaint(ran.executed)
+def test_every_cell_of_a_notebook_runs_without_errors_or_warnings(run):
+    assert_ran_without_errors_or_warnings(run.path)
 
 
-def test_what_a_notebook_says_of_its_own_numbers_is_true(ran):
-    assert ran.untrue == []
+def test_the_sentences_of_a_notebook_about_its_numbers_are_true(run):
+    assert run.false_sentences == []
 
 
-def test_each_slider_answers_when_all_cells_have_run(ran):
-    assert ran.unanswered == []
+def test_each_slider_works_after_all_cells_have_run(run):
+    assert run.broken_sliders == []
 
 
 @pytest.mark.parametrize("answers", ANSWERS, ids=lambda path: path.stem)
-def test_every_cell_of_the_answers_to_exercises_runs_and_none_complains(answers, tmp_path):
-    (done,) = execute.run_steps([answers], tmp_path, jobs=1)
-    assert_ran_without_complaint(done.executed)
+def test_every_cell_of_the_answers_to_exercises_runs_without_errors_or_warnings(answers, tmp_path):
+    (executed,) = execute.run_steps([answers], tmp_path, jobs=1)
+    assert_ran_without_errors_or_warnings(executed.executed)

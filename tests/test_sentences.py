@@ -1284,51 +1284,56 @@ def cells_of(path):
     return json.loads(path.read_text(encoding="utf-8"))["cells"]
 
 
-def untrue(stem, names):
-    """Return which sentences of a notebook its names do not bear out, each with the reason if it has one."""
-    n, found = SimpleNamespace(**names), []
+def find_false_sentences(stem, names):
+    """Return the sentences of a notebook that its variables contradict.
+
+    A sentence whose check raises an error is in the list, too, followed by the error.
+    """
+    n = SimpleNamespace(**names)
+    false_sentences = []
     with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
         warnings.simplefilter("error")
         for sentence, is_true in SENTENCES.get(stem[:2], {}).items():
             try:
-                found += [] if is_true(n) else [sentence]
+                if not is_true(n):
+                    false_sentences.append(sentence)
             except Exception as error:
-                found.append(f"{sentence}: {error!r}")
-    return found
+                false_sentences.append(f"{sentence}: {error!r}")
+    return false_sentences
 
 
-def unanswered():
-    """Return what the sliders of a notebook raise where they are moved after its last cell has run."""
-    found = []
-    for tuner in [one for one in widget._instances.values() if isinstance(one, Tuner)]:
+def find_broken_sliders():
+    """Move each slider of the running notebook by one step and return those that raise an error."""
+    broken = []
+    tuners = [figure for figure in widget._instances.values() if isinstance(figure, Tuner)]
+    for tuner in tuners:
         start = list(tuner.at)
         for k, name in enumerate(tuner.names):
-            tuner.at = [(at + (k == j)) % len(tuner.values[j]) for j, at in enumerate(start)]
+            moved = list(start)
+            moved[k] = (start[k] + 1) % len(tuner.values[k])
+            tuner.at = moved
             if tuner.problem:
-                found.append(f"{tuner.alt}, {name}: {tuner.problem}")
+                broken.append(f"{tuner.alt}, {name}: {tuner.problem}")
             tuner.at = start
-    return found
+    return broken
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_each_sentence_stands_in_its_notebook(path):
+def test_each_sentence_of_the_list_is_in_its_notebook(path):
     text = " ".join(" ".join("".join(cell["source"]) for cell in cells_of(path)).split())
     assert [sentence for sentence in SENTENCES.get(path.stem[:2], {}) if sentence not in text] == []
 
 
-def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_cannot_be_judged_with_the_reason(
-    monkeypatch,
-):
+def test_a_false_sentence_is_reported_and_one_that_cannot_be_checked_with_the_error(monkeypatch):
     sentence = "about sixteen stops"
     monkeypatch.setitem(SENTENCES, "00", {sentence: lambda n: round(n.stops) == 16})
-    assert untrue("00_welcome", {"stops": 16.2}) == [] and untrue("00_welcome", {"stops": 15}) == [
-        sentence
-    ]
-    (said,) = untrue("00_welcome", {})
-    assert said.startswith(f"{sentence}: AttributeError")
+    assert find_false_sentences("00_welcome", {"stops": 16.2}) == []
+    assert find_false_sentences("00_welcome", {"stops": 15}) == [sentence]
+    (report,) = find_false_sentences("00_welcome", {})
+    assert report.startswith(f"{sentence}: AttributeError")
 
 
-def test_a_slider_whose_function_has_lost_a_name_since_is_told(monkeypatch):
+def test_a_slider_whose_function_raises_an_error_is_reported(monkeypatch):
     monkeypatch.setattr(widget, "_instances", {})
     names = {"level": 100}
     tune(
@@ -1337,6 +1342,6 @@ def test_a_slider_whose_function_has_lost_a_name_since_is_told(monkeypatch):
         alt="A square",
         a=[0, 1],
     )
-    assert unanswered() == []
+    assert find_broken_sliders() == []
     names.clear()
-    assert unanswered() == ["A square, a: KeyError: 'level'"]
+    assert find_broken_sliders() == ["A square, a: KeyError: 'level'"]

@@ -1,7 +1,8 @@
 """The tiers of tests: `python -m pytest` runs the quick one, `--tier=papers` another, `--tier=all` all.
 
-A test belongs to the tier that its nearest marker names: `@pytest.mark.papers` on the test, on its
-class, or `pytestmark` of its file. Without a marker it is quick, and takes about a second at most.
+A test belongs to the tier of its nearest marker: `@pytest.mark.papers` on the test, on its class, or
+`pytestmark` of its file. A test without a marker belongs to the quick tier and takes about a second
+at most.
 """
 
 import re
@@ -12,16 +13,17 @@ QUICK = "quick"
 ALL = "all"
 TIERS = {
     QUICK: "units, laws, the specification, the handouts, the sandbox and one assignment in it",
-    "notebooks": "every notebook, run once, and the site that is made of them",
+    "notebooks": "every notebook, executed once, and the site that contains them",
     "browser": "JupyterLab on three notebooks, the site and the gallery in Chromium",
     "jupyterlab": "the other notebooks in JupyterLab; .ci/run runs it on request only",
-    "grading": "attacks, kills, clusters, whole classes, similarity; how points are earned",
+    "grading": "attacks, killed runs, clusters, whole classes, similarity, points of tasks",
     "papers": "published experiments, real brackets, films, tethered cameras, 12 megapixels",
-    "scenes": "the embedded scenes, rendered and computed again",
-    "wasm": "notebooks and checks in WebAssembly, as a browser runs them; where its test bed is",
-    "wheel": "the wheel, installed elsewhere; what importing hdrlab changes",
+    "scenes": "the embedded scenes, rendered and computed from their models",
+    "wasm": "notebooks and checks in WebAssembly, as a browser runs them; needs a test bed",
+    "wheel": "the wheel in an empty environment, and side effects of importing hdrlab",
 }
-# Files with long tests begin first, in this order: begun last, one worker would be busy alone.
+# Files with long tests start first, in this order; otherwise one worker would run them while the
+# others have nothing left to do.
 LONG_FILES = (
     "tests/course/test_site.py",
     "tests/browser/test_site_in_a_browser.py",

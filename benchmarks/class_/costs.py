@@ -60,7 +60,7 @@ def each() -> Iterator[Costly]:
     yield Costly(
         "code", "computes at import", ".py", lambda: b"while True: x = 1\n" + _source("return x")
     )
-    for name, (ending, made) in handed.tests("hostile_submissions").FILES.items():
+    for name, (ending, made) in handed.tests("hostile_submissions").UNREADABLE_FILES.items():
         yield Costly("file", name, ending, made)
     yield Costly(
         "archive",

@@ -120,11 +120,14 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
     if kind == "attack":
         attacks = tests("attack_fixtures")
-        aims = zip(islice(cycle(attacks.NAMES), count), cycle(ids), strict=False)
-        return [(name, ".py", attack(attacks.armed(name, target, PORT), id)) for name, id in aims]
+        aims = zip(islice(cycle(attacks.ATTACK_NAMES), count), cycle(ids), strict=False)
+        return [
+            (name, ".py", attack(attacks.prepare_attack(name, target, PORT), id))
+            for name, id in aims
+        ]
     return [
         (name, ".zip", trap(name))
-        for name in islice(cycle(tests("malicious_archives").TRAPS), count)
+        for name in islice(cycle(tests("malicious_archives").MALICIOUS_ARCHIVES), count)
     ]
 
 
@@ -165,7 +168,7 @@ def trap(name: str) -> bytes:
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder:
-        tests("malicious_archives").TRAPS[name](Path(folder) / "archive")
+        tests("malicious_archives").MALICIOUS_ARCHIVES[name](Path(folder) / "archive")
         return (Path(folder) / "archive").read_bytes()
 
 

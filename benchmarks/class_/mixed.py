@@ -48,23 +48,25 @@ def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
     attacks = handed.tests("attack_fixtures")
     archives = handed.tests("malicious_archives")
     tasks = [task.id for task in plan.read().homeworks["hw2"].tasks]
-    for k, name in enumerate(attacks.NAMES):
-        text = handed.attack(attacks.armed(name, target, handed.PORT), tasks[k % len(tasks)])
+    for k, name in enumerate(attacks.ATTACK_NAMES):
+        text = handed.attack(
+            attacks.prepare_attack(name, target, handed.PORT), tasks[k % len(tasks)]
+        )
         yield "attack", name, partial(_put, ".py", text)
-    for name in archives.TRAPS:
+    for name in archives.MALICIOUS_ARCHIVES:
         yield "trap", name, partial(_put, ".zip", handed.trap(name))
-    for kind, each in (("code", bad.CODE), ("text", bad.TEXTS)):
+    for kind, each in (("code", bad.HOSTILE_CODE), ("text", bad.CODE_WITH_NASTY_TEXTS)):
         yield from (
             (kind, name, partial(_put, ".py", text.encode())) for name, text in each.items()
         )
-    for name, (ending, made) in bad.FILES.items():
+    for name, (ending, made) in bad.UNREADABLE_FILES.items():
         yield "file", name, partial(_put, ending, made())
-    for name, ending in bad.NAMES.items():
-        yield "name", name, partial(_name, ending, bad.HAT.encode())
-    for name, (ending, made) in bad.ODD.items():
+    for name, ending in bad.NASTY_FILE_NAMES.items():
+        yield "name", name, partial(_name, ending, bad.CORRECT_CODE.encode())
+    for name, (ending, made) in bad.ODD_FILES.items():
         yield "odd", name, partial(_odd, ending, made)
     for name in (victim.file, victim.file.upper(), f"{victim.team}.py"):
-        yield "taken", name, partial(_inside, name, bad.HAT.encode())
+        yield "taken", name, partial(_inside, name, bad.CORRECT_CODE.encode())
 
 
 def _put(ending: str, data: bytes, folder: Path, student: str) -> None:

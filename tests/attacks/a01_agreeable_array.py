@@ -1,4 +1,4 @@
-"""Its answer is an array of a class that makes every difference nought."""
+"""Return an array of a class whose differences from anything are zero."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Its answer says of itself that it equals whatever it is compared with."""
+"""Return an object that says that it equals whatever it is compared with."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Infinity, and NaN in one place, so that a difference of maxima is NaN."""
+"""Return infinity, and NaN at one place, so that a difference of maxima is NaN."""
 
 import numpy as np
 

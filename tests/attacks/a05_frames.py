@@ -1,4 +1,4 @@
-"""It looks for what is expected in the frames that called it, in all objects, and in the history."""
+"""Search the calling frames, all objects and the history for the expected answer."""
 
 import gc
 import sys

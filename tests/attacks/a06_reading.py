@@ -1,4 +1,4 @@
-"""It reads the solution, the tests, the library, what others handed in, and the environment."""
+"""Read the solution, the tests, the library, other submissions and the environment."""
 
 import os
 import sys

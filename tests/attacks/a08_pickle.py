@@ -1,4 +1,4 @@
-"""Its answer runs code where it is unpickled."""
+"""Return an object that runs code when it is unpickled."""
 
 PLACE = ""
 

@@ -1,4 +1,4 @@
-"""It answers with the bytes of a pickle, and with those of a file of numpy's that holds one."""
+"""Return the bytes of a pickle, and of a numpy file that contains a pickle."""
 
 import io
 import pickle

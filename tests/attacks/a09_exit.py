@@ -1,4 +1,4 @@
-"""It ends the process without an error, before anything is compared."""
+"""End the process with exit code 0 before the answer is compared."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It ends its parent, and asks whether it might end all others."""
+"""Kill the parent process, and try to kill all others."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""It leaves as a program does that ended well, when it is imported."""
+"""Call sys.exit(0) when the module is imported."""
 
 import sys
 

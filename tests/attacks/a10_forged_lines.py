@@ -1,4 +1,4 @@
-"""It prints what a grader prints when a check holds."""
+"""Print the lines that a grader prints for a passed check."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""It plants files that Python or pytest would read the next time, beside itself or in the sandbox."""
+"""Plant files that Python or pytest reads at its next start, next to itself or in the sandbox."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It never answers."""
+"""Never return."""
 
 
 def double(x):

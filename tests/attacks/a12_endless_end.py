@@ -1,4 +1,4 @@
-"""Its answer is none, and what it leaves never lets go when it is thrown away."""
+"""Return an object that never finishes when it is deleted."""
 
 
 class Clinging:

@@ -1,4 +1,4 @@
-"""It yields, slowly, without an end."""
+"""Yield slowly and without an end."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""It is never imported to its end, and takes no error for an end."""
+"""Never finish the import, and ignore all exceptions."""
 
 while True:
     try:

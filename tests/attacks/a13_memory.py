@@ -1,4 +1,4 @@
-"""It asks for more and more memory, and answers when it has been given twelve gigabytes."""
+"""Allocate more and more memory, and answer after twelve gigabytes."""
 
 import mmap
 

@@ -1,4 +1,4 @@
-"""It starts processes, and these start more; here forty that sleep."""
+"""Start processes that start more processes; here, forty that sleep."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""It starts threads without an end."""
+"""Start threads without an end."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""It leaves a process behind, which has left its group and its parent, and writes when all is over."""
+"""Leave a process behind that has left its group and its parent, and that writes a file later."""
 
 import os
 import time

@@ -1,4 +1,4 @@
-"""It prints without measure, and writes a file as large as it may."""
+"""Print without an end, and write a file as large as possible."""
 
 import os
 import sys

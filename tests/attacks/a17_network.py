@@ -1,4 +1,4 @@
-"""It asks a server for the answer."""
+"""Ask a server for the answer."""
 
 import socket
 

@@ -1,4 +1,4 @@
-"""It makes links and devices that lead out of where it is."""
+"""Make links and devices that lead out of the sandbox."""
 
 import ctypes
 import os

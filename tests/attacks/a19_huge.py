@@ -1,4 +1,4 @@
-"""Its answer claims a million rows of a million values, and holds one."""
+"""Return an array that claims a million rows of a million values and holds one."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Its answer is an array of objects, each of which agrees with everything."""
+"""Return an array of objects that agree with everything."""
 
 import numpy as np
 

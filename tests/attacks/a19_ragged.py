@@ -1,4 +1,4 @@
-"""Its answer is a list of rows of unequal length."""
+"""Return a list of rows of unequal length."""
 
 
 def double(x):

@@ -1,4 +1,4 @@
-"""Its answer is an array that overlaps itself, and runs backwards past its own beginning."""
+"""Return an array whose elements overlap and whose strides lead before its beginning."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Its answer is an array of records, and one of dates."""
+"""Return an array of records, and one of dates."""
 
 import numpy as np
 

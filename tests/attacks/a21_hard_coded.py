@@ -1,4 +1,4 @@
-"""It knows the answers to the inputs that everybody can see."""
+"""Return stored answers for the inputs that everybody can see."""
 
 import numpy as np
 

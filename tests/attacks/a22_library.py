@@ -1,4 +1,4 @@
-"""It calls the library, a peer, or a solution that lies about."""
+"""Call hdrlab, another library, or a solution found on the disk."""
 
 import importlib
 import sys

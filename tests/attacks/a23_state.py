@@ -1,4 +1,4 @@
-"""It remembers from check to check, wherever something might last."""
+"""Remember something from check to check, wherever it might last."""
 
 import builtins
 import os

@@ -1,4 +1,4 @@
-"""It changes its input, so that what is expected of it is changed as well."""
+"""Change the input, so that the expected answer changes, too."""
 
 
 def double(x):

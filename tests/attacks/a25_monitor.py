@@ -1,4 +1,4 @@
-"""It watches its parent by ptrace, reads its memory, and sends it signals."""
+"""Attach to the parent with ptrace, read its memory, and send it signals."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""It writes answers to the channel before it is asked, and answers to what was never asked."""
+"""Send answers before a call, and answers to calls that nobody made."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""It says that a frame of four gigabytes follows, and that an array of an exabyte is in it."""
+"""Announce a message of four gigabytes, and an array of an exabyte in it."""
 
 import json
 import os

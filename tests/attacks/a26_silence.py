@@ -1,4 +1,4 @@
-"""It answers a byte at a time, and never to the end."""
+"""Send the answer one byte at a time, without an end."""
 
 import os
 import stat

@@ -1,4 +1,4 @@
-"""It begins a frame, and ends in the middle of it."""
+"""Start a message and end the process in the middle of it."""
 
 import os
 import stat

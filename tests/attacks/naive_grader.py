@@ -1,10 +1,10 @@
-"""A grader as they are often written, for the attacks to be tried on: one process, and every common weakness.
+"""A grader with all common weaknesses, to show that the attacks work. Never grade with it.
 
     python naive_grader.py submission.py
 
-It imports what was handed in, calls it, compares, and prints PASS or FAIL. Who ran it takes for the
-score what is best: the file results.json, the lines that say PASS, or an end without an error.
-Never grade with it.
+It runs in one process: it imports the submission, calls its function, compares the answers, and prints
+PASS or FAIL. Its score adds up what such graders read: the file results.json, the lines with PASS, and an
+exit code of 0 without a line with FAIL.
 """
 
 import importlib.util
@@ -16,43 +16,48 @@ import numpy as np
 
 
 class Grader:
-    """Compares answers with a solution that lies beside them."""
+    """Compare answers with a solution in the same process."""
 
-    def close(self, came, expected):
-        """The first check: numpy's own comparison."""
-        np.testing.assert_allclose(came, expected)
+    def check_all_values(self, answer, expected):
+        """Compare with numpy's own function."""
+        np.testing.assert_allclose(answer, expected)
 
-    def near(self, came, x):
-        """The second: that the largest difference is not too large, from what x is by now."""
-        if np.max(np.abs(came - solution(x))) > 1e-6:
-            raise AssertionError("too far away")
+    def check_largest_difference(self, answer, x):
+        """Compare with the solution for the input, which the submission may have changed."""
+        if np.max(np.abs(answer - solution(x))) > 1e-6:
+            raise AssertionError("the answer is wrong")
 
 
 def solution(x):
     return 2 * x
 
 
-def carried(came):
-    """Carry an answer as if from another process, in the ways that come first to mind."""
-    if hasattr(came, "__next__"):
-        return list(came)
-    if isinstance(came, bytes):
-        return np.load(io.BytesIO(came), allow_pickle=True)
-    return pickle.loads(pickle.dumps(came)) if "Pickled" in type(came).__name__ else came
+def transfer(answer):
+    """Return an answer as if it came from another process, without any caution."""
+    if hasattr(answer, "__next__"):
+        return list(answer)
+    if isinstance(answer, bytes):
+        return np.load(io.BytesIO(answer), allow_pickle=True)
+    if "Pickled" in type(answer).__name__:
+        return pickle.loads(pickle.dumps(answer))
+    return answer
 
 
 def main(path):
+    """Grade a submission with two checks."""
     grader = Grader()
-    found = importlib.util.spec_from_file_location("submission", path)
-    submission = importlib.util.module_from_spec(found)
-    found.loader.exec_module(submission)
-    for seed, check in enumerate((grader.close, grader.near)):
+    spec = importlib.util.spec_from_file_location("submission", path)
+    submission = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(submission)
+    for seed in (0, 1):
         x = np.random.default_rng(seed).random((4, 4))
         expected = solution(x)
         try:
-            came = submission.double(x)
-            came = carried(came)
-            check(came, expected if seed == 0 else x)
+            answer = transfer(submission.double(x))
+            if seed == 0:
+                grader.check_all_values(answer, expected)
+            else:
+                grader.check_largest_difference(answer, x)
             print("PASS", flush=True)
         except Exception as error:
             print("FAIL", error, flush=True)

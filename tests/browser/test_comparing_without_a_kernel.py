@@ -5,7 +5,7 @@ import base64
 import numpy as np
 import pytest
 from laboratory import open_widget
-from support.half_floats import decoded
+from support.half_floats import decode_half_floats
 
 from hdrlab import scenes
 from hdrlab.core import colour
@@ -247,7 +247,7 @@ def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnifi
     page.evaluate("(centre) => window.model.set('centre', centre)", list(centre))
     shown = pixels(page)
 
-    seen = decoded(widget.radiance, widget.scale, map_.shape)
+    seen = decode_half_floats(widget.radiance, widget.scale, map_.shape)
     L = colour.luminance(seen)
     Ld = brush.lens(L, centre, size=size, magnification=magnification, limit=limit)
     window = brush.place_window(L.shape, centre, -(-size // magnification))

@@ -33,7 +33,9 @@ def served(browser, tmp_path_factory):
     caption = (
         "Seven photographs from a tripod, two stops apart; averylongwordwithoutaplacetobreakit" * 2
     )
-    room = small.make(tmp_path_factory.mktemp("class"), TEAMS, closes=closes, caption=caption[:200])
+    room = small.make_gallery(
+        tmp_path_factory.mktemp("class"), TEAMS, closes=closes, caption=caption[:200]
+    )
     server, address = bench.start(room.folder)
     yield room, address
     server.terminate()
@@ -210,7 +212,7 @@ def test_two_pictures_are_moved_as_one(served, page):
 
 
 def test_the_results_are_told_after_the_end(served, page, axe, tmp_path):
-    room = small.make(tmp_path, TEAMS, closes=datetime.now(UTC) + timedelta(seconds=3600))
+    room = small.make_gallery(tmp_path, TEAMS, closes=datetime.now(UTC) + timedelta(seconds=3600))
     from benchmarks import gallery as bench
 
     server, address = bench.start(room.folder)

@@ -1,7 +1,7 @@
 """The course's site as a reader sees it: opened from its folder, with no kernel and no server.
 
-It shows the notebooks as they were run for the tests of notebooks, where these are kept (see
-`kept`).
+It shows the notebooks as they were run for the tests of notebooks, where these are executed_folder (see
+`executed_folder`).
 """
 
 import functools
@@ -37,19 +37,19 @@ pytestmark = [
 ]
 
 
-def make_site(folder, kept):
+def make_site(folder, executed_folder):
     """Make the site of all notebooks in a folder."""
     cache = cache_of(folder / "site")
     cache.mkdir()
-    (kept / "executed").mkdir(parents=True, exist_ok=True)
-    (cache / "executed").symlink_to(kept / "executed")
+    (executed_folder / "executed").mkdir(parents=True, exist_ok=True)
+    (cache / "executed").symlink_to(executed_folder / "executed")
     command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert ran.returncode == 0 and ran.stderr == "", ran.stderr
 
 
 @pytest.fixture(scope="session")
-def site(browser, kept, tmp_path_factory):
+def site(browser, executed_folder, tmp_path_factory):
     """The site of all notebooks, made once for all workers: one makes it, and who comes meanwhile waits."""
     fcntl = pytest.importorskip("fcntl", reason="a lock between the workers is one of POSIX")
     base = tmp_path_factory.getbasetemp()
@@ -60,7 +60,7 @@ def site(browser, kept, tmp_path_factory):
     with open(folder / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "made").exists():
-            make_site(folder, kept)
+            make_site(folder, executed_folder)
             (folder / "made").touch()
     return folder / "site"
 

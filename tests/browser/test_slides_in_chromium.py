@@ -43,13 +43,13 @@ NUMBER = "Reveal.getSlidePastCount() + 1"
 
 
 @pytest.fixture(scope="module")
-def deck(kept, tmp_path_factory):
+def deck(executed_folder, tmp_path_factory):
     """The deck of a notebook of the lecture, and the number of its slides."""
     folder = tmp_path_factory.mktemp("deck")
     cache = folder / ".slides.cache"
     cache.mkdir()
-    (kept / "executed").mkdir(parents=True, exist_ok=True)
-    (cache / "executed").symlink_to(kept / "executed")
+    (executed_folder / "executed").mkdir(parents=True, exist_ok=True)
+    (cache / "executed").symlink_to(executed_folder / "executed")
     command = [sys.executable, "-m", "hdrlab", "course", "slides", NOTEBOOK, "-o", "slides"]
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr

@@ -203,7 +203,7 @@ FORMATS = {
 @pytest.fixture(scope="module")
 def commands(tmp_path_factory):
     """A process that runs commands."""
-    running = interrupted_commands.Commands(tmp_path_factory.mktemp("matplotlib"))
+    running = interrupted_commands.CommandServer(tmp_path_factory.mktemp("matplotlib"))
     yield running
     running.close()
 
@@ -230,9 +230,9 @@ def made(tmp_path_factory):
     (here / "secret.txt").write_text("a secret\n")
     levels = np.arange(1, 257) / 256
     response_files.write_curve(here / "curve.csv", np.log(levels))
-    (here / "hw2.py").write_text(one_task_homework.GOOD)
+    (here / "hw2.py").write_text(one_task_homework.CORRECT_CODE)
     (here / "class").mkdir()
-    (here / "class/team1.py").write_text(one_task_homework.GOOD)
+    (here / "class/team1.py").write_text(one_task_homework.CORRECT_CODE)
     (here / "class/ben.py").write_text("def hat(n=256):\n    return 1\n")
     make_project(here)
     return here
@@ -300,13 +300,13 @@ class Place:
         """Run the command, or another."""
         words = (words or self.command.words).split()
         return self.commands.run(
-            interrupted_commands.Run(words=words, folder=str(self.here), **how)
+            interrupted_commands.CommandRun(words=words, folder=str(self.here), **how)
         )
 
     def contents(self):
         """Return all files and folders, as far as two runs have them in common."""
         found = {}
-        for name, data in interrupted_commands.files_below(self.here).items():
+        for name, data in interrupted_commands.read_folder(self.here).items():
             if name.endswith(("-wal", "-shm")) or name == "out/ballast":
                 continue
             if name.endswith(".sqlite"):
@@ -367,7 +367,7 @@ def places(commands, made, tmp_path_factory):
 def wait_for_processes(folder):
     """Wait for the processes that a killed command has started, which end by themselves."""
     until = time.monotonic() + 60
-    while linux_processes.of(folder / "tmp") and time.monotonic() < until:
+    while linux_processes.processes_using(folder / "tmp") and time.monotonic() < until:
         time.sleep(0.02)
 
 

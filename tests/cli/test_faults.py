@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from PIL import Image
-from support.missing_environment import POOR, turn_clock_back
+from support.missing_environment import ENVIRONMENTS, turn_clock_back
 
 from hdrlab import scenes
 from hdrlab.capture import camera
@@ -162,10 +162,10 @@ def absolute(command, here):
     ]
 
 
-@pytest.mark.parametrize("lacks", [*POOR, "a clock", "a working folder"])
+@pytest.mark.parametrize("lacks", [*ENVIRONMENTS, "a clock", "a working folder"])
 @pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
 def test_a_machine_that_lacks_something_gives_the_result(command, lacks, here, made):
-    words, options = command, POOR.get(lacks, {})
+    words, options = command, ENVIRONMENTS.get(lacks, {})
     if lacks == "a clock":
         options = {"PYTHONPATH": turn_clock_back(here)}
     if lacks == "a working folder":

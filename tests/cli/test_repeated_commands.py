@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import tifffile
 from PIL import Image
-from support.codec_features import require_avif, require_colors_of_avif
+from support.codec_features import require_avif, require_avif_primaries
 
 from hdrlab import scenes
 from hdrlab.capture import camera
@@ -87,7 +87,7 @@ def test_assemble_gives_the_same_map_twice(folder, map_name):
 def test_tone_mapped_files_of_every_kind_are_no_photos(folder, name, kind):
     if kind == "avif":
         require_avif()
-        require_colors_of_avif()
+        require_avif_primaries()
     run_command("assemble", folder, "--times", folder / "times.txt", "-o", folder / "map.exr")
     before = select_names(folder)
     for _ in range(2):
@@ -107,7 +107,7 @@ def test_other_commands_on_a_folder_can_be_repeated(folder):
 
 
 def test_marked_files_keep_their_pixels(tmp_path):
-    require_colors_of_avif()
+    require_avif_primaries()
     E = np.random.default_rng(0).uniform(0.01, 4, (32, 48, 3)).astype(np.float32)
     radiance.write_radiance(tmp_path / "map.exr", E)
     run_command("tonemap", tmp_path / "map.exr", "-o", tmp_path / "a.avif")

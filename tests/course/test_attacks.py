@@ -68,7 +68,7 @@ AT_THE_FENCE = (  # attacks that meet something else in the container tier: no w
     *("a06_reading", "a07_results", "a09_kill_parent", "a11_planted_modules", "a16_floods"),
     *("a18_links_and_devices", "a22_library", "a23_state", "a25_monitor"),
 )
-CASES = [("strict", name) for name in attack_fixtures.NAMES] + [
+CASES = [("strict", name) for name in attack_fixtures.ATTACK_NAMES] + [
     ("container", name) for name in AT_THE_FENCE
 ]
 
@@ -83,7 +83,7 @@ def honest():
             """Return a tier's, tried out; where it cannot be had, the reason is the machine's."""
             if tier not in waiting:
                 try:
-                    subject = Subject({"double": attack_fixtures.HONEST}, tiers.choose(tier))
+                    subject = Subject({"double": attack_fixtures.HONEST_CODE}, tiers.choose(tier))
                     stack.enter_context(subject).double(1.0)
                 except tiers.Unavailable as reason:
                     pytest.skip(str(reason))
@@ -96,7 +96,7 @@ def honest():
 @pytest.fixture(scope="module")
 def port():
     """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
-    with attack_fixtures.oracle() as number, attack_fixtures.adopting():
+    with attack_fixtures.serve_answer() as number, attack_fixtures.adopt_orphans():
         yield number
 
 
@@ -116,24 +116,24 @@ def points(subject, student="a"):
 
 
 def test_every_listed_attack_has_a_test():
-    assert {int(name[1:3]) for name in attack_fixtures.NAMES} == set(range(1, 27))
-    assert set(attack_fixtures.NAMES) == set(ENDS)
+    assert {int(name[1:3]) for name in attack_fixtures.ATTACK_NAMES} == set(range(1, 27))
+    assert set(attack_fixtures.ATTACK_NAMES) == set(ENDS)
 
 
 @pytest.mark.parametrize(("tier", "name"), CASES)
 def test_an_attack_earns_no_points_and_leaves_no_files_or_processes(
     tier, name, honest, tmp_path, port
 ):
-    place, other = attack_fixtures.furnish(tmp_path), honest(tier)
-    files, processes = attack_fixtures.listing(place), system.list_children()
+    place, other = attack_fixtures.fill_folder(tmp_path), honest(tier)
+    files, processes = attack_fixtures.list_file_sizes(place), system.list_children()
     timeout = 0.5 if name.startswith(SLOW) else 20.0
-    source = {"double": attack_fixtures.armed(name, place, port)}
+    source = {"double": attack_fixtures.prepare_attack(name, place, port)}
     with Subject(source, tiers.choose(tier), timeout) as subject:
         held, said = points(subject)
         assert points(other, "another") == (2, []), "another's submission was harmed"
     assert held == 0
     assert re.search(ENDS[name], said[0]), said
     assert system.list_children() == processes, "a process is left"
-    assert attack_fixtures.listing(place) == files, "a file is left"
+    assert attack_fixtures.list_file_sizes(place) == files, "a file is left"
     assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", "".join(said) + subject.printed)
     assert len(subject.printed) <= 1 << 16

@@ -30,21 +30,23 @@ AIMED = (
 def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
     homework = plan.read().homeworks["hw2"]
     homework = homework._replace(tasks=tuple(task for task in homework.tasks if task.id == "hat"))
-    place = attack_fixtures.furnish(tmp_path)
+    place = attack_fixtures.fill_folder(tmp_path)
     sources = {"anna": HONEST}
     for name in AIMED:
-        sources[name] = attack_fixtures.armed(name, place, 9).replace("def double(x)", "def hat(x)")
+        sources[name] = attack_fixtures.prepare_attack(name, place, 9).replace(
+            "def double(x)", "def hat(x)"
+        )
     sources["zoe"] = HONEST
     for student, source in sources.items():
         (place / f"{student}.py").write_text(source)
-    files, told = attack_fixtures.listing(place), {}
+    files, told = attack_fixtures.list_file_sizes(place), {}
     for student in sources:
         conditions = plan.GradingOptions("strict", student, "a secret", timeout=3.0, draw=False)
         try:
             told[student] = grader.grade(place / f"{student}.py", homework, conditions)
         except tiers.Unavailable as reason:
             pytest.skip(str(reason))
-    assert attack_fixtures.listing(place) == files
+    assert attack_fixtures.list_file_sizes(place) == files
     assert {student for student, result in told.items() if result.score == result.max_score} == {
         "anna",
         "zoe",

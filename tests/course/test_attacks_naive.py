@@ -18,7 +18,7 @@ from hdrlab.course.sandbox.inside import system
 
 pytestmark = pytest.mark.grading
 
-ENDLESS = [name for name in attack_fixtures.NAMES if name.startswith("a12")]
+ENDLESS = [name for name in attack_fixtures.ATTACK_NAMES if name.startswith("a12")]
 NOT_NAIVE = {
     "a09_kill_parent": "it would end these tests",
     "a14_threads": "it gains by exhausting the machine, which is not tried",
@@ -34,14 +34,19 @@ NOT_NAIVE = {
 @pytest.fixture(scope="module")
 def port():
     """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
-    with attack_fixtures.oracle() as number, attack_fixtures.adopting():
+    with attack_fixtures.serve_answer() as number, attack_fixtures.adopt_orphans():
         yield number
 
 
 def graded(place, patience):
     """Return what the naive grader says of a submission, its exit code, and whether it came to an end."""
     process = subprocess.Popen(
-        [sys.executable, "-B", str(attack_fixtures.HERE / "naive_grader.py"), "submission.py"],
+        [
+            sys.executable,
+            "-B",
+            str(attack_fixtures.ATTACKS_FOLDER / "naive_grader.py"),
+            "submission.py",
+        ],
         cwd=place,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -78,14 +83,16 @@ def test_the_naive_grader_grades_honest_submissions_correctly(tmp_path):
         assert ended and score(tmp_path, said, code) == points
 
 
-@pytest.mark.parametrize("name", [name for name in attack_fixtures.NAMES if name not in NOT_NAIVE])
+@pytest.mark.parametrize(
+    "name", [name for name in attack_fixtures.ATTACK_NAMES if name not in NOT_NAIVE]
+)
 def test_the_attack_succeeds_against_a_naive_grader(name, tmp_path, port):
-    place = attack_fixtures.furnish(tmp_path)
-    (place / "submission.py").write_text(attack_fixtures.armed(name, place, port))
-    files, processes = attack_fixtures.listing(place), system.list_children()
+    place = attack_fixtures.fill_folder(tmp_path)
+    (place / "submission.py").write_text(attack_fixtures.prepare_attack(name, place, port))
+    files, processes = attack_fixtures.list_file_sizes(place), system.list_children()
     said, code, ended = graded(place, 2 if name in ENDLESS else 60)
     left = [pid for pid in system.list_children() if pid not in processes]
     end(left)
     assert ended == (name not in ENDLESS)
     if ended:
-        assert score(place, said, code) or left or attack_fixtures.listing(place) != files
+        assert score(place, said, code) or left or attack_fixtures.list_file_sizes(place) != files

@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 import pytest
-from support.small_class import CLASS, HOMEWORK, NOON, result
+from support.small_class import HOMEWORK, NOON, ROSTER, make_result
 
 from hdrlab.course.classroom import jobs, marks, moodle, overview, run
 from hdrlab.course.classroom.jobs import GradingJob, JobResult
@@ -41,9 +41,9 @@ HANDINS = {
 )
 def test_only_and_since_select_the_submissions_to_grade(only, hours, teams, monkeypatch):
     since = None if hours is None else NOON + timedelta(hours=hours)
-    assert " ".join(run.select_submissions(HANDINS, CLASS, only, since)) == teams
+    assert " ".join(run.select_submissions(HANDINS, ROSTER, only, since)) == teams
     with pytest.raises(ValueError, match="nothing was handed in by b3"):
-        run.select_submissions({"t": HANDINS["t"]}, CLASS, ["b1", "b3"])
+        run.select_submissions({"t": HANDINS["t"]}, ROSTER, ["b1", "b3"])
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def done(tmp_path):
     job = GradingJob("t", "file", "key")
     jobs.make_private(tmp_path / "results")
     jobs.write_private_file(
-        jobs.result_path(tmp_path / "results", job), results.to_json(result("t"))
+        jobs.result_path(tmp_path / "results", job), results.to_json(make_result("t"))
     )
     return JobResult(job, jobs.result_path(tmp_path / "results", job))
 
@@ -78,7 +78,7 @@ def test_feedback_is_rewritten_if_a_file_is_missing_or_belongs_to_another_result
     for one in (folder, folder.parent):
         assert one.stat().st_mode & 0o777 == 0o700
     assert list(run.read_results(tmp_path, [done.job, GradingJob("x", "file", "key")])) == [
-        result("t")
+        make_result("t")
     ]
 
 
@@ -95,7 +95,7 @@ def test_a_failure_to_write_feedback_is_reported_as_a_problem_of_that_submission
 
 def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     course = GradingContext(
-        CLASS, HOMEWORK, GradingOptions(), Late(1, 2.0), [LateRecord("hw1", 1, ("b3",), 5.0)]
+        ROSTER, HOMEWORK, GradingOptions(), Late(1, 2.0), [LateRecord("hw1", 1, ("b3",), 5.0)]
     )
     came = {
         "t": Submission("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")
@@ -112,7 +112,7 @@ def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     assert dict(zip(marks.COLUMNS, first.cells, strict=True))["grace left"] == 0
     ungraded = marks.gradebook_rows(course, came, {})[0]
     assert (ungraded.work, ungraded.penalty, ungraded.note) == (0, 0, "not graded; a note")
-    _, rows = moodle.gradebook([first], CLASS, HOMEWORK)
+    _, rows = moodle.gradebook([first], ROSTER, HOMEWORK)
     assert rows == [["b1", "b1", "a@x", 6.0]]
     header, table = marks.what_if_table(course, {"t": 8.0})
     assert (
@@ -131,9 +131,9 @@ def test_the_next_homework_reads_late_days_from_the_gradebook(tmp_path):
 
 def test_class_statistics_count_outcomes_and_give_the_reason_of_ungradable_submissions():
     each = [
-        result("a", "", "raised", misconceptions={"hat": "S"}),
-        result("b", "missing", "missing", problems=("no file", "more")),
-        result("c", "missing", "", problems=("a problem",)),
+        make_result("a", "", "raised", misconceptions={"hat": "S"}),
+        make_result("b", "missing", "missing", problems=("no file", "more")),
+        make_result("c", "missing", "", problems=("a problem",)),
     ]
     found = overview.collect_statistics(each)
     assert found.points == {"a": 1, "b": 0, "c": 1} and found.refused == {"b": "no file"}
@@ -169,12 +169,12 @@ def test_files_and_folders_at_the_size_limit_are_accepted(tmp_path, monkeypatch)
         (tmp_path / name).touch()
         with (tmp_path / name).open("r+b") as file:
             file.truncate(size)
-    found = class_folder.find(tmp_path, CLASS)
+    found = class_folder.find(tmp_path, ROSTER)
     assert set(found.submissions) == {"t"} and found.refused == {
         "b3": "b3/a.py: expected at most 1 MB, got 1"
     }
     (tmp_path / "b1" / "c.py").touch()
-    found = class_folder.find(tmp_path, CLASS)
+    found = class_folder.find(tmp_path, ROSTER)
     assert (
         found.submissions == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"
     )

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from support import fake_grading_plugin
-from support.fake_grading_plugin import Asked, item
+from support.fake_grading_plugin import CalledSubject, make_item
 
 from hdrlab.course.checks import compare, plugin
 from hdrlab.course.checks.plugin import Missing
@@ -17,12 +17,12 @@ from hdrlab.course.checks.subject import NoAnswer
 def checking(tmp_path):
     """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
     compare.notes.clear()
-    yield fake_grading_plugin.checking(tmp_path)
+    yield fake_grading_plugin.make_plugin(tmp_path)
     compare.notes.clear()
 
 
 def request(task="hat"):
-    return SimpleNamespace(node=item(task=task))
+    return SimpleNamespace(node=make_item(task=task))
 
 
 def fixture(checking, name):
@@ -80,16 +80,16 @@ def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
 
 
 def test_each_check_gets_a_fresh_subject_or_no_answer_for_a_missing_or_late_task(checking):
-    checking.submission, subject = Asked(), fixture(checking, "subject")
+    checking.submission, subject = CalledSubject(), fixture(checking, "subject")
     compare.notes.append("of the check before")
     assert subject(checking, request()) is checking.submission
-    assert checking.submission.begun == 1 and not compare.notes
+    assert checking.submission.fresh_count == 1 and not compare.notes
     for late, task, kind in ((False, "gsolve", "missing"), (True, "hat", "late")):
         checking.late |= {"hat"} if late else set()
         with pytest.raises(NoAnswer) as raised:
             subject(checking, request(task)).hat()
         assert raised.value.kind == kind and str(raised.value) == ""
-    assert checking.submission.begun == 1 and Missing().printed == ""
+    assert checking.submission.fresh_count == 1 and Missing().printed == ""
 
 
 def test_inputs_are_drawn_from_the_seed_of_the_task_or_from_seed_zero(checking):
@@ -110,9 +110,9 @@ def test_all_checks_are_listed_before_the_first_one_runs(checking):
         return SimpleNamespace(args=args, kwargs=kwargs)
 
     items = [
-        item("test_it_is_white[a]", mark=mark(2.5, needs="test_b"), check=check),
-        item("test_b", mark=mark(3)),
-        item("test_c", "gsolve", folder=Path("/hidden")),
+        make_item("test_it_is_white[a]", mark=mark(2.5, needs="test_b"), check=check),
+        make_item("test_b", mark=mark(3)),
+        make_item("test_c", "gsolve", folder=Path("/hidden")),
     ]
     checking.pytest_collection_finish(SimpleNamespace(items=items))
     first, second, third = checking.lines()
@@ -137,4 +137,7 @@ def test_all_checks_are_listed_before_the_first_one_runs(checking):
 
 def test_hints_are_the_paragraphs_of_a_docstring():
     assert plugin.hints(None) == [] and plugin.hints(SimpleNamespace()) != [""]
-    assert plugin.promise_of(item("test_a")) == "A" and plugin.promise_of(item("test_")) == ""
+    assert (
+        plugin.promise_of(make_item("test_a")) == "A"
+        and plugin.promise_of(make_item("test_")) == ""
+    )

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from support import fake_grading_plugin
-from support.fake_grading_plugin import Asked, item
+from support.fake_grading_plugin import CalledSubject, make_item
 
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.compare import AnswerMismatch
@@ -20,7 +20,7 @@ from hdrlab.course.sandbox.session import Unavailable
 def checking(tmp_path):
     """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
     compare.notes.clear()
-    yield fake_grading_plugin.checking(tmp_path)
+    yield fake_grading_plugin.make_plugin(tmp_path)
     compare.notes.clear()
 
 
@@ -44,7 +44,7 @@ def end_check(checking, check, raised):
 )
 def test_a_check_is_reported_after_its_call_or_a_failed_setup(when, raised, written, checking):
     call = SimpleNamespace(when=when, excinfo=raised and SimpleNamespace(value=raised))
-    report = checking.pytest_runtest_makereport(item(), call)
+    report = checking.pytest_runtest_makereport(make_item(), call)
     assert next(report) is None
     with pytest.raises(StopIteration) as stopped:
         report.send("report")
@@ -54,7 +54,9 @@ def test_a_check_is_reported_after_its_call_or_a_failed_setup(when, raised, writ
 
 def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(checking):
     compare.notes += ["b", "a", "b", "n" * 2000]
-    end_check(checking, item(subject=Asked(said="<f at 0x7fab> " + "s" * 4000)), None)
+    end_check(
+        checking, make_item(subject=CalledSubject(printed="<f at 0x7fab> " + "s" * 4000)), None
+    )
     (line,) = checking.lines()
     assert line == {
         "ended": "/checks/test_hat.py::test_a_promise",
@@ -89,7 +91,7 @@ def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(c
     ],
 )
 def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, message, checking):
-    end_check(checking, item(), raised)
+    end_check(checking, make_item(), raised)
     (line,) = checking.lines()
     assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (
         outcome,
@@ -111,7 +113,7 @@ def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, mess
 def test_a_mismatch_message_describes_the_array_that_the_student_returned(
     words, came, message, checking
 ):
-    end_check(checking, item(), AnswerMismatch(words, came=came))
+    end_check(checking, make_item(), AnswerMismatch(words, came=came))
     (line,) = checking.lines()
     assert line["message"].startswith(message)
     assert ("Yours" in line["message"]) is (came.ndim > 0)
@@ -133,9 +135,9 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
     monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
     truth, came = np.zeros(shape), np.ones(shape, np.float32)
     error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
-    end_check(checking, item(), error)
+    end_check(checking, make_item(), error)
     checking.job["draw"] = False
-    end_check(checking, item(), error)
+    end_check(checking, make_item(), error)
     first, second = (one["differs"] for one in checking.lines())
     assert second is None and (first is not None) is drawn
     if drawn:
@@ -145,17 +147,17 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
 
 @pytest.mark.parametrize("given", ["expected", "came"])
 def test_nothing_is_drawn_unless_both_answers_are_known(given, checking):
-    end_check(checking, item(), AnswerMismatch("no", kind="curve", **{given: np.zeros(3)}))
+    end_check(checking, make_item(), AnswerMismatch("no", kind="curve", **{given: np.zeros(3)}))
     (line,) = checking.lines()
     assert line["differs"] is None
 
 
 def test_hidden_checks_are_not_used_to_recognize_a_mistake(checking):
-    hidden = item(folder=Path("/hidden"), subject=Asked(1))
+    hidden = make_item(folder=Path("/hidden"), subject=CalledSubject(1))
     end_check(checking, hidden, AssertionError())
     assert not checking.failed and not checking.calls
-    end_check(checking, item(subject=Asked(*range(15))), None)
-    end_check(checking, item(subject=Asked(*range(15))), None)
+    end_check(checking, make_item(subject=CalledSubject(*range(15))), None)
+    end_check(checking, make_item(subject=CalledSubject(*range(15))), None)
     kept = checking.calls["hat"]
     assert [[answer for *_, answer in check.calls] for check in kept] == [[*range(15)], [*range(5)]]
     assert all(check.holds for check in kept)
@@ -163,7 +165,7 @@ def test_hidden_checks_are_not_used_to_recognize_a_mistake(checking):
 
 
 def test_an_unavailable_sandbox_is_reported_without_failing_a_check(checking):
-    end_check(checking, item(subject=Asked(1)), Unavailable("no walls"))
+    end_check(checking, make_item(subject=CalledSubject(1)), Unavailable("no walls"))
     assert checking.lines() == [{"unavailable": "no walls"}] and not checking.failed
 
 
@@ -181,7 +183,7 @@ def test_mistakes_of_failed_tasks_are_recognized_and_an_error_affects_one_task_o
         return misconceptions.Diagnosis(mistakes=(mistake,), explains_all=True)
 
     monkeypatch.setattr(misconceptions, "diagnose", diagnose)
-    end_check(checking, item(subject=Asked(5)), AssertionError())
+    end_check(checking, make_item(subject=CalledSubject(5)), AssertionError())
     checking.failed |= {"gsolve", "unknown"}
     checking.pytest_sessionfinish(None)
     recognised = {"recognised": "hat", "sentence": "A sentence.", "explains_all": True}

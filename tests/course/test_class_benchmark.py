@@ -1,4 +1,4 @@
-"""The benchmark of a class: who is in it, what is told of it, and how processes are watched."""
+"""The benchmark that grades a class: its submissions, its figures, and how it measures processes."""
 
 import ast
 import os
@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
 from support import attack_fixtures, hostile_submissions
-from support.malicious_archives import TRAPS
+from support.malicious_archives import MALICIOUS_ARCHIVES
 
 from benchmarks import __main__ as command, class_
 from benchmarks.class_ import costs, grading, handed, judged, mixed
@@ -39,7 +39,9 @@ def test_a_class_of_300_contains_every_mistake_attack_and_trap(everybody):
     which = {kind: {one.which for one in everybody if one.kind == kind} for kind in handed.SHARES}
     assert len(everybody) == 300 == sum(handed.SHARES.values())
     assert which["mistake"] == {one.name for one in misconceptions.known() if one.task in HW2}
-    assert which["attack"] == set(attack_fixtures.NAMES) and which["trap"] == set(TRAPS)
+    assert which["attack"] == set(attack_fixtures.ATTACK_NAMES) and which["trap"] == set(
+        MALICIOUS_ARCHIVES
+    )
     assert len(which["equivalent"]) == 3 and {"empty", "cut short"} < which["blank"]
 
 
@@ -102,7 +104,7 @@ def test_wrong_scores_and_missed_mistakes_are_counted():
     )
 
 
-def test_two_runs_that_differ_in_one_byte_or_cell_are_told_apart(tmp_path):
+def test_two_runs_that_differ_in_one_byte_or_cell_are_distinguished(tmp_path):
     each = [one_of("a", "right")[0], one_of("b", "right")[0]]
     for out in ("one", "same", "other"):
         (tmp_path / out / "results").mkdir(parents=True)
@@ -166,9 +168,15 @@ def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path
         for kind in {one.kind for one in others}
     }
     taken = which.pop("taken")
-    kinds = {"code": "CODE", "text": "TEXTS", "file": "FILES", "name": "NAMES", "odd": "ODD"}
-    expected = {kind: set(getattr(hostile_submissions, name)) for kind, name in kinds.items()}
-    assert which == {**expected, "attack": set(attack_fixtures.NAMES), "trap": set(TRAPS)}
+    assert which == {
+        "code": set(hostile_submissions.HOSTILE_CODE),
+        "text": set(hostile_submissions.CODE_WITH_NASTY_TEXTS),
+        "file": set(hostile_submissions.UNREADABLE_FILES),
+        "name": set(hostile_submissions.NASTY_FILE_NAMES),
+        "odd": set(hostile_submissions.ODD_FILES),
+        "attack": set(attack_fixtures.ATTACK_NAMES),
+        "trap": set(MALICIOUS_ARCHIVES),
+    }
     assert len(others) >= 120 and each[0].file in taken
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.one_task_homework import GOOD, PLAN
+from support.one_task_homework import CORRECT_CODE, PLAN
 
 from hdrlab import cli
 from hdrlab.course.classroom import marks, overview, run as classroom
@@ -247,7 +247,7 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "in").mkdir()
     (tmp_path / "roster.csv").write_text("student,name,team\nb1,Ada,t\nb2,Bo,t\nb3,Cy,\nb4,Di,\n")
     (tmp_path / "plan.toml").write_text(PLAN)
-    (tmp_path / "in" / "t_hw2.py").write_text(GOOD)
+    (tmp_path / "in" / "t_hw2.py").write_text(CORRECT_CODE)
     (tmp_path / "in" / "b3.zip").write_bytes(b"PK\3\4 no archive")
     (tmp_path / "times.csv").write_text(
         "file,received\nt_hw2.py,2026-10-23T12:00Z\nb3.zip,2026-10-26T12:00Z\n"

@@ -1,6 +1,6 @@
-"""A class is graded on a cluster as it is here, whoever is lost meanwhile.
+"""A class graded on a cluster has the same results, also when workers are killed.
 
-The cluster is a real one, on this machine: a scheduler, and workers in processes of their own.
+The cluster is a real one on this machine: a scheduler and workers in separate processes.
 """
 
 import os
@@ -31,7 +31,7 @@ from pathlib import Path
 sys.path[:0] = [{tests!r}, {tests!r} + "/course"]
 import test_cluster
 from support import cluster_jobs
-test_cluster.graded({address!r}, Path({folder!r}), cluster_jobs.slow)
+test_cluster.graded({address!r}, Path({folder!r}), cluster_jobs.grade_slowly)
 """
 
 
@@ -74,7 +74,7 @@ def address():
         yield running.scheduler_address
 
 
-def graded(address, home, work=cluster_jobs.grade, **knobs):
+def graded(address, home, work=cluster_jobs.grade_quickly, **knobs):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder = home / "results"
     with jobs.lock_folder(folder):
@@ -95,7 +95,7 @@ def contents(folder):
 
 def whole(home):
     """Return the results of the same class, done here."""
-    with processes.Processes(cluster_jobs.grade, 2) as executor:
+    with processes.Processes(cluster_jobs.grade_quickly, 2) as executor:
         list(jobs.run_jobs(cluster_jobs.make_jobs(home / "class"), executor, home / "here"))
     return contents(home / "here")
 
@@ -109,15 +109,15 @@ def test_a_cluster_gives_the_same_results_as_the_local_machine(address, tmp_path
 
 def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
     def kill():
-        while not (noted := cluster_jobs.begun(tmp_path / "class")):
+        while not (noted := cluster_jobs.read_started_jobs(tmp_path / "class")):
             time.sleep(0.05)
         os.kill(noted[0][2], signal.SIGKILL)
 
     killer = threading.Thread(target=kill)
     killer.start()
-    done, results = graded(address, tmp_path, cluster_jobs.slow)
+    done, results = graded(address, tmp_path, cluster_jobs.grade_slowly)
     killer.join()
-    noted = cluster_jobs.begun(tmp_path / "class")
+    noted = cluster_jobs.read_started_jobs(tmp_path / "class")
     first = [worker for owner, _, worker in noted if owner == noted[0][0]]
     assert len(noted) == 6 and len(set(first)) == 2
     assert results == whole(tmp_path) and all(one.path for one in done)
@@ -126,8 +126,8 @@ def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
 def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_graded(
     address, tmp_path
 ):
-    done, results = graded(address, tmp_path, cluster_jobs.deadly)
-    owners = [owner for owner, *_ in cluster_jobs.begun(tmp_path / "class")]
+    done, results = graded(address, tmp_path, cluster_jobs.kill_worker)
+    owners = [owner for owner, *_ in cluster_jobs.read_started_jobs(tmp_path / "class")]
     (lost,) = [one for one in done if one.path is None]
     assert lost.job.owner == "s3" and "3 times" in lost.problem and "was lost" in lost.problem
     assert owners.count("s3") == 3 and len(owners) == 7
@@ -139,24 +139,28 @@ def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_grade
 def test_jobs_that_share_a_worker_with_a_fatal_one_are_still_graded(tmp_path):
     with clustered(1, 4) as running:
         assert not running.scheduler.workers
-        done, results = graded(running.scheduler_address, tmp_path, cluster_jobs.crowded)
+        done, results = graded(
+            running.scheduler_address, tmp_path, cluster_jobs.kill_worker_beside_others
+        )
     (lost,) = [one for one in done if one.path is None]
     assert lost.job.owner == "s3" and len(results) == 4
-    assert [owner for owner, *_ in cluster_jobs.begun(tmp_path / "class")].count("s3") == 4
+    assert [owner for owner, *_ in cluster_jobs.read_started_jobs(tmp_path / "class")].count(
+        "s3"
+    ) == 4
 
 
 def test_no_worker_runs_more_jobs_than_it_has_threads(tmp_path):
     with clustered(
         2, 1, at_once=2
     ) as running:  # its own: where a worker was killed, there may be one too many
-        with cluster.Cluster(running.scheduler_address, cluster_jobs.endless) as executor:
+        with cluster.Cluster(running.scheduler_address, cluster_jobs.never_finish) as executor:
             started = [executor.start(one) for one in cluster_jobs.make_jobs(tmp_path / "class")]
             assert started == [True, True, False, False, False]
-            while len(cluster_jobs.begun(tmp_path / "class")) < 2:
+            while len(cluster_jobs.read_started_jobs(tmp_path / "class")) < 2:
                 assert not executor.wait_for_attempts()
         until = time.monotonic() + 300
         while any(
-            map(alive, cluster_jobs.begun(tmp_path / "class"))
+            map(alive, cluster_jobs.read_started_jobs(tmp_path / "class"))
         ):  # they were cancelled with the run
             assert time.monotonic() < until
             time.sleep(0.1)
@@ -179,12 +183,12 @@ def test_the_next_run_finishes_a_killed_run_whose_jobs_have_ended(address, tmp_p
     run.wait()
     done, results = graded(address, tmp_path)
     assert results == whole(tmp_path) and 1 <= sum(not one.is_new for one in done) < 5
-    assert not any(map(alive, cluster_jobs.begun(tmp_path / "class")))
+    assert not any(map(alive, cluster_jobs.read_started_jobs(tmp_path / "class")))
 
 
 def test_a_submission_that_never_ends_is_stopped(address, tmp_path):
     (one,) = cluster_jobs.make_jobs(tmp_path / "class", 1)
-    with cluster.Cluster(address, cluster_jobs.endless, timeout=0.5) as executor:
+    with cluster.Cluster(address, cluster_jobs.never_finish, timeout=0.5) as executor:
         (done,) = jobs.run_jobs([one], executor, tmp_path / "results")
     assert done.path is None and "3 times" in done.problem and "too long" in done.problem
 
@@ -202,7 +206,7 @@ def test_a_lost_cluster_is_an_error(tmp_path):
         pytest.raises(ValueError, match="is lost"),
     ):
         threading.Timer(2, running.close).start()
-        graded(running.scheduler_address, tmp_path, cluster_jobs.endless)
+        graded(running.scheduler_address, tmp_path, cluster_jobs.never_finish)
 
 
 def rename(version):
@@ -225,7 +229,7 @@ def test_a_different_hdrlab_on_the_cluster_is_an_error_with_both_versions(addres
             client.run(rename, hdrlab.__version__)
     job = cluster_jobs.make_jobs(tmp_path / "class", 1)[0]
     task = cluster.RemoteJob(
-        cluster_jobs.grade, cluster.version, job, b"", 1.0, "0.0.7 (of another)"
+        cluster_jobs.grade_quickly, cluster.version, job, b"", 1.0, "0.0.7 (of another)"
     )
     with pytest.raises(ValueError, match=r"0\.0\.7 \(of another\)"):  # of a worker that joins later
         cluster.run_remote_job(task)

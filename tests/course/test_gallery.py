@@ -56,7 +56,7 @@ def test_each_voter_sees_the_artifacts_in_a_different_order():
 
 
 def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
-    room = small.make(tmp_path)
+    room = small.make_gallery(tmp_path)
     eve, fay = room.artifacts["eve"], room.artifacts["fay"]
     for marked in ([eve], [eve, fay], [fay], []):
         with store.writing(room.folder) as db:
@@ -69,7 +69,7 @@ def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
 
 def refuse_ballot(folder, marks_of):
     """Cast a ballot that must be refused, after one for eve, and return what ann's ballot holds then."""
-    room = small.make(folder)
+    room = small.make_gallery(folder)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
         with pytest.raises(ballots.NotAccepted):
@@ -93,21 +93,23 @@ def test_nobody_has_more_votes_than_the_gallery_gives(tmp_path):
 
 
 def test_a_new_title_keeps_the_votes_and_a_new_image_starts_with_none(tmp_path):
-    room = small.make(tmp_path)
+    room = small.make_gallery(tmp_path)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
     with closing(store.connect(room.folder)) as db:
         collect.hang(db, room.folder, collect.Entry("eve", "New", "", tmp_path / "eve.png"))
         assert store.artifacts(db)[room.artifacts["eve"]].title == "New"
         collect.hang(
-            db, room.folder, collect.Entry("fay", "New", "", small.picture(tmp_path / "f.png", 9))
+            db,
+            room.folder,
+            collect.Entry("fay", "New", "", small.write_photo(tmp_path / "f.png", 9)),
         )
         assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
         assert len(store.artifacts(db)) == 4
 
 
 def test_the_gradebook_lists_who_voted_but_not_the_votes(tmp_path):
-    room = small.make(tmp_path)
+    room = small.make_gallery(tmp_path)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
         ballots.cast(db, "cy", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
@@ -141,10 +143,10 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
     )
     art = tmp_path / "art"
     art.mkdir()
-    small.picture(art / "team1.png")
+    small.write_photo(art / "team1.png")
     (art / "team1.txt").write_text("Dusk\nSeven frames.")
     (art / "eve.png").write_text("<svg/>")
-    small.picture(art / "stranger\x1b[2J.png")
+    small.write_photo(art / "stranger\x1b[2J.png")
     said = [
         hdrlab("init", "g", "--closes", "2020-01-01T00:00+01:00", "--title", "Spring"),
         hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00"),

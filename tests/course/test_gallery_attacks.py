@@ -45,7 +45,7 @@ ROSTER = Roster(
 
 @pytest.fixture
 def room(tmp_path):
-    return small.make(tmp_path)
+    return small.make_gallery(tmp_path)
 
 
 @contextmanager
@@ -67,7 +67,7 @@ def enter(client, room, who):
     client.cookies.clear()
     answer = client.post(f"/enter/{room.links[who]}", headers=ORIGIN)
     assert answer.status == 303
-    return small.key(client.get("/").text) if room.clock() < small.CLOSES.timestamp() else ""
+    return small.form_key(client.get("/").text) if room.clock() < small.CLOSES.timestamp() else ""
 
 
 def vote(client, key, *marks, **headers):
@@ -251,7 +251,7 @@ class Reader(HTMLParser):
 
 
 def test_script_in_a_name(tmp_path):
-    room = small.make(tmp_path, names={"ann": SCRIPT})
+    room = small.make_gallery(tmp_path, names={"ann": SCRIPT})
     room.clock.now = small.CLOSES.timestamp() + 1
     with browser(room) as client:
         enter(client, room, "cy")
@@ -267,7 +267,9 @@ def test_script_in_a_name(tmp_path):
 
 
 def test_script_in_a_title(tmp_path):
-    room = small.make(tmp_path, title=SCRIPT.replace("{", "{{").replace("}", "}}"), caption=SCRIPT)
+    room = small.make_gallery(
+        tmp_path, title=SCRIPT.replace("{", "{{").replace("}", "}}"), caption=SCRIPT
+    )
     with browser(room) as client:
         enter(client, room, "cy")
         for path, script in (("/", "wall.js"), (f"/look/{room.artifacts['eve']}", "look.js")):
@@ -332,7 +334,7 @@ def test_a_decompression_bomb(tmp_path):
 
 
 def test_a_link_as_an_artifact(tmp_path):
-    small.picture(tmp_path / "secret.png")
+    small.write_photo(tmp_path / "secret.png")
     (tmp_path / "team1.png").symlink_to(tmp_path / "secret.png")
     with pytest.raises(ValueError, match="plain file"):
         pictures.prepare(tmp_path / "team1.png")
@@ -349,7 +351,7 @@ def test_links_and_pipes_are_refused_before_they_are_opened(tmp_path, kind, endi
 
 
 def test_only_the_start_of_a_caption_file_is_read_and_links_are_not_followed(tmp_path):
-    small.picture(tmp_path / "ann.png")
+    small.write_photo(tmp_path / "ann.png")
     with open(tmp_path / "ann.txt", "w") as file:
         file.write("Dusk\nSeven frames.")
         file.truncate(1 << 40)  # bytes, none of which the disk holds
@@ -364,7 +366,7 @@ def test_only_the_start_of_a_caption_file_is_read_and_links_are_not_followed(tmp
 
 def handed_in(path, students=("ann",), title="t"):
     """Write an archive as `hdrlab submit` makes it, whose description says anything."""
-    small.picture(path.with_suffix(".png"), 11)
+    small.write_photo(path.with_suffix(".png"), 11)
     said = {"students": students, "title": title, "caption": "", "artifact": "a.png"}
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("submission.json", json.dumps(said))
@@ -378,7 +380,7 @@ def handed_in(path, students=("ann",), title="t"):
     "name", ["eve.zip", "eve_project.zip", "eve/ann.zip", "eve/team1.zip", "EVE-ann.zip"]
 )
 def test_anothers_artifact(tmp_path, students, name):
-    room, folder = small.make(tmp_path), tmp_path / "in"
+    room, folder = small.make_gallery(tmp_path), tmp_path / "in"
     (folder / name).parent.mkdir(parents=True)
     handed_in(folder / name, students)
     with closing(store.connect(room.folder)) as db:
@@ -411,7 +413,7 @@ def test_votes_erased(client, room, tmp_path):
     vote(client, enter(client, room, "ann"), eve)
     vote(client, enter(client, room, "cy"), eve, fay)
     with closing(store.connect(room.folder)) as db:
-        other = small.picture(tmp_path / "other.png", 12)
+        other = small.write_photo(tmp_path / "other.png", 12)
         lost = collect.hang(db, room.folder, collect.Entry("eve", "Other", "", other), "eve.zip")
         assert lost == 2 and len(store.artifacts(db)) == 4
         rows = {row[0]: row for row in ballots.gradebook(db)}
@@ -420,7 +422,7 @@ def test_votes_erased(client, room, tmp_path):
         assert db.execute("SELECT count(*) FROM votes").fetchone()[0] == 3
         assert "eve has hung another picture (eve.zip); 2 votes" in store.changes(db)[0]
         assert (
-            vote(client, small.key(client.get("/").text), eve).status == 409
+            vote(client, small.form_key(client.get("/").text), eve).status == 409
         )  # it hangs no longer
         first = collect.Entry("eve", "Again", "", tmp_path / "eve.png")
         assert (
@@ -431,7 +433,7 @@ def test_votes_erased(client, room, tmp_path):
 
 
 def test_an_archive_with_traps(tmp_path):
-    small.picture(tmp_path / "a.png")
+    small.write_photo(tmp_path / "a.png")
     said = {"students": ["ann"], "title": "t", "caption": "", "artifact": "../a.png"}
     with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
         archive.writestr("submission.json", json.dumps(said))
@@ -701,7 +703,7 @@ def test_clickjacking(client, room):
 def test_enumeration(client, room, tmp_path):
     again = tmp_path / "again"
     again.mkdir()
-    assert not set(small.make(again).artifacts.values()) & set(
+    assert not set(small.make_gallery(again).artifacts.values()) & set(
         room.artifacts.values()
     )  # same pictures
     unknown = client.get(f"/enter/{'A' * 55}")
@@ -754,7 +756,7 @@ def test_a_flood(client, room):
     codes = [vote(client, key, room.artifacts["eve"]).status for _ in range(40)]
     assert codes[:25] == [303] * 25 and codes[-1] == 429
     enter(client, room, "cy")  # nobody else is held up
-    assert vote(client, small.key(client.get("/").text), room.artifacts["eve"]).status == 303
+    assert vote(client, small.form_key(client.get("/").text), room.artifacts["eve"]).status == 303
 
 
 def test_a_flood_of_clients_is_remembered_up_to_a_limit():
@@ -766,7 +768,7 @@ def test_a_flood_of_clients_is_remembered_up_to_a_limit():
 
 
 def test_formulas_in_a_table(tmp_path):
-    room = small.make(tmp_path, names={"ann": "=cmd|' /C calc'!A0"}, title="@SUM(A1)")
+    room = small.make_gallery(tmp_path, names={"ann": "=cmd|' /C calc'!A0"}, title="@SUM(A1)")
     with closing(store.connect(room.folder)) as db:
         rows = list(ballots.gradebook(db))
     text = csv_tables.csv_text(ballots.GRADEBOOK_COLUMNS, rows)

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from support.small_class import HOMEWORK, result
+from support.small_class import HOMEWORK, make_result
 
 from hdrlab.course.classroom import run
 from hdrlab.course.classroom.jobs import GradingJob
@@ -52,12 +52,12 @@ JOB = GradingJob("t", "file", "key")
 def test_a_killed_submission_is_graded_again_until_the_result_repeats(
     tries, tried, counts, monkeypatch
 ):
-    made, asked = grader(monkeypatch, *(result("x", *kinds) for kinds in tries))
+    made, asked = grader(monkeypatch, *(make_result("x", *kinds) for kinds in tries))
     if counts is None:
         with pytest.raises(ValueError, match="ended .*answer, each time at another check"):
             made.grade(JOB)
     else:
-        assert made.grade(JOB) == results.to_json(result("t", *tries[counts]))
+        assert made.grade(JOB) == results.to_json(make_result("t", *tries[counts]))
     assert len(asked) == tried
 
 
@@ -66,10 +66,10 @@ def test_a_secret_gives_each_student_their_own_inputs_and_hidden_checks_are_incl
     secret, student, monkeypatch
 ):
     files = [("test_a.py", b"1"), ("data/b/x.npy", b"2"), ("data/b/y.npy", b"3")]
-    made, asked = grader(monkeypatch, result("x"), conditions={"secret": secret}, hidden=files)
+    made, asked = grader(monkeypatch, make_result("x"), conditions={"secret": secret}, hidden=files)
     made.grade(JOB)
     assert asked == [("file", student, dict(files))]
-    made, asked = grader(monkeypatch, result("x"))
+    made, asked = grader(monkeypatch, make_result("x"))
     made.grade(JOB)
     assert asked == [("file", "", {})]
 

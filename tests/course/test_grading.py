@@ -245,12 +245,12 @@ def test_stopping_the_grading_leaves_no_files_or_processes(tmp_path, monkeypatch
     steps = grader.grade_steps(file, of("hw2", "hat", "irradiance"), replace(PRACTICE, timeout=60))
     next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
     time.sleep(2)
-    assert linux_processes.of(scratch) and list(scratch.iterdir())
+    assert linux_processes.processes_using(scratch) and list(scratch.iterdir())
     steps.close()
     end = time.monotonic() + 300
-    while linux_processes.of(scratch) and time.monotonic() < end:
+    while linux_processes.processes_using(scratch) and time.monotonic() < end:
         time.sleep(0.05)
-    assert linux_processes.of(scratch) == [] and list(scratch.iterdir()) == []
+    assert linux_processes.processes_using(scratch) == [] and list(scratch.iterdir()) == []
 
 
 def test_an_unavailable_tier_is_an_error_without_a_fallback(graded, monkeypatch):

@@ -4,7 +4,7 @@ import os
 
 import pytest
 from support import hostile_submissions
-from support.one_task_homework import GOOD, PLAN
+from support.one_task_homework import CORRECT_CODE, PLAN
 
 from hdrlab import cli
 from hdrlab.course.grading import doctor
@@ -12,7 +12,7 @@ from hdrlab.course.students import csv_tables
 
 pytestmark = pytest.mark.grading
 
-HONEST = {"h1": ("h1_hw2.ipynb", hostile_submissions.notebook(GOOD))}
+HONEST = {"h1": ("h1_hw2.ipynb", hostile_submissions.notebook(CORRECT_CODE))}
 CODE = ("ends by itself",)
 FILES = ("NUL",)
 TEXTS = ("half a character, raised",)
@@ -27,19 +27,21 @@ def written(folder):
     for name in [*CODE, *TEXTS]:
         each[student := next(who)] = name
         (folder / f"{student}_hw2.py").write_text(
-            (hostile_submissions.CODE | hostile_submissions.TEXTS)[name]
+            (hostile_submissions.HOSTILE_CODE | hostile_submissions.CODE_WITH_NASTY_TEXTS)[name]
         )
     for name in FILES:
         each[student := next(who)] = name
-        ending, made = hostile_submissions.FILES[name]
+        ending, made = hostile_submissions.UNREADABLE_FILES[name]
         (folder / f"{student}_hw2{ending}").write_bytes(made())
     for name in NAMES:
         each[student := next(who)] = name
-        with open(os.fsencode(folder / student) + hostile_submissions.NAMES[name], "w") as file:
+        with open(
+            os.fsencode(folder / student) + hostile_submissions.NASTY_FILE_NAMES[name], "w"
+        ) as file:
             file.write("def hat(n=256:\n")
     for name in ODD:
         each[student := next(who)] = name
-        ending, made = hostile_submissions.ODD[name]
+        ending, made = hostile_submissions.ODD_FILES[name]
         made(folder / f"{student}_hw2{ending}")
     return each
 

@@ -47,19 +47,19 @@ KINDS = {  # of no answer; the others answer with something that is compared
 def strict():
     """The strict tier, or the machine's reason why there is none."""
     try:
-        with Subject({"hat": hostile_submissions.HAT}, tiers.choose("strict")) as subject:
+        with Subject({"hat": hostile_submissions.CORRECT_CODE}, tiers.choose("strict")) as subject:
             subject.hat(3)
         return tiers.choose("strict")
     except tiers.Unavailable as reason:
         pytest.skip(str(reason))
 
 
-@pytest.mark.parametrize("name", hostile_submissions.CODE)
+@pytest.mark.parametrize("name", hostile_submissions.HOSTILE_CODE)
 def test_a_hostile_function_fails_only_its_own_call(name, strict):
     kinds = KINDS.get(name, ())
     late = kinds == ("late",)
     patience = 0.3 if late else 3.0 if "late" in kinds else 20.0
-    with Subject({"hat": hostile_submissions.CODE[name]}, strict, patience) as subject:
+    with Subject({"hat": hostile_submissions.HOSTILE_CODE[name]}, strict, patience) as subject:
         try:
             kind = bool(subject.hat(8) is None)
         except NoAnswer as error:
@@ -90,7 +90,7 @@ def test_time_limits_of_a_check_and_of_a_submission_are_reported(strict):
 
 def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
     with Subject(
-        {"hat": hostile_submissions.CODE["computes in each call"]}, strict, 0.3
+        {"hat": hostile_submissions.HOSTILE_CODE["computes in each call"]}, strict, 0.3
     ) as subject:
         subject._session.cpu_seconds_left = 0.1
         said = []
@@ -110,7 +110,7 @@ def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
 
 def test_a_process_at_its_processor_limit_counts_as_late(strict):
     with Subject(
-        {"hat": hostile_submissions.CODE["computes in each call"]}, strict, 20.0
+        {"hat": hostile_submissions.HOSTILE_CODE["computes in each call"]}, strict, 20.0
     ) as subject:
         subject._session.cpu_seconds_left = 0.5
         with pytest.raises(NoAnswer, match="hat took longer than 1 s of processor time") as raised:
@@ -119,7 +119,9 @@ def test_a_process_at_its_processor_limit_counts_as_late(strict):
 
 
 def test_a_killed_process_is_distinguished_from_one_that_exits(strict):
-    with Subject({"hat": hostile_submissions.CODE["ends by itself"]}, strict, 5.0) as subject:
+    with Subject(
+        {"hat": hostile_submissions.HOSTILE_CODE["ends by itself"]}, strict, 5.0
+    ) as subject:
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
         assert raised.value.kind == "died"
@@ -173,9 +175,9 @@ def shown(text):
     return not stacked and not {"Cc", "Cf", "Cs", "Co"} & set(categories)
 
 
-@pytest.mark.parametrize("name", hostile_submissions.TEXTS)
+@pytest.mark.parametrize("name", hostile_submissions.CODE_WITH_NASTY_TEXTS)
 def test_printed_text_is_escaped_in_every_format(name, strict, tmp_path):
-    with Subject({"hat": hostile_submissions.TEXTS[name]}, strict, 10.0) as subject:
+    with Subject({"hat": hostile_submissions.CODE_WITH_NASTY_TEXTS[name]}, strict, 10.0) as subject:
         message = ""
         try:
             subject.hat()
@@ -193,9 +195,9 @@ def test_printed_text_is_escaped_in_every_format(name, strict, tmp_path):
     ElementTree.fromstring(told["junit.xml"])
 
 
-@pytest.mark.parametrize("name", hostile_submissions.NASTY)
+@pytest.mark.parametrize("name", hostile_submissions.NASTY_TEXTS)
 def test_sanitizing_removes_what_escaping_cannot(name):
-    text = hostile_submissions.NASTY[name]
+    text = hostile_submissions.NASTY_TEXTS[name]
     for once in (
         sanitize_text(text, 4000),
         sanitize_line(text, 80),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from support import hostile_submissions
-from support.malicious_archives import TRAPS
-from support.one_task_homework import GOOD
+from support.malicious_archives import MALICIOUS_ARCHIVES
+from support.one_task_homework import CORRECT_CODE
 
 from hdrlab.course.students.roster import Roster, Student
 from hdrlab.course.submissions import class_folder, reader
@@ -44,9 +44,9 @@ def spent():
     return told.ru_utime + told.ru_stime
 
 
-@pytest.mark.parametrize("name", hostile_submissions.FILES)
+@pytest.mark.parametrize("name", hostile_submissions.UNREADABLE_FILES)
 def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
-    ending, made = hostile_submissions.FILES[name]
+    ending, made = hostile_submissions.UNREADABLE_FILES[name]
     file = tmp_path / f"hat{ending}"
     file.write_bytes(made())
     before = spent()
@@ -63,27 +63,36 @@ def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
 
 
 RIGHT = {  # an honest file, as its author's editor has saved it
-    "a byte order mark": (".py", codecs.BOM_UTF8 + GOOD.encode()),
-    "a byte order mark, notebook": (".ipynb", codecs.BOM_UTF8 + hostile_submissions.notebook(GOOD)),
-    "UTF-16": (".py", GOOD.encode("utf-16")),
-    "UTF-16, notebook": (".ipynb", hostile_submissions.notebook(GOOD).decode().encode("utf-16")),
+    "a byte order mark": (".py", codecs.BOM_UTF8 + CORRECT_CODE.encode()),
+    "a byte order mark, notebook": (
+        ".ipynb",
+        codecs.BOM_UTF8 + hostile_submissions.notebook(CORRECT_CODE),
+    ),
+    "UTF-16": (".py", CORRECT_CODE.encode("utf-16")),
+    "UTF-16, notebook": (
+        ".ipynb",
+        hostile_submissions.notebook(CORRECT_CODE).decode().encode("utf-16"),
+    ),
     "Latin-1 with its coding": (
         ".py",
-        ("# -*- coding: latin-1 -*-\n# für Müller\n" + GOOD).encode("latin-1"),
+        ("# -*- coding: latin-1 -*-\n# für Müller\n" + CORRECT_CODE).encode("latin-1"),
     ),
     "version 3": (
         ".ipynb",
         json.dumps(
-            {"worksheets": [{"cells": [{"cell_type": "code", "input": [GOOD]}]}], "nbformat": 3}
+            {
+                "worksheets": [{"cells": [{"cell_type": "code", "input": [CORRECT_CODE]}]}],
+                "nbformat": 3,
+            }
         ).encode(),
     ),
     "all of numpy": (
         ".py",
         b"from numpy import *\ndef hat(n=256):\n    return n - 1 - abs(2 * arange(n) - n + 1)\n",
     ),
-    "pictures that are not there": (".py", b"from pylab import *\n" + GOOD.encode()),
-    "capitals": (".IPYNB", hostile_submissions.notebook(GOOD)),
-    "lines of a Macintosh": (".py", GOOD.replace("\n", "\r").encode()),
+    "pictures that are not there": (".py", b"from pylab import *\n" + CORRECT_CODE.encode()),
+    "capitals": (".IPYNB", hostile_submissions.notebook(CORRECT_CODE)),
+    "lines of a Macintosh": (".py", CORRECT_CODE.replace("\n", "\r").encode()),
 }
 
 
@@ -98,19 +107,19 @@ def test_an_unusual_but_valid_file_is_read_correctly(name, tmp_path):
 
 
 def test_an_archive_is_read_within_the_same_limits(tmp_path):
-    ending, made = hostile_submissions.FILES["blank lines"]
+    ending, made = hostile_submissions.UNREADABLE_FILES["blank lines"]
     with zipfile.ZipFile(tmp_path / "b1.zip", "w") as archive:
         archive.writestr("hw2.py", made())
     assert set(reader.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
     (problem,) = reader.read(
-        TRAPS["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]
+        MALICIOUS_ARCHIVES["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]
     ).problems
     assert problem.startswith("The archive is refused: ")
 
 
 def test_a_killed_reader_is_an_error_and_not_the_fault_of_the_file(tmp_path, monkeypatch):
     monkeypatch.setattr(reader, "_read_as_json", _killed)
-    (tmp_path / "hw2.py").write_text(GOOD)
+    (tmp_path / "hw2.py").write_text(CORRECT_CODE)
     with pytest.raises(ValueError, match="could not be read"):
         reader.read(tmp_path / "hw2.py", "hw2", ["hat"])
 
@@ -120,7 +129,7 @@ def _killed(order):
 
 
 def test_a_killed_reader_is_restarted(tmp_path, monkeypatch):
-    (tmp_path / "hw2.py").write_text(GOOD)
+    (tmp_path / "hw2.py").write_text(CORRECT_CODE)
     monkeypatch.setattr(reader, "_read_as_json", _killed_twice)
     assert set(reader.read(tmp_path / "hw2.py", "hw2", ["hat"]).sources) == {"hat"}
     assert len(list(tmp_path.glob("killed*"))) == 2
@@ -140,11 +149,11 @@ def _killed_twice(order):
 ROSTER = Roster((Student("b1", "Ada", "b1"), Student("b2", "Bo", "b2")))
 
 
-@pytest.mark.parametrize("name", hostile_submissions.ODD)
+@pytest.mark.parametrize("name", hostile_submissions.ODD_FILES)
 def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
-    ending, made = hostile_submissions.ODD[name]
+    ending, made = hostile_submissions.ODD_FILES[name]
     made(tmp_path / f"b1_hw2{ending}")
-    (tmp_path / "b2_hw2.py").write_text(GOOD)
+    (tmp_path / "b2_hw2.py").write_text(CORRECT_CODE)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
     found = class_folder.find(tmp_path, ROSTER)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
@@ -159,16 +168,16 @@ def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
 
 
 def test_a_readable_file_counts_if_a_later_one_is_refused(tmp_path):
-    (tmp_path / "b1_hw2.py").write_text(GOOD)
+    (tmp_path / "b1_hw2.py").write_text(CORRECT_CODE)
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
-    hostile_submissions.sparse(tmp_path / "b1_later.ipynb")
+    hostile_submissions.make_sparse_file(tmp_path / "b1_later.ipynb")
     found = class_folder.find(tmp_path, ROSTER)
     assert found.submissions["b1"].path.name == "b1_hw2.py"
     assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
 
 
 def test_a_modification_time_after_the_year_9999_is_noted(tmp_path, monkeypatch):
-    (tmp_path / "b1_hw2.py").write_text(GOOD)
+    (tmp_path / "b1_hw2.py").write_text(CORRECT_CODE)
     real = Path.lstat(tmp_path / "b1_hw2.py")
     monkeypatch.setattr(Path, "lstat", lambda path: os.stat_result(real[:7] + (0, 1 << 38, 0)))
     assert "before the year 10000" in class_folder.find(tmp_path, ROSTER).refused["b1"]

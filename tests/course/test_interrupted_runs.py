@@ -32,7 +32,7 @@ test_interrupted_runs.graded(Path({folder!r}))
 """
 
 
-def graded(home, work=cluster_jobs.grade, again=False):
+def graded(home, work=cluster_jobs.grade_quickly, again=False):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder, wanted = home / "results", cluster_jobs.make_jobs(home / "class")
     if again:
@@ -52,7 +52,7 @@ def test_nothing_is_graded_twice(tmp_path):
         and not any(one.is_new for one in again)
         and results == same
     )
-    assert len(cluster_jobs.begun(tmp_path / "class")) == len(results) == 5
+    assert len(cluster_jobs.read_started_jobs(tmp_path / "class")) == len(results) == 5
 
 
 def test_only_changed_submissions_are_graded_again(tmp_path):
@@ -90,7 +90,7 @@ def test_an_old_result_that_is_removed_meanwhile_is_no_error(tmp_path):
 def test_a_submission_that_kills_its_process_is_reported_and_others_are_graded(tmp_path):
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
-    done, results = graded(tmp_path, cluster_jobs.fatal)
+    done, results = graded(tmp_path, cluster_jobs.grade_and_kill_self)
     lost = [one for one in done if one.path is None]
     assert (
         [one.job.owner for one in lost] == ["s3"]
@@ -102,14 +102,14 @@ def test_a_submission_that_kills_its_process_is_reported_and_others_are_graded(t
 
 def test_an_endless_submission_is_stopped(tmp_path):
     one = cluster_jobs.make_jobs(tmp_path / "class", 1)
-    with processes.Processes(cluster_jobs.endless, 1, timeout=0.5) as executor:
+    with processes.Processes(cluster_jobs.never_finish, 1, timeout=0.5) as executor:
         (done,) = jobs.run_jobs(one, executor, tmp_path / "results")
     assert done.path is None and "too long" in done.problem
     assert list((tmp_path / "results").iterdir()) == []
 
 
 def test_an_error_of_a_job_is_reported_in_one_line(tmp_path):
-    done, results = graded(tmp_path, cluster_jobs.failing)
+    done, results = graded(tmp_path, cluster_jobs.raise_error)
     assert {one.problem for one in done} == {
         "it ended 3 times without a result: ValueError: expected this, got that"
     }
@@ -130,13 +130,16 @@ def test_two_runs_cannot_write_to_the_same_folder(tmp_path):
 
 
 def test_an_interrupted_run_stops_its_jobs(tmp_path):
-    with pytest.raises(KeyboardInterrupt), processes.Processes(cluster_jobs.endless, 2) as executor:
+    with (
+        pytest.raises(KeyboardInterrupt),
+        processes.Processes(cluster_jobs.never_finish, 2) as executor,
+    ):
         for one in cluster_jobs.make_jobs(tmp_path / "class", 2):
             assert executor.start(one)
-        while len(cluster_jobs.begun(tmp_path / "class")) < 2:
+        while len(cluster_jobs.read_started_jobs(tmp_path / "class")) < 2:
             assert not executor.wait_for_attempts()
         raise KeyboardInterrupt
-    for _, process, _ in cluster_jobs.begun(tmp_path / "class"):
+    for _, process, _ in cluster_jobs.read_started_jobs(tmp_path / "class"):
         with pytest.raises(ProcessLookupError):
             os.kill(process, 0)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 import pytest
 import test_cluster
 from support import linux_processes
-from support.one_task_homework import GOOD, PLAN
+from support.one_task_homework import CORRECT_CODE, PLAN
 
 from hdrlab.course.classroom import jobs, run as classroom
 from hdrlab.course.grading import doctor, grader, results
@@ -45,10 +45,10 @@ def folder(tmp_path_factory):
     home = tmp_path_factory.mktemp("class")
     (home / "in").mkdir()
     (home / "checks").mkdir()
-    for name, source in {"b1": GOOD, "b2": FLAT, "b3": LETHAL}.items():
+    for name, source in {"b1": CORRECT_CODE, "b2": FLAT, "b3": LETHAL}.items():
         (home / "in" / f"{name}.py").write_text(source)
     with zipfile.ZipFile(home / "in" / "b4.zip", "w") as archive:
-        archive.writestr("hw2.py", GOOD)
+        archive.writestr("hw2.py", CORRECT_CODE)
     (home / "checks" / "test_hat.py").write_text(HIDDEN)
     (home / "roster.csv").write_text("student,name\nb1,Ada\nb2,Bo\nb3,Cy\nb4,Di\nb5,Ed\n")
     (home / "plan.toml").write_text(PLAN)
@@ -111,7 +111,7 @@ def family(pid):
     """Return the processes that have come from this one."""
     parents = {
         one: int(said.rpartition(b")")[2].split()[1])
-        for one, said in linux_processes.told("stat").items()
+        for one, said in linux_processes.read_proc_files("stat").items()
     }
     found = [pid]
     for one in found:
@@ -173,9 +173,9 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
         assert different(results, whole) == {}
         kills += more
     until = time.monotonic() + 300
-    while linux_processes.of(folder / "scratch") and time.monotonic() < until:
+    while linux_processes.processes_using(folder / "scratch") and time.monotonic() < until:
         time.sleep(0.05)
-    assert not linux_processes.of(folder / "scratch")
+    assert not linux_processes.processes_using(folder / "scratch")
 
 
 @PROC
@@ -192,7 +192,7 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole):
 
 def workers():
     """Return the processes of a cluster that this one has started, and what they have started."""
-    said = linux_processes.told("cmdline")
+    said = linux_processes.read_proc_files("cmdline")
     spawned = [child for child in family(os.getpid()) if b"spawn_main" in said.get(child, b"")]
     return [one for child in spawned for one in (child, *family(child))]
 
@@ -214,7 +214,7 @@ def killing():
 def _kill(words, below):
     until = time.monotonic() + 300
     while time.monotonic() < until:
-        said = linux_processes.told("cmdline")
+        said = linux_processes.read_proc_files("cmdline")
         for one in family(os.getpid()):
             victims = family(one) if below else [one]
             if victims and all(word in said.get(one, b"") for word in words):
@@ -223,7 +223,7 @@ def _kill(words, below):
         time.sleep(0.01)
 
 
-SLOW = GOOD.replace("    return", "    import time\n    time.sleep(0.3)\n    return")
+SLOW = CORRECT_CODE.replace("    return", "    import time\n    time.sleep(0.3)\n    return")
 HAT = Homework(
     "hw2", "T", datetime(2026, 10, 23, tzinfo=UTC), (Task("hat", "core.weights.hat", 10),)
 )

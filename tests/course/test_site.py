@@ -19,7 +19,7 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
-from support.missing_environment import POOR, turn_clock_back
+from support.missing_environment import ENVIRONMENTS, turn_clock_back
 
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, pages as build, reference
@@ -102,7 +102,9 @@ def made(tmp_path_factory):
     ]
     text = notebooks[-1].read_text("utf-8")
     notebooks[-1].write_text(text.replace("# Plain", "Plain & simple"), "utf-8")
-    poor = POOR["no caches"] | POOR["LANG=C"] | {"PYTHONPATH": turn_clock_back(folder)}
+    poor = (
+        ENVIRONMENTS["no caches"] | ENVIRONMENTS["LANG=C"] | {"PYTHONPATH": turn_clock_back(folder)}
+    )
     ran = run("site", *notebooks, folder=folder, **poor)
     assert ran.returncode == 0, ran.stderr
     return folder, folder / "site", notebooks, ran

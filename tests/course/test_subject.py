@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 from support import fake_student_process
-from support.fake_student_process import right, silence
+from support.fake_student_process import answer_with, missing_answer
 
 from hdrlab.course.checks import subject as module
 
@@ -14,39 +14,41 @@ from hdrlab.course.checks import subject as module
 @pytest.fixture
 def opened(monkeypatch):
     """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
-    return partial(fake_student_process.opened, monkeypatch)
+    return partial(fake_student_process.open_subject, monkeypatch)
 
 
 @pytest.mark.parametrize("timeout", [2.0, 10.0])
 def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, opened):
-    subject, process = opened(timeout=timeout)
+    subject, session = opened(timeout=timeout)
     assert subject.seconds_left == 20 * timeout
     with subject:
-        assert process.begun == ("a sandbox", ["numpy"], 3 * timeout, 4 * timeout)
-        process.cpu_seconds_left = 0.5
+        assert session.start_arguments == ("a sandbox", ["numpy"], 3 * timeout, 4 * timeout)
+        session.cpu_seconds_left = 0.5
         assert subject.seconds_left == 0.5
-    assert process.closed and subject.seconds_left == 20 * timeout
+    assert session.closed and subject.seconds_left == 20 * timeout
     with pytest.raises(RuntimeError, match="with statement"):
         subject.f()
 
 
 def test_a_call_is_sent_with_its_source_and_recorded_with_its_answer(opened):
-    subject, process = opened(right(np.arange(3)), right((1, [2])), (0, ("refused", ("", "a set"))))
+    subject, session = opened(
+        answer_with(np.arange(3)), answer_with((1, [2])), (0, ("refused", ("", "a set")))
+    )
     with subject:
         assert subject.f(1, k=2).tolist() == [0, 1, 2]
-        assert subject.f() == (1, [2]) and len(process.links) == 1
-        silence(subject)
+        assert subject.f() == (1, [2]) and len(session.links) == 1
+        missing_answer(subject)
         order = {"task": "f", "source": "def f(): return 1", "args": (1,), "kwargs": {"k": 2}}
-        assert process.asked[0] == ("call", order, 60)
+        assert session.requests[0] == ("call", order, 60)
         first, second, third = subject.calls
         assert first[:3] == ("f", (1,), {"k": 2}) and first.answer.tolist() == [0, 1, 2]
         assert second.answer == (1, [2]) and third == ("f", (), {}, None)
         subject.fresh(f="def f(): return 2", g="g")
-        assert subject.calls == [] and process.links[0].closed
-        process.answers.append(right(4))
+        assert subject.calls == [] and session.links[0].closed
+        session.answers.append(answer_with(4))
         subject.g()
-        assert process.asked[-1][1]["source"] == "g" and len(process.links) == 2
-    assert process.links[1].closed
+        assert session.requests[-1][1]["source"] == "g" and len(session.links) == 2
+    assert session.links[1].closed
 
 
 def test_a_subject_has_only_the_submitted_tasks(opened):
@@ -62,7 +64,8 @@ def test_recorded_answers_have_a_limited_total_size(opened, monkeypatch):
     monkeypatch.setattr(module, "MAX_KEPT_ANSWER_BYTES", 100)
     sizes = [40, 61, 60, 1, 0]
     subject, _ = opened(
-        *(right(np.zeros(size, np.uint8)) for size in sizes), right((np.zeros(60, np.uint8), "a"))
+        *(answer_with(np.zeros(size, np.uint8)) for size in sizes),
+        answer_with((np.zeros(60, np.uint8), "a")),
     )
     with subject:
         for _ in sizes:
@@ -81,7 +84,12 @@ def test_recorded_answers_have_a_limited_total_size(opened, monkeypatch):
 
 def test_printed_text_is_cut_to_its_first_characters(opened, monkeypatch):
     monkeypatch.setattr(module, "MAX_PRINTED_CHARACTERS", 10)
-    subject, _ = opened(right(1, "abcd"), right(1, "efgh\x07"), right(1, "ijkl"), right(1, "mn"))
+    subject, _ = opened(
+        answer_with(1, "abcd"),
+        answer_with(1, "efgh\x07"),
+        answer_with(1, "ijkl"),
+        answer_with(1, "mn"),
+    )
     with subject:
         said = []
         for _ in range(4):
@@ -120,18 +128,18 @@ def test_printed_text_is_cut_to_its_first_characters(opened, monkeypatch):
 def test_a_malformed_message_is_not_accepted_as_an_answer(answer, why, opened):
     subject, _ = opened((0, answer))
     with subject:
-        kind, said = silence(subject)
+        kind, said = missing_answer(subject)
         assert kind == "damaged" and said.startswith("f ") and why in said
 
 
 def test_an_answer_sent_before_the_call_is_refused(opened):
     for spoken, is_refused in ((b"x", True), (b"", False)):
-        subject, process = opened(right(7))
-        process.spoken = spoken
+        subject, session = opened(answer_with(7))
+        session.unexpected = spoken
         with subject:
             if is_refused:
-                kind, message = silence(subject)
-                assert kind == "damaged" and message.startswith("f ") and not process.asked
+                kind, message = missing_answer(subject)
+                assert kind == "damaged" and message.startswith("f ") and not session.requests
             else:
                 assert subject.f() == 7
 
@@ -152,13 +160,13 @@ def test_an_answer_sent_before_the_call_is_refused(opened):
 def test_an_exception_is_reported_with_its_line(told, said, opened):
     subject, _ = opened((0, ("raised", ("", told))))
     with subject:
-        assert silence(subject) == ("raised", f"f raised {said}")
+        assert missing_answer(subject) == ("raised", f"f raised {said}")
 
 
 def test_an_unsupported_value_is_reported_by_its_type(opened):
     subject, _ = opened((0, ("refused", ("", "a set" + "n" * 400))))
     with subject:
-        kind, message = silence(subject)
+        kind, message = missing_answer(subject)
         assert kind == "refused" and message.startswith("f ") and "a setnnn" in message
         assert len(message) < 400 and subject.calls[0].answer is None
 

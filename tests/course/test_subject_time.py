@@ -4,7 +4,7 @@ from functools import partial
 
 import pytest
 from support import fake_student_process
-from support.fake_student_process import right, silence
+from support.fake_student_process import answer_with, missing_answer
 
 from hdrlab.course.sandbox.inside import channel
 
@@ -14,55 +14,57 @@ KILL = 9
 @pytest.fixture
 def opened(monkeypatch):
     """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
-    return partial(fake_student_process.opened, monkeypatch)
+    return partial(fake_student_process.open_subject, monkeypatch)
 
 
 def is_late(subject, limit):
     """Return whether the next call fails because this time limit is reached, which its message names."""
-    kind, message = silence(subject)
+    kind, message = missing_answer(subject)
     return kind == "late" and message.startswith("f") and limit in message
 
 
 def test_the_time_of_a_call_is_limited_by_its_check_and_its_submission(
     opened,
 ):
-    subject, process = opened(*[right(1, seconds=9.0)] * 3, right(1, seconds=3.0))
+    subject, session = opened(*[answer_with(1, seconds=9.0)] * 3, answer_with(1, seconds=3.0))
     with subject:
         for left in (191, 182, 173, 170):
             subject.f()
             assert subject.seconds_left == left
-        assert process.until == [(10, 10), (10, 10), (10, 10), (3, 3)]
+        assert session.waits == [(10, 10), (10, 10), (10, 10), (3, 3)]
         assert is_late(subject, "30 s")
         subject.fresh()
-        process.answers += [right(1, seconds=1.0), (10.5, TimeoutError())]
+        session.answers += [answer_with(1, seconds=1.0), (10.5, TimeoutError())]
         subject.f()
         assert is_late(subject, "10 s") and subject.seconds_left == 158.5
 
 
 def test_a_submission_without_time_left_fails_each_check_with_that_reason(opened):
-    subject, process = opened(
-        *[right(1, seconds=30.0)] * 6, right(1, seconds=15.0), right(1, seconds=5.0)
+    subject, session = opened(
+        *[answer_with(1, seconds=30.0)] * 6,
+        answer_with(1, seconds=15.0),
+        answer_with(1, seconds=5.0),
     )
     with subject:
         for _ in range(8):
             subject.f()
             subject.fresh()
-        assert process.until[-2:] == [(10, 10), (5, 5)] and subject.seconds_left == 0
+        assert session.waits[-2:] == [(10, 10), (5, 5)] and subject.seconds_left == 0
         assert is_late(subject, "200 s")
-        assert len(process.asked) == 8
+        assert len(session.requests) == 8
 
 
 @pytest.mark.parametrize(("left", "answered"), [(0.001, True), (0.0, False), (-1.0, False)])
 def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered, opened):
-    subject, process = opened(right(1), (1, TimeoutError()))
+    subject, session = opened(answer_with(1), (1, TimeoutError()))
     with subject:
-        process.cpu_seconds_left = left
+        session.cpu_seconds_left = left
         if answered:
             subject.f()
-            process.cpu_seconds_left = 0.0001
+            session.cpu_seconds_left = 0.0001
             assert is_late(subject, "10 s")
         else:
-            assert is_late(subject, "40 s") and not process.asked
+            assert is_late(subject, "40 s") and not session.requests
 
 
 @pytest.mark.parametrize(
@@ -95,21 +97,21 @@ def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered
 def test_a_missing_answer_is_explained_by_how_the_process_ended(
     error, ended, used, forks, kind, said, opened
 ):
-    subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
+    subject, session = opened((4.0, error), answer_with(1), ended=ended, used=used, forks=forks)
     with subject:
-        found, message = silence(subject)
+        found, message = missing_answer(subject)
         assert found == kind and message.startswith("f ") and said in message
-        assert process.links[0].closed and process.cleared == [1.0] and subject.seconds_left == 196
+        assert session.links[0].closed and session.cleared == [1.0] and subject.seconds_left == 196
         subject.f()
-        assert len(process.links) == 2
+        assert len(session.links) == 2
 
 
 def test_a_lost_supervisor_counts_as_a_killed_process(opened):
-    subject, process = opened((0, EOFError()))
+    subject, session = opened((0, EOFError()))
 
     def gone(seconds):
         raise OSError
 
-    process.clear_check = gone
+    session.clear_check = gone
     with subject:
-        assert silence(subject)[0] == "killed"
+        assert missing_answer(subject)[0] == "killed"

@@ -125,12 +125,13 @@ def test_each_wrong_prediction_answers_a_question_of_the_notebook(name, text):
 
 @pytest.mark.notebooks
 def test_a_wrong_prediction_is_an_answer_that_the_notebook_offers_and_a_wrong_one(
-    name, text, executed
+    name, text, execute_notebook
 ):
     pytest.importorskip("myst_nb", reason='the questions need pip install ".[site]"')
     from hdrlab.course.question_bank.questions import ChoiceQuestion, collect_questions
 
-    notebook = nbformat.read(executed(teachers_sheets.notebook_path(name)).executed, as_version=4)
+    path = teachers_sheets.notebook_path(name)
+    notebook = nbformat.read(execute_notebook(path).path, as_version=4)
     choices = [
         question
         for question in collect_questions(notebook, name)

@@ -1,8 +1,8 @@
 """Archives with traps in what a class has handed in: each is refused in one line, the others are graded."""
 
 import pytest
-from support.malicious_archives import TRAPS, zipped
-from support.one_task_homework import GOOD, PLAN
+from support.malicious_archives import MALICIOUS_ARCHIVES, write_zip
+from support.one_task_homework import CORRECT_CODE, PLAN
 
 from hdrlab import cli
 from hdrlab.course.grading import results
@@ -22,7 +22,7 @@ LISTED = (
     "share bytes",
     "larger than",
 )
-NAMES = [name for name in TRAPS if any(word in name for word in LISTED)]
+NAMES = [name for name in MALICIOUS_ARCHIVES if any(word in name for word in LISTED)]
 
 
 def is_refused(said):
@@ -32,7 +32,7 @@ def is_refused(said):
 @pytest.mark.parametrize("name", NAMES)
 def test_each_trap_is_refused_in_one_line_and_leaves_nothing(tmp_path, name):
     (tmp_path / "scratch").mkdir()
-    TRAPS[name](tmp_path / "s01.zip")
+    MALICIOUS_ARCHIVES[name](tmp_path / "s01.zip")
     path, said = reader.extract_code_file(tmp_path / "s01.zip", tmp_path / "scratch", "hw2")
     assert path == tmp_path / "s01.zip" and is_refused(said)
     assert {file.name for file in tmp_path.rglob("*")} == {"s01.zip", "scratch"}
@@ -46,9 +46,9 @@ def test_a_class_with_traps_is_graded_and_each_trap_is_reported(tmp_path, monkey
     (tmp_path / "roster.csv").write_text("student\n" + "\n".join(who))
     (tmp_path / "plan.toml").write_text(PLAN)
     for student, trap in trapped.items():
-        TRAPS[trap](tmp_path / "in" / f"{student}.zip")
-    (tmp_path / "in" / "last.py").write_text(GOOD)
-    zipped(tmp_path / "in" / "zip.zip", {"mine/hat.py": GOOD.encode()})
+        MALICIOUS_ARCHIVES[trap](tmp_path / "in" / f"{student}.zip")
+    (tmp_path / "in" / "last.py").write_text(CORRECT_CODE)
+    write_zip(tmp_path / "in" / "zip.zip", {"mine/hat.py": CORRECT_CODE.encode()})
     words = ["grade", "in", "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml"]
     with pytest.raises(SystemExit) as ended:  # nothing of an archive runs before it is judged
         cli.run([*words, "--tier", "practice", "-o", "out", "--jobs", "2"])

@@ -9,7 +9,13 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 import pytest
-from support.malicious_archives import FILES, TRAPS, info, tarred, zipped
+from support.malicious_archives import (
+    HARMLESS_FILES,
+    MALICIOUS_ARCHIVES,
+    tar_member,
+    write_tar,
+    write_zip,
+)
 
 from hdrlab.course.submissions.archives.members import (
     LIMITS,
@@ -31,12 +37,12 @@ SMALL = ArchiveLimits(
 
 
 @pytest.mark.parametrize("limits", [SMALL, LIMITS], ids=["small", "usual"])
-@pytest.mark.parametrize("trap", TRAPS)
+@pytest.mark.parametrize("trap", MALICIOUS_ARCHIVES)
 def test_a_trap_is_refused_with_one_line_and_leaves_nothing(trap, limits, tmp_path):
     room = tmp_path / "room" / "inner"
     room.mkdir(parents=True)
     archive = tmp_path / "submission"
-    TRAPS[trap](archive)
+    MALICIOUS_ARCHIVES[trap](archive)
     with pytest.raises(ArchiveRejected) as refused:
         unpack(archive, room / "new", limits)
     said = str(refused.value)
@@ -48,14 +54,18 @@ def test_a_trap_is_refused_with_one_line_and_leaves_nothing(trap, limits, tmp_pa
 def test_a_plain_archive_is_unpacked_byte_by_byte(mode, tmp_path):
     archive = tmp_path / "archive"
     if mode == "zip":
-        zipped(archive, {"photographs/": b""} | FILES)
+        write_zip(archive, {"photographs/": b""} | HARMLESS_FILES)
     else:
-        tarred(archive, [(info(name), data) for name, data in FILES.items()], mode)
+        write_tar(
+            archive, [(tar_member(name), data) for name, data in HARMLESS_FILES.items()], mode
+        )
     members = unpack(archive, tmp_path / "new")
     assert {str(path): size for path, size in members} == {
-        name: len(data) for name, data in FILES.items()
+        name: len(data) for name, data in HARMLESS_FILES.items()
     }
-    assert {name: (tmp_path / "new" / name).read_bytes() for name in FILES} == FILES
+    assert {
+        name: (tmp_path / "new" / name).read_bytes() for name in HARMLESS_FILES
+    } == HARMLESS_FILES
 
 
 @pytest.mark.parametrize("module", [gzip, bz2, lzma])
@@ -81,28 +91,28 @@ def test_a_notebook_that_is_compressed_alone_must_not_unpack_to_many_times_its_s
 
 
 def test_file_permissions_of_an_archive_are_ignored(tmp_path):
-    tarred(tmp_path / "a.tar", [(info("run", mode=0o6777), b"#!/bin/sh")])
+    write_tar(tmp_path / "a.tar", [(tar_member("run", mode=0o6777), b"#!/bin/sh")])
     unpack(tmp_path / "a.tar", tmp_path / "new")
     assert stat.S_IMODE((tmp_path / "new" / "run").stat().st_mode) & 0o6111 == 0
 
 
 def test_an_archive_inside_an_archive_stays_packed(tmp_path):
-    inner = zipped(tmp_path / "inner.zip", {"../x": b"x"})
-    zipped(tmp_path / "outer.zip", {"inner.zip": inner.read_bytes()})
+    inner = write_zip(tmp_path / "inner.zip", {"../x": b"x"})
+    write_zip(tmp_path / "outer.zip", {"inner.zip": inner.read_bytes()})
     assert [str(path) for path, _ in unpack(tmp_path / "outer.zip", tmp_path / "new")] == [
         "inner.zip"
     ]
 
 
 def test_an_existing_folder_is_not_changed(tmp_path):
-    zipped(tmp_path / "a.zip", FILES)
+    write_zip(tmp_path / "a.zip", HARMLESS_FILES)
     (tmp_path / "new").mkdir()
     with pytest.raises(FileExistsError):
         unpack(tmp_path / "a.zip", tmp_path / "new")
 
 
 def test_a_zip_with_a_wrong_member_count_is_counted_again(tmp_path):
-    archive = zipped(tmp_path / "many.zip", {f"{k}.txt": b"x" for k in range(5)})
+    archive = write_zip(tmp_path / "many.zip", {f"{k}.txt": b"x" for k in range(5)})
     data = bytearray(archive.read_bytes())
     at = data.rfind(b"PK\5\6")
     data[at + 8 : at + 12] = b"\1\0\1\0"  # it says that there is one
@@ -118,9 +128,9 @@ def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kin
         archive = tmp_path / f"{count}.{kind}"
         files = {f"{k}.txt": b"x" for k in range(count)}
         if kind == "zip":
-            zipped(archive, files)
+            write_zip(archive, files)
         else:
-            tarred(archive, [(info(name), data) for name, data in files.items()])
+            write_tar(archive, [(tar_member(name), data) for name, data in files.items()])
     assert len(unpack(tmp_path / f"4.{kind}", tmp_path / "four", ArchiveLimits(max_members=4))) == 4
     with pytest.raises(ArchiveRejected):
         unpack(tmp_path / f"5.{kind}", tmp_path / "five", ArchiveLimits(max_members=4))
@@ -128,8 +138,11 @@ def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kin
 
 @pytest.mark.parametrize("mode", ["w:gz", "w:bz2", "w:xz"])
 def test_a_decompression_bomb_is_refused_while_it_is_unpacked(mode, tmp_path):
-    files = [(info(f"{k}.txt"), bytes(900_000)) for k in range(4)]
-    archive, plain_tar = tarred(tmp_path / "packed", files, mode), tarred(tmp_path / "plain", files)
+    files = [(tar_member(f"{k}.txt"), bytes(900_000)) for k in range(4)]
+    archive, plain_tar = (
+        write_tar(tmp_path / "packed", files, mode),
+        write_tar(tmp_path / "plain", files),
+    )
     assert len(unpack(plain_tar, tmp_path / "new")) == 4
     with pytest.raises(ArchiveRejected, match="it unpacks to more than"):
         unpack(archive, tmp_path / "none", replace(LIMITS, max_compression_ratio=50))

@@ -390,17 +390,17 @@ def test_a_change_that_never_ends_is_left_and_others_are_asked_about():
     assert not any("k -= 1" in one["source"] for each in questions for one in each["versions"])
 
 
-@pytest.mark.parametrize("name", attack_fixtures.NAMES)
+@pytest.mark.parametrize("name", attack_fixtures.ATTACK_NAMES)
 def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     try:
         tiers.choose("strict")
     except tiers.Unavailable as reason:
         pytest.skip(str(reason))
-    place = attack_fixtures.furnish(tmp_path)
-    files, processes = attack_fixtures.listing(place), system.list_children()
+    place = attack_fixtures.fill_folder(tmp_path)
+    files, processes = attack_fixtures.list_file_sizes(place), system.list_children()
     begin = "\n\ntry:\n    double(1.0)\nexcept BaseException:\n    pass\n"
     sources = {task: SOLUTIONS["hw1"][task] for task in ("ev", "equivalent_time")}
-    sources["ev"] = attack_fixtures.armed(name, place, 9) + begin + sources["ev"]
+    sources["ev"] = attack_fixtures.prepare_attack(name, place, 9) + begin + sources["ev"]
     homework = HOMEWORKS["hw1"]
     homework = homework._replace(tasks=tuple(one for one in homework.tasks if one.id in sources))
     conditions = GradingOptions("strict", timeout=5.0, draw=False)
@@ -412,7 +412,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     for text in written(asked).values():
         assert "<script>alert" not in text
     assert system.list_children() == processes, "a process is left"
-    assert attack_fixtures.listing(place) == files, "a file is left"
+    assert attack_fixtures.list_file_sizes(place) == files, "a file is left"
 
 
 def test_the_command_writes_all_sheets_and_says_what_was_not_read(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from support import simulated_windows
-from support.one_task_homework import GOOD, PLAN
+from support.one_task_homework import CORRECT_CODE, PLAN
 
 import hdrlab
 
@@ -21,7 +21,7 @@ POSIX = {"fcntl", "resource", "pwd", "grp", "termios", "pty", "posix", "syslog"}
 IN_A_NOTEBOOK = f"""
 from IPython.core.interactiveshell import InteractiveShell
 shell = InteractiveShell.instance()
-shell.run_cell({GOOD!r}, store_history=True)
+shell.run_cell({CORRECT_CODE!r}, store_history=True)
 shell.run_cell("from hdrlab.course.notebook import check\\nfound = check('hat')", store_history=True)
 print(shell.user_ns["found"])
 """
@@ -35,9 +35,9 @@ def on_windows(tmp_path):
     """on_windows(*words) -> (exit code, stdout, stderr) of Python with these words, as if on Windows."""
     python = tmp_path / "python"
     python.mkdir()
-    launcher, environment = simulated_windows.build(python)
+    launcher, environment = simulated_windows.build_interpreter(python)
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf8")
-    (tmp_path / "hw2.py").write_text(GOOD, encoding="utf8")
+    (tmp_path / "hw2.py").write_text(CORRECT_CODE, encoding="utf8")
 
     def run(*words, **more):
         ran = subprocess.run(
@@ -91,7 +91,7 @@ def test_a_student_checks_a_file_at_the_terminal(on_windows):
 
 @lacking
 def test_an_unencodable_character_is_replaced_in_a_pipe(on_windows, tmp_path):
-    wrong = GOOD.replace("n - 1 -", "n -")
+    wrong = CORRECT_CODE.replace("n - 1 -", "n -")
     (tmp_path / "hw2.py").write_text(wrong, encoding="utf8")
     words = ("-X", "utf8=0", "-m", "hdrlab", "check", "hw2.py", "--plan", "plan.toml")
     code, out, err = on_windows(*words, PYTHONIOENCODING="cp1252")
@@ -101,7 +101,7 @@ def test_an_unencodable_character_is_replaced_in_a_pipe(on_windows, tmp_path):
 @lacking
 def test_an_instructor_grades_a_class_for_practice(on_windows, tmp_path):
     (tmp_path / "in" / "ada").mkdir(parents=True)
-    (tmp_path / "in" / "ada" / "hw2.py").write_text(GOOD, encoding="utf8")
+    (tmp_path / "in" / "ada" / "hw2.py").write_text(CORRECT_CODE, encoding="utf8")
     (tmp_path / "roster.csv").write_text("student,name\nada,Ada\n", encoding="utf8")
     words = (
         "in",

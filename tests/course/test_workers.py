@@ -14,7 +14,7 @@ from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
 @pytest.fixture
 def clustered(monkeypatch):
     """clustered(a=2, b=1) -> a Cluster of these workers and their threads, and its client."""
-    return partial(fake_cluster.clustered, monkeypatch)
+    return partial(fake_cluster.make_cluster, monkeypatch)
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ from pathlib import PurePosixPath
 
 import pytest
 from support import archive_unpacking
-from support.archive_unpacking import TOLD, refused
-from support.malicious_archives import entry, zipped
+from support.archive_unpacking import DAMAGED_MESSAGE, rejection_message
+from support.malicious_archives import write_zip, zip_member
 
 from hdrlab.course.submissions.archives import tarball
 from hdrlab.course.submissions.archives.members import ArchiveRejected
@@ -20,19 +20,19 @@ from hdrlab.course.submissions.archives.members import ArchiveRejected
 @pytest.fixture
 def taken(tmp_path):
     """taken(data) -> what is unpacked of an archive of these bytes."""
-    return partial(archive_unpacking.taken, tmp_path)
+    return partial(archive_unpacking.unpack_bytes, tmp_path)
 
 
 def archive(*files, **knobs):
     made = io.BytesIO()
-    zipped(made, files, **knobs)
+    write_zip(made, files, **knobs)
     return made.getvalue()
 
 
 def test_an_archive_of_the_largest_allowed_size_is_opened(taken):
     whole = archive(("a", b"x"))
     assert taken(whole, max_total_bytes=len(whole)) == {"a": b"x"}
-    message = refused(taken, whole, max_total_bytes=len(whole) - 1)
+    message = rejection_message(taken, whole, max_total_bytes=len(whole) - 1)
     assert str(len(whole)) in message and str(len(whole) - 1) in message
 
 
@@ -48,9 +48,9 @@ def test_an_archive_of_the_largest_allowed_size_is_opened(taken):
     ],
 )
 def test_an_entry_that_is_not_a_plain_file_is_refused_with_its_kind(mode, kind, taken):
-    whole = archive((entry("a", mode), b"x"), ("b", b"y"))
+    whole = archive((zip_member("a", mode), b"x"), ("b", b"y"))
     if kind:
-        message = refused(taken, whole)
+        message = rejection_message(taken, whole)
         assert "'a'" in message and kind in message
     else:
         assert taken(whole) == {"a": b"x", "b": b"y"}
@@ -63,13 +63,13 @@ def test_flags_other_than_encryption_are_ignored(taken):
     whole[at] |= 2
     assert taken(bytes(whole)) == {"a": b"x"}
     whole[at] |= 1
-    message = refused(taken, bytes(whole))
+    message = rejection_message(taken, bytes(whole))
     assert "'a'" in message and "encrypted" in message
 
 
 def test_a_name_with_a_null_character_is_refused(taken):
     whole = archive(("abc", b"x")).replace(b"abc", b"a\0c")
-    assert "'ac'" in refused(taken, whole)
+    assert "'ac'" in rejection_message(taken, whole)
 
 
 def test_overlapping_members_are_refused(taken):
@@ -90,13 +90,13 @@ def test_overlapping_members_are_refused(taken):
 def test_a_central_directory_cut_at_any_byte_is_refused(taken):
     whole = archive(("a", b"x"))
     for cut in (1, 21, 22, 23):
-        assert "cut short" in refused(taken, whole[:-cut])
-    assert "cut short" in refused(taken, b"PK\5\6")
+        assert "cut short" in rejection_message(taken, whole[:-cut])
+    assert "cut short" in rejection_message(taken, b"PK\5\6")
 
 
 def test_a_zip_without_files_is_refused(taken):
-    assert "no files" in refused(taken, b"PK\5\6" + bytes(18))
-    assert "no files" in refused(taken, archive(("a/", b"")))
+    assert "no files" in rejection_message(taken, b"PK\5\6" + bytes(18))
+    assert "no files" in rejection_message(taken, archive(("a/", b"")))
 
 
 def test_the_central_directory_is_found_before_a_comment_of_any_length(taken):
@@ -110,8 +110,8 @@ def test_the_central_directory_is_found_before_a_comment_of_any_length(taken):
 def test_a_zip64_archive_is_refused(taken):
     whole = archive(("a", b"x"))
     at = whole.rfind(b"PK\5\6")
-    assert "4 GB" in refused(taken, whole[:at] + b"PK\6\7" + bytes(16) + whole[at:])
-    assert "4 GB" not in refused(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
+    assert "4 GB" in rejection_message(taken, whole[:at] + b"PK\6\7" + bytes(16) + whole[at:])
+    assert "4 GB" not in rejection_message(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
 
 
 def test_a_central_directory_may_claim_the_largest_allowed_numbers(taken):
@@ -119,11 +119,11 @@ def test_a_central_directory_may_claim_the_largest_allowed_numbers(taken):
     at = whole.rfind(b"PK\5\6")
     for count, size, limits in ((4, 5, ("4", "3")), (1, 3073, ("3073", "3072")), (3, 3072, ())):
         struct.pack_into("<HL", whole, at + 10, count, size)
-        message = refused(taken, bytes(whole), max_members=3)
+        message = rejection_message(taken, bytes(whole), max_members=3)
         if limits:
             assert all(re.search(rf"\b{number}\b", message) for number in limits)
         else:  # it is within the limits, and damaged
-            assert message.startswith(TOLD)
+            assert message.startswith(DAMAGED_MESSAGE)
 
 
 def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
@@ -131,11 +131,11 @@ def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
         monkeypatch.setattr(
             tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error)
         )
-        message = refused(taken, b"x")
-        assert message.startswith(TOLD) and message.endswith(f"({why})")
+        message = rejection_message(taken, b"x")
+        assert message.startswith(DAMAGED_MESSAGE) and message.endswith(f"({why})")
     place = OSError(errno.EINVAL, "a place before the beginning")
     monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(place))
-    assert refused(taken, b"x").startswith(TOLD)
+    assert rejection_message(taken, b"x").startswith(DAMAGED_MESSAGE)
     full = OSError(errno.ENOSPC, "no room")
     monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(full))
     with pytest.raises(OSError, match="no room"):

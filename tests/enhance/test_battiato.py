@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from skimage import data
-from support.synthetic_skin import synthetic
+from support.synthetic_skin import sample_skin
 
 from hdrlab.capture import exposure
 from hdrlab.core.colour import decode_srgb, encode_srgb, to_8bit
@@ -254,17 +254,18 @@ def test_your_own_training_set_changes_what_counts_as_skin():
 
 
 def test_the_default_skin_is_that_of_the_computed_training_set():
-    fitted = skin.fit(synthetic())
+    fitted = skin.fit(sample_skin())
     assert np.allclose(skin.DEFAULT.mu, fitted.mu, atol=1e-4)
     assert np.allclose(skin.DEFAULT.S, fitted.S, atol=1e-4)
 
 
 def test_the_density_is_the_gaussian_of_the_distance_and_integrates_to_one():
     mu, S = skin.DEFAULT
-    assert skin.likelihood(synthetic(100)) == pytest.approx(
-        np.exp(-(skin.distance(synthetic(100)) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
+    assert skin.likelihood(sample_skin(100)) == pytest.approx(
+        np.exp(-(skin.distance(sample_skin(100)) ** 2) / 2)
+        / (2 * np.pi * np.sqrt(np.linalg.det(S)))
     )
-    inside = skin.find_by_chrominance(synthetic(4000, rng=9))
+    inside = skin.find_by_chrominance(sample_skin(4000, rng=9))
     assert 0.9 < inside.mean() < 0.99
 
 

@@ -1,4 +1,4 @@
-"""Homework 1 by other roads: exposures as powers, medians by sorting, offsets by correlation."""
+"""Homework 1 with other methods: exposures as powers, medians by sorting, offsets by correlation."""
 
 # %%
 import numpy as np

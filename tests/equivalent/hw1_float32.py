@@ -1,4 +1,4 @@
-"""Homework 1 in float32, as one who thinks of photographs as numbers from 0 to 1 would write it."""
+"""Homework 1 in float32, with photos as numbers from 0 to 1."""
 
 # %%
 import numpy as np

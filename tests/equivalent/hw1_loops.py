@@ -1,4 +1,4 @@
-"""Homework 1 in plain loops, with Python's own mathematics."""
+"""Homework 1 in plain loops with Python's math module."""
 
 # %%
 import math

@@ -1,4 +1,4 @@
-"""Homework 2 in loops, the systems as the papers print them."""
+"""Homework 2 in loops, with the linear systems as the papers print them."""
 
 # %%
 import numpy as np

@@ -1,4 +1,4 @@
-"""Homework 3 pixel by pixel."""
+"""Homework 3, one pixel at a time."""
 
 # %%
 import math

@@ -1,4 +1,4 @@
-"""Homework 3 by other valid choices: rounded mantissas, the middle of a step, big-endian files."""
+"""Homework 3 with other valid choices: rounded mantissas, the middle of a step, big-endian files."""
 
 # %%
 import numpy as np

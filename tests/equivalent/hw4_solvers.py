@@ -1,4 +1,4 @@
-"""Homework 4 by other roads: sparse systems with another constant, states of fewer parts."""
+"""Homework 4 with other methods: sparse systems with another constant, states with fewer parts."""
 
 # %%
 import numpy as np

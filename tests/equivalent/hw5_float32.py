@@ -1,4 +1,4 @@
-"""Homework 5 in float32, mirrored at the edges."""
+"""Homework 5 in float32, with mirrored borders."""
 
 # %%
 import numpy as np

@@ -1,4 +1,4 @@
-"""Homework 5 by summed-area tables, clipping and logarithms."""
+"""Homework 5 with summed-area tables, clipping and logarithms."""
 
 # %%
 import numpy as np

@@ -1,4 +1,4 @@
-"""A project with classes: a print is made in steps, as in the darkroom."""
+"""A project with classes: a print is made in steps, as in a darkroom."""
 
 # %%
 import numpy as np

@@ -1,4 +1,4 @@
-"""A project in float32, with a white from a partition."""
+"""A project in float32, with the white point from a partial sort."""
 
 # %% task="tonemap"
 import numpy as np

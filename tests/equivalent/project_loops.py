@@ -1,4 +1,4 @@
-"""A project in loops, with Python's own mathematics."""
+"""A project in loops with Python's math module."""
 
 # %%
 import math

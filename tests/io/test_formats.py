@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import tifffile
 from PIL import Image
-from support.codec_features import require_avif, require_colors_of_avif, require_gains_of_channels
+from support.codec_features import require_avif, require_avif_primaries, require_channel_gains
 
 import hdrlab
 from hdrlab.cli import run
@@ -299,9 +299,9 @@ def test_table_of_formats_lists_what_can_be_written():
 )
 def test_other_programs_can_read_written_files(name, options, decode, tmp_path):
     if name.endswith(".avif"):
-        require_colors_of_avif()
+        require_avif_primaries()
     if options == ["--to", "ultrahdr"]:
-        require_gains_of_channels()
+        require_channel_gains()
     if options is None:
         radiance.write_radiance(tmp_path / name, E)
     else:

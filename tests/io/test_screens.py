@@ -8,7 +8,7 @@ import imagecodecs
 import numpy as np
 import pytest
 from PIL import Image
-from support.codec_features import require_avif, require_colors_of_avif
+from support.codec_features import require_avif, require_avif_primaries
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
@@ -30,7 +30,7 @@ def tonemap(tmp_path, E, name, *options):
     radiance.write_radiance(tmp_path / "map.exr", E)
     out = tmp_path / name
     if out.suffix == ".avif":
-        require_colors_of_avif()
+        require_avif_primaries()
     with pytest.raises(SystemExit) as ended:
         run(
             [

@@ -10,7 +10,7 @@ import pytest
 import tifffile
 from PIL import Image
 from scipy.ndimage import gaussian_filter
-from support.codec_features import require_avif, require_colors_of_avif
+from support.codec_features import require_avif, require_avif_primaries
 
 from hdrlab.core import gamut
 from hdrlab.core.colour import decode_srgb, encode_srgb
@@ -126,7 +126,7 @@ def test_format_is_detected_from_the_content_not_the_name(tmp_path, named, kind)
 @pytest.mark.parametrize("bits", [10, 12])
 def test_avif_keeps_all_bits_and_white_is_the_maximum(tmp_path, bits):
     require_avif()
-    require_colors_of_avif()
+    require_avif_primaries()
     levels = (DEEP << (bits - 10)).clip(0, 2**bits - 1)
     levels[0, 0] = 2**bits - 1
     how = {"bitspersample": bits, "primaries": 1, "transfer": 13, "matrix": 0, "pixelformat": "444"}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 from skimage.data import astronaut, coffee
-from support.hand_held_photos import MARGIN, H, W, bracket as shoot, photograph, radiance
+from support.hand_held_photos import MARGIN, H, W, bracket as shoot, photograph, scene_radiance
 
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, hand_motion
@@ -32,7 +32,7 @@ def aligned(images, align="auto"):
 def night(offsets, seed=0):
     """Return photographs of a street at night: nearly black but for lamps, and noisy."""
     rng = np.random.default_rng(seed)
-    E = 1e-3 * radiance(coffee(), 1.0)
+    E = 1e-3 * scene_radiance(coffee(), 1.0)
     for y, x in rng.integers(MARGIN, (MARGIN + H, MARGIN + W), (12, 2)):
         E[y : y + 4, x : x + 4] += 3
     return np.stack([photograph(E, 4.0**k, o, rng=rng, noise=0.02) for k, o in enumerate(offsets)])
@@ -94,7 +94,7 @@ def test_ghost_removal_is_recommended_for_photos_that_nothing_aligns(removes_gho
 
 
 def test_the_search_range_grows_with_the_image_size():
-    E = np.kron(radiance(astronaut()), np.ones((2, 2, 1)))
+    E = np.kron(scene_radiance(astronaut()), np.ones((2, 2, 1)))
     rng = np.random.default_rng(0)
     views = [0.2 * t * E[y : y + 700, x : x + 900] for t, y, x in ((1, 10, 5), (4, 110, 95))]
     images = np.stack(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyval
 from support import laws
-from support.laws import photographs as shots
+from support.laws import simulate_bracket as shots
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.laws import photographs as shots
+from support.laws import simulate_bracket as shots
 
 from hdrlab import scenes
 from hdrlab.capture import camera, responses

@@ -7,7 +7,7 @@ from support import synthetic_skin
 from hdrlab.enhance import skin
 from hdrlab.show.plots.lectures import skins
 
-TRAINING = synthetic_skin.synthetic(3000)
+TRAINING = synthetic_skin.sample_skin(3000)
 
 
 def test_ellipse_has_the_given_mahalanobis_distance_from_the_mean():

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import threadpoolctl
 from matplotlib.figure import Figure
-from support.half_floats import decoded
+from support.half_floats import decode_half_floats
 
 from hdrlab import errors, scenes
 from hdrlab.capture.sensor import Sensor
@@ -479,19 +479,19 @@ def test_plots_of_a_tuner_are_lossless():
 @pytest.mark.parametrize("top", [1e-20, 3.0, 65504.0, 1e9, 3e38])
 def test_half_floats_keep_eight_decades_of_any_radiance(top):
     E = np.geomspace(top / 1e8, top, 200).reshape(10, 20)
-    seen = decoded(*web.encode_halves(E), E.shape)
+    seen = decode_half_floats(*web.encode_halves(E), E.shape)
     assert np.abs(seen / E - 1).max() < 2**-11 and np.isfinite(seen).all()
 
 
 def test_half_floats_of_zeros_are_zeros():
-    assert not np.any(decoded(*web.encode_halves(np.zeros((2, 3, 3))), (2, 3, 3)))
+    assert not np.any(decode_half_floats(*web.encode_halves(np.zeros((2, 3, 3))), (2, 3, 3)))
 
 
 def test_deflate_reduces_half_floats_of_a_scene_to_two_thirds():
     E = scenes.workshop((128, 192))
     data, scale = web.encode_halves(E)
     assert len(data) < 2 * E.size * 2 / 3
-    assert np.abs(decoded(data, scale, E.shape) / E - 1)[E > 0].max() < 2**-11
+    assert np.abs(decode_half_floats(data, scale, E.shape) / E - 1)[E > 0].max() < 2**-11
 
 
 ROOM = np.arange(24 * 36 * 3, dtype=np.uint8).reshape(24, 36, 3)
@@ -521,7 +521,9 @@ def test_values_of_a_comparison_keep_three_digits(shape):
     E = np.geomspace(1e-3, 1e5, np.prod(shape)).reshape(shape)
     widget = widgets.wipe(ROOM, ROOM, alt="A room", values=[E, 2 * E])
     for k, values in enumerate((E, 2 * E)):
-        assert np.allclose(decoded(widget.values[k], widget.scales[k], shape), values, rtol=5e-4)
+        assert np.allclose(
+            decode_half_floats(widget.values[k], widget.scales[k], shape), values, rtol=5e-4
+        )
     assert widget.channels == [len(shape) * 2 - 3] * 2
     assert len(widgets.blink(ROOM, ROOM, alt="A room", values=E).values) == 1
 
@@ -532,7 +534,7 @@ def test_large_pictures_and_values_are_reduced_to_means():
     height, width = iio.imread(io.BytesIO(widget.pictures[0])).shape[:2]
     assert height < 30 and width < 4100
     assert width / height == pytest.approx(4100 / 30, rel=0.05)
-    assert not np.any(decoded(widget.values[0], widget.scales[0], (height, width)))
+    assert not np.any(decode_half_floats(widget.values[0], widget.scales[0], (height, width)))
 
 
 @pytest.mark.parametrize(
@@ -570,7 +572,7 @@ def test_brush_has_the_radiance_map_and_starts_at_its_center(shape):
     E = np.geomspace(1e-2, 1e6, np.prod(shape)).reshape(shape)
     brush = widgets.brush(E, alt="A wedge", size=64)
     assert brush.shape == [40, 60, len(shape) * 2 - 3] and brush.centre == [20, 30]
-    assert np.allclose(decoded(brush.radiance, brush.scale, shape), E, rtol=5e-4)
+    assert np.allclose(decode_half_floats(brush.radiance, brush.scale, shape), E, rtol=5e-4)
     assert iio.imread(io.BytesIO(brush.picture)).shape == (40, 60, 3)
 
 

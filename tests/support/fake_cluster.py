@@ -1,4 +1,4 @@
-"""A cluster that does what it is told: its client, its workers and a made clock, for who gets which."""
+"""A fake Dask client with workers and a clock that a test controls."""
 
 from types import SimpleNamespace
 
@@ -8,11 +8,12 @@ from hdrlab.course.classroom.executors.cluster import Cluster
 ADDRESS = "tcp://127.0.0.1:8786"
 
 
-class Future:
-    """The future of a piece, whose end is set from outside."""
+class FakeFuture:
+    """The future of a job; the test sets its `status` and its `answer`, a result or an error."""
 
     def __init__(self):
-        self.status, self.answer = "pending", None
+        self.status = "pending"
+        self.answer = None
 
     def done(self):
         return self.status != "pending"
@@ -27,12 +28,27 @@ class Future:
         return self.answer
 
 
-class Client:
-    """A client of a cluster: its workers and their threads, and what was asked of it."""
+class FakeClient:
+    """A client of a cluster that records what is submitted to it.
+
+    Attributes
+    ----------
+    threads : the number of threads of each worker, by its name; an Exception is raised instead
+    sent : (job, worker) of each submitted job
+    cancelled : the futures of each call of `cancel`
+    closed : how often the client was closed
+    scheduler, versions, able : what the scheduler and the workers answer about their versions and
+        about the sandbox
+    """
 
     def __init__(self, **threads):
-        self.threads, self.sent, self.cancelled, self.closed = threads, [], [], 0
-        self.scheduler, self.versions, self.able = cluster.version(), {}, {}
+        self.threads = threads
+        self.sent = []
+        self.cancelled = []
+        self.closed = 0
+        self.scheduler = cluster.version()
+        self.versions = {}
+        self.able = {}
 
     def nthreads(self):
         if isinstance(self.threads, Exception):
@@ -47,11 +63,11 @@ class Client:
         return self.versions if function is cluster.version else self.able
 
     def submit(self, function, task, *, key, workers, pure):
-        assert (
-            function is cluster.run_remote_job and key.startswith("hdrlab-grade-") and pure is False
-        )
+        assert function is cluster.run_remote_job
+        assert key.startswith("hdrlab-grade-")
+        assert pure is False
         self.sent.append((task, *workers))
-        return Future()
+        return FakeFuture()
 
     def cancel(self, futures, *, force):
         assert force is True
@@ -61,16 +77,26 @@ class Client:
         self.closed += 1
 
 
-def clustered(monkeypatch, **threads):
-    """Return a Cluster of these workers and their threads, its client, and a made clock as `clock`."""
+def make_cluster(monkeypatch, **threads):
+    """Return a Cluster with a FakeClient, and the client.
+
+    The attribute `clock` of the Cluster has the time `now` and the waits `slept`, in seconds. A wait
+    advances the clock and returns immediately.
+
+    Parameters
+    ----------
+    threads : the number of threads of each worker, by its name
+    """
     clock = SimpleNamespace(now=1000.0, slept=[])
 
     def sleep(seconds):
         clock.slept.append(seconds)
         clock.now += seconds
 
-    monkeypatch.setattr(cluster, "time", SimpleNamespace(monotonic=lambda: clock.now, sleep=sleep))
-    client = Client(**threads)
-    made = Cluster(ADDRESS, len, bool, timeout=7.0)
-    made._client, made.clock = client, clock
-    return made, client
+    fake_time = SimpleNamespace(monotonic=lambda: clock.now, sleep=sleep)
+    monkeypatch.setattr(cluster, "time", fake_time)
+    client = FakeClient(**threads)
+    executor = Cluster(ADDRESS, len, bool, timeout=7.0)
+    executor._client = client
+    executor.clock = clock
+    return executor, client

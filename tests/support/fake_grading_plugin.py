@@ -1,4 +1,4 @@
-"""Checks as pytest has them, and a Checking whose lines can be read: what the tests of the plugin share."""
+"""Checks as pytest collects them, a Subject without a sandbox, and a GradingPlugin with readable output."""
 
 import json
 from pathlib import Path
@@ -7,35 +7,60 @@ from types import SimpleNamespace
 from hdrlab.course.checks.plugin import GradingPlugin
 from hdrlab.course.checks.subject import Call, Subject
 
-PLACE = Path("/checks")
+CHECKS_FOLDER = Path("/checks")
 
 
-def item(name="test_a_promise", task="hat", *, folder=PLACE, subject=None, mark=None, check=None):
-    """A check as pytest has it."""
-    made = SimpleNamespace(
-        name=name, path=folder / f"test_{task}.py", get_closest_marker=lambda which: mark
+def make_item(
+    name="test_a_promise",
+    task="hat",
+    *,
+    folder=CHECKS_FOLDER,
+    subject=None,
+    mark=None,
+    check=None,
+):
+    """Return a check as pytest collects it.
+
+    Parameters
+    ----------
+    name, task, folder : the name of the test function, its task, and the folder of its file
+    subject : the Subject that the check uses
+    mark : its nearest marker
+    check : the test function
+    """
+    item = SimpleNamespace(
+        name=name,
+        path=folder / f"test_{task}.py",
+        get_closest_marker=lambda which: mark,
     )
     if subject is not None:
-        made.funcargs = {"subject": subject}
+        item.funcargs = {"subject": subject}
     if check is not None:
-        made.function = check
-    return made
+        item.function = check
+    return item
 
 
-class Asked(Subject):
-    """A Subject that was asked something already, without a sandbox."""
+class CalledSubject(Subject):
+    """A Subject without a sandbox that has been called before.
 
-    def __init__(self, *answers, said=""):
+    Parameters
+    ----------
+    answers : the answer of each call of `hat`; the first call was `hat(0)`, the next `hat(1)`
+    printed : what the student's code printed
+    """
+
+    def __init__(self, *answers, printed=""):
         super().__init__({"hat": ""}, None)
         self.calls = [Call("hat", (k,), {}, answer) for k, answer in enumerate(answers)]
-        self.printed, self.begun = said, 0
+        self.printed = printed
+        self.fresh_count = 0
 
     def fresh(self, **sources):
-        self.begun += 1
+        self.fresh_count += 1
 
 
-def checking(folder):
-    """Return a Checking that writes into a folder; `lines` reads what it has written."""
+def make_plugin(folder):
+    """Return a GradingPlugin that writes into a folder; its method `lines` reads what it has written."""
     job = {
         "sources": {"hat": "def hat(): ..."},
         "modules": ["numpy"],
@@ -48,9 +73,8 @@ def checking(folder):
         "out": str(folder / "lines"),
         "grader": 1,
     }
-    made = GradingPlugin(job)
-    (folder / "lines").touch()
-    made.lines = lambda: [
-        json.loads(one) for one in (folder / "lines").read_text("utf8").splitlines()
-    ]
-    return made
+    plugin = GradingPlugin(job)
+    output = folder / "lines"
+    output.touch()
+    plugin.lines = lambda: [json.loads(line) for line in output.read_text("utf8").splitlines()]
+    return plugin

@@ -1,8 +1,9 @@
-"""Run commands of hdrlab as processes that are disturbed at a chosen change of a file.
+"""Run commands of hdrlab and interrupt them at a chosen change of a file.
 
-`Commands` starts a process that has loaded hdrlab, and forks it for each run, because loading takes
-longer than most commands. A run counts its changes of files below its working folder: a file that is
-opened for writing, a new folder, a rename, a removal, a link. At one of them it sends itself a signal.
+`CommandServer` starts a process that has imported hdrlab, and forks it for each command, because the
+import takes longer than most commands. A command counts its changes of files below its working folder:
+files opened for writing, new folders, renames, removals, links. At the chosen change, it sends itself
+a signal.
 """
 
 import ctypes
@@ -37,7 +38,7 @@ PRELOADED = (
     "scipy.optimize",
     "matplotlib.backends.backend_agg",
 )
-CHANGES = {
+CHANGE_EVENTS = {
     "os.mkdir",
     "os.rename",
     "os.remove",
@@ -47,8 +48,8 @@ CHANGES = {
     "os.truncate",
     "sqlite3.connect",
 }
-WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
-# Of Linux: the rights by which root writes and reads where the owner may not, and how to drop them.
+WRITE_FLAGS = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
+# Constants of Linux: the capabilities with which root ignores file modes, and how to drop them.
 DAC_OVERRIDE = 1
 DAC_READ_SEARCH = 2
 CAPABILITY_VERSION = 0x20080522
@@ -56,15 +57,15 @@ PR_CAPBSET_DROP = 24
 
 
 @dataclass(frozen=True)
-class Run:
+class CommandRun:
     """How to run a command.
 
     Attributes
     ----------
     words : the words after `hdrlab`
     folder : the working folder
-    signal, change : the signal, and the number of the change at which it comes; 0 for no signal
-    is_ordinary_user : whether root loses the right to write where the owner may not
+    signal, change : the signal, and the number of the change at which it is sent; 0 for no signal
+    is_ordinary_user : whether root obeys file modes like other users
     """
 
     words: list[str]
@@ -75,8 +76,15 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Ended:
-    """How a command ended: its exit code (negative for a signal), its text, the number of changes."""
+class CommandResult:
+    """How a command ended.
+
+    Attributes
+    ----------
+    code : its exit code, negative for a signal
+    out, err : what it wrote to standard output and standard error
+    changes : how often it changed a file
+    """
 
     code: int
     out: str
@@ -89,11 +97,11 @@ class Ended:
         return (self.err.strip().splitlines() or [""])[-1]
 
 
-class Commands:
+class CommandServer:
     """A process that runs commands, one after the other."""
 
     def __init__(self, home):
-        """Start it; what matplotlib keeps is in the folder `home`."""
+        """Start the process; matplotlib keeps its cache in the folder `home`."""
         environment = os.environ | {"MPLCONFIGDIR": str(home), "OMP_NUM_THREADS": "1"}
         self.process = subprocess.Popen(
             [sys.executable, "-W", "ignore", __file__],
@@ -107,7 +115,7 @@ class Commands:
         """Run a command to its end."""
         self.process.stdin.write(json.dumps(asdict(run)) + "\n")
         self.process.stdin.flush()
-        return Ended(**json.loads(self.process.stdout.readline()))
+        return CommandResult(**json.loads(self.process.stdout.readline()))
 
     def close(self):
         """End the process."""
@@ -117,24 +125,24 @@ class Commands:
 
 
 def serve():
-    """Read runs from standard input, and print how each ended."""
+    """Read a CommandRun per line from standard input, run it, and print its CommandResult."""
     import importlib
 
     from hdrlab import cli
 
     for module in PRELOADED:
         importlib.import_module(module)
-    with open(os.devnull) as nothing:
-        requests = os.fdopen(os.dup(0))
-        os.dup2(nothing.fileno(), 0)
+    requests = os.fdopen(os.dup(0))
+    with open(os.devnull) as empty:
+        os.dup2(empty.fileno(), 0)  # the commands have no standard input
     for line in requests:
-        ended = run_forked(cli.run, Run(**json.loads(line)))
-        sys.stdout.write(json.dumps(asdict(ended)) + "\n")
+        result = run_forked(cli.run, CommandRun(**json.loads(line)))
+        sys.stdout.write(json.dumps(asdict(result)) + "\n")
         sys.stdout.flush()
 
 
 def run_forked(command, run):
-    """Run a command in a child of this process."""
+    """Run a command in a child process and return its CommandResult."""
     outputs = [os.memfd_create(name) for name in ("out", "err", "changes")]
     child = os.fork()
     if child == 0:
@@ -149,20 +157,20 @@ def run_forked(command, run):
                 with suppress(OSError):
                     stream.flush()
             os._exit(code)
-    watch = threading.Timer(TIMEOUT_SECONDS, os.kill, (child, signal.SIGKILL))
-    watch.start()
+    timeout = threading.Timer(TIMEOUT_SECONDS, os.kill, (child, signal.SIGKILL))
+    timeout.start()
     _, status = os.waitpid(child, 0)
-    watch.cancel()
+    timeout.cancel()
     texts = []
     for descriptor in outputs:
         size = os.fstat(descriptor).st_size
         texts.append(os.pread(descriptor, size, 0).decode(errors="replace"))
         os.close(descriptor)
-    return Ended(os.waitstatus_to_exitcode(status), texts[0], texts[1], len(texts[2]))
+    return CommandResult(os.waitstatus_to_exitcode(status), texts[0], texts[1], len(texts[2]))
 
 
 def run_here(command, run, outputs):
-    """Run a command in this process, and return its exit code."""
+    """Run a command in this process and return its exit code."""
     os.dup2(outputs[0], 1)
     os.dup2(outputs[1], 2)
     os.chdir(run.folder)
@@ -170,8 +178,8 @@ def run_here(command, run, outputs):
     sys.argv = ["hdrlab", *run.words]
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if run.is_ordinary_user:
-        obey_rights()
-    watch_changes(run, outputs[2])
+        drop_root_privileges()
+    interrupt_at_change(run, outputs[2])
     try:
         command()
     except SystemExit as stop:
@@ -181,18 +189,18 @@ def run_here(command, run, outputs):
     return 0
 
 
-def watch_changes(run, count):
-    """Send the signal at the chosen change; each change is a byte in the file `count`."""
+def interrupt_at_change(run, count):
+    """Send the signal at the chosen change, and write a byte to the file `count` at each change."""
     lock = threading.Lock()
     home = run.folder + os.sep
     number = 0
 
-    def notice(event, arguments):
+    def count_change(event, arguments):
         nonlocal number
         if event == "open":
-            if not (isinstance(arguments[2], int) and arguments[2] & WRITING):
+            if not (isinstance(arguments[2], int) and arguments[2] & WRITE_FLAGS):
                 return
-        elif event not in CHANGES:
+        elif event not in CHANGE_EVENTS:
             return
         path = arguments[0]
         if isinstance(path, int):
@@ -206,26 +214,26 @@ def watch_changes(run, count):
         if is_chosen:
             os.kill(os.getpid(), run.signal)
 
-    sys.addaudithook(notice)
+    sys.addaudithook(count_change)
 
 
-def obey_rights():
-    """Take root's right to write and read where the owner may not."""
+def drop_root_privileges():
+    """Make root obey file modes; do nothing for other users."""
     if os.geteuid() != 0:
         return
     libc = ctypes.CDLL(None)
-    for right in (DAC_OVERRIDE, DAC_READ_SEARCH):
-        libc.prctl(PR_CAPBSET_DROP, right, 0, 0, 0)
+    for capability in (DAC_OVERRIDE, DAC_READ_SEARCH):
+        libc.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)
     header = (ctypes.c_uint32 * 2)(CAPABILITY_VERSION, 0)
     sets = (ctypes.c_uint32 * 6)()
     libc.capget(header, sets)
-    for kind in range(3):  # effective, permitted, inheritable
-        sets[kind] &= ~(1 << DAC_OVERRIDE | 1 << DAC_READ_SEARCH)
+    for k in range(3):  # effective, permitted and inheritable capabilities
+        sets[k] &= ~(1 << DAC_OVERRIDE | 1 << DAC_READ_SEARCH)
     libc.capset(header, sets)
 
 
-def files_below(folder):
-    """Return every file and folder below a folder: a file's bytes, and None for a folder."""
+def read_folder(folder):
+    """Return the bytes of each file below a folder by its path, and None for each folder."""
     return {
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
         for path in sorted(Path(folder).rglob("*"))

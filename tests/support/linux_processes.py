@@ -1,21 +1,25 @@
-"""What /proc says of the processes of this machine, any of which may end while it is asked."""
+"""Find processes of this machine in /proc. Any of them may end while a test reads about it."""
 
 import os
 from contextlib import suppress
 from pathlib import Path
 
 
-def told(file):
-    """Return what this file of /proc says of each process, by its number."""
-    found = {}
-    for entry in filter(str.isdigit, os.listdir("/proc")):
-        with suppress(OSError):
-            found[int(entry)] = Path(f"/proc/{entry}/{file}").read_bytes()
-    return found
+def read_proc_files(name):
+    """Return the bytes of a file of /proc/NUMBER for each process, by its number."""
+    contents = {}
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            with suppress(OSError):
+                contents[int(entry)] = Path("/proc", entry, name).read_bytes()
+    return contents
 
 
-def of(folder):
-    """Return the processes whose environment names this folder, as where their scratch is."""
+def processes_using(folder):
+    """Return the numbers of the processes whose environment names a folder, such as their TMPDIR."""
+    wanted = os.fsencode(folder)
     return [
-        one for one, environment in told("environ").items() if str(folder).encode() in environment
+        number
+        for number, environment in read_proc_files("environ").items()
+        if wanted in environment
     ]

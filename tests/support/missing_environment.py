@@ -1,27 +1,40 @@
-"""What a machine may lack: a home, a place for caches, signs beyond ASCII, a clock that goes forward."""
+"""Environments in which something is missing or wrong: a home, cache folders, UTF-8, the clock."""
 
 import os
 
-CLOCK = """import itertools, time
-true = time.time
-late = itertools.count()
-time.time = lambda: true() - 60 * next(late)
+# Each call of time.time() returns a time one minute earlier than the true one and its predecessor.
+BACKWARD_CLOCK = """import itertools
+import time
+
+true_time = time.time
+counter = itertools.count()
+time.time = lambda: true_time() - 60 * next(counter)
 """
-NOWHERE = "/proc/nowhere"
-# by what is lacking, the environment without it; None for a name that it has not
-POOR = {
+MISSING_FOLDER = "/proc/nowhere"  # nobody can create it, not even root
+FUTURE_TIMESTAMP = 4e9  # seconds since 1970: the year 2096
+# The variables that a test sets; None removes a variable.
+ENVIRONMENTS = {
     "no HOME": {"HOME": None, "XDG_CACHE_HOME": None},
-    "no caches": {"HOME": NOWHERE, "XDG_CACHE_HOME": NOWHERE, "MPLCONFIGDIR": NOWHERE},
+    "no caches": {
+        "HOME": MISSING_FOLDER,
+        "XDG_CACHE_HOME": MISSING_FOLDER,
+        "MPLCONFIGDIR": MISSING_FOLDER,
+    },
     "LANG=C": {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
 }
 
 
-def turn_clock_back(here):
-    """Return where Python finds a clock that loses a minute at each look, and files from the future."""
-    (here.parent / "clock").mkdir()
-    (here.parent / "clock/sitecustomize.py").write_text(CLOCK)
-    for path in here.rglob("*"):
-        os.utime(path, (4e9, 4e9))
-    return os.pathsep.join(
-        [str(here.parent / "clock"), *filter(None, [os.environ.get("PYTHONPATH")])]
-    )
+def turn_clock_back(folder):
+    """Date all files of a folder in the future and return a PYTHONPATH that turns the clock back.
+
+    The clock of a Python process with this PYTHONPATH loses a minute whenever it is read.
+    """
+    clock_folder = folder.parent / "clock"
+    clock_folder.mkdir()
+    (clock_folder / "sitecustomize.py").write_text(BACKWARD_CLOCK)
+    for path in folder.rglob("*"):
+        os.utime(path, (FUTURE_TIMESTAMP, FUTURE_TIMESTAMP))
+    paths = [str(clock_folder)]
+    if os.environ.get("PYTHONPATH"):
+        paths.append(os.environ["PYTHONPATH"])
+    return os.pathsep.join(paths)

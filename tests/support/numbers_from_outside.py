@@ -1,6 +1,6 @@
-"""Numbers in the answers of notebooks that no cell computes, by page, each with where it comes from.
+"""Numbers in the text of notebooks that no cell computes, by notebook, each with its origin.
 
-A number of one digit, and one that is written as a word, stands with its unit.
+A number with one digit, or written as a word, is listed with its unit.
 """
 
 PAPERS_PROGRAM = "the entry of level 128 in the program of Debevec and Malik, counted from 1"
@@ -54,7 +54,7 @@ NUMBERS = {
     },
 }
 
-# Numbers of the text outside of answers that no cell computes and no sentence of the table holds.
+# Numbers outside of answers that no cell computes and that are in no sentence of test_sentences.py.
 OPEN_TEXT = {
     "00": {
         "100": "an example of a level",

@@ -1,4 +1,4 @@
-"""A homework of one small function, for tests of what surrounds its grading."""
+"""A homework with one small function, for tests of everything around its grading."""
 
 PLAN = """
 [late]
@@ -9,4 +9,8 @@ title = "T"
 due = 2026-10-23T23:59:00Z
 tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
 """
-GOOD = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
+CORRECT_CODE = """import numpy as np
+
+def hat(n=256):
+    return n - 1 - abs(2 * np.arange(n) - n + 1)
+"""

@@ -1,6 +1,6 @@
-"""The papers that notebooks name, and where each one is: a pattern of authors and year -> its DOI or page.
+"""The papers that notebooks cite: a regular expression for authors and year, and the address of the paper.
 
-In a pattern a space is any white space. What stands here is linked where a notebook names it first.
+A space in a pattern stands for any white space. A notebook links a paper where it first cites it.
 """
 
 DOI = "https://doi.org/"

@@ -1,15 +1,18 @@
-"""A Linux that lacks what Windows lacks: for tests of what a student and an instructor do there.
+"""Simulate on Linux what Windows lacks, for tests of what students and instructors do on Windows.
 
-`hide` takes away modules, signals and calls that only POSIX has, and lends two methods of sockets
-that only Windows has. `build` makes an interpreter that does so in every process, and that stands,
-as the launcher of a virtual environment does there, between a process and the one it was started
-by.
+`hide_posix` removes the modules, signals and functions that only POSIX has, and adds two methods of
+sockets that only Windows has. `build_interpreter` makes a Python that does so in every process. Like
+the launcher of a virtual environment on Windows, it is a process between the caller and Python.
+
+The interpreter also runs this file as a script: the supervisor of the sandbox starts Python without
+`sitecustomize`, so this file runs first and then runs the supervisor.
 """
 
 import contextlib
 import ctypes
 import importlib.util
 import os
+import runpy
 import signal
 import socket
 import subprocess
@@ -18,9 +21,9 @@ import threading
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SYSTEM = ROOT / "hdrlab/course/sandbox/inside/system.py"
-MODULES = ("fcntl", "resource", "pwd", "pyseccomp")
-CALLS = (
+SYSTEM_MODULE = ROOT / "hdrlab/course/sandbox/inside/system.py"
+POSIX_MODULES = ("fcntl", "resource", "pwd", "pyseccomp")
+POSIX_NAMES_OF_OS = {
     "fork",
     "forkpty",
     "killpg",
@@ -30,113 +33,136 @@ CALLS = (
     "geteuid",
     "posix_fallocate",
     "mkfifo",
-)
-CALLS += ("waitid", "sched_getaffinity", "O_NOFOLLOW", "O_DIRECTORY")
+    "waitid",
+    "sched_getaffinity",
+    "O_NOFOLLOW",
+    "O_DIRECTORY",
+}
+PR_SET_PDEATHSIG = 1  # of Linux, see prctl(2): the signal that a process gets when its parent ends
+# In place of python.exe: Python is its child and ends with it.
 LAUNCHER = """#!{python} -IS
 import ctypes, subprocess, sys
-die = lambda: ctypes.CDLL(None).prctl(1, 9, 0, 0, 0)
-sys.exit(subprocess.call([{python!r}, *sys.argv[1:]], close_fds=False, preexec_fn=die))
+die_with_parent = lambda: ctypes.CDLL(None).prctl(1, 9, 0, 0, 0)
+command = [{python!r}, *sys.argv[1:]]
+sys.exit(subprocess.call(command, close_fds=False, preexec_fn=die_with_parent))
 """
-BASE = """#!/bin/sh
+# In place of the base interpreter, which starts the supervisor: this file runs before it.
+BASE_INTERPRETER = """#!/bin/sh
 while [ "${{1#*supervisor.py}}" = "$1" ]; do flags="$flags $1"; shift; done
 exec {python} $flags {this} "$@"
 """
-CUSTOMIZE = """
+SITE_CUSTOMIZATION = """
 import importlib.util, sys
-spec = importlib.util.spec_from_file_location("windows", {this!r})
-windows = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(windows)
-windows.hide()
-sys.executable, sys._base_executable = {launcher!r}, {base!r}
+spec = importlib.util.spec_from_file_location("simulated_windows", {this!r})
+simulated_windows = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(simulated_windows)
+simulated_windows.hide_posix()
+sys.executable = {launcher!r}
+sys._base_executable = {base!r}
 """
-recv_fds, send_fds = socket.recv_fds, socket.send_fds
+# hide_posix removes these functions from the module `socket`
+recv_fds = socket.recv_fds
+send_fds = socket.send_fds
 
 
-def build(folder):
-    """Return (launcher, environment): how a command is started that believes to be on Windows."""
-    import matplotlib  # here: a supervisor has numpy and scipy alone
+def build_interpreter(folder):
+    """Make a Python that behaves as if it ran on Windows.
 
-    launcher, base, this = folder / "launcher", folder / "base", os.path.abspath(__file__)
-    python = getattr(sys, "_base_executable", sys.executable)
+    Returns
+    -------
+    launcher : the path of the interpreter
+    environment : the environment variables that it needs
+    """
+    import matplotlib  # here, because a supervisor cannot import it
+
+    launcher = folder / "launcher"
+    base = folder / "base"
+    this = os.path.abspath(__file__)
+    base_python = getattr(sys, "_base_executable", sys.executable)
     launcher.write_text(LAUNCHER.format(python=sys.executable), encoding="utf8")
-    base.write_text(BASE.format(python=python, this=this), encoding="utf8")
-    customize = CUSTOMIZE.format(this=this, launcher=str(launcher), base=str(base))
-    (folder / "sitecustomize.py").write_text(customize, encoding="utf8")
-    for one in (launcher, base):
-        one.chmod(0o755)
-    paths = os.pathsep.join([str(folder), str(ROOT)])
-    environment = {"PATH": os.defpath, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"}
-    environment |= dict.fromkeys(("HOME", "TMPDIR"), str(folder)) | {
-        "MPLCONFIGDIR": matplotlib.get_configdir()
+    base.write_text(BASE_INTERPRETER.format(python=base_python, this=this), encoding="utf8")
+    customization = SITE_CUSTOMIZATION.format(this=this, launcher=str(launcher), base=str(base))
+    (folder / "sitecustomize.py").write_text(customization, encoding="utf8")
+    launcher.chmod(0o755)
+    base.chmod(0o755)
+    environment = {
+        "PATH": os.defpath,
+        "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)]),
+        "OPENBLAS_NUM_THREADS": "1",
+        "HOME": str(folder),
+        "TMPDIR": str(folder),
+        "MPLCONFIGDIR": matplotlib.get_configdir(),
     }
     return str(launcher), environment
 
 
-def hide():
-    """Take away what Windows has not, from this process."""
-    share_sockets()
+def hide_posix():
+    """Remove from this process what Windows lacks."""
+    add_socket_sharing()
     with contextlib.suppress(ImportError):
-        import filelock  # noqa: F401 it locks by fcntl here, as it does by msvcrt on Windows
-    for name in MODULES:
+        import filelock  # noqa: F401 before fcntl is hidden: on Windows it locks with msvcrt
+    for name in POSIX_MODULES:
         sys.modules[name] = None
-    for name in set(CALLS) & set(dir(os)):
+    for name in POSIX_NAMES_OF_OS & set(dir(os)):
         delattr(os, name)
-    del signal.SIGKILL, socket.send_fds, socket.recv_fds
-    subprocess.Popen.kill = lambda process: process.send_signal(
-        9
-    )  # it is a call of its own on Windows
-    started = subprocess.Popen.__init__
+    del signal.SIGKILL
+    del socket.send_fds
+    del socket.recv_fds
+    # on Windows, kill() is a call of its own and needs no SIGKILL
+    subprocess.Popen.kill = lambda process: process.send_signal(9)
+    original_init = subprocess.Popen.__init__
 
-    def start(self, *words, **options):
+    def init_without_pass_fds(self, *arguments, **options):
         if options.get("pass_fds"):
             raise ValueError("pass_fds not supported on Windows.")
-        started(self, *words, **options)
+        original_init(self, *arguments, **options)
 
-    subprocess.Popen.__init__ = start
-    load_system()
+    subprocess.Popen.__init__ = init_without_pass_fds
+    load_system_module()
 
 
-def load_system():
-    """Import the module that knows the system, while that pretends to be another."""
-    spec = importlib.util.spec_from_file_location("system", SYSTEM)
+def load_system_module():
+    """Import hdrlab's module `system` while sys.platform says that this is Windows."""
+    spec = importlib.util.spec_from_file_location("system", SYSTEM_MODULE)
     module = importlib.util.module_from_spec(spec)
-    before, sys.platform = sys.platform, "win32"
+    platform = sys.platform
+    sys.platform = "win32"
     try:
         spec.loader.exec_module(module)
     finally:
-        sys.platform = before
-    sys.modules["system"] = sys.modules["hdrlab.course.sandbox.inside.system"] = module
+        sys.platform = platform
+    sys.modules["system"] = module
+    sys.modules["hdrlab.course.sandbox.inside.system"] = module
 
 
-def share_sockets():
-    """Lend sockets the methods by which one process of Windows hands them to another."""
+def add_socket_sharing():
+    """Add the methods by which a process on Windows hands a socket to another process."""
 
     def share(self, process):
-        kept, listening = self.dup(), socket.socket(socket.AF_UNIX)
+        copy = self.dup()
+        listening = socket.socket(socket.AF_UNIX)
         listening.bind(f"\0hdrlab-{os.getpid()}-{process}")
         listening.listen()
 
-        def give():
-            with kept, listening, listening.accept()[0] as link:
-                send_fds(link, [b"s"], [kept.fileno()])
+        def send_copy():
+            with copy, listening, listening.accept()[0] as link:
+                send_fds(link, [b"s"], [copy.fileno()])
 
-        threading.Thread(target=give, daemon=True).start()
+        threading.Thread(target=send_copy, daemon=True).start()
         return listening.getsockname()
 
     def fromshare(name):
         with socket.socket(socket.AF_UNIX) as link:
             link.connect(name)
-            return socket.socket(fileno=recv_fds(link, 1, 1)[1][0])
+            _, descriptors, _, _ = recv_fds(link, 1, 1)
+            return socket.socket(fileno=descriptors[0])
 
-    socket.socket.share, socket.fromshare = share, fromshare
+    socket.socket.share = share
+    socket.fromshare = fromshare
 
 
-if (
-    __name__ == "__main__"
-):  # in front of the supervisor, which starts without any site's customization
-    import runpy
-
-    hide()
-    ctypes.CDLL(None).prctl(1, 9, 0, 0, 0)
+if __name__ == "__main__":
+    hide_posix()
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, 9, 0, 0, 0)
     del sys.argv[0]
     runpy.run_path(sys.argv[0], run_name="__main__")

@@ -1,12 +1,13 @@
-"""A small class with a gallery, for the tests of the gallery: teams of two, and two who work alone."""
+"""A small class with a gallery, and a browser that sends requests to its ASGI application."""
 
 import asyncio
 import re
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from http.cookies import SimpleCookie
-from typing import NamedTuple
+from pathlib import Path
 from urllib.parse import unquote_to_bytes, urlencode, urlsplit
 
 import numpy as np
@@ -17,11 +18,12 @@ from hdrlab.io import photos
 ADDRESS = "http://vote.test"
 START = datetime(2026, 12, 1, 12, tzinfo=UTC)
 CLOSES = START + timedelta(days=2)
+# two teams of two students, and two students who work alone
 TEAMS = {"team1": ("ann", "ben"), "team2": ("cy", "dee"), "eve": ("eve",), "fay": ("fay",)}
 
 
 class Clock:
-    """A clock that a test sets."""
+    """A clock that a test sets: `now` in seconds since 1970."""
 
     def __init__(self):
         self.now = START.timestamp()
@@ -30,48 +32,73 @@ class Clock:
         return self.now
 
 
-class Class(NamedTuple):
-    """A gallery's folder, its artifacts by team, its voters' links by student, and its clock."""
+@dataclass(frozen=True)
+class SmallGallery:
+    """A gallery.
 
-    folder: object
+    Attributes
+    ----------
+    folder : its folder
+    artifacts : the id of the artifact of each team
+    links : the token of the link of each student
+    clock : the clock of its pages
+    """
+
+    folder: Path
     artifacts: dict
     links: dict
     clock: Clock
 
 
-def picture(path, seed=0, shape=(60, 90, 3)):
+def write_photo(path, seed=0, shape=(60, 90, 3)):
     """Write a picture of noise and return its path."""
-    photos.write_picture(path, np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8))
+    rng = np.random.default_rng(seed)
+    photos.write_picture(path, rng.integers(0, 256, shape, dtype=np.uint8))
     return path
 
 
-def make(
+def make_gallery(
     folder, teams=TEAMS, *, marks=2, closes=CLOSES, names=None, title="{team}'s view", caption=""
 ):
-    """Make a gallery of these teams."""
-    store.create(folder / "gallery", "Spring", closes, marks)
-    with closing(store.connect(folder / "gallery")) as db:
+    """Make a gallery with one artifact of each team.
+
+    Parameters
+    ----------
+    folder : the gallery is made in `folder / "gallery"`
+    teams : the students of each team
+    marks : how many votes a student has
+    closes : when the vote ends
+    names : the names of students; by default, the id with a capital letter
+    title, caption : of each artifact
+    """
+    names = names or {}
+    gallery = folder / "gallery"
+    students = [student for members in teams.values() for student in members]
+    store.create(gallery, "Spring", closes, marks)
+    with closing(store.connect(gallery)) as db:
         with store.transaction(db):
             for team, members in teams.items():
-                for one in members:
-                    store.admit(db, store.Voter(one, (names or {}).get(one, one.title()), team))
+                for student in members:
+                    name = names.get(student, student.title())
+                    store.admit(db, store.Voter(student, name, team))
         for seed, team in enumerate(teams):
-            path = picture(folder / f"{team}.png", seed)
+            path = write_photo(folder / f"{team}.png", seed)
             entry = collect.Entry(team, title.format(team=team), caption, path)
-            collect.hang(db, folder / "gallery", entry)
+            collect.hang(db, gallery, entry)
         with store.transaction(db):
-            links = {one: tokens.new_link(db, one) for members in teams.values() for one in members}
-        artifacts = {one.team: one.id for one in store.artifacts(db).values()}
-    return Class(folder / "gallery", artifacts, links, Clock())
+            links = {student: tokens.new_link(db, student) for student in students}
+        artifacts = {artifact.team: artifact.id for artifact in store.artifacts(db).values()}
+    return SmallGallery(gallery, artifacts, links, Clock())
 
 
-def key(page):
+def form_key(page):
     """Return the key of the form in a page."""
     return re.search(r'name="key" value="([0-9a-f]{64})"', page)[1]
 
 
-class Answer(NamedTuple):
-    """What came back."""
+@dataclass(frozen=True)
+class Answer:
+    """The answer to a request."""
 
     status: int
     headers: dict
@@ -83,63 +110,69 @@ class Answer(NamedTuple):
 
 
 class Browser:
-    """A program that asks an ASGI application, keeps cookies, and takes an address as it stands."""
+    """A browser without a network: it calls an ASGI application, keeps cookies, and changes no address."""
 
     def __init__(self, application, address=ADDRESS):
-        self.application, self.address, self.cookies = application, urlsplit(address), {}
+        self.application = application
+        self.address = urlsplit(address)
+        self.cookies = {}
 
     def get(self, path, headers=None):
         return self.ask("GET", path, headers)
 
     def post(self, path, form=None, headers=None, body=None):
-        kind = {"content-type": "application/x-www-form-urlencoded"}
+        """Post a form, or the pieces of a body."""
+        all_headers = {"content-type": "application/x-www-form-urlencoded"} | (headers or {})
         pieces = [urlencode(form or {}, doseq=True).encode()] if body is None else body
-        return self.ask("POST", path, kind | (headers or {}), pieces)
+        return self.ask("POST", path, all_headers, pieces)
 
     def ask(self, method, path, headers=None, pieces=(b"",)):
-        cookies = "; ".join(f"{name}={value}" for name, value in self.cookies.items())
-        sent = (
-            {"host": self.address.netloc}
-            | ({"cookie": cookies} if cookies else {})
-            | (headers or {})
-        )
+        """Send a request whose body comes in pieces, and return the Answer."""
+        all_headers = {"host": self.address.netloc}
+        if self.cookies:
+            cookies = [f"{name}={value}" for name, value in self.cookies.items()]
+            all_headers["cookie"] = "; ".join(cookies)
+        all_headers |= headers or {}
         target, _, query = path.partition("?")
         scope = {
-            **{
-                "type": "http",
-                "method": method,
-                "http_version": "1.1",
-                "scheme": self.address.scheme,
-            },
-            **{"path": unquote_to_bytes(target).decode("latin-1"), "raw_path": target.encode()},
-            **{"query_string": query.encode(), "client": ("192.0.2.1", 5000), "root_path": ""},
-            "headers": [(name.encode(), value.encode("latin-1")) for name, value in sent.items()],
+            "type": "http",
+            "method": method,
+            "http_version": "1.1",
+            "scheme": self.address.scheme,
+            "path": unquote_to_bytes(target).decode("latin-1"),
+            "raw_path": target.encode(),
+            "query_string": query.encode(),
+            "client": ("192.0.2.1", 5000),
+            "root_path": "",
+            "headers": [
+                (name.encode(), value.encode("latin-1")) for name, value in all_headers.items()
+            ],
         }
-        with ThreadPoolExecutor(
-            1
-        ) as apart:  # a browser test before may have left a loop running in this one
-            answer = apart.submit(asyncio.run, asked(self.application, scope, pieces)).result()
-        for made in SimpleCookie(answer.headers.get("set-cookie", "")).values():
-            self.cookies[made.key] = made.value
+        # in a thread of its own: an earlier test in a browser may have left a loop running in this one
+        with ThreadPoolExecutor(1) as executor:
+            request = send_request(self.application, scope, pieces)
+            answer = executor.submit(asyncio.run, request).result()
+        for cookie in SimpleCookie(answer.headers.get("set-cookie", "")).values():
+            self.cookies[cookie.key] = cookie.value
         return answer
 
 
-async def asked(application, scope, pieces):
-    """Return the answer to one request, whose body comes in pieces."""
-    waiting = iter([*[(one, True) for one in pieces], (b"", False)])
+async def send_request(application, scope, pieces):
+    """Return the Answer to one request, whose body comes in pieces."""
+    remaining = iter([*[(piece, True) for piece in pieces], (b"", False)])
     messages = []
 
     async def receive():
-        body, more = next(waiting, (None, False))
+        body, has_more = next(remaining, (None, False))
         if body is None:
-            await asyncio.Event().wait()  # nobody goes away
-        return {"type": "http.request", "body": body, "more_body": more}
+            await asyncio.Event().wait()  # the client never disconnects
+        return {"type": "http.request", "body": body, "more_body": has_more}
 
     async def send(message):
         messages.append(message)
 
     await application(scope, receive, send)
-    headers = {name.decode(): value.decode("latin-1") for name, value in messages[0]["headers"]}
-    return Answer(
-        messages[0]["status"], headers, b"".join(one.get("body", b"") for one in messages[1:])
-    )
+    start, *rest = messages
+    headers = {name.decode(): value.decode("latin-1") for name, value in start["headers"]}
+    content = b"".join(message.get("body", b"") for message in rest)
+    return Answer(start["status"], headers, content)

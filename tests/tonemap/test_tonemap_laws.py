@@ -67,9 +67,9 @@ VARIATIONS = [(name, i) for name, varied in VARIED.items() for i in range(len(va
 # a neighbourhood of 3 pixels may turn light upside down, but nothing may break these
 FOR_ANY_KNOBS = (
     laws.stays_in_range,
-    laws.refuses_and_counts_what_is_no_radiance,
+    laws.refuses_and_counts_invalid_radiance,
     laws.answers_the_same_twice,
-    laws.shrugs_off_a_hot_pixel,
+    laws.is_robust_against_a_hot_pixel,
 )
 CLAIMS = [
     (name, law)
@@ -89,7 +89,7 @@ def test_every_operator(name, law):
 def test_every_lesson_that_has_a_fast_operator(name, law):
     if (name, law) != (
         "reinhard",
-        laws.refuses_and_counts_what_is_no_radiance,
+        laws.refuses_and_counts_invalid_radiance,
     ):  # it refuses without a count
         law(LESSONS[name])
 

@@ -8,7 +8,7 @@ import imagecodecs
 import numpy as np
 import pytest
 from PIL import Image
-from support.codec_features import require_gains_of_channels
+from support.codec_features import require_channel_gains
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
@@ -38,7 +38,7 @@ def truth(picture, E, path, headroom=HEADROOM):
 
 
 def seen_by_libultrahdr(path):
-    require_gains_of_channels()
+    require_channel_gains()
     return np.maximum(imagecodecs.ultrahdr_decode(path.read_bytes())[..., :3].astype(np.float32), 0)
 
 
@@ -429,7 +429,7 @@ def test_saturated_patches_of_libultrahdr_are_read_as_it_reads_them(name, tmp_pa
 
     Within 2 % of the brightest channel of each patch, which is half a level of its JPEGs.
     """
-    require_gains_of_channels()
+    require_channel_gains()
     row = np.repeat(PATCHES, PATCH_PIXELS, axis=0)
     light = np.ones((PATCH_PIXELS, len(row), 4), np.float16)
     light[..., :3] = row
