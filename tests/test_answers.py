@@ -1,4 +1,4 @@
-"""The answers to the exercises: what each file keeps to, and who gets them: instructors alone.
+"""The answers to the exercises: what each file contains, and that only instructors get them.
 
 `test_notebooks_run` runs them.
 """

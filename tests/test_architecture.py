@@ -28,7 +28,7 @@ def test_both_walks_through_the_code_name_more_than_a_dozen_files():
     assert [len(set(re.findall(r"[\w/]+\.py", one))) > 12 for one in walks] == [True, True]
 
 
-def test_every_room_of_the_package_stands_on_the_page():
+def test_every_folder_of_the_package_is_on_the_page():
     text = PAGE.read_text(encoding="utf8")
     rooms = [path.name for path in (ROOT / "hdrlab").iterdir() if (path / "__init__.py").exists()]
     assert not [room for room in rooms if not re.search(rf"\b{room}\b", text)]

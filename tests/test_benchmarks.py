@@ -1,4 +1,4 @@
-"""The benchmarks' own arithmetic: what is measured, what must hold of it, and what the exit code says."""
+"""The benchmarks' own code: measurements, promises and exit codes."""
 
 import json
 import math
@@ -105,7 +105,7 @@ def test_the_exit_code_is_1_where_a_hold_is_missed(limit, code, monkeypatch, tmp
     assert json.loads(figures.read_text())["work"]["fast"]["megabytes"] == 50
 
 
-def test_a_row_that_breaks_says_why_and_makes_the_exit_code_1(monkeypatch, capsys):
+def test_a_row_that_raises_an_error_is_reported_and_makes_the_exit_code_1(monkeypatch, capsys):
     def broken(subject, row, folder):
         raise RuntimeError("work, one: no such file")
 
@@ -119,7 +119,7 @@ def test_a_row_that_breaks_says_why_and_makes_the_exit_code_1(monkeypatch, capsy
     ("arguments", "known"),
     [(["nothing"], "speed"), (["speed", "--rows", "merge,nothing"], "gsolve70")],
 )
-def test_an_unknown_subject_or_row_is_refused_with_those_there_are(arguments, known, capsys):
+def test_an_unknown_subject_or_row_is_refused_with_a_list_of_known_ones(arguments, known, capsys):
     with pytest.raises(SystemExit) as ended:
         command.main(arguments)
     assert ended.value.code == 2
@@ -191,7 +191,7 @@ def test_a_hold_of_an_experiment_judges_number_by_number(hold, value, verdict):
 
 
 @pytest.mark.parametrize(("limit", "code"), [(2, 0), (1, 1)])
-def test_an_experiment_is_printed_beside_what_was_published(
+def test_an_experiment_is_printed_next_to_the_published_result(
     limit, code, monkeypatch, tmp_path, capsys
 ):
     row = experiment(
@@ -416,7 +416,7 @@ def test_a_command_is_charged_with_its_own_memory_and_not_with_that_of_its_paren
     assert usage.seconds > 0
 
 
-def test_a_command_that_fails_says_what_it_said():
+def test_a_failed_command_is_reported_with_its_message():
     with pytest.raises(RuntimeError, match="out of film"):
         measure.process([sys.executable, "-S", "-c", "raise SystemExit('out of film')"], one=False)
 

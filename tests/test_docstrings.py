@@ -1,4 +1,4 @@
-"""What the library says of itself: examples run, every public name is explained."""
+"""Docstrings: examples run, and every public name is documented."""
 
 import ast
 import doctest

@@ -1,8 +1,7 @@
-"""The formulas and numbers of a notebook and a sheet: each symbol is explained, each equation numbered.
+"""Formulas and numbers of notebooks and assignments: symbols are explained, equations are numbered.
 
-A page is what the cells of text of a notebook or of an assignment's sheet say. Its table is that of
-the first cell. A *display* is a formula between two $$. What a reader is told in a folded answer
-must be something that the page computes.
+A page is the text of a notebook or of an assignment. The table of symbols is in its first cell. A
+*display* is a formula between two $$. A number in a folded answer must be computed on the page.
 """
 
 import re

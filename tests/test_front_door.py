@@ -1,4 +1,4 @@
-"""What README, the guides and the workflows name is there: commands, options, files, versions, tiers."""
+"""Commands, options, files, versions and tiers that README, guides and workflows name exist."""
 
 import re
 import shlex

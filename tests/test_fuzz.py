@@ -1,4 +1,4 @@
-"""Damaged files for every reader: the fuzzer's own arithmetic, and a short run of it."""
+"""Damaged files for every reader: the fuzzer's own code, and a short run of it."""
 
 import os
 import signal
@@ -27,7 +27,7 @@ def test_a_file_is_the_same_whenever_its_seed_and_number_are():
 
 
 @pytest.mark.parametrize("change", mutations.CHANGES, ids=lambda one: one.__name__)
-def test_every_change_takes_any_file_and_changes_most(change):
+def test_every_mutation_works_on_any_file_and_changes_most(change):
     rng, changed = mutations.generator(0, change.__name__, 0), 0
     for _ in range(40):
         for seed in (*SEEDS, b"", b"1"):
@@ -37,7 +37,7 @@ def test_every_change_takes_any_file_and_changes_most(change):
     assert changed > 10
 
 
-def test_what_goes_wrong_is_made_as_small_as_it_goes_wrong():
+def test_a_failing_file_is_minimized_while_it_still_fails():
     data = bytes(3000) + b"bad" + bytes(700) + b"!" + bytes(90)
     assert minimise.minimised(data, lambda one: b"bad" in one and b"!" in one) == b"bad!"
     assert len(minimise.minimised(data, lambda one: b"bad" in one, tries=3)) >= 3
@@ -68,7 +68,7 @@ WRONG = {
 
 @pytest.mark.papers
 @pytest.mark.parametrize("kind", WRONG)
-def test_whatever_is_neither_a_result_nor_a_clear_error_is_a_finding(kind, tmp_path, monkeypatch):
+def test_anything_but_a_result_or_a_clear_error_is_a_finding(kind, tmp_path, monkeypatch):
     monkeypatch.setattr(warnings, "filters", [*warnings.filters])
     path = tmp_path / "fuzzed.txt"
     path.write_bytes(b"")
@@ -77,7 +77,7 @@ def test_whatever_is_neither_a_result_nor_a_clear_error_is_a_finding(kind, tmp_p
 
 
 @pytest.mark.papers
-def test_words_past_python_are_a_finding_and_a_clear_error_is_none(tmp_path):
+def test_output_that_bypasses_python_is_a_finding_and_a_clear_error_is_not(tmp_path):
     path = tmp_path / "fuzzed.txt"
     path.write_bytes(b"")
     reader = readers.Reader(

@@ -1,4 +1,4 @@
-"""Who may import whom: the layers of the house, read from the source."""
+"""Which module may import which: the layers of hdrlab, read from its source."""
 
 import ast
 import sys
@@ -221,7 +221,7 @@ def test_an_import_of_another_layer_is_found():
     assert not any(wrong_in(path, 0, target) for target in allowed)
 
 
-def test_what_is_read_here_are_the_imports():
+def test_the_reader_of_imports_finds_all_kinds_of_imports():
     """The reader of imports sees plain ones, those from a package, and those inside functions."""
     found = {target for _, _, target in imports(HOME / "pipeline/corrections.py")}
     assert {

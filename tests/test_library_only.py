@@ -1,4 +1,4 @@
-"""With NumPy, SciPy and Pillow alone, photographs become a map and a picture; what needs more names it."""
+"""With NumPy, SciPy and Pillow only, photos become a map and an image; an error names other packages."""
 
 import subprocess
 import sys
@@ -112,7 +112,7 @@ def test_pillow_decodes_what_imagecodecs_does(form, tmp_path):
     assert np.array_equal(codecs.decode_by_pillow(data), codecs.DECODERS[form](data, None))
 
 
-def test_the_chapters_are_there_by_name_and_nothing_else_is():
+def test_chapters_are_attributes_of_hdrlab_and_unknown_names_raise_an_error():
     assert hdrlab.tonemap.__name__ == "hdrlab.tonemap" and "pipeline" in dir(hdrlab)
     with pytest.raises(AttributeError, match="no attribute 'cooking'"):
         hdrlab.cooking  # noqa: B018

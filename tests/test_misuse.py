@@ -1,7 +1,7 @@
-"""Whatever is given to a public verb: a clear ValueError, or the right answer; and it is left as it was.
+"""Every public function, given unusual input, raises a clear ValueError or is right, and keeps its input.
 
-A public verb is a function whose docstring says what it `Raises`, and which takes photographs or light first:
-it is found by itself. A new one that takes what VALUES does not have is named by a test.
+The tests find public functions automatically: their docstring has a section `Raises`, and their first
+argument is a photo or radiance. A test names new functions whose arguments are not in VALUES.
 """
 
 import inspect
@@ -272,7 +272,7 @@ def test_every_public_verb_is_given_what_it_needs():
 
 @pytest.mark.parametrize(("verb", "name"), GATED)
 @pytest.mark.filterwarnings("ignore")
-def test_what_means_nothing_is_refused_in_words(verb, name):
+def test_invalid_values_are_refused_with_a_message(verb, name):
     for mistake, make in MISTAKES[name].items():
         if mistake in ANSWERED.get((verb, name), ()):
             continue
@@ -312,7 +312,7 @@ NEEDS_ARRAYS = (*LESSONS, "align.shift.shift")
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
-def test_the_order_in_memory_and_the_kind_of_container_change_nothing(verb):
+def test_memory_layout_and_container_type_do_not_change_the_result(verb):
     first = call(verb, arguments(verb))
     for form, change in FORMS.items():
         if form == "an object with only __array__" and verb in NEEDS_ARRAYS:
@@ -349,7 +349,7 @@ LIT = [
 
 
 @pytest.mark.parametrize("verb", LIT)
-def test_unusual_light_gives_finite_numbers_or_is_refused_in_words(verb):
+def test_unusual_radiance_gives_finite_numbers_or_a_clear_error(verb):
     for kind, make in AWKWARD.items():
         given = arguments(verb)
         for name in {"L", "E", "F"} & given.keys():
@@ -375,7 +375,7 @@ def test_half_floats_give_what_their_values_give(verb):
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
-def test_inputs_are_left_alone_and_their_layout_order_and_threads_change_nothing(verb):
+def test_inputs_do_not_change_and_their_layout_order_and_threads_do_not_change_the_result(verb):
     given = arguments(verb)
     first = call(verb, given)
     locked = {}

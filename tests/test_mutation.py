@@ -1,4 +1,4 @@
-"""What `python -m benchmarks mutation` changes in a file, and how it learns whether a test sees it."""
+"""`python -m benchmarks mutation`: the changes that it makes, and how it finds out whether a test fails."""
 
 import ast
 

@@ -1,4 +1,4 @@
-"""What every notebook keeps to, read from its file; test_notebooks_run runs them."""
+"""Rules for every notebook, checked without running it; test_notebooks_run runs them."""
 
 import ast
 import re

@@ -1,7 +1,7 @@
-"""The published experiments, run again: what `python -m benchmarks papers` holds.
+"""The published experiments that `python -m benchmarks papers` repeats.
 
-Where a whole experiment takes too long, the test's name says how much of it is run; the limits are
-the same.
+If a complete experiment takes too long, the name of the test says how much of it runs. The limits are the
+same.
 """
 
 from pathlib import Path
@@ -101,7 +101,7 @@ def test_every_method_that_is_offered_has_a_row(shared):
     )
 
 
-def test_a_method_that_refuses_a_bracket_says_so_in_a_row_of_its_own(shared):
+def test_a_method_that_refuses_a_bracket_has_a_row_with_its_error(shared):
     shared("crf_curves")
     answers = iter([True, False, True])
 

@@ -1,4 +1,4 @@
-"""Where a notebook names a paper first, it says where the paper is."""
+"""A notebook links a paper where it first cites it."""
 
 import json
 import re

@@ -1,8 +1,8 @@
-"""What notebooks say of their own numbers: each sentence stands there, and the numbers bear it out.
+"""Sentences of notebooks that state a number: each is in its notebook, and the number is right.
 
-A row is a sentence, or the piece of it that could become untrue, and what makes it true, asked of
-the names that the notebook's own cells have made, in the kernel that ran them (see `runs`). A
-number is true if it rounds to the digits that the sentence has.
+SENTENCES has, for each notebook, a sentence or the part of it that could become false, and a function
+that checks it. The function gets the variables of the notebook, in the kernel that ran it (see
+support/executed_notebooks.py). A number is right if it rounds to the digits of the sentence.
 """
 
 import contextlib

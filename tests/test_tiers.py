@@ -1,4 +1,4 @@
-"""The tiers of tests: their lists name what there is, and their report hides nothing."""
+"""The tiers of tests: their lists name existing files, and the report of results is complete."""
 
 import re
 import signal
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 
 
 @pytest.mark.parametrize("file", LONG_FILES)
-def test_a_file_that_begins_first_exists(file):
+def test_each_file_of_the_list_of_long_tests_exists(file):
     assert (ROOT / file).is_file()
 
 

@@ -1,4 +1,4 @@
-"""The welcome notebook is the door: it leads to every other one, and to none that is missing."""
+"""The welcome notebook links to every other notebook, and all links work."""
 
 import re
 from pathlib import Path

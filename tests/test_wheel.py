@@ -1,4 +1,4 @@
-"""An installed wheel does all that a clone does."""
+"""An installed wheel can do all that a clone can."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What `align.cerman` promises: shift and rotation to a fraction of a pixel."""
+"""`align.cerman`: shift and rotation to a fraction of a pixel."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What `align.mtb` promises: the equations of Ward's paper, and offsets to the pixel."""
+"""`align.mtb`: the equations of Ward's paper, and offsets to the pixel."""
 
 import cv2
 import numpy as np

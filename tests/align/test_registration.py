@@ -1,4 +1,4 @@
-"""Registration beyond a shift, and what it does to photographs: homographies, resampling, and the choice."""
+"""Registration beyond a shift: homographies, resampling of photos, and the choice of a method."""
 
 from dataclasses import replace
 
@@ -137,7 +137,7 @@ def test_shifts_by_whole_pixels_are_cropped_without_resampling():
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("g", [None, true_g("film")])
-def test_an_even_wall_keeps_its_level_whatever_the_response(dtype, g):
+def test_a_uniform_wall_keeps_its_pixel_value_for_any_response(dtype, g):
     for level in (0, 7, 100, 249, 255):
         wall = np.full((2, 20, 30, 3), level, dtype) * dtype(257 if dtype == np.uint16 else 1)
         moved, _ = resample.photographs(wall, [[0.4, -0.3], [0, 0]], g)

@@ -1,4 +1,4 @@
-"""What `align.shift` promises."""
+"""`align.shift`: shifting images by whole pixels."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Assorted pixels: what range one photograph of many exposures wins, and what it pays."""
+"""Assorted pixels: the range that one photo with several exposures gains, and the resolution it loses."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Coded exposure: which shutters can be undone, and what a coded picture is worth."""
+"""Coded exposure: which shutter codes can be inverted, and how much a coded photo improves deblurring."""
 
 import numpy as np
 import pytest

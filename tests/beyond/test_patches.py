@@ -1,4 +1,4 @@
-"""Patch-based HDR: closed forms, PatchMatch against an exhaustive search, scenes with truth."""
+"""Patch-based HDR: closed forms, PatchMatch against an exhaustive search, scenes with a known truth."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""One lens and three sensors: closed forms of the rules, and scenes with truth."""
+"""One lens and three sensors: closed forms of the merging rules, and scenes with a known truth."""
 
 import numpy as np
 import pytest

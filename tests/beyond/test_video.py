@@ -1,4 +1,4 @@
-"""HDR video from exposures in turns, and tone mapping that does not flicker: films with truth."""
+"""HDR video from alternating exposures, and tone mapping without flicker, on films with a known truth."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A student at work: a handout in JupyterLab, a cell that is edited, a check that goes from red to green."""
+"""A student edits a cell of a handout in JupyterLab until its check passes."""
 
 import shutil
 
@@ -67,7 +67,7 @@ def answered(page, name, word):
     return output
 
 
-def test_a_check_goes_from_red_to_green_as_a_cell_is_edited(lab, page, axe, handout):
+def test_a_failing_check_passes_after_the_student_edits_the_cell(lab, page, axe, handout):
     try:
         lab.open(page, handout)
         page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")

@@ -1,4 +1,4 @@
-"""wipe, blink and the Detail Brush on a plain page: pointer, finger and keys, and what they show."""
+"""wipe, blink and the Detail Brush on a page without a kernel, with mouse, finger and keyboard."""
 
 import base64
 

@@ -1,4 +1,4 @@
-"""A question covers what follows it until the reader answers, in JupyterLab and in Notebook 7.
+"""A question covers its answer until the reader answers, in JupyterLab and in Notebook 7.
 
 The same on the site is tested in `test_site_in_a_browser`.
 """

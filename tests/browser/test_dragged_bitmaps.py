@@ -1,4 +1,4 @@
-"""The figure of two bitmaps: the bits that differ are those that alignment by bitmaps counts."""
+"""The figure of two bitmaps counts the same differing bits as alignment by bitmaps."""
 
 import re
 

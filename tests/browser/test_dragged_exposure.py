@@ -1,4 +1,4 @@
-"""The figure of the exposure: what a dragged shutter shows is what the library's camera takes."""
+"""The figure of the exposure: a dragged shutter shows what hdrlab's simulated camera records."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The figure of Fattal's operator in one dimension: its steps and its new line are the library's."""
+"""The figure of Fattal's operator in one dimension shows hdrlab's gradients and its new line."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The figure of the gain map: what a dragged screen shows is what the library computes."""
+"""The figure of the gain map: a dragged headroom shows what hdrlab computes."""
 
 import re
 

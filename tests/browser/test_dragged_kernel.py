@@ -1,4 +1,4 @@
-"""The figure of the bilateral filter: each weight and each mean that it draws is the library's."""
+"""The figure of the bilateral filter draws hdrlab's weights and means."""
 
 import re
 

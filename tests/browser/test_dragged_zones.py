@@ -1,4 +1,4 @@
-"""The figure of Reinhard's operator: what the dragged handles show is what the library computes."""
+"""The figure of Reinhard's operator: dragged handles show what hdrlab computes."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The report on a submission that means harm, opened as a reader opens it: nothing of it runs."""
+"""The feedback page of a hostile submission runs none of its code in a browser."""
 
 from pathlib import Path
 

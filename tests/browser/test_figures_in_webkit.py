@@ -1,4 +1,4 @@
-"""The figures whose object is dragged, in WebKit, the engine of Safari.
+"""The figures with draggable objects in WebKit, the engine of Safari.
 
 Selenium drives it. It needs WebKitWebDriver (Debian's package webkit2gtk-driver) and a display, such as
 that of `xvfb-run`.

@@ -1,4 +1,4 @@
-"""The gallery as a student meets it: by keyboard alone, on a telephone, and without scripts."""
+"""The gallery for students: with the keyboard alone, on a phone, and without scripts."""
 
 import sys
 from contextlib import closing
@@ -106,7 +106,7 @@ def test_a_ballot_is_cast_with_the_keyboard_alone(served, page):
     assert page.problems == []
 
 
-def test_the_first_stop_of_the_keyboard_leads_to_the_ballot(served, page):
+def test_the_first_tab_stop_skips_to_the_ballot(served, page):
     enter(page, served, "ann2")
     page.keyboard.press("Tab")
     assert focused(page)[3] == "To your ballot"
@@ -211,7 +211,7 @@ def test_two_pictures_are_moved_as_one(served, page):
     assert 0 < before[0] < page.evaluate(part)[0]
 
 
-def test_the_results_are_told_after_the_end(served, page, axe, tmp_path):
+def test_the_results_are_shown_after_the_end_of_the_vote(served, page, axe, tmp_path):
     room = small.make_gallery(tmp_path, TEAMS, closes=datetime.now(UTC) + timedelta(seconds=3600))
     from benchmarks import gallery as bench
 

@@ -1,4 +1,4 @@
-"""The figure of gsolve: the sum of squares and its curve are the library's, for every ln E of a reader."""
+"""The figure of gsolve shows hdrlab's sum of squares and curve for all values of ln E that a reader sets."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The switch beside a picture for HDR screens, pressed."""
+"""The switch next to an image for HDR screens."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Predictions on a plain page: by pointer, by keys, without an answer, answered before, read aloud."""
+"""Prediction questions on a page without a kernel: mouse, keyboard, saved answers, screen readers."""
 
 import imageio.v3 as iio
 import numpy as np
@@ -65,7 +65,7 @@ def test_a_choice_is_compared_with_the_truth_and_kept(ask):
     assert page.get_by_role("button").count() == 0
 
 
-def test_a_number_is_given_by_keys_and_told_how_far_it_is(ask):
+def test_a_number_is_typed_and_its_distance_from_the_answer_is_shown(ask):
     page = ask("number")
     page.get_by_role("slider", name="your answer").press("End")
     check(page)
@@ -126,7 +126,9 @@ def test_the_field_of_a_curve_is_dark_where_jupyterlab_is_and_both_curves_stand_
 
 
 @pytest.mark.parametrize(("across", "told"), [(0.99, "Yes."), (0.5, "You were 90 pixels away.")])
-def test_a_pixel_is_marked_by_the_pointer_and_told_how_far_it_is(ask, across, told):
+def test_a_pixel_is_marked_with_the_pointer_and_its_distance_from_the_answer_is_shown(
+    ask, across, told
+):
     page = ask("place")
     box = page.locator("canvas").bounding_box()
     page.mouse.click(box["x"] + across * box["width"], box["y"] + 20)

@@ -1,4 +1,4 @@
-"""The figure of the weighted mean: what a pressed pixel shows is what the library computes."""
+"""The figure of the weighted mean: a pressed pixel shows what hdrlab computes."""
 
 import re
 
@@ -62,7 +62,7 @@ def test_dragging_over_the_photo_shows_the_mean_of_the_library(pressed):
     assert mean_shown(pressed, y, x) == pytest.approx(E[y, x, GREEN], rel=6e-3)
 
 
-def test_arrow_keys_move_the_pixel_and_reach_nobody_else(pressed):
+def test_arrow_keys_move_the_pixel_and_reach_no_other_key_handler(pressed):
     pressed.get_by_role("application").focus()
     pressed.keyboard.press("ArrowRight")
     pressed.keyboard.press("Shift+ArrowUp")

@@ -1,4 +1,4 @@
-"""The picture of a report is pressed: the page shows what the library says about the pixel."""
+"""A reader presses a pixel in a report, and the page explains its radiance."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The report as a reader sees it: on a wide screen and on a telephone."""
+"""The report on a wide screen and on a phone."""
 
 from dataclasses import replace
 

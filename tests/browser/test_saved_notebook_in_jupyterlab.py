@@ -1,4 +1,4 @@
-"""A notebook that was saved with its widgets, opened again with the settings of `hdrlab lab`, and not run."""
+"""A notebook saved with its widgets opens in `hdrlab lab` without being run again."""
 
 import json
 

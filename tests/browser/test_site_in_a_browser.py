@@ -252,7 +252,7 @@ def test_the_menu_of_a_narrow_page_opens_and_closes_by_the_keyboard(opened, name
     assert not menu.is_visible()
 
 
-def test_the_first_key_leads_past_the_menu(opened):
+def test_the_first_tab_stop_skips_the_menu(opened):
     page = opened("notebooks/00_welcome")
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")

@@ -1,4 +1,4 @@
-"""A deck of slides as a lecturer shows it: opened from its folder, with the network blocked."""
+"""A slide deck opened from its folder, with the network blocked."""
 
 import re
 import subprocess
@@ -127,7 +127,7 @@ def test_page_down_turns_the_page_from_within_a_widget_and_arrow_keys_do_not(ope
     assert opened.evaluate(NUMBER) == before + 1
 
 
-def test_the_speakers_window_shows_the_folded_text(opened):
+def test_the_speaker_view_shows_the_folded_text(opened):
     show(opened, number_of(opened, ".notes strong"))
     with opened.expect_popup() as popup:
         opened.keyboard.press("s")

@@ -1,4 +1,4 @@
-"""The widgets' scripts on a plain page: no kernel answers, and no server is asked for anything."""
+"""The scripts of the widgets on a page without a kernel and without network requests."""
 
 import imageio.v3 as iio
 import numpy as np
@@ -155,7 +155,7 @@ def test_pictures_side_by_side_are_folded_on_screen_and_open_on_paper(page):
     assert not summary.is_visible()
 
 
-def test_arrow_keys_move_through_the_steps_and_reach_nobody_else(player):
+def test_arrow_keys_move_through_the_steps_and_reach_no_other_key_handler(player):
     slider = player.get_by_role("slider", name="step")
     slider.focus()
     for k in (1, 2, 3):
@@ -268,7 +268,7 @@ def test_captions_name_the_sliders_and_give_the_unit_to_screen_readers(page):
     assert alt(page) == "Gray, gray level 200 of 255"
 
 
-def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
+def test_a_page_of_the_site_links_to_the_page_with_running_python(tuner):
     tuner.evaluate("window.hdrlab = { running: '../installing.html' }")
     tuner.get_by_role("slider").press("End")
     assert (
@@ -290,7 +290,7 @@ def answer(page, level, at):
     )
 
 
-def test_where_python_answers_a_stored_picture_is_shown_until_it_does_and_earlier_answers_come_too_late(
+def test_a_stored_image_is_shown_until_python_answers_and_outdated_answers_are_ignored(
     tuner,
 ):
     answer(tuner, 120, [100])
@@ -363,7 +363,7 @@ def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):
     assert page.evaluate("window.model.get('at')") == [0, 3]
 
 
-def test_a_problem_of_the_function_is_told_beside_the_sliders(tuner):
+def test_an_error_of_the_function_is_shown_next_to_the_sliders(tuner):
     tuner.evaluate("""() => {
         window.model.set("problem", "ValueError: too light");
         window.model.set("answers", 1);

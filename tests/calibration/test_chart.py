@@ -1,4 +1,4 @@
-"""A chart of 24 patches: found by its corners, read, and turned into a response."""
+"""A color chart with 24 patches: found from its corners, measured, and turned into a response curve."""
 
 import numpy as np
 import pytest

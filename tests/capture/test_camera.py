@@ -1,4 +1,4 @@
-"""The simulated camera: what comes out is known from what went in."""
+"""The simulated camera: closed forms of its output for a known scene."""
 
 import numpy as np
 import pytest

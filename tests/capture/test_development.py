@@ -129,7 +129,7 @@ def test_in_light_of_an_unknown_color_the_true_pattern_is_one_of_two_candidates(
     assert np.array_equal(candidates[0], np.array([2, 1, 0])[candidates[1]])  # red and blue swapped
 
 
-def test_a_scene_and_its_blue_twin_cannot_be_told_apart():
+def test_a_scene_and_its_blue_twin_cannot_be_distinguished():
     E = in_neutral_light("workshop")
     c = mosaic.tile([[0, 1], [1, 2]], E.shape[:2])
     twin = mosaic.tile([[2, 1], [1, 0]], E.shape[:2])

@@ -1,4 +1,4 @@
-"""Exposure: the identities of the text, and what dials really mean."""
+"""Exposure: identities of exposure values, and the true values of camera dials."""
 
 import numpy as np
 import pytest

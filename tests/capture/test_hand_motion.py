@@ -1,4 +1,4 @@
-"""`hand_motion` and `filters.warp`: homographies that are what they say, and light that stays light."""
+"""`hand_motion` and `filters.warp`: simulated camera shake, and resampling that keeps energy."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A lens that scatters: what it takes from one pixel, and where that light goes."""
+"""A lens that scatters light: how much a pixel loses, and where the light goes."""
 
 import numpy as np
 import pytest

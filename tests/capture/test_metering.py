@@ -1,4 +1,4 @@
-"""Metering: whom each mode asks, and the exposure that follows."""
+"""Metering: the pixels that each mode weights, and the exposure that follows."""
 
 from functools import partial
 

@@ -1,4 +1,4 @@
-"""Brackets in which something moves: every photograph, and the truth of it."""
+"""Simulated brackets with moving objects: each photo and the true radiance map."""
 
 import numpy as np
 import pytest

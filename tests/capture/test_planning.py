@@ -1,4 +1,4 @@
-"""A planned bracket covers the scene, with no more photographs than it takes."""
+"""A planned bracket covers the scene with as few photos as possible."""
 
 from itertools import combinations_with_replacement
 
@@ -142,7 +142,7 @@ def test_a_plan_does_not_depend_on_earlier_plans():
     assert planning.plan_by_noise(1, 50, 15).names == first.names
 
 
-def test_a_bracket_around_a_time_takes_the_nearest_that_the_camera_has():
+def test_a_bracket_around_a_time_uses_the_nearest_times_of_the_camera():
     dial = exposure.read_dial(["bulb", "1/30", "1/125", "1/60", "1/15", "0.25s", "1/4000"])
     chosen = planning.around(1 / 60, dial.values, 3, 2.0)
     assert [dial.names[j] for j in chosen] == ["1/125", "1/60", "1/15"]

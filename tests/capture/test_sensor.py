@@ -1,4 +1,4 @@
-"""The sensor with its converter, what fits into one exposure, and what its own noise tells of it."""
+"""The sensor and its converter: the range of one exposure; gain and read noise estimated from photos."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_the_range_is_largest_at_an_intermediate_gain():
 # Levels
 
 
-def test_half_of_the_levels_lie_in_the_brightest_stop_and_12_bits_have_16_for_each_of_8():
+def test_half_of_the_levels_are_in_the_brightest_stop_and_12_bits_have_16_times_as_many_as_8():
     eight, twelve = ranges.levels_per_stop(8), ranges.levels_per_stop(12)
     assert eight[0] == 128 and eight.sum() == 255 and twelve.sum() == 4095
     assert np.array_equal(twelve[:8], 16 * eight)
@@ -133,7 +133,7 @@ def test_the_signal_over_noise_is_that_of_many_photographs():
 # The picture
 
 
-def test_vignetting_takes_its_share_in_the_corners_and_nothing_in_the_middle():
+def test_vignetting_darkens_the_corners_by_its_fraction_and_not_the_center():
     bright = sensor.falloff((101, 151), 0.4)
     assert bright[50, 75] == 1 and np.allclose(bright[[0, 0, -1, -1], [0, -1, 0, -1]], 0.6)
     b = camera.shoot(

@@ -1,4 +1,4 @@
-"""Whatever a user types or names, it ends in one line and exit code 2, and never looks like a bug."""
+"""Wrong input of a user ends a command with one line and exit code 2, without a traceback."""
 
 import numpy as np
 import pytest

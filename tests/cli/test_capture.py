@@ -1,4 +1,4 @@
-"""`hdrlab plan`, `hdrlab meter` and `hdrlab correct`: what they decide, and why, in words."""
+"""`hdrlab plan`, `hdrlab meter` and `hdrlab correct`: their decisions and explanations."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""hdrlab check, grade, doctor and course, as they are typed."""
+"""`hdrlab check`, `grade`, `doctor` and `course` on the command line."""
 
 import json
 from pathlib import Path
@@ -34,7 +34,7 @@ def typed(tmp_path, monkeypatch, capsys):
     return typed
 
 
-def test_check_says_promise_by_promise_what_holds(typed):
+def test_check_prints_the_outcome_of_each_promise(typed):
     code, out, _ = typed("check", "hw2.py", "--plan", "plan.toml", "--task", "hat")
     assert code == 0 and "✗" in out and "Likely mistake: " in out and "of 8 points" in out
     assert "Hint 1" not in out
@@ -81,7 +81,7 @@ def test_grade_draws_each_students_inputs_from_a_secret_file(typed, tmp_path):
 
 
 @pytest.mark.parametrize("secret", [(), ("--student", "ada", "--secret-file", "secret")])
-def test_that_a_score_is_for_practice_is_said_once(typed, secret):
+def test_a_practice_score_is_announced_once(typed, secret):
     words = ("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
     _, _, err = typed(*words, *secret)
     assert err.count("practice") == err.count("not for credit") == 1

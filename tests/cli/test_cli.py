@@ -1,4 +1,4 @@
-"""What a shell user may expect of the `hdrlab` command."""
+"""The command line of hdrlab: outputs, options, messages and exit codes."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""`hdrlab compare`, and the sign of life of commands that take their time."""
+"""`hdrlab compare`, and the progress messages of slow commands."""
 
 import io
 import re

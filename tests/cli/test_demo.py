@@ -1,4 +1,4 @@
-"""The demo: the main job on a scene whose radiance is known."""
+"""`hdrlab demo`: a bracket of a scene with known radiance becomes a radiance map."""
 
 import cv2
 import numpy as np

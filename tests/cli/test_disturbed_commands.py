@@ -1,4 +1,4 @@
-"""Every command that writes, killed, stopped, without room or rights: one clear line, nothing half written.
+"""Commands that are killed, interrupted, or lack disk space or permissions leave no half-written file.
 
 A command that was disturbed, then run again, leaves the files of a run that nobody disturbed, and
 nothing else: no temporary file or folder of the first run.
@@ -389,7 +389,7 @@ def test_a_killed_command_that_is_run_again_gives_the_result_of_an_undisturbed_r
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_stopped_command_says_so_in_a_line_and_leaves_nothing(name, places):
+def test_an_interrupted_command_prints_one_line_and_leaves_no_files(name, places):
     place = places(name)
     for sent, moment in SIGNALS.items():
         if COMMANDS[name].is_slow and sent != "SIGINT":

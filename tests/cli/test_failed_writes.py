@@ -1,4 +1,4 @@
-"""A command whose disk is full, read-only or gone changes nothing, says why, and can be run again.
+"""A command that cannot write its output changes nothing, names the reason, and can be run again.
 
 The disk is a small file system in memory, which root may mount; elsewhere these tests are skipped.
 """

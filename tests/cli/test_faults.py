@@ -1,4 +1,4 @@
-"""A full disk, Ctrl-C, no HOME: a command ends in one line or with its result, and nothing is lost.
+"""A full disk, Ctrl-C or a missing HOME ends a command in one line, or with its result; no file is lost.
 
 The commands are those that write most. Each runs as a process, in a folder of its own.
 """
@@ -189,7 +189,7 @@ def test_a_site_in_a_folder_that_is_gone_ends_in_a_line(here, made):
     "command",
     ["assemble", "tonemap", "grade", pytest.param("site", marks=pytest.mark.notebooks)],
 )
-def test_a_disk_that_refuses_is_told_in_a_line(command, refusal, here, made):
+def test_a_full_or_read_only_disk_is_reported_in_one_line(command, refusal, here, made):
     full = refusal == "a full disk"
     if command in MAIN:
         (here / MAIN[command]).write_bytes(OLD)
@@ -249,7 +249,7 @@ def test_two_runs_into_one_folder_leave_a_whole_result(command, here, made):
 
 
 @pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
-def test_nobody_need_read_what_is_printed(command, here, made):
+def test_a_command_works_when_its_standard_output_is_closed(command, here, made):
     process = start(command, here)
     process.stdout.close()
     process.stdout = None

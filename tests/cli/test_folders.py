@@ -1,4 +1,4 @@
-"""Promises of the commands that take a folder with many photos."""
+"""Commands that read a folder with many photos."""
 
 from datetime import datetime, timedelta
 

@@ -1,4 +1,4 @@
-"""Commands that take a while: what a terminal shows meanwhile, and what Ctrl-C leaves behind."""
+"""Slow commands: their progress on a terminal, and what Ctrl-C leaves behind."""
 
 import os
 import select

@@ -1,4 +1,4 @@
-"""An output is never an input: what a command reads is there, byte for byte, when it ends."""
+"""A command never overwrites its input."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""A command whose outputs lie in the folder of the photos gives the same result a second time."""
+"""A command that writes into the folder of the photos gives the same result when it is repeated."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""hdrlab why: what each photo says about a pixel of a map that `hdrlab assemble --why` made."""
+"""`hdrlab why` explains a pixel of a map that `hdrlab assemble --why` made, photo by photo."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_assemble_names_the_file_and_its_size(folder, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("pixel", ["90,20", "20,60", "20", "a,b", "20,3.5", "20,30,40"])
-def test_a_pixel_that_is_none_is_one_line_with_exit_code_2(folder, pixel, capsys):
+def test_an_invalid_pixel_gives_one_line_and_exit_code_2(folder, pixel, capsys):
     code, out, error = run("why", folder / "room.exr", pixel, capsys=capsys)
     assert (code, out) == (2, "") and len(error.splitlines()) == 1
     if pixel in ("90,20", "20,60"):

@@ -1,4 +1,4 @@
-"""Arrays are checked once, and an error says what was expected and what came."""
+"""Validation of arrays: an error states the expected and the given shape, dtype and range."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A bracket is checked, and sorted from the shortest exposure to the longest."""
+"""Validation of brackets, and their order from the shortest exposure to the longest."""
 
 from dataclasses import replace
 from itertools import permutations

@@ -1,4 +1,4 @@
-"""hdrlab.core.colour: luminance, colour given back, display encoding."""
+"""hdrlab.core.colour: luminance, restored colors, display encoding."""
 
 import cv2
 import numpy as np

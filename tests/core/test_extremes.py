@@ -1,4 +1,4 @@
-"""Robust extremes: one odd pixel sets no scale, and black has no logarithm."""
+"""Robust extremes: a single odd pixel does not set the scale, and black has no logarithm."""
 
 import numpy as np
 import pytest

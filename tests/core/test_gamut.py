@@ -1,4 +1,4 @@
-"""hdrlab.core.gamut: out-of-gamut colours, other primaries, values that say nothing."""
+"""hdrlab.core.gamut: out-of-gamut colors, other primaries, invalid values."""
 
 import numpy as np
 import OpenEXR

@@ -1,4 +1,4 @@
-"""hdrlab.core.picture: the plain figures of a picture."""
+"""hdrlab.core.picture: statistics of an image."""
 
 import numpy as np
 import pytest

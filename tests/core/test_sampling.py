@@ -1,4 +1,4 @@
-"""Samples: a calibration sees the same point of the scene in every frame."""
+"""Samples for a calibration: the same points of the scene in every photo."""
 
 import numpy as np
 import pytest

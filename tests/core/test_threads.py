@@ -1,4 +1,4 @@
-"""Work in threads: the answers of one thread, in their order, and its errors."""
+"""Work in threads gives the results of one thread, in the same order, and raises its errors."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""Brightness transfer: ranks to ranks, whatever the number of pixels; NaN where a rank has no place."""
+"""Brightness transfer by matching ranks, for photos of any size; NaN for ranks without a partner."""
 
 import numpy as np
 import pytest

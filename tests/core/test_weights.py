@@ -1,4 +1,4 @@
-"""Weights: symmetric, 1 in the middle, nothing at both ends."""
+"""Weighting functions: symmetric, 1 in the middle, 0 at both ends."""
 
 import numpy as np
 import pytest

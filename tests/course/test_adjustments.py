@@ -1,4 +1,4 @@
-"""An instructor's own decisions: extensions, points by hand, comments and held scores."""
+"""Decisions of an instructor: extensions, points by hand, comments and withheld scores."""
 
 import csv
 from datetime import UTC, datetime, timedelta

@@ -1,4 +1,4 @@
-"""Anonymous grading: readers see codes, and the names come back at the end."""
+"""Anonymous grading: readers see codes, and the names return at the end."""
 
 import csv
 import io
@@ -234,7 +234,7 @@ def test_neither_rows_nor_times_tell_the_order_of_the_roster(anonymous):
 
 
 @pytest.mark.grading
-def test_a_reader_finds_the_code_and_what_the_checks_said(anonymous):
+def test_a_reader_finds_the_code_and_the_results_of_the_checks(anonymous):
     folder, _ = anonymous
     texts = [path.read_text(encoding="utf8") for path in (folder / "submissions").iterdir()]
     assert all("def hat" in text for text in texts)

@@ -1,7 +1,6 @@
-"""In a tier for credit an attack gains nothing, touches nobody else's answers, and leaves nothing behind.
+"""In a tier for credit, an attack earns nothing, changes no other result, and leaves nothing behind.
 
-The attacks are those of tests/attacks; that they work where nothing stops them is for
-test_attacks_naive to show.
+The attacks are those of tests/attacks. test_attacks_naive shows that they work where nothing stops them.
 """
 
 import re

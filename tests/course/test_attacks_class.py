@@ -1,8 +1,7 @@
-"""A class that holds attackers is graded to the end: each gets nothing, the others what they earned.
+"""A class with attackers is graded completely: attackers get no points, and the others what they earned.
 
-Here the attacks of tests/attacks that aim at the grader, its results and who reads them are handed
-in as files, and go the whole way: read, checked under pytest, written down, and turned into
-reports.
+The attacks of tests/attacks on the grader, its results and their readers are submitted as files. The
+grader reads and checks them with pytest, writes the results, and makes the reports.
 """
 
 import json

@@ -1,8 +1,8 @@
-"""The attacks of tests/attacks work: a grader as they are often written gives them points, or suffers.
+"""The attacks of tests/attacks work: against a naive grader, they earn points or do damage.
 
-It runs what was handed in within its own process. An attack that succeeds is given points, or
-leaves a file or a process, or never ends. Those in NOT_NAIVE harm something else, or would harm
-these tests.
+The naive grader runs a submission in its own process. A successful attack earns points, leaves a file
+or a process behind, or never ends. The attacks in NOT_NAIVE harm something else, or would harm these
+tests.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""The bounds of a class's grading, to the last one that is still taken, and who is told what."""
+"""Limits of grading a class: the largest values that are accepted, and the messages beyond them."""
 
 from dataclasses import replace
 from datetime import timedelta

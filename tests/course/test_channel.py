@@ -1,4 +1,4 @@
-"""The channel between grader and student: what goes in comes out, and what is no frame is refused, early."""
+"""The channel between grader and student's process: round trips, and early refusal of wrong messages."""
 
 import json
 import socket

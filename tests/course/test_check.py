@@ -1,4 +1,4 @@
-"""check("hat") in a notebook: a bar while it runs, and the points that the sheet says."""
+"""`check("hat")` in a notebook: a progress bar, then the points of the task."""
 
 import re
 

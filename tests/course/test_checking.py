@@ -1,4 +1,4 @@
-"""The grader's half of pytest, asked by hand: what it hands to a check, and writes down before one."""
+"""The grader's pytest plugin: the fixtures that it gives to a check, and what it writes before the check."""
 
 from pathlib import Path
 from types import SimpleNamespace

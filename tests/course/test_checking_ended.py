@@ -1,4 +1,4 @@
-"""The grader's half of pytest, asked by hand: what it writes down of a check that has ended."""
+"""The grader's pytest plugin: what it writes when a check has ended."""
 
 import base64
 from pathlib import Path

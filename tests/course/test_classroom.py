@@ -360,7 +360,7 @@ def test_seven_levels_have_a_weight_of_42(subject):
 
 
 @pytest.mark.grading
-def test_after_the_due_date_feedback_explains_hidden_checks_and_nothing_is_graded_anew(
+def test_after_the_due_date_feedback_explains_hidden_checks_without_a_new_grading(
     folder, grade, capsys
 ):
     (folder / "checks").mkdir()
@@ -378,7 +378,7 @@ def test_after_the_due_date_feedback_explains_hidden_checks_and_nothing_is_grade
 
 
 @pytest.mark.grading
-def test_nobody_is_late_for_a_plan_without_dates_and_it_is_said(folder, capsys):
+def test_a_plan_without_dates_makes_nobody_late_and_is_reported(folder, capsys):
     in_week = 'due = { week = 5, day = "Friday", time = "23:59Z" }'
     (folder / "plan.toml").write_text(re.sub(r"due = .*", in_week, PLAN))
     with pytest.raises(SystemExit):
@@ -397,7 +397,9 @@ def test_nobody_is_late_for_a_plan_without_dates_and_it_is_said(folder, capsys):
         ([], "0", "nobody is late; to count late days, pass --received FILE or --file-times"),
     ],
 )
-def test_before_grading_it_is_said_who_is_late_by_which_times(words, late, said, folder, capsys):
+def test_the_command_reports_late_submissions_and_the_times_it_uses_before_grading(
+    words, late, said, folder, capsys
+):
     on_time = datetime.fromisoformat("2026-10-23T12:00+00:00").timestamp()
     days_later = datetime.fromisoformat("2026-10-26T12:00+00:00").timestamp()
     os.utime(folder / "in" / "t_hw2.py", (on_time, on_time))

@@ -1,4 +1,4 @@
-"""The text of a task with what it needs, statement by statement: which are taken, and in which order."""
+"""The source of a task with all definitions that it needs, in a working order."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Comparing an answer with what was expected: each verdict, and each word of it."""
+"""Comparison of an answer with the expected one: all verdicts and messages."""
 
 import numpy as np
 import pytest

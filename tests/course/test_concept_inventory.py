@@ -1,4 +1,4 @@
-"""The concept inventory: its questions, and the gain that `hdrlab course gain` computes from answers."""
+"""The concept inventory: its questions, and the learning gain that `hdrlab course gain` computes."""
 
 import csv
 import json

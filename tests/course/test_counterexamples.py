@@ -1,4 +1,4 @@
-"""The smallest counterexample: small, true, reproduced by pasting it, and without a secret."""
+"""The counterexample of a failed check is small, correct, reproducible by pasting, and reveals no secret."""
 
 import inspect
 from dataclasses import replace

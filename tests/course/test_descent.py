@@ -1,7 +1,6 @@
-"""What root asks of the kernel before a submission runs: each call, as the kernel's manual has it, in order.
+"""The system calls with which root prepares a sandbox, in the order and form of the kernel's manual.
 
-The kernel here answers and does nothing, so that all of this can be asked on any machine, by
-anybody.
+A fake kernel answers and does nothing, so the tests run on every machine and without root.
 """
 
 import errno

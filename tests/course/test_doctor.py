@@ -1,4 +1,4 @@
-"""What the doctor finds of a tier: what is tried and how often, and in which words it is told."""
+"""`hdrlab doctor`: what it tries for each tier, how often, and what it reports."""
 
 import pytest
 
@@ -73,7 +73,7 @@ def test_the_practice_tier_gives_no_credit_and_says_what_it_does_not_stop(examin
 @pytest.mark.parametrize(
     "error", [OSError("no room"), NoAnswer("it was late", "late"), Unavailable("needs more")]
 )
-def test_a_tier_that_never_starts_does_not_work_and_the_reason_is_told(error, examine):
+def test_a_tier_that_never_starts_is_reported_with_the_reason(error, examine):
     finding = examine("container", Trial(ends=[error] * 10))
     assert not finding.works and str(error) in finding.details
 

@@ -1,4 +1,4 @@
-"""Correct solutions that are written differently: all of them keep every promise."""
+"""Correct solutions that are written differently pass all checks."""
 
 import ast
 import json

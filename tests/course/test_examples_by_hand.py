@@ -1,4 +1,4 @@
-"""The examples that an assignment calculates by hand are what the library's function answers."""
+"""The examples that an assignment calculates by hand agree with hdrlab's functions."""
 
 import numpy as np
 import pytest

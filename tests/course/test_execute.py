@@ -1,4 +1,4 @@
-"""A notebook of the site runs beside others, and leaves nothing behind."""
+"""Notebooks of the site run in parallel and leave nothing behind."""
 
 import os
 import tempfile

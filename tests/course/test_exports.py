@@ -1,4 +1,4 @@
-"""The course in the forms of other systems: nbgrader runs it, Gradescope gets an autograder."""
+"""The course in other systems: nbgrader runs it, and Gradescope gets an autograder."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Right answers that were written from the sheets alone: none is refused."""
+"""Correct answers that were written from the assignments alone pass all checks."""
 
 import warnings
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Which calls a submission may make, and which user it is: the filter rule by rule, and leases of users."""
+"""The system calls that the sandbox allows, and the user ids that it leases."""
 
 import errno
 import socket

@@ -1,4 +1,4 @@
-"""The process of the checks, followed line by line: how it is begun, and what its end means."""
+"""The grader follows the process of the checks: how it starts it, and how it explains its end."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The gallery: a class votes, each on one ballot that can be changed, and is told what came of it."""
+"""The gallery: students vote on ballots that they can change, and see the results after the end."""
 
 import csv
 import re

@@ -1,6 +1,6 @@
-"""What somebody may try against the gallery: each row of the table in hdrlab.course.gallery, a test.
+"""Attacks on the gallery: a test for each row of the table in hdrlab.course.gallery.
 
-The pages are asked as a program would ask them, byte by byte where that matters.
+The tests send requests as a program does, byte by byte where this matters.
 """
 
 import asyncio
@@ -192,7 +192,7 @@ def test_too_many_votes(client, room):
     assert saved(room, "ann") == set(others[:1])
 
 
-def test_a_vote_for_nothing(client, room):
+def test_a_vote_for_an_artifact_that_does_not_exist_is_refused(client, room):
     key = enter(client, room, "ann")
     for mark in ("0" * 24, "", "ann", room.artifacts["eve"].upper(), "%00"):
         assert vote(client, key, room.artifacts["eve"], mark).status == 409

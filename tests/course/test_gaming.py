@@ -1,4 +1,4 @@
-"""Marks without the work: constants, the input given back, curves learnt by heart earn next to nothing."""
+"""Answers without the work, such as constants or the input itself, earn few points."""
 
 from dataclasses import replace
 from functools import cache

@@ -1,4 +1,4 @@
-"""How one submission of a class is graded: under what, how often, and what travels with it."""
+"""How one submission of a class is graded: its limits, its attempts, and the files that are sent along."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""Gradescope's autograder from start to end, on a copy of this machine without hdrlab and its packages.
+"""Gradescope's autograder from start to end, on a copy of this machine without hdrlab.
 
 The copy is laid out as Gradescope documents it [gradescope-autograders.readthedocs.io, Autograder
 Specifications and Submission Metadata]. It is an overlay of this machine's file system, in which
@@ -254,7 +254,7 @@ def test_students_read_how_late_the_group_is_after_its_extension(graded):
     assert "Received 2 days after the due date" in results(graded, "right")["output"]
 
 
-def test_an_autograder_without_memory_still_says_what_happened(graded):
+def test_an_autograder_without_memory_still_reports_the_problem(graded):
     report = results(graded, "memory")
     assert report["score"] == 0 and "memory" in report["output"]
 

@@ -1,6 +1,6 @@
-"""Grading a submission: its points, its messages, and what it must not depend on. The tier is practice here.
+"""Grading a submission in the practice tier: points, messages, and what must not change them.
 
-The strict tier, and what it keeps out, have tests of their own.
+Other files test the strict tier and its isolation.
 """
 
 import shutil

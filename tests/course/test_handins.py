@@ -1,4 +1,4 @@
-"""Whose a file is, and when it came: nobody's file is another's, and nobody's time."""
+"""Who owns a submitted file and when it was received."""
 
 import hashlib
 import os

@@ -1,4 +1,4 @@
-"""Handouts: one source, two notebooks, and the committed ones are those that the source makes."""
+"""Handouts: one source makes two notebooks, and the committed notebooks are up to date."""
 
 import ast
 import builtins

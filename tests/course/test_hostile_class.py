@@ -1,4 +1,4 @@
-"""A class in which all of it is mixed: nobody honest notices, and each of the others has a note."""
+"""A class with hostile submissions: honest results do not change, and each hostile one has a note."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Functions that take time, memory or patience, and texts that break what shows them: in the strict tier."""
+"""Functions that use up time or memory, and texts that break pages and terminals, in the strict tier."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Files that are hard to read, or no files at all: each costs a few seconds at most, and is told in words."""
+"""Files that are hard to read, links, pipes and folders: each takes a few seconds at most and is reported."""
 
 import codecs
 import json

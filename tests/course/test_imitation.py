@@ -1,4 +1,4 @@
-"""Imitated hand-ins: they stand by themselves, and answer as the library or the wrong file does."""
+"""Generated submissions work without hdrlab and answer like hdrlab, or like the wrong function."""
 
 import ast
 from functools import cache

@@ -1,4 +1,4 @@
-"""The in-process tier: checks of a page in a browser, tried here without one."""
+"""The in-process tier: the checks that run in a browser, tested here without one."""
 
 import sys
 import time
@@ -152,7 +152,7 @@ def test_check_in_a_notebook_runs_without_processes_where_there_are_none(monkeyp
     assert "not for credit" in found.result.why_practice
 
 
-def test_grading_a_file_says_in_words_that_it_needs_processes(tmp_path, monkeypatch):
+def test_grading_a_file_without_processes_gives_a_clear_message(tmp_path, monkeypatch):
     monkeypatch.setattr(in_process, "IS_BROWSER", True)
     path = tmp_path / "hw2.py"
     path.write_text(right_answers("hat")[0])

@@ -1,4 +1,4 @@
-"""Functions of the library, with all that they need of it, as text."""
+"""Source code of hdrlab's functions together with all that they need."""
 
 import ast
 import re

@@ -1,4 +1,4 @@
-"""A function of one's own with all that it needs, letter by letter: what is copied, renamed and left out."""
+"""A user's own function with all that it needs: what is copied, renamed and left out."""
 
 import pytest
 

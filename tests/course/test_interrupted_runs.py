@@ -1,4 +1,4 @@
-"""A class is graded once, whoever is killed meanwhile, and files find their owners."""
+"""A killed run of grading is completed by the next one, and nothing is graded twice."""
 
 import os
 import random

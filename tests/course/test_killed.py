@@ -1,7 +1,7 @@
-"""Kill -9 at random moments, of the run, of what it has started, of a cluster's workers: no result changes.
+"""Runs of grading that are killed at random moments: the results do not change.
 
-The class is small and its checks are few. It is graded by the command that instructors use, in the
-practice tier: what is tried here are processes that end.
+The tests kill the command that instructors use, the processes that it has started, and the workers of
+a cluster. The class is small and is graded in the practice tier.
 """
 
 import os

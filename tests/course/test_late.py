@@ -1,4 +1,4 @@
-"""Late days: ten in all, then a point a day, down to zero for each project; each member pays their own."""
+"""Late days: ten free days, then one point a day; each team member has their own."""
 
 from dataclasses import replace
 from datetime import datetime, timedelta
@@ -55,7 +55,7 @@ def test_free_days_that_a_partner_used_elsewhere_do_not_change_a_students_score(
 
 
 @given(terms, st.integers(0, 12))
-def test_nobody_uses_more_free_days_than_they_have_and_every_late_day_is_charged(term, grace):
+def test_free_days_are_limited_and_every_late_day_beyond_them_costs(term, grace):
     found = costs(term, grace=grace)
     for student in (ANNA, BEN, CY):
         mine = [one for (who, _), one in found.items() if who == student]

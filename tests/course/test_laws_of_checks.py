@@ -1,4 +1,4 @@
-"""The laws that checks ask of an operator, in numbers: their scenes, what they accept and what not."""
+"""The laws that checks assert about an operator: their scenes, and which operators pass."""
 
 import warnings
 
@@ -194,7 +194,7 @@ def test_a_constant_curve_errs_by_the_spread_of_the_true_curve():
     assert laws.curve_error(levels + 5, levels) < 1e-15
 
 
-def test_a_curve_is_asked_at_as_many_places_whatever_the_levels_it_has():
+def test_a_curve_is_evaluated_at_equally_many_levels_for_any_bit_depth():
     levels = np.log(np.maximum(np.arange(1024.0), 1))
     at = np.array([k * 1023 // 255 for k in range(10, 251)])
     expected = np.std(at) / (250 * 1023 // 255)

@@ -1,4 +1,4 @@
-"""From the lines that checks write down to a Result: each field, each share of points, each ending."""
+"""The lines that checks write become a Result: its fields, points and outcomes."""
 
 import base64
 import hashlib
@@ -66,7 +66,7 @@ def heard(monkeypatch):
     return heard
 
 
-def test_a_result_says_what_was_checked_of_whom_and_how(heard):
+def test_a_result_names_the_student_the_checks_and_the_tier(heard):
     conditions = GradingOptions("container", "ada", "secret")
     (found,) = heard(check("hold"), conditions=conditions, homework=HOMEWORK._replace(at_most=7.0))
     assert (found.student, found.homework) == ("ada", "hw2")
@@ -161,7 +161,7 @@ def test_a_result_is_yielded_after_each_check_and_at_the_end(heard):
     assert [each.misconceptions for each in found] == [{}, {}, {"hat": "S"}]
 
 
-def test_a_check_says_of_its_ending_what_was_written_down(heard):
+def test_the_outcome_of_a_check_is_the_one_that_was_written(heard):
     line = ending("fail", "no answer", message="m" * 2001, said="s\x07" * 4001, kind="late")
     (*_, found) = heard(check("fail", hints=("a", "b")), line)
     (one,) = found.checks

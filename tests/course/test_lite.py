@@ -1,4 +1,4 @@
-"""JupyterLite beside the site's pages: what is in its folder, and which name it has there.
+"""JupyterLite in the site: the files of its folder and their names.
 
 `tests/wasm/test_lite_in_chromium.py` opens it in a browser.
 """
@@ -81,7 +81,7 @@ def write_pyodide(folder, version="0.27.7", **changes):
     return folder
 
 
-def test_a_folder_without_pyodide_or_with_another_version_is_refused_in_words(tmp_path):
+def test_a_folder_without_pyodide_or_with_another_version_is_refused_with_a_message(tmp_path):
     with pytest.raises(InputError, match=r"no Pyodide in .*pyodide\.js"):
         build.find_pyodide(str(tmp_path))
     other = write_pyodide(tmp_path / "other", version="0.29.0")

@@ -1,4 +1,4 @@
-"""What the members of an archive may be called and how large they may be, to the letter and to the byte."""
+"""Names and sizes of archive members: which ones are accepted, to the letter and to the byte."""
 
 import io
 import stat

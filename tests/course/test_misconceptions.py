@@ -1,4 +1,4 @@
-"""Well-known mistakes: each costs points, not all of them, and is recognised by name."""
+"""Known mistakes: each costs points, not all of them, and is recognized by name."""
 
 from collections import Counter
 from functools import cache

@@ -1,4 +1,4 @@
-"""How near an answer must be to a known mistake's answer, and where the wrong functions come from."""
+"""When an answer counts as the answer of a known mistake, and where the wrong functions come from."""
 
 import warnings
 

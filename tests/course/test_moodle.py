@@ -1,4 +1,4 @@
-"""Moodle's forms of a class's grades, against what its importers ask."""
+"""Files for Moodle: grades and feedback in the form that its importers expect."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Names that a piece of Python binds, and those that it takes from outside, statement by statement."""
+"""The names that Python code binds, and those that it needs from outside."""
 
 import ast
 
@@ -29,7 +29,7 @@ from hdrlab.course.source_code.library_source import SymbolRef
         ("def f():\n    global g\n    g = 1\n    return g", ["f"], ["g"]),
     ],
 )
-def test_names_that_a_statement_binds_and_takes_from_outside(text, bound, free):
+def test_names_that_a_statement_binds_and_uses(text, bound, free):
     (node,) = ast.parse(text).body
     assert (
         names.bound_names(node) == bound and [use.node.id for use in names.free_names(node)] == free

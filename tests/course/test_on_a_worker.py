@@ -1,4 +1,4 @@
-"""A job on a worker of a cluster: what it is done from, what it answers, and when it is let go."""
+"""A job on a worker of a cluster: what is sent, what comes back, and when it ends."""
 
 from dataclasses import replace
 from pathlib import Path

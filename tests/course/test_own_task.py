@@ -1,4 +1,4 @@
-"""A task of an instructor's own: the example works whole, and so do sheet, checks and grading made of it."""
+"""A task that an instructor writes: the example works, and so do its assignment, checks and grading."""
 
 import json
 import subprocess

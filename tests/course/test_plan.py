@@ -1,4 +1,4 @@
-"""A plan of one's own, value by value: what is taken, where its bounds are, and what a plan leaves out."""
+"""A course plan that an instructor writes: accepted values, limits and defaults."""
 
 import stat
 
@@ -80,7 +80,7 @@ def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
         ("../v.py:vignette", False),
     ],
 )
-def test_an_own_function_must_be_in_a_file_beside_the_plan(function, taken, read, tmp_path):
+def test_an_own_function_must_be_in_a_file_next_to_the_plan(function, taken, read, tmp_path):
     tasks = f'{{ id = "shift", function = "{function}", points = 1 }}'
     if taken:
         assert read(tasks=tasks).homeworks["hw9"].tasks[0].own == tmp_path / "v.py"
@@ -170,7 +170,7 @@ def test_a_task_occurs_in_one_homework_only_and_is_found_by_its_id(read):
         read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
 
 
-def test_an_own_task_needs_a_file_of_checks_beside_it(
+def test_an_own_task_needs_a_file_of_checks_next_to_it(
     tmp_path,
 ):
     own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))

@@ -55,12 +55,12 @@ def test_a_name_in_the_students_own_part_of_the_name_does_not_count(name, tmp_pa
     assert found.submissions == {} and "no student" in found.notes[0]
 
 
-def test_a_file_that_could_be_of_two_students_is_given_to_none(tmp_path):
+def test_a_file_that_may_belong_to_two_students_is_assigned_to_neither(tmp_path):
     found = find(tmp_path, "weili_1_2_hw2.ipynb")
     assert found.submissions == {} and "b4 or b5" in found.notes[0]
 
 
-def test_the_number_in_the_worksheet_tells_students_of_one_name_apart(tmp_path):
+def test_the_number_in_the_worksheet_distinguishes_students_of_the_same_name(tmp_path):
     name = "Wei Li_4711_assignsubmission_file_hw2.ipynb"
     assert list(find(tmp_path, name, teams_by_number={"4711": "b4"}).submissions) == ["b4"]
 

@@ -1,4 +1,4 @@
-"""How a submission is read: within limits, with a second attempt after an accident, in any encoding."""
+"""Reading a submission: limits, a second attempt after an accident, and encodings."""
 
 import codecs
 import json

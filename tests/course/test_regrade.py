@@ -1,4 +1,4 @@
-"""A regrade: seen before it counts, under a policy, whole or not at all, with a signed line."""
+"""A regrade: a preview, a policy, all results or none, and a signed entry in the journal."""
 
 import json
 import os

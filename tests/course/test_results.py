@@ -1,4 +1,4 @@
-"""Results in every form, of a submission that means harm."""
+"""Results of a hostile submission, in all formats."""
 
 import csv
 import io

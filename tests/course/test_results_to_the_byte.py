@@ -1,4 +1,4 @@
-"""A Result's JSON and its page's numbers, to the byte: the same result is the same file in every year."""
+"""The JSON of a Result and the numbers of its page do not change between versions."""
 
 import json
 from dataclasses import replace

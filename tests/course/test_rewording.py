@@ -1,4 +1,4 @@
-"""The words of a variant, pair by pair, and functions that are asked in this very process."""
+"""The words of a variant, and functions that run in this process."""
 
 import numpy as np
 import pytest

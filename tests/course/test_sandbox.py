@@ -1,4 +1,4 @@
-"""The sandbox in its tiers: it answers alike in all, keeps in what it says it keeps in, and fails closed."""
+"""The sandbox in all tiers: equal answers, isolation as documented, and an error if it cannot isolate."""
 
 import contextlib
 import ctypes
@@ -759,6 +759,6 @@ def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
 @pytest.mark.parametrize(
     ("tier", "counts"), [("strict", True), ("container", True), ("practice", False)]
 )
-def test_a_score_may_count_where_walls_hold(tier, counts):
+def test_a_tier_gives_credit_only_if_it_isolates(tier, counts):
     opened(tier)
     assert tiers.choose(tier).credit is counts

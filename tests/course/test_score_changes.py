@@ -99,7 +99,7 @@ def test_new_and_removed_checks_are_listed(folder):
     }
 
 
-def test_a_team_that_asks_gets_an_answer_although_nothing_changes(folder):
+def test_a_regrade_request_is_answered_even_if_no_score_changes(folder):
     out = folder(current=result(5))
     assert find_changes(out) == []
     assert find_changes(out, requests={"u": ["x"]}) == []
@@ -241,7 +241,7 @@ def test_the_order_of_a_journal_lines_fields_does_not_matter(folder):
     assert regrade.read_journal(out, "secret") == [first]
 
 
-def test_a_result_that_is_kept_counts_under_the_new_checks(folder):
+def test_a_kept_score_counts_under_the_new_checks(folder):
     out = folder(result(5), result(3))
     apply_changes(out, *find_changes(out, "never-lower"))
     assert read_current(out) == result(5)

@@ -1,4 +1,4 @@
-"""What a command writes on its way is gone when it ends; what a killed one has left, when the next begins."""
+"""Temporary files of a command are removed at its end; the next command removes those of a killed one."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Each sentence of an assignment that demands something is checked, and nothing else is."""
+"""Each requirement that an assignment states is checked, and nothing else is."""
 
 import warnings
 

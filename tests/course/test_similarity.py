@@ -1,4 +1,4 @@
-"""What is alike in a class: what is found and what is not, on a page that nobody's work can break."""
+"""Similar submissions in a class: which ones are found, and a page that no submission can break."""
 
 import os
 import re
@@ -217,7 +217,7 @@ def test_a_broken_or_hostile_file_is_reported_and_the_others_are_compared(said, 
     assert re.search(f"<li><b>x</b>: [^\n]*{said}", page)
 
 
-def test_what_is_compared_has_no_empty_lines_in_which_copydetect_takes_a_quadratic_time():
+def test_empty_lines_are_removed_because_copydetect_takes_quadratic_time_in_them():
     text = "def hat():\n    return [" + "\n \t" * 9_000 + "1]\n"
     assert student_code.own_code(text, "hw2", set()) == "def hat():\n    return [\n \t1]"
 
@@ -250,7 +250,7 @@ def calls_of(act):
     return made, len(calls)
 
 
-def test_a_file_that_changes_a_thing_twice_as_often_costs_not_much_more_than_twice():
+def test_twice_as_many_changes_of_a_name_take_about_twice_as_long():
     def read(changes):
         cell = closure.Cell("a = []\n" + "a.append(a)\n" * changes + "def gsolve(): return a\n")
         return calls_of(
@@ -284,7 +284,7 @@ def test_names_and_sources_are_escaped_on_the_page(tmp_path):
     assert "default-src 'none'" in page
 
 
-def test_the_page_says_its_threshold_its_caveats_and_what_was_too_short(tmp_path):
+def test_the_page_states_its_threshold_its_caveats_and_the_texts_that_were_too_short(tmp_path):
     page, _ = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS), "c": GAUGE})
     words = re.sub(r"<[^>]+>|\s+", " ", page)
     assert "from 60 percent" in words and "no proof" in words and "talk to both" in words

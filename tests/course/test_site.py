@@ -1,4 +1,4 @@
-"""The course's site: what `hdrlab site` makes of notebooks, and what it says of those that fail."""
+"""`hdrlab site`: the pages that it makes of notebooks, and its messages about notebooks that fail."""
 
 import ast
 import base64
@@ -188,7 +188,7 @@ def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
     assert {path.suffix for path in site.rglob("*") if path.is_file()} <= {*kinds, ""}
 
 
-def test_a_page_says_what_it_is_to_who_shows_a_link_to_it(made):
+def test_a_page_has_a_description_and_an_image_for_link_previews(made):
     site = made[1]
     told = Addresses((site / "index.html").read_text("utf-8")).told
     assert len(told["description"]) > 40
@@ -355,7 +355,7 @@ def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
     assert text.startswith(f'hdrlab.take("{content["code"]}", {{"script": ')
 
 
-def test_what_is_unchanged_is_not_made_again(made):
+def test_an_unchanged_notebook_is_not_built_again(made):
     folder, site, notebooks, _ = made
     before = {page: page.stat().st_mtime_ns for page in site.rglob("*.html")}
     ran = run("site", *notebooks, folder=folder)
@@ -635,7 +635,7 @@ def refusal(read, *arguments):
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_path):
+def test_the_page_quotes_the_messages_about_photos_word_for_word(what, tmp_path):
     taken, stated = (
         scenes.photographs((160, 120)),
         [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000],
@@ -653,7 +653,7 @@ def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_pat
     assert said.replace(f"{tmp_path}/", "") in quotes_of_the_page_on_warnings()[-len(REFUSED) :]
 
 
-def test_the_page_quotes_what_is_said_of_the_stated_times_of_the_photographs_that_travel():
+def test_the_page_quotes_the_warning_about_the_times_of_the_packaged_photos():
     taken = replace(scenes.photographs((320, 240)), times=1 / np.array([1000, 120, 60, 15, 8, 4]))
     said = pipeline.assemble(taken).doubts[0].partition(", but")[0]
     (quote,) = (

@@ -1,4 +1,4 @@
-"""The boxes "Try it" of the site: where they are, what is in them, and what they load and answer.
+"""The boxes "Try it" of the site: where they are, what they contain, load and answer.
 
 `tests/wasm/test_boxes_in_chromium.py` opens them in a browser.
 """
@@ -126,7 +126,7 @@ def test_a_right_function_gets_all_points_and_a_wrong_one_feedback_with_a_figure
 
 @pytest.mark.grading
 @pytest.mark.usefixtures("in_this_process")
-def test_a_text_that_is_no_python_or_lacks_the_function_is_answered_in_words():
+def test_text_that_is_no_python_or_lacks_the_function_gets_a_message():
     broken = json.loads(in_browser.check_as_json("hat", "def hat(n=256)\n    return n", draw=False))
     assert "Your text is no Python, line 1" in broken["html"] and broken["isBroken"]
     other = json.loads(in_browser.check_as_json("hat", "def cap(n=256):\n    return n", draw=False))
@@ -135,7 +135,7 @@ def test_a_text_that_is_no_python_or_lacks_the_function_is_answered_in_words():
 
 @pytest.mark.grading
 @pytest.mark.parametrize("box", boxes.read(), ids=lambda box: box.task)
-def test_checks_need_no_more_packages_than_the_box_loads(box):
+def test_the_checks_of_a_box_need_only_the_packages_that_it_loads(box):
     solutions = sorted((ROOT / "benchmarks" / "fairness" / "right" / box.task).glob("*.py"))
     texts = [path.read_text("utf8") for path in solutions]
     text = next(text for text in texts if "scipy" not in text)

@@ -1,4 +1,4 @@
-"""The pack of model solutions: written on asking, each of some ten to thirty lines, in full points."""
+"""The pack of model solutions: written on request, ten to thirty lines each, with full points."""
 
 import pytest
 import scoring

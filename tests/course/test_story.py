@@ -1,4 +1,4 @@
-"""The story on the site, from light to image in ten screens: its parts, and the numbers that it states."""
+"""The story on the site, from light to image in ten screens: its parts and its numbers."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The subject of a check: what is asked, what is remembered of it, and which answers are none."""
+"""The subject of a check: its calls, its records, and which answers count as missing."""
 
 import math
 from functools import partial

@@ -1,4 +1,4 @@
-"""The subject of a check, to the second: what its calls may take, and how a silence is explained."""
+"""The subject of a check: time limits of its calls, and the reason for a missing answer."""
 
 from functools import partial
 

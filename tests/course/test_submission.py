@@ -1,4 +1,4 @@
-"""Reading what a student handed in: text that is parsed, and never run."""
+"""Reading a submission: its text is parsed and never run."""
 
 import ast
 import json
@@ -246,7 +246,7 @@ def test_the_same_file_has_the_same_hash_and_another_another(read):
         ("class C(B):\n    x = a", ["B", "a"]),
     ],
 )
-def test_the_names_that_a_piece_takes_from_outside_are_found(code, free):
+def test_the_names_that_a_piece_of_code_needs_from_outside_are_found(code, free):
     assert [use.node.id for use in names.free_names(ast.parse(code).body[0])] == free
 
 

@@ -1,4 +1,4 @@
-"""A project is reported on and handed in: what is missing is said, and what is there arrives."""
+"""`hdrlab report` and `hdrlab submit` for a project: missing parts are named, and the rest arrives."""
 
 import io
 import json
@@ -310,7 +310,7 @@ def test_figures_without_their_section_get_one_of_their_own(home):
     assert sum("no section about" in note for note in written.notes) == 6
 
 
-def test_a_picture_out_of_the_project_is_left_out_and_that_is_said(home, tmp_path):
+def test_an_image_outside_the_project_is_left_out_and_reported(home, tmp_path):
     Image.new("RGB", (40, 30)).save(tmp_path / "secret.png")
     (home / "figures" / "drawing.svg").write_text("<svg onload='alert(1)'/>")
     (home / "report.md").write_text(

@@ -1,4 +1,4 @@
-"""A piece in a process of its own: what it is told, how its end is explained, and how many run at a time."""
+"""A job in a process of its own: its environment, the reason of its end, and the number of processes."""
 
 import ast
 import io
@@ -62,7 +62,7 @@ def failed(**knobs):
     return str(raised.value), raised.value.is_own_fault, raised.value.was_killed
 
 
-def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ended, monkeypatch):
+def test_a_process_gets_the_import_path_then_limits_function_and_job(ended, monkeypatch):
     monkeypatch.setenv("OF_THE_GRADER", "1")
     told = ended(0, b"++answer")
     assert subprocess_runner.run(len, "piece", timeout=1.0) == b"+answer"

@@ -1,4 +1,4 @@
-"""The session of a sandbox: what it orders from its supervisor, and how it is ended and restarted."""
+"""The session of a sandbox: its orders to the supervisor, and how it ends and restarts."""
 
 import math
 import os

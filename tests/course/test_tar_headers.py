@@ -1,4 +1,4 @@
-"""A tar, byte by byte: what is refused, at which byte it begins, and in which words."""
+"""Tar archives, byte by byte: which ones are refused, at which byte, and with which message."""
 
 import bz2
 import gzip

@@ -1,4 +1,4 @@
-"""A plan says in which week a homework is due; with the first day of a term, it has dates."""
+"""The weeks of a course plan become dates when the first day of the term is known."""
 
 from datetime import date, datetime, timedelta
 
@@ -89,7 +89,7 @@ def test_a_term_after_the_last_year_of_the_calendar_is_refused():
         "Friday",
     ],
 )
-def test_what_is_no_due_date_is_refused_with_an_example(due):
+def test_an_invalid_due_date_is_refused_with_an_example(due):
     with pytest.raises(InputError, match=r"expected due as .* week = 3, day = "):
         due_dates.read(due)
 

@@ -1,4 +1,4 @@
-"""Text and numbers from outside end in words that name the file, however long, deep or odd they are."""
+"""Texts and numbers in a user's files: an error names the file, however long, deep or odd they are."""
 
 import json
 import struct

@@ -1,4 +1,4 @@
-"""The toy class: two commands make and grade it, and everybody in it gets what is said of them."""
+"""The toy class: two commands make and grade it, and everybody gets the described result."""
 
 import ast
 import hashlib

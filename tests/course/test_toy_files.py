@@ -1,4 +1,4 @@
-"""The toy class as files: who is in it, what each hands in and when, and where it may be written."""
+"""The files of the toy class: its students, their submissions and dates, and where it may be written."""
 
 import csv
 from datetime import datetime, timedelta

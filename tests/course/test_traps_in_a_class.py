@@ -1,4 +1,4 @@
-"""Archives with traps in what a class has handed in: each is refused in one line, the others are graded."""
+"""Malicious archives among the submissions of a class: each is refused in one line, the others are graded."""
 
 import pytest
 from support.malicious_archives import MALICIOUS_ARCHIVES, write_zip

@@ -1,4 +1,4 @@
-"""Archives of students: plain ones are unpacked, and every trap is refused with one line."""
+"""Archives of students: ordinary ones are unpacked, and malicious ones are refused in one line."""
 
 import bz2
 import gzip

@@ -1,4 +1,4 @@
-"""Variants of a task: sheet, checks, hints, mistakes and solution ask the same, and each team its own."""
+"""Variants of a task: assignment, checks, hints, mistakes and solution agree, and each team has its own."""
 
 import json
 import re
@@ -392,7 +392,7 @@ def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can
         ),
     ],
 )
-def test_parameters_that_a_task_does_not_have_are_refused_in_words(was, now, said, tmp_path):
+def test_unknown_parameters_of_a_task_are_refused_with_a_message(was, now, said, tmp_path):
     (tmp_path / "plan.toml").write_text(CLASS.replace(was, now))
     with pytest.raises(ValueError, match=said):
         plan.read(tmp_path / "plan.toml")
@@ -422,7 +422,9 @@ def test_a_student_can_check_their_assignment_without_the_secret(course, tmp_pat
     ]
 
 
-def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(course, tmp_path):
+def test_grading_uses_the_variant_of_the_secret_and_not_the_one_named_in_the_notebook(
+    course, tmp_path
+):
     homework = course.homeworks["hw1"]
     theirs = plan.draw_variants(homework, "b7", SECRET)
     path = filled(theirs, tmp_path / "hw1.ipynb")
@@ -476,7 +478,7 @@ def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
     assert "This is the assignment of another student" in told
 
 
-def test_a_benchmark_builds_the_sheets_of_a_class_and_asks_whether_they_are_graded_so(tmp_path):
+def test_the_assignments_of_a_class_of_variants_agree_with_their_grading(tmp_path):
     benchmark = pytest.importorskip(
         "benchmarks.class_.sheets", reason="the benchmarks are not installed"
     )
@@ -485,7 +487,7 @@ def test_a_benchmark_builds_the_sheets_of_a_class_and_asks_whether_they_are_grad
     assert found["sheets that ask what is not graded"] == 0
 
 
-def test_gradescope_asks_what_the_sheet_of_a_roster_of_addresses_does(course):
+def test_gradescope_uses_the_variants_of_a_roster_with_email_addresses(course):
     Path("roster.csv").write_text(
         'student,team\nbo@x.edu,"bo@x.edu,cy@x.edu"\ncy@x.edu,"bo@x.edu,cy@x.edu"\n'
     )

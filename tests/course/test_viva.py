@@ -1,4 +1,4 @@
-"""Questions on a student's own functions, which were answered by running changes of them."""
+"""Questions about a student's own functions, with answers from running changed versions of them."""
 
 import base64
 import difflib
@@ -140,7 +140,7 @@ def test_strings_comments_and_own_names_are_not_changed():
     assert {one.change for one in found} == {"* → /", "* → +", "+ → -", "+ → *", "5 → 6", "5 → 4"}
 
 
-def test_nothing_is_asked_of_a_function_too_long_to_be_shown():
+def test_there_are_no_questions_about_a_function_too_long_to_show():
     assert changed.versions("def f(x):\n" + "    x = x + 1\n" * 100 + "    return x\n") == []
     assert (
         changed.versions("def f(x):\n    return 1 + x\n" + "# \n" * changed.MAX_SOURCE_CHARACTERS)
@@ -330,20 +330,20 @@ def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_t
             assert SOLUTIONS[name][one["task"]] not in versions
 
 
-def test_the_same_seed_asks_the_same_also_in_the_sandbox_and_another_seed_something_else(made):
+def test_equal_seeds_give_equal_questions_also_in_the_sandbox_and_other_seeds_give_others(made):
     first = made("hw1")[2]
     assert written(examined("hw1", by=THERE)[2]) == written(first)
     assert written(examined("hw1", seed=1)[2]) != written(first)
 
 
-def test_of_one_function_questions_of_different_kinds_are_asked():
+def test_the_questions_about_one_function_are_of_different_kinds():
     *_, questions = examined("hw4", tasks=["display"])
     kinds = [one["kind"] for one in questions]
     assert 2 <= len(kinds) == len(set(kinds))
 
 
 @pytest.mark.parametrize(("tasks", "more"), [("abcd", 0), ("abcde", 3)])
-def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more, monkeypatch):
+def test_more_versions_are_tried_if_five_tasks_have_few_questions(tasks, more, monkeypatch):
     tried, written, few, known = (
         [],
         [],
@@ -374,14 +374,14 @@ def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more
     assert [most for most, *_ in tried] == [few] * pairs + [examining.VERSIONS_PER_SEARCH[1]] * more
 
 
-def test_a_function_that_breaks_a_promise_is_not_asked_about():
+def test_there_are_no_questions_about_a_function_that_fails_a_check():
     wrong = SOLUTIONS["hw1"]["ev"].replace("log2", "log")
     _, passed, questions = examined("hw1", tasks=["ev", "equivalent_time"], ev=wrong)
     assert passed == ["equivalent_time"]
     assert {one["task"] for one in questions} == {"equivalent_time"}
 
 
-def test_a_change_that_never_ends_is_left_and_others_are_asked_about():
+def test_a_changed_version_that_never_ends_is_dropped_and_other_questions_remain():
     text = "import numpy as np\n\n\ndef ev(N, t, S=100.0):\n    k = 0\n    while k < 3:\n        k += 1\n"
     text += "    return np.log2(N**2 / t) - np.log2(S / 100)\n"
     assert any("k -= 1" in one.source for one in changed.versions(text))
@@ -415,7 +415,9 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     assert attack_fixtures.list_file_sizes(place) == files, "a file is left"
 
 
-def test_the_command_writes_all_sheets_and_says_what_was_not_read(tmp_path, monkeypatch):
+def test_the_command_writes_all_notebooks_and_lists_files_that_it_did_not_read(
+    tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     work = tmp_path / "hw1.py"
     work.write_text("# %%\n" + SOLUTIONS["hw1"]["equivalent_time"])

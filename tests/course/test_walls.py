@@ -1,4 +1,4 @@
-"""What the walls are made of, option by option: how the tiers for credit are launched."""
+"""The options with which the sandboxes of the tiers for credit are started."""
 
 import os
 import sys

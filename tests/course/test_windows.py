@@ -1,4 +1,4 @@
-"""Where the system has nothing that POSIX alone has, assignments are checked and graded all the same."""
+"""Checks and grading without the modules, signals and functions that Windows lacks."""
 
 import ast
 import json
@@ -121,7 +121,7 @@ def test_an_instructor_grades_a_class_for_practice(on_windows, tmp_path):
 
 
 @lacking
-def test_credit_is_refused_in_a_line_that_says_what_it_needs(on_windows):
+def test_grading_for_credit_is_refused_with_a_line_that_names_the_practice_tier(on_windows):
     code, _, err = on_windows("-m", "hdrlab", "grade", "hw2.py", "--plan", "plan.toml")
     assert code == 2 and len(err.splitlines()) == 1 and "--tier practice" in err
 

@@ -1,4 +1,4 @@
-"""Pieces on the workers of a cluster that does what it is told: who gets which, and who is blamed."""
+"""Jobs on the workers of a fake cluster: which worker gets which job, and who is blamed for a failure."""
 
 from functools import partial
 

@@ -1,4 +1,4 @@
-"""A zip, byte by byte: what is refused, at which byte it begins, and in which words."""
+"""ZIP archives, byte by byte: which ones are refused, at which byte, and with which message."""
 
 import errno
 import io

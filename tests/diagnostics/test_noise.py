@@ -94,7 +94,7 @@ def test_a_wrong_exposure_time_raises_rho_and_not_the_photon_noise(room):
     assert found.N * whole == pytest.approx(8_000, rel=0.15) and 0.005 < found.rho[0] < 0.15
 
 
-def test_the_order_of_the_frames_changes_nothing(room):
+def test_the_order_of_the_photos_does_not_change_the_result(room):
     images, times, g, _ = shot(room[..., 1])
     E = merged(images, times, g)
     one, other = (

@@ -128,7 +128,7 @@ def test_masked_and_clipped_pixels_of_a_photo_do_not_count():
     assert max(abs(part.stops) for part in parts) < 0.02
 
 
-def test_what_sharpening_does_beside_clipped_pixels_is_no_error():
+def test_overshoot_of_sharpening_next_to_clipped_pixels_is_not_an_error():
     """It takes more from the neighbors of a bright pane in a photo that does not clip the pane."""
     X = np.full((120, 160), 20.0)
     for column in range(4, 160, 12):

@@ -14,7 +14,7 @@ from hdrlab.fast import mtb
 
 @given(st.integers(1, 12), st.integers(1, 140), st.integers(0, 2**32 - 1), st.data())
 @settings(max_examples=30, deadline=None)
-def test_errors_counted_in_words_equal_those_counted_by_pixel(rows, columns, seed, data):
+def test_errors_counted_in_machine_words_equal_errors_counted_per_pixel(rows, columns, seed, data):
     fixed, moving = np.random.default_rng(seed).integers(0, 256, (2, rows, columns), dtype=np.uint8)
     offset = data.draw(st.tuples(st.integers(-15, 15), st.integers(-150, 150)))
     both = mtb.Photograph(moving), mtb.Photograph(fixed)

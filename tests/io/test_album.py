@@ -1,4 +1,4 @@
-"""Which files of a folder are the bracket: pairs, thumbnails, edited copies, turned frames."""
+"""Which files of a folder form the bracket: pairs, thumbnails, edited copies, rotated photos."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""No file can hurt: what claims more than it holds is refused in words, and nothing is left changed."""
+"""Files that claim more than they contain are refused with a message, and nothing is changed."""
 
 import io
 import sys

@@ -1,4 +1,4 @@
-"""Response curves in files: what is written reads back, by us and by the programs whose formats these are."""
+"""Files of response curves: round trips, also through the programs whose formats they are."""
 
 import re
 import shutil

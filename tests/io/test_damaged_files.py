@@ -1,4 +1,4 @@
-"""Whatever happens to a file, it reads, or an HdrlabError or OSError says that it does not: no other end."""
+"""A damaged file is read, or it raises an HdrlabError or OSError; nothing else happens."""
 
 from functools import partial
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Files are written whole or not at all, and headers are checked before they are believed."""
+"""Files are written completely or not at all, and headers are validated."""
 
 import os
 import stat

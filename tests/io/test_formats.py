@@ -1,4 +1,4 @@
-"""The table of formats on the site's page on photographs: each cell, by other writers and readers."""
+"""The table of formats on the site's page about photos, cell by cell, with other writers and readers."""
 
 import io
 import re

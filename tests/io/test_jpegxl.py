@@ -1,4 +1,4 @@
-"""JPEG XL as photograph and as map: what its header says, against libjxl's encoder and decoder."""
+"""JPEG XL for photos and maps: its header, and comparisons with libjxl's encoder and decoder."""
 
 import io
 import struct

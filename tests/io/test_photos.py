@@ -1,4 +1,4 @@
-"""Photographs in, as arrays, and pictures out: what is written by one library is read back by another."""
+"""Reading photos and writing images: other libraries read what hdrlab writes, and the reverse."""
 
 import re
 import struct

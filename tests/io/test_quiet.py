@@ -1,4 +1,4 @@
-"""What C libraries print of a damaged file stays off the terminal; what anybody else prints stays on it."""
+"""Messages of C libraries about damaged files are hidden; all other messages are shown."""
 
 import base64
 import os
@@ -60,6 +60,6 @@ def test_reading_photos_in_threads_leaves_the_filters_of_warnings_as_they_were(t
     assert list(warnings.filters) == before
 
 
-def test_a_warning_of_anybody_else_is_shown_while_photos_are_read():
+def test_warnings_of_other_packages_are_shown_while_photos_are_read():
     with ignore_library_warnings(), pytest.warns(UserWarning, match="ours"):
         warnings.warn("ours", stacklevel=1)

@@ -1,4 +1,4 @@
-"""Radiance files by their suffix, and what files of every kind say about themselves."""
+"""Radiance files by their suffix, and the metadata of all kinds of files."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""RAW photographs, on a synthetic DNG whose radiance, white balance and clipping are known."""
+"""RAW photos, with a synthetic DNG whose radiance, white balance and clipping are known."""
 
 import struct
 import sys
@@ -84,7 +84,7 @@ def test_raw_values_are_linear_above_black_and_white_balanced(tmp_path):
         assert middle(Z) == pytest.approx(unit(value), rel=0.01)
 
 
-def test_dark_and_bright_raw_frames_are_developed_alike(tmp_path):
+def test_values_of_raw_photos_are_proportional_to_the_light(tmp_path):
     dark, bright = (read_photo(dng(tmp_path / f"{v}.dng", flat(v))) for v in (50, 3200))
     assert middle(bright) / middle(dark) == pytest.approx(64, rel=0.02)
 

@@ -1,4 +1,4 @@
-"""Pictures for screens that are brighter than white, against libavif, libjxl, Pillow, OpenCV."""
+"""Images for HDR screens, compared with libavif, libjxl, Pillow and OpenCV."""
 
 import io
 import zlib

@@ -1,4 +1,4 @@
-"""Films in and out, and the command that makes one of high dynamic range."""
+"""Reading and writing films, and the command that makes an HDR film."""
 
 import os
 import select

@@ -1,4 +1,4 @@
-"""Promises of `hdrlab.io.splitting`: a folder falls into the brackets that were taken, and no more."""
+"""`hdrlab.io.splitting`: a folder is divided into the brackets that were taken."""
 
 from datetime import datetime, timedelta
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a telephone writes: its formats, its colours, and a film behind a photograph."""
+"""Files from phones: their formats, their colors, and a film appended to a photo."""
 
 import struct
 

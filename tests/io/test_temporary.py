@@ -1,4 +1,4 @@
-"""Temporary files and folders go when their process has ended, however it ended, and never before."""
+"""Temporary files and folders are removed when their process has ended, in any way, and never before."""
 
 import signal
 import subprocess

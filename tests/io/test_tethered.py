@@ -1,4 +1,4 @@
-"""A camera on a cable: libgphoto2's virtual one, which hands out the photograph in its folder."""
+"""A tethered camera: libgphoto2's virtual one, which delivers the photos of a folder."""
 
 import io
 import os

@@ -1,4 +1,4 @@
-"""TIFF files as other programs write them are read as these programs read them, or refused."""
+"""TIFF files of other programs are read as these programs read them, or refused."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Exposure times from lists and from EXIF, and which of them a bracket takes."""
+"""Exposure times from lists and from EXIF, and which of them a bracket uses."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What `assemble` says of alignment: a doubt where photographs do not lie on each other, and nowhere else."""
+"""Warnings of `assemble` about alignment: for photos that are misaligned, and only for these."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""A method is a module with its chapter's verb, and is found by existing."""
+"""The pipeline finds a method because its module has the function of its chapter."""
 
 import inspect
 from importlib import import_module

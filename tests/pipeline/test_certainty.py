@@ -1,4 +1,4 @@
-"""hdrlab.pipeline.certainty: how sure each pixel of a finished map is."""
+"""hdrlab.pipeline.certainty: how certain each pixel of a radiance map is."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What is black in every photo has no color, and what a photo measures keeps its color."""
+"""Pixels that are black in every photo have no color; measured pixels keep theirs."""
 
 import numpy as np
 import pytest
@@ -60,7 +60,7 @@ def test_a_dark_16_bit_photo_above_its_noise_keeps_its_color():
     assert dark_pixels.measure_color_certainty(images.astype(np.uint16), [1, 2]) is None
 
 
-def test_what_is_bright_in_another_photo_keeps_its_color():
+def test_pixels_that_another_photo_measures_keep_their_color():
     images = np.full((2, 20, 20, 3), 1, np.uint8)
     images[0, 5:15, 5:15] = [150, 20, 20]
     certainty = dark_pixels.measure_color_certainty(images, [1, 2])

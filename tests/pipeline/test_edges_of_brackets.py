@@ -1,4 +1,4 @@
-"""The map of an awkward bracket: a pixel, a row, other byte orders and objects, absurd times."""
+"""Radiance maps of unusual brackets: one pixel, one row, other byte orders, absurd times."""
 
 import numpy as np
 import pytest

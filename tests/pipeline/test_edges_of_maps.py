@@ -1,4 +1,4 @@
-"""The picture of an awkward map, by every operator: black, one lamp, huge or tiny values, other types."""
+"""Every operator on unusual maps: black, a single lamp, huge or tiny values, other types."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def test_map_without_light_is_a_black_picture(operator, shape):
 
 
 @pytest.mark.parametrize("operator", OPERATORS)
-def test_what_is_around_a_lamp_in_the_dark_is_black(operator):
+def test_pixels_around_a_lamp_in_the_dark_are_black(operator):
     lamp = np.zeros_like(E)
     lamp[20:23, 20:23] = 1
     picture = pipeline.develop(lamp, operator)

@@ -1,4 +1,4 @@
-"""Assembly.why: what each photo says about a pixel, and how the map's value came from that."""
+"""Assembly.why: the radiance that each photo gives for a pixel, and how the map combines them."""
 
 from dataclasses import replace
 

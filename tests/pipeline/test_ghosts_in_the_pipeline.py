@@ -1,4 +1,4 @@
-"""Ghosts and flare where a reader meets them: in `assemble`, on the command line, in the report."""
+"""Ghosts and flare in `assemble`, on the command line and in the report."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The frame that alone shows a lamp stays in the map."""
+"""A photo that is the only one to show a lamp is not dropped."""
 
 from dataclasses import replace
 

@@ -29,7 +29,7 @@ def test_a_pixel_that_the_longest_photo_shows_black_is_dark(method):
     assert merge([[[3]], [[0]]], method="log")[0, 0] == pytest.approx(3)
 
 
-def test_what_is_bright_in_a_shorter_photo_keeps_its_radiance():
+def test_pixels_that_a_shorter_photo_measures_keep_their_radiance():
     moved = [[[60]], [[0]]]
     assert merge(moved)[0, 0] == pytest.approx(60)
 

@@ -1,4 +1,4 @@
-"""The default picture: settings from the map, light compressed, hue kept; and what it says of itself."""
+"""The default image: settings from the map, compressed luminance, constant hue, and its warnings."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_the_unit_of_the_map_does_not_matter(E):
     assert np.abs(develop(E).astype(int) - develop(1000 * E)).max() <= 1
 
 
-def test_a_downscaled_map_is_developed_alike(E):
+def test_a_downscaled_map_is_developed_to_a_similar_image(E):
     small = E.reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
     half = develop(E).astype(float).reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
     assert np.median(np.abs(develop(small) - half)) < 4
@@ -231,7 +231,7 @@ def test_a_night_does_not_depend_on_the_unit_of_its_map(E):
     assert np.abs(night.astype(int) - scaled).max() <= 1
 
 
-def test_a_key_that_is_asked_for_is_kept_at_night():
+def test_an_explicit_key_is_used_also_at_night():
     assert "key 0.3" in develop_and_describe(GRAY, luminance_of_unit=1e-6, key=0.3).settings
 
 

@@ -1,4 +1,4 @@
-"""The chapters in a row: from photographs to a map that explains them, and to a picture."""
+"""All stages together: from photos to a radiance map that explains them, and to an image."""
 
 import math
 import sys

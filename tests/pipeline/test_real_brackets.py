@@ -1,4 +1,4 @@
-"""Every real bracket becomes a map by the steps of the plain command, with the right warnings alone."""
+"""Real brackets become radiance maps by the steps of the command, with the right warnings only."""
 
 from dataclasses import replace
 

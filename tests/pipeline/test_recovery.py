@@ -1,4 +1,4 @@
-"""A response that its photographs contradict is replaced, with a doubt; a reader's own is taken as it is."""
+"""A response that the photos contradict is replaced with a warning; a user's own response is not."""
 
 from dataclasses import replace
 

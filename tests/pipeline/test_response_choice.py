@@ -1,4 +1,4 @@
-"""The default response ties the channels as far as held-out pixels allow it."""
+"""The default response uses one curve for all channels as far as held-out pixels allow it."""
 
 import io
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What the stages make of frames that contradict the others, of times that do, and of what moved."""
+"""The stages of the pipeline with inconsistent photos, wrong times and moving objects."""
 
 from dataclasses import replace
 

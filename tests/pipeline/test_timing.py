@@ -1,4 +1,4 @@
-"""Photographs without times: relative ones, from their order in brightness or from their histograms."""
+"""Photos without times: relative times from their order in brightness or from their histograms."""
 
 from dataclasses import replace
 

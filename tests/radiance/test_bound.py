@@ -1,4 +1,4 @@
-"""Bounds: what frames indicate of a pixel that they do not measure."""
+"""Bounds on the radiance of pixels that no photo measures."""
 
 import numpy as np
 import pytest

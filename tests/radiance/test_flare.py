@@ -1,4 +1,4 @@
-"""Flare: the simulated lens does what its formula says, and what it scattered is found in the map."""
+"""Flare: closed forms of the simulated lens, and removal of the scattered light from a map."""
 
 import numpy as np
 import pytest

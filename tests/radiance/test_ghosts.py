@@ -1,4 +1,4 @@
-"""Ghosts: what moved is found and stands in the map once; what stands still is left as it is."""
+"""Ghosts: moving objects are found and appear once; static regions do not change."""
 
 import dataclasses
 

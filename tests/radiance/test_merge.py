@@ -1,4 +1,4 @@
-"""The radiance map: what each pixel takes from the frames, and what it takes where no frame measured it."""
+"""Merging a radiance map: the weighted mean of the photos, and pixels that no photo measures."""
 
 from itertools import permutations
 

@@ -1,4 +1,4 @@
-"""Exposure ratios of a linear camera, from histograms alone."""
+"""Exposure ratios of a linear camera, estimated from histograms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Units of colours, and the weight of signal over noise."""
+"""The scale factors of color channels, and weights by signal-to-noise ratio."""
 
 import numpy as np
 import pytest

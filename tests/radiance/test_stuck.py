@@ -1,4 +1,4 @@
-"""Stuck pixels: a single pixel that does not follow the exposure takes its neighbours' median."""
+"""Stuck pixels: a pixel that does not follow the exposure gets the median of its neighbors."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ def test_at_the_border_the_picture_is_continued_by_reflection():
 
 
 @pytest.mark.parametrize(("ratio", "mended"), [(2.0, True), (1.9, False)])
-def test_hot_pixels_are_found_from_one_stop_of_exposure_difference_on(ratio, mended):
+def test_hot_pixels_are_found_if_the_exposures_differ_by_at_least_one_stop(ratio, mended):
     frames = np.full((2, 9, 9, 1), 60, np.uint8)
     frames[1] = 120
     frames[:, 4, 4] = 250

@@ -1,4 +1,4 @@
-"""hdrlab.radiance.uncertainty: the mean by inverse variance, and how true its standard deviation is."""
+"""hdrlab.radiance.uncertainty: the inverse-variance mean and the accuracy of its standard deviation."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Debevec and Malik's response: the slide's system, its solution, and a curve it finds."""
+"""Debevec and Malik's response: the linear system, its solution, and recovered curves."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Responses from histograms: transfer functions, the two models, and the comparison of Cerman and Hlavac."""
+"""Responses from histograms: transfer functions, both models, and the comparison of Cerman and Hlavac."""
 
 import numpy as np
 import pytest

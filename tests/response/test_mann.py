@@ -1,4 +1,4 @@
-"""Mann and Picard's power law: the ladder of comparisons and its slope."""
+"""Mann and Picard's power law: repeated comparisons and the slope of their line."""
 
 import numpy as np
 import pytest
@@ -97,7 +97,7 @@ def test_brackets_without_two_exposures_raise_an_error(images, times, knobs):
         mann.recover(images, times, **knobs)
 
 
-def test_black_is_a_quarter_of_a_level_and_no_light_at_all_is_none():
+def test_level_0_of_a_power_law_stands_for_a_quarter_of_a_level():
     """Pixels of level 0 had from none to half a level of light: the middle of that is what they mean."""
     for gamma in (1.0, 0.45):
         assert mann.power_law(gamma)[0] == pytest.approx(np.log(0.25 / 128) / gamma)

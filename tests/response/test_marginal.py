@@ -1,4 +1,4 @@
-"""Marginal maximum likelihood: the model is the camera's, its derivatives are right, and it does better."""
+"""Marginal maximum likelihood: the camera model, its derivatives, and smaller errors."""
 
 import numpy as np
 import pytest

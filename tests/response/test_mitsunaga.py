@@ -1,4 +1,4 @@
-"""Self-calibration as published: the linear system, the ratios, the stop, the experiments of the paper."""
+"""Self-calibration as published: the linear system, the ratios, the stopping rule, the experiments."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Methods side by side: their curves and their radiance maps agree, and bad brackets never give NaN."""
+"""The curves and radiance maps of different methods agree, and bad brackets never give NaN."""
 
 from itertools import combinations
 

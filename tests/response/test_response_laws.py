@@ -1,4 +1,4 @@
-"""Every recovery of a response obeys the laws; a new one is tested by existing."""
+"""Every method of response recovery obeys the laws; new modules are tested automatically."""
 
 import pytest
 from support import laws

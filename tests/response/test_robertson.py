@@ -1,4 +1,4 @@
-"""Robertson's response: the slide's two means, and the steps that take them in turn."""
+"""Robertson's response: the two weighted means and their alternation."""
 
 import numpy as np
 import pytest

@@ -170,7 +170,7 @@ def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prio
     assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3
 
 
-def test_notebook_09_says_which_is_better_on_two_noisy_photographs():
+def test_notebook_09_names_the_better_method_for_two_noisy_photos():
     f, s = responses.RESPONSES["film"].f, responses.RESPONSES["srgb"].f
     wave = lambda X: X ** (1 / 2.2) + 0.03 * np.sin(6 * np.pi * X ** (1 / 2.2))  # noqa: E731
     cameras = {"film": "film", "srgb": "srgb", "mix": lambda X: (f(X) + s(X)) / 2, "wig": wave}

@@ -1,4 +1,4 @@
-"""The brackets in which something went wrong, pictured on the site: what travels is what is drawn."""
+"""The brackets of the site's page about problems: the packaged photos are those in the figures."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The procedural scenes: a room that can be photographed at any size, and whose light follows its laws."""
+"""The procedural scenes: a room that can be rendered at any size and that obeys the laws of light."""
 
 import inspect
 import socket

@@ -1,4 +1,4 @@
-"""The places that travel with the package: what a photographer is promised, and how they are made again."""
+"""The packaged scenes: their documented properties, and how they are rendered again."""
 
 import os
 import subprocess

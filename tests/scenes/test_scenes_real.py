@@ -1,4 +1,4 @@
-"""Photographs that travel with the package: free, small, and their times agree with their pixels."""
+"""The packaged photos: free licenses, small files, and times that agree with the pixels."""
 
 from dataclasses import replace
 
@@ -69,7 +69,7 @@ def test_the_pipeline_gives_no_warning_for_the_photos(taken):
     assert np.array_equal(found.bracket.times, taken.times)
 
 
-def test_their_times_are_those_that_the_pixels_give_to_a_fifth_of_a_stop(taken):
+def test_the_times_of_the_packaged_photos_agree_with_their_pixels_within_a_fifth_of_a_stop(taken):
     found = pipeline.assemble(replace(taken, times=np.ones(6)))
     assert np.allclose(
         np.diff(np.log2(found.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2

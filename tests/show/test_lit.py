@@ -1,4 +1,4 @@
-"""A picture for HDR screens on a page: the file as it is, a switch, and words for other screens."""
+"""An image for HDR screens on a page: the original file, a switch, and a text for other screens."""
 
 import numpy as np
 import pytest

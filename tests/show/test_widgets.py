@@ -1,4 +1,4 @@
-"""Widgets in Python: what they hand to the browser, and what they do when it moves a slider."""
+"""Widgets in Python: what they send to the browser, and how they react to a moved slider."""
 
 import base64
 import gc

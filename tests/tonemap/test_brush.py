@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.brush: equalisation of a window, the clipped histogram, the lens."""
+"""hdrlab.tonemap.brush: histogram equalization of a window, the clipped histogram, the lens."""
 
 import numpy as np
 import pytest

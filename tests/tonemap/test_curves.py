@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.curves: linear, gamma, logarithm, quantisation; a curve is not an operator."""
+"""hdrlab.tonemap.curves: linear, gamma, logarithm, quantization; curves are no operators."""
 
 from functools import partial
 

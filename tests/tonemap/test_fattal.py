@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.fattal: the equations, their intermediates, the direct solve and pfstools beside it."""
+"""hdrlab.tonemap.fattal: the equations, their intermediate results, the direct solver, pfstools."""
 
 import shutil
 import subprocess

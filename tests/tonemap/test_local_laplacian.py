@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.local_laplacian: the remapping, and samples against a pyramid for each coefficient."""
+"""hdrlab.tonemap.local_laplacian: the remapping, and sampled remappings against one per coefficient."""
 
 import numpy as np
 import pytest

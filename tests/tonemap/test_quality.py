@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.quality: TMQI against its definition, its closed cases, and what must lower it."""
+"""hdrlab.tonemap.quality: TMQI, its definition, closed forms, and changes that must lower it."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.reinhard: the equations, the search for neighbourhoods, the laws in every mode."""
+"""hdrlab.tonemap.reinhard: the equations, the search for neighborhoods, the laws in every mode."""
 
 import shutil
 import subprocess
@@ -173,7 +173,7 @@ def test_every_step_of_the_search_is_the_definition():
     assert i == 7
 
 
-def test_the_chosen_index_tells_where_the_adaptation_comes_from():
+def test_the_selected_widths_give_the_local_adaptation():
     V1 = list(reinhard.blurs(reinhard.scale_to_key(laws.scene())))
     index = reinhard.select_widths(reinhard.scale_steps(V1))
     picked = np.take_along_axis(np.array(V1), index[None].astype(int), axis=0)[0]

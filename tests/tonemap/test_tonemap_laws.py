@@ -1,6 +1,6 @@
-"""Every tone mapping operator obeys the laws of all and those it claims; a new one is tested by existing.
+"""Every tone-mapping operator obeys the general laws and those it claims; new ones are tested automatically.
 
-VARIED holds values away from the default for every knob of every operator, and the laws hold there
+VARIED has other values than the defaults for all parameters of all operators; the laws hold for them,
 too.
 """
 

@@ -1,4 +1,4 @@
-"""The operators beside those of pfstools, on the same luminance, with the knobs that both have set alike.
+"""The operators, compared with those of pfstools on the same luminance with the same parameters.
 
 Likeness is measured on the displays' sRGB values, as the eye compares them: mean structural
 similarity (SSIM, windows of 7 x 7 pixels) and correlation. The bounds below are what must hold in

@@ -1,4 +1,4 @@
-"""hdrlab.tonemap.ward: foveal image, trims, ceiling, the linear map where the display has range enough."""
+"""hdrlab.tonemap.ward: foveal image, trimmed histogram, ceiling, and the linear map for a wide display."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A reader writes functions in the boxes of a lesson's page, and her browser checks them."""
+"""A reader writes functions in the boxes of a lesson, and the browser checks them."""
 
 import sys
 import threading

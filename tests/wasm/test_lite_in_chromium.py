@@ -1,4 +1,4 @@
-"""A student with nothing installed: she opens an assignment on the site, and it runs in her browser."""
+"""A student without any installation opens an assignment on the site and runs it in the browser."""
 
 import os
 import subprocess
@@ -135,7 +135,7 @@ def test_a_student_edits_checks_and_downloads_what_grade_gives_full_points(site,
     assert elsewhere == []
 
 
-def test_work_in_an_earlier_edition_is_offered_beside_the_new_one(site, page, tmp_path):
+def test_work_in_an_earlier_edition_is_offered_next_to_the_new_one(site, page, tmp_path):
     address, edition = site
     page.goto(f"{address}/lite/notebooks/index.html?path={edition}/assignments/hw2.ipynb")
     write_answer(page)

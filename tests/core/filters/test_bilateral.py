@@ -1,4 +1,4 @@
-"""The bilateral filter by its definition, against the sum written out."""
+"""The bilateral filter, compared with the sum of its definition."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""hdrlab.core.filters.blur: the Gaussian's promises, on the lesson and on the fast one."""
+"""The Gaussian filters of hdrlab.core.filters.blur and hdrlab.fast."""
 
 import numpy as np
 import pytest

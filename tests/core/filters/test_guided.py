@@ -1,4 +1,4 @@
-"""hdrlab.core.filters.guided: lines of windows, against sums written out, and what makes it keep edges."""
+"""The guided filter, compared with the sums of its definition; when it preserves edges."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""One filter per pixel, and the picture back."""
+"""Color filter mosaics and demosaicing."""
 
 import cv2
 import numpy as np

@@ -1,4 +1,4 @@
-"""hdrlab.core.filters.poisson: gradient, divergence and the solution belong together, edges and all."""
+"""Gradient, divergence and the Poisson equation: they agree with one another, also at the borders."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""hdrlab.core.filters.pyramid: every size, both ways, as OpenCV."""
+"""Image pyramids of every size, compared with OpenCV."""
 
 import cv2
 import numpy as np

@@ -1,4 +1,4 @@
-"""Glare: light of every pixel in every other one, against a sum written out."""
+"""The glare spread function, compared with the sum of its definition."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Homographies and the resampling of pictures: closed forms."""
+"""Homographies and resampling: closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""OpenEXR files: the official module is the oracle, and writes the unusual ones."""
+"""OpenEXR files, compared with the official module, which also writes the unusual ones."""
 
 import numpy as np
 import OpenEXR

@@ -1,4 +1,4 @@
-"""hdrlab.io.maps.layers: what is written as parts of an OpenEXR file reads back."""
+"""hdrlab.io.maps.layers: the parts of an OpenEXR file survive a round trip."""
 
 import numpy as np
 import pytest

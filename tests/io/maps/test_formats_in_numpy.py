@@ -1,4 +1,4 @@
-"""Maps are read and written without OpenEXR and imagecodecs, as in a browser; both are the oracles."""
+"""Maps are read and written without OpenEXR and imagecodecs, as in a browser, and compared with both."""
 
 from types import SimpleNamespace
 
@@ -65,7 +65,7 @@ def test_files_of_the_official_writer_are_read(compression, dtype, tmp_path, wit
 
 @pytest.mark.parametrize("half", [False, True])
 @pytest.mark.parametrize("shape", [(37, 21, 3), (16, 5), (1, 1)])
-def test_what_is_written_is_read_by_the_official_reader(half, shape, tmp_path, monkeypatch):
+def test_the_official_reader_reads_written_files(half, shape, tmp_path, monkeypatch):
     path = tmp_path / "a.exr"
     E = light(shape)
     with monkeypatch.context() as patch:

@@ -1,4 +1,4 @@
-"""Portable float maps: written bytes first, then OpenCV as the oracle."""
+"""Portable float maps: their bytes, then a comparison with OpenCV."""
 
 import os
 

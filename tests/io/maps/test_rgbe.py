@@ -1,4 +1,4 @@
-"""Radiance RGBE files: closed forms first, then OpenCV and imageio as oracles, then real files."""
+"""Radiance RGBE files: closed forms, comparisons with OpenCV and imageio, real files."""
 
 import cv2
 import imageio.v3 as iio

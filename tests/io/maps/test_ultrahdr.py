@@ -1,4 +1,4 @@
-"""Ultra HDR pictures, against libultrahdr, Pillow and damage."""
+"""Ultra HDR images, compared with libultrahdr and Pillow, and damaged ones."""
 
 import io
 import re
