@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hdrlab.core.arrays import F64
     from hdrlab.core.bracket import Bracket
     from hdrlab.io.album import Selection
+    from hdrlab.io.decode import PhotoHeader
 
 TIMES_KEYWORDS = ("exif", "estimate")
 CURVE_SUFFIXES = ".csv or .m (pfstools)"
@@ -63,17 +64,21 @@ def read_bracket(
     *,
     note: Callable[[str], object],
     detail: Callable[[str], object],
+    check: "Callable[[list[PhotoHeader]], object] | None" = None,
 ) -> "Bracket":
     """Read the photos of a bracket, with exposure times from --times or --stops.
 
     If no times are known and --times estimate asks for none, all times are 1. `note` is called with
-    each sentence that users must know, `detail` with each other one.
+    each sentence that users must know, `detail` with each other one. `check` is called with the
+    headers of the photos before they are decoded.
     """
     from hdrlab import pipeline
     from hdrlab.io import album, photos as photo_files
 
     color = common.parse_color(mask)
     selection = album.select(photos)
+    if check is not None:
+        check(selection.headers)
     bracket = photo_files.read_bracket(
         selection,
         _find_times(selection, times, stops, detail),

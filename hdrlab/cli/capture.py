@@ -52,7 +52,7 @@ SHORTEST_DECIMAL_SECONDS = 0.4
     "--camera",
     "camera_file",
     type=common.INPUT_PATH,
-    help="Noise model of the camera for --snr: a .toml file.",
+    help="Noise of the camera for --snr: a .toml file, or a .json file of hdrlab noise.",
 )
 @click.pass_context
 def plan(
@@ -92,7 +92,8 @@ def plan(
       aperture = 8           f-number
       speeds = [100]         ISO speeds to choose from, such as [100, 400]
 
-    full_well and gain apply to the lowest ISO speed.
+    full_well and gain apply to the lowest ISO speed. A file that hdrlab noise wrote has full_well,
+    read_noise, gain and the ISO speed; hdrlab uses those of the green channel.
     """  # noqa: D301  # click needs the backspace itself
     from hdrlab.capture import planning
 
@@ -156,6 +157,8 @@ def _read_camera(file: Path, known: tuple[str, ...]) -> dict[str, Any]:
     """Return the values of a camera's noise model in a TOML file, by name."""
     import tomllib
 
+    if file.suffix.lower() == ".json":
+        return _read_measured_camera(file)
     expected = f"{file}: expected a list of speeds and numbers for the rest of {', '.join(known)}"
     try:
         table = tomllib.loads(file.read_text(encoding="utf8"))
@@ -169,6 +172,24 @@ def _read_camera(file: Path, known: tuple[str, ...]) -> dict[str, Any]:
     if unknown or values.get("speeds") == ():
         got = ", ".join(unknown) or "no speeds"
         raise FileFormatError(f"{expected}; got {got}")
+    return values
+
+
+def _read_measured_camera(file: Path) -> dict[str, Any]:
+    """Return the values of the noise model that `hdrlab noise` measured of the green channel."""
+    from hdrlab.pipeline import camera_noise, camera_noise_file
+
+    noise = camera_noise_file.read_camera_noise(file)
+    camera_noise.require_useful(noise)
+    channels = {channel.name: channel for channel in noise.channels}
+    channel = channels.get("green", noise.channels[0])
+    values: dict[str, Any] = {
+        "gain": channel.gain.value,
+        "read_noise": camera_noise.safe_read_noise(channel),
+        "full_well": channel.full_well.value,
+    }
+    if noise.iso is not None:
+        values["speeds"] = (noise.iso,)
     return values
 
 

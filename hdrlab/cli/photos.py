@@ -13,6 +13,9 @@ from hdrlab.pipeline import catalogue
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from hdrlab.core.bracket import Bracket
+    from hdrlab.diagnostics.noise import Noise
+    from hdrlab.io.decode import PhotoHeader
     from hdrlab.pipeline.assembly import Assembly
     from hdrlab.pipeline.pictures import Developed
 
@@ -93,6 +96,13 @@ FUSION_NOTE = "the image is an exposure fusion of the photos"
     help="File for the map and its standard deviation, as two layers: .exr.",
 )
 @click.option(
+    "--noise",
+    "noise_file",
+    type=common.INPUT_PATH,
+    help="Noise of the camera for --uncertainty, as measured by hdrlab noise: .json. Without it, "
+    "hdrlab estimates the noise from the photos.",
+)
+@click.option(
     "--why",
     is_flag=True,
     help="Write a file next to the map, with which `hdrlab why` explains its pixels. The file is about "
@@ -134,6 +144,7 @@ def assemble(
     picture: Path | None,
     report: Path | None,
     uncertainty: Path | None,
+    noise_file: Path | None,
     why: bool,
     strict: bool,
     all_brackets: bool,
@@ -183,6 +194,9 @@ def assemble(
         require_folder_name(report)
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
+    if noise_file and not uncertainty:
+        raise InputError("--noise is used only with --uncertainty; add it, or leave --noise out")
+    measured_noise = _MeasuredNoise(noise_file) if noise_file else None
     if why:
         # imported only here, because it imports more of SciPy than the other options need
         from hdrlab.pipeline import evidence_file
@@ -195,8 +209,15 @@ def assemble(
 
     remarks = _Remarks(verbose)
     bracket = brackets.read_bracket(
-        photos, times, mask, stops, note=remarks.note, detail=remarks.detail
+        photos,
+        times,
+        mask,
+        stops,
+        note=remarks.note,
+        detail=remarks.detail,
+        check=measured_noise.require_same_camera if measured_noise else None,
     )
+    noise = measured_noise.of_bracket(bracket, remarks) if measured_noise else None
     if meter_reading:
         height, width = bracket.images.shape[1:3]
         x, y, _ = meter_reading
@@ -227,7 +248,7 @@ def assemble(
     stages = len(pipeline.STAGES) - 1 + sum(optional_stages)
     assembly = _run_steps(steps, stages, align)
     if uncertainty:
-        assembly = pipeline.measure_deviation(assembly)
+        assembly = pipeline.measure_deviation(assembly, noise)
     if meter_reading:
         assembly = pipeline.calibrate(assembly, *meter_reading)
     if assembly.fallback and (picture or report):
@@ -290,6 +311,36 @@ def assemble(
     click.echo(_summarize(assembly, outputs))
     if strict and assembly.doubts:
         ctx.exit(EXIT_DOUBTFUL_MAP)
+
+
+class _MeasuredNoise:
+    """The noise of a camera that --noise names, and the photos of a bracket of this camera."""
+
+    def __init__(self, path: Path) -> None:
+        from hdrlab.pipeline import camera_noise_file
+
+        self.path = path
+        self.camera = camera_noise_file.read_camera_noise(path)
+        self.headers: list[PhotoHeader] = []
+
+    def require_same_camera(self, headers: "list[PhotoHeader]") -> None:
+        """Raise an InputError unless the photos are RAW files of this camera and ISO speed."""
+        from hdrlab.pipeline import camera_noise
+
+        try:
+            camera_noise.require_same_camera(self.camera, headers)
+        except InputError as error:
+            raise InputError(f"--noise {self.path}: {error}") from None
+        self.headers = headers
+
+    def of_bracket(self, bracket: "Bracket", remarks: "_Remarks") -> "Noise":
+        """Return the noise of the developed photos; a note repeats the warnings of the file."""
+        from hdrlab.pipeline import camera_noise
+
+        for warning in self.camera.warnings:
+            remarks.note(f"{self.path}: {warning.text}")
+        shortest = next(one.path for one in self.headers if one.path.name == bracket.names[0])
+        return camera_noise.noise_of_developed(self.camera, shortest)
 
 
 def _assemble_each(ctx: click.Context, photos: tuple[Path, ...]) -> None:

@@ -175,7 +175,7 @@ def read_header(path: str | Path, *, samples: Samples = "integer") -> PhotoHeade
             "RAW",
             raw_shape,
             np.dtype(np.uint16),
-            exposure=exposure if any(exposure) else facts.exposure,
+            exposure=exposure.fill_from(facts.exposure),
             camera=facts.camera,
             taken=facts.taken,
         )

@@ -46,6 +46,15 @@ class Exposure(NamedTuple):
     f_number: float | None = None
     iso: float | None = None
 
+    def fill_from(self, other: "Exposure") -> "Exposure":
+        """Return this exposure with the missing values of another source."""
+        return Exposure(
+            *(
+                mine if mine is not None else theirs
+                for mine, theirs in zip(self, other, strict=True)
+            )
+        )
+
 
 def read_exposure(exif: Image.Exif) -> Exposure:
     """Return the exposure that EXIF states; APEX values serve where the plain ones are missing.

@@ -175,6 +175,8 @@ def write_dng(
     white: int,
     gains: arrays.ArrayLike,
     matrix: arrays.ArrayLike,
+    exposure: Exposure | None = None,
+    camera: str = "hdrlab",
 ) -> None:
     """Write a RAW photo as a DNG, which LibRaw and RAW developers can open, whole or not at all.
 
@@ -186,6 +188,8 @@ def write_dng(
     black, white : levels of no light and of full pixels
     gains : (3,) of white balance, only their ratios count
     matrix : (3, 3), from XYZ under D65 to the channels of the camera
+    exposure : time, f-number and ISO speed that the file states, as far as they are known
+    camera : model that the file states
 
     Raises
     ------
@@ -210,12 +214,14 @@ def write_dng(
         (33421, "H", 2, (2, 2), True),  # rows and columns of the pattern
         (33422, "B", 4, tuple(np.ravel(pattern).tolist()), True),  # the pattern
         (50706, "B", 4, (1, 4, 0, 0), True),  # version of DNG
-        (50708, "s", 0, "hdrlab", True),  # model of the camera
+        (272, "s", 0, camera, True),  # model of the camera
+        (50708, "s", 0, camera, True),  # the same for programs that read DNG only
         (50714, "H", 1, black, True),
         (50717, "H", 1, white, True),
         (50721, "2i", 9, _as_rationals(matrix), True),
         (50728, "2I", 3, _as_rationals(gray), True),  # a gray card in the camera's channels
         (50778, "H", 1, 21, True),  # the light of the matrix, D65
+        *_exposure_tags(exposure or Exposure()),
     ]
     with replacing(path) as name:
         optional.tifffile.imwrite(
@@ -226,6 +232,18 @@ def write_dng(
             metadata=None,
             software=False,
         )
+
+
+def _exposure_tags(exposure: Exposure) -> list[tuple[int, str, int, object, bool]]:
+    """Return the tags for the parts of an exposure that are known [TIFF/EP]."""
+    tags: list[tuple[int, str, int, object, bool]] = []
+    if exposure.seconds is not None:
+        tags.append((33434, "2I", 1, _as_rationals([exposure.seconds]), True))
+    if exposure.f_number is not None:
+        tags.append((33437, "2I", 1, _as_rationals([exposure.f_number]), True))
+    if exposure.iso is not None:
+        tags.append((34855, "H", 1, round(exposure.iso), True))
+    return tags
 
 
 def _as_rationals(values: arrays.ArrayLike) -> tuple[int, ...]:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hdrlab.pipeline.assembly import Assembly, Method
+    from hdrlab.pipeline.camera_noise import measure_camera_noise
+    from hdrlab.pipeline.camera_noise_file import read_camera_noise, write_camera_noise
     from hdrlab.pipeline.certainty import measure_deviation
     from hdrlab.pipeline.options import WEIGHTS
     from hdrlab.pipeline.pictures import (
@@ -44,15 +46,21 @@ __all__ = [
     "develop_and_describe",
     "find_operator",
     "find_view_transform",
+    "measure_camera_noise",
     "measure_deviation",
+    "read_camera_noise",
     "resolve_settings",
     "space_by_stops",
+    "write_camera_noise",
 ]
 
 # The module of each public name.
 _MODULES = {
     "Assembly": "assembly",
     "Method": "assembly",
+    "measure_camera_noise": "camera_noise",
+    "read_camera_noise": "camera_noise_file",
+    "write_camera_noise": "camera_noise_file",
     "measure_deviation": "certainty",
     "WEIGHTS": "options",
     "develop": "pictures",

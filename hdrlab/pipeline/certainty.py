@@ -19,18 +19,31 @@ from hdrlab.radiance.uncertainty import Sure, merge_with_deviation
 ROWS_PER_STRIP = 64
 
 
-def measure_deviation(state: Assembly) -> Assembly:
+def measure_deviation(state: Assembly, noise: Noise | None = None) -> Assembly:
     """Return a finished Assembly with E merged by inverse variance, and its standard deviation s.
 
     s is infinite and E unchanged where no photo measures a pixel, something moved or glare was
     removed. If the noise cannot be estimated from the photos, s is infinite everywhere, and a note
     says so.
+
+    Parameters
+    ----------
+    state : Assembly
+        What `assemble` returned.
+    noise : Noise, optional
+        Electrons N and read noise R of the camera, if they were measured, see
+        `camera_noise.noise_of_developed`. The relative error rho is still estimated from the
+        photos, because it is that of their response and their times; where they do not show it, it
+        is that of `noise`.
     """
     try:
-        noise = estimate_sensor_noise(state)
+        estimated = estimate_sensor_noise(state)
     except CalibrationError as error:
-        unknown = replace(state, s=np.full_like(state.E, np.inf))
-        return unknown.with_note(f"the uncertainty of the map is unknown: {error}")
+        if noise is None:
+            unknown = replace(state, s=np.full_like(state.E, np.inf))
+            return unknown.with_note(f"the uncertainty of the map is unknown: {error}")
+        estimated = noise
+    noise = estimated if noise is None else noise._replace(rho=estimated.rho)
 
     if state.record is not None:
         state = replace(state, record=replace(state.record, sensor_noise=noise))

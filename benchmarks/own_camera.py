@@ -1,0 +1,243 @@
+"""Simulated cameras whose noise `hdrlab noise` measures from darks and flats, and faults of them.
+
+Run `python -m benchmarks.own_camera` for a table of 20 cameras: the error of each figure, and how
+often the intervals hold the truth. Then each fault is put into the photos of one camera; the last
+column is what hdrlab finds.
+"""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import ndimage
+
+from hdrlab.capture import sensor
+from hdrlab.capture.sensor import Sensor
+from hdrlab.core.arrays import Array
+from hdrlab.io import raw
+from hdrlab.io.exif_exposure import Exposure
+from hdrlab.pipeline.camera_noise import CameraNoise, measure_camera_noise
+
+# from XYZ under D65 to the channels of a Canon EOS 5D Mark II, as its DNG files state it
+MATRIX = ((0.4716, 0.0603, -0.0830), (-0.7798, 1.5474, 0.2480), (-0.1496, 0.1937, 0.6651))
+PATTERN = ((0, 1), (1, 2))
+# light that a channel gets of a white wall
+CHANNEL_LIGHT = (0.55, 1.0, 0.7)
+GAINS = tuple(1 / light for light in CHANNEL_LIGHT)
+SIDE = 400  # pixels
+# seconds of the flats; 1 fills the green pixels
+TIMES = (0.001, 0.004, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.4, 2.6)
+CAMERAS = 20
+
+# A fault changes the levels of a photo: Z, the time (0 for a dark), and 0 or 1, which photo of a pair
+Fault = Callable[[Array, float, int], Array]
+
+
+@dataclass(frozen=True)
+class Studio:
+    """How the photos of a wall are taken."""
+
+    vignetting: float = 0.4
+    iso: float = 100
+    camera: str = "Simulated"
+    side: int = SIDE
+    times: tuple[float, ...] = TIMES
+
+
+def make_sensor(number: int) -> Sensor:
+    """Return one of the simulated sensors, whose gain, noise, well and bits differ."""
+    rng = np.random.default_rng(1000 + number)
+    bits = 12 if number % 2 else 14
+    full_well = float(np.exp(rng.uniform(np.log(4000), np.log(80_000))))
+    black = 64 if bits == 12 else 512
+    # the well ends at 70 to 130 % of the converter's range
+    gain = full_well / (2**bits - 1 - black) / rng.uniform(0.7, 1.3)
+    # from half a level, below which rounding hides it
+    read_noise = float(rng.uniform(0.7, 3.0) * max(gain, 1.0))
+    return Sensor(full_well, read_noise, gain, bits, black)
+
+
+def white_level(one: Sensor) -> int:
+    """Return the level at which a pixel of a sensor is full, as an honest file states it."""
+    full_electrons = sensor.full_electrons(one)
+    return round(full_electrons / one.gain) + one.black
+
+
+def write_photos(
+    folder: Path,
+    one: Sensor,
+    *,
+    studio: Studio | None = None,
+    fault: Fault | None = None,
+    rng: int = 0,
+) -> tuple[Path, Path]:
+    """Write two darks and a pair of flats of each time as DNG, and return both folders."""
+    studio = studio or Studio()
+    generator = np.random.default_rng(rng)
+    wall = np.full((studio.side, studio.side, 3), CHANNEL_LIGHT, np.float32)
+    dark = folder / "dark"
+    flat = folder / "flat"
+    for path in (dark, flat):
+        path.mkdir(parents=True, exist_ok=True)
+    for number, time in enumerate((0.0, *studio.times)):
+        for which in range(2):
+            Z = sensor.raw(wall, time, one, vignetting=studio.vignetting, bayer=True, rng=generator)
+            if fault is not None:
+                Z = fault(Z, time, which)
+            name = f"IMG_{2 * number + which}.dng"
+            raw.write_dng(
+                (flat if time else dark) / name,
+                Z,
+                pattern=PATTERN,
+                black=one.black,
+                white=white_level(one),
+                gains=GAINS,
+                matrix=MATRIX,
+                exposure=Exposure(time or 0.1, 8.0, studio.iso),
+                camera=studio.camera,
+            )
+    return dark, flat
+
+
+def make_faults(one: Sensor, rng: int = 0) -> dict[str, Fault]:
+    """Return what can be wrong with the photos of a sensor, by name."""
+    black = one.black
+    top = white_level(one)
+    generator = np.random.default_rng(rng)
+
+    def bend(Z: Array, time: float, which: int) -> Array:
+        x = (Z.astype(np.float64) - black) / (top - black)
+        bent = np.sign(x) * np.abs(x) ** 0.9
+        return np.rint(black + (top - black) * bent).astype(np.uint16)
+
+    def bend_softly(Z: Array, time: float, which: int) -> Array:
+        x = (Z.astype(np.float64) - black) / (top - black)
+        return np.rint(black + (top - black) * (x - 0.05 * x**2)).astype(np.uint16)
+
+    def blur(Z: Array) -> Array:
+        smooth = np.empty_like(Z)
+        for y in range(2):
+            for x in range(2):
+                plane = Z[y::2, x::2].astype(np.float64)
+                smooth[y::2, x::2] = np.rint(ndimage.uniform_filter(plane, 3))
+        return smooth
+
+    def denoise_darks(Z: Array, time: float, which: int) -> Array:
+        return Z if time else blur(Z)
+
+    def shrink_darks(Z: Array, time: float, which: int) -> Array:
+        return Z if time else np.rint(black + (Z.astype(np.float64) - black) / 4).astype(np.uint16)
+
+    def denoise_all(Z: Array, time: float, which: int) -> Array:
+        return blur(Z)
+
+    def clip_early(Z: Array, time: float, which: int) -> Array:
+        return np.minimum(Z, round(black + 0.8 * (top - black)))
+
+    def flicker(Z: Array, time: float, which: int) -> Array:
+        if not which or not 0.25 < time < 0.35:
+            return Z
+        return np.rint(black + 0.93 * (Z.astype(np.float64) - black)).astype(np.uint16)
+
+    def flicker_in_bands(Z: Array, time: float, which: int) -> Array:
+        if not 0.25 < time < 0.35:
+            return Z
+        rows = np.arange(len(Z))[:, None]
+        wave = 1 + 0.02 * np.sin(2 * np.pi * (rows / 60 + which / 2))
+        return np.rint(black + wave * (Z.astype(np.float64) - black)).astype(np.uint16)
+
+    def leak_at_one_side(Z: Array, time: float, which: int) -> Array:
+        if time:
+            return Z
+        slope = np.linspace(0, 1, Z.shape[1]) ** 2
+        return _add_light(Z, one, 12 * one.read_noise**2 * slope, generator)
+
+    def leak_everywhere(Z: Array, time: float, which: int) -> Array:
+        return Z if time else _add_light(Z, one, np.full(1, one.read_noise**2), generator)
+
+    return {
+        "tone curve x^0.9": bend,
+        "tone curve x - 0.05 x^2": bend_softly,
+        "darks denoised by 3 x 3 means": denoise_darks,
+        "darks denoised pixel by pixel": shrink_darks,
+        "all photos denoised": denoise_all,
+        "clipping at 80 % of the white level": clip_early,
+        "light changes by 7 % within a pair": flicker,
+        "lamp flickers in stripes of 2 %": flicker_in_bands,
+        "light leak at one side": leak_at_one_side,
+        "light leak everywhere": leak_everywhere,
+    }
+
+
+def _add_light(Z: Array, one: Sensor, electrons: Array, rng: np.random.Generator) -> Array:
+    """Return levels with the photons of a light leak, by row or column."""
+    photons = rng.poisson(np.broadcast_to(electrons, Z.shape))
+    levels = np.floor(photons / one.gain + rng.random(Z.shape))
+    return np.minimum(Z + levels, np.iinfo(np.uint16).max).astype(np.uint16)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Errors:
+    """The relative errors of the figures of a camera, and which intervals hold the truth."""
+
+    gain: float
+    read_noise: float
+    full_well: float
+    holds: dict[str, list[bool]]
+
+
+def compare(found: CameraNoise, one: Sensor) -> Errors:
+    """Return the largest errors of the channels against the sensor that was simulated."""
+    truth = {
+        "gain": one.gain,
+        "read_noise": one.read_noise,
+        "full_well": sensor.full_electrons(one),
+        "black": float(one.black),
+    }
+    worst = dict.fromkeys(truth, 0.0)
+    holds: dict[str, list[bool]] = {quantity: [] for quantity in truth}
+    for channel in found.channels:
+        for quantity, true in truth.items():
+            value, low, high = getattr(channel, quantity)
+            worst[quantity] = max(worst[quantity], abs(value / true - 1))
+            holds[quantity].append(low <= true <= high)
+    return Errors(
+        gain=worst["gain"],
+        read_noise=worst["read_noise"],
+        full_well=worst["full_well"],
+        holds=holds,
+    )
+
+
+def main() -> None:
+    """Print both tables."""
+    print("bits   gain  read noise  full well | largest error of a channel")
+    counts: dict[str, list[bool]] = {}
+    for number in range(CAMERAS):
+        one = make_sensor(number)
+        with tempfile.TemporaryDirectory() as folder:
+            found = measure_camera_noise(*write_photos(Path(folder), one, rng=number))
+        errors = compare(found, one)
+        for quantity, held in errors.holds.items():
+            counts.setdefault(quantity, []).extend(held)
+        kinds = ", ".join(warning.kind for warning in found.warnings) or "no warnings"
+        print(
+            f"{one.bits:4}  {one.gain:5.2f}  {one.read_noise:10.2f}  {one.full_well:9.0f} | gain "
+            f"{errors.gain:.1%}, read noise {errors.read_noise:.1%}, full well {errors.full_well:.1%}; "
+            f"{kinds}"
+        )
+    for quantity, held in counts.items():
+        print(f"{quantity}: {np.mean(held):.1%} of {len(held)} intervals hold the truth")
+    print()
+    one = make_sensor(3)
+    for name, fault in make_faults(one).items():
+        with tempfile.TemporaryDirectory() as folder:
+            found = measure_camera_noise(*write_photos(Path(folder), one, fault=fault))
+        kinds = ", ".join(warning.kind for warning in found.warnings) or "nothing"
+        print(f"{name:40} {kinds}")
+
+
+if __name__ == "__main__":
+    main()
