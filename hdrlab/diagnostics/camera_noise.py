@@ -51,6 +51,8 @@ MAX_CURVATURE = 0.03
 MAX_EXPONENT_ERROR = 0.05
 # scatter of ln S around t^p beyond which the light was changed as well as the time
 MAX_EXPONENT_SCATTER = 0.05
+# of the highest used signal: below it, an error of the black level bends S = t^p, too
+MIN_EXPONENT_SIGNAL = 0.1
 # ratio of the longest to the shortest time without which there is no exponent
 MIN_TIME_RATIO = 4.0
 # correlation of neighboring pixels that a converter may cause by itself
@@ -169,7 +171,8 @@ def measure_noise(
     Raises
     ------
     CalibrationError
-        If fewer than three flat pairs have steady light, or the noise does not grow with the light.
+        If the darks are not darker than the flats, fewer than three flat pairs have steady light, or
+        the noise does not grow with the light.
 
     References
     ----------
@@ -188,6 +191,13 @@ def measure_noise(
     >>> round(found.gain.value, 1), round(found.read_noise.value), warnings
     (2.0, 6, ())
     """
+    for channel in photos:
+        flat_means = channel.flats.mean(axis=(1, 2, 3, 4))
+        if channel.dark.mean() >= np.median(flat_means):
+            raise CalibrationError(
+                f"the darks are brighter than half of the flats ({channel.name}); pass the folder of "
+                "darks first, then that of flats"
+            )
     is_steady, warnings = _find_steady_pairs(photos, names)
     if is_steady.sum() < MIN_FLAT_PAIRS:
         reasons = "".join(f"; {warning.text}" for warning in warnings)
@@ -389,7 +399,9 @@ def _check_line(
         return [NoiseWarning(kind=TONE_CURVE, text=text)]
     if seconds is None:
         return []
-    t = seconds[_sort_flats(channel)][is_flat[1:]]
+    is_bright = S >= MIN_EXPONENT_SIGNAL * S.max()
+    S = S[is_bright]
+    t = seconds[_sort_flats(channel)][is_flat[1:]][is_bright]
     if t.max() < MIN_TIME_RATIO * t.min() or len(t) < MIN_FLAT_PAIRS:
         return []
     exponent, offset = np.polyfit(np.log(t), np.log(S), 1)

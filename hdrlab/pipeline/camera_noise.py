@@ -449,7 +449,7 @@ def _describe(interval: Interval) -> str:
     """Return a figure with its 95 % interval, with as many digits as the interval allows."""
     value, low, high = interval
     if math.isnan(value):
-        return f"below {high:.2g}"
+        return f"below {high:#.2g}"
     if math.isinf(high):
         return f"at least {_round_to(low, low / 100)}"
     width = max(high - low, abs(value) * 1e-4)
@@ -463,7 +463,8 @@ def _describe(interval: Interval) -> str:
 
 def _round_to(value: float, width: float) -> str:
     """Return a number with two digits of its uncertainty."""
-    decimals = 1 - math.floor(math.log10(width)) if width > 0 else 2
+    # a width of 0.9999 counts as 1
+    decimals = 1 - math.floor(math.log10(width * 1.001))
     return f"{value:.{max(decimals, 0)}f}"
 
 

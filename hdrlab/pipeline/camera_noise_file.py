@@ -86,8 +86,10 @@ def read_camera_noise(path: str | Path) -> CameraNoise:
         )
     except FileFormatError:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise FileFormatError(f"{expected}; {type(error).__name__}: {error}") from None
+    except KeyError as error:
+        raise FileFormatError(f"{expected}; it lacks {error}") from None
+    except (ValueError, TypeError, AttributeError) as error:
+        raise FileFormatError(f"{expected}; {error}") from None
     for channel in noise.channels:
         _require_positive(path, channel)
     return noise

@@ -20,6 +20,13 @@ COMMANDS = [
     "plan --map damaged.png",
     "meter dark.png --at nan,0.5",
     "meter damaged.png",
+    "noise empty empty",
+    "noise nowhere empty",
+    "noise dark.png empty",
+    "noise . . -o out.json",
+    "plan 1 100 --snr 10 --camera binary.json",
+    "assemble dark.png dark.png -o out.hdr --uncertainty out.exr --noise binary.json",
+    "assemble dark.png dark.png -o out.hdr --uncertainty out.exr --noise empty",
     "correct dark.png -o out.png --target nan",
     "tonemap map.hdr -o out.jpg --to ultrahdr --headroom inf",
     "tonemap map.hdr -o out.png --saturation nan",
@@ -72,7 +79,7 @@ def folder(tmp_path_factory):
     (folder / "damaged.mp4").write_bytes(b"junk")
     (folder / "hw2.py").write_text("def hat(: pass\n")
     (folder / "hw2.ipynb").write_text("{}")
-    for name in ("binary.txt", "binary.csv"):
+    for name in ("binary.txt", "binary.csv", "binary.json"):
         (folder / name).write_bytes(b"\xff\xfe\x00,\n")
     return folder
 

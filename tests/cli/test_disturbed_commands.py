@@ -23,8 +23,9 @@ import pytest
 from PIL import Image
 from support import interrupted_commands, linux_processes, one_task_homework
 
+from benchmarks import own_camera
 from hdrlab import scenes
-from hdrlab.capture import camera
+from hdrlab.capture import camera, sensor
 from hdrlab.io import photos, radiance, response_files
 
 pytestmark = [
@@ -119,6 +120,7 @@ COMMANDS = {
         "calibrate photos --times times.txt --align none -o out/a.csv -o out/a.m --plot out/a.svg",
         output="out/a.csv",
     ),
+    "noise": Command("noise dark flat -o out/a.json", output="out/a.json"),
     "correct": Command("correct team1.png -o out/a.png", output="out/a.png"),
     "video": Command(
         "video photos --times 1,1/4 --response curve.csv -o out/a.gif", output="out/a.gif"
@@ -219,6 +221,9 @@ def made(tmp_path_factory):
     for name, image in zip("abc", shot.images, strict=True):
         photos.write_picture(here / f"photos/{name}.png", image)
     lines = [f"{name}.png {time}" for name, time in zip("abc", shot.times, strict=True)]
+    own_camera.write_photos(
+        here, sensor.Sensor(), studio=own_camera.Studio(side=120, times=(0.1, 0.3, 0.6, 0.9))
+    )
     (here / "times.txt").write_text("\n".join(lines) + "\n")
     rng = np.random.default_rng(1)
     radiance.write_radiance(here / "map.exr", rng.uniform(0.01, 5, (90, 120, 3)))
