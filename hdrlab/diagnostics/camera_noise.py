@@ -195,8 +195,8 @@ def measure_noise(
         flat_means = channel.flats.mean(axis=(1, 2, 3, 4))
         if channel.dark.mean() >= np.median(flat_means):
             raise CalibrationError(
-                f"the darks are brighter than half of the flats ({channel.name}); pass the folder of "
-                "darks first, then that of flats"
+                f"half of the flats are no brighter than the darks ({channel.name}); pass the folder "
+                "of darks first, then that of flats, and take flats with more light"
             )
     is_steady, warnings = _find_steady_pairs(photos, names)
     if is_steady.sum() < MIN_FLAT_PAIRS:

@@ -10,6 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ MIN_PLANE_PIXELS = 200
 MIDDLE_FRACTION = 0.5
 # blocks of a side of the frame in which the level of darks is compared
 BLOCKS = 8
-# levels of the bits of a block that are outliers, in standard deviations
+# standard deviations beyond which a level counts as an outlier of its block
 OUTLIER_DEVIATIONS = 6.0
 # LibRaw's range of developed levels, and the level of exposure 1 in a response
 LARGEST_LEVEL = 65535
@@ -237,8 +238,12 @@ def _name_iso(iso: float | None) -> str:
 
 
 def _name_size(header: PhotoHeader) -> str:
-    height, width = sorted(header.shape[:2])
-    return f"{width} x {height} pixels"
+    height, width = header.shape[:2]
+    if header.kind == "RAW":
+        # the levels of a mosaic are not rotated
+        height, width = sorted((height, width))
+    channels = "" if len(header.shape) == 3 else ", gray"
+    return f"{width} x {height} pixels{channels}"
 
 
 Pair = tuple[PhotoHeader, PhotoHeader]
@@ -286,7 +291,10 @@ def _choose_darks(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Frame:
-    """The planes of each channel of a photo, and what its file states."""
+    """The planes of each channel of a photo, and what its file states.
+
+    The means of blocks of the whole frame are those of darks only.
+    """
 
     planes: dict[str, Array]
     block_means: dict[str, F64]
@@ -301,8 +309,9 @@ def _read_channels(darks: Pair, pairs: Sequence[Pair]) -> tuple[list[ChannelPhot
     Some programs multiply the levels, so that only each 16th occurs, say. The levels that are
     returned are (Z - offset) / step.
     """
-    headers = [*darks, *(header for pair in pairs for header in pair)]
-    frames = list(map_in_threads(_read_frame, headers))
+    dark_frames = list(map_in_threads(partial(_read_frame, is_dark=True), darks))
+    flat_headers = [header for pair in pairs for header in pair]
+    frames = [*dark_frames, *map_in_threads(partial(_read_frame, is_dark=False), flat_headers)]
     first = frames[0]
     samples = [plane for frame in frames[:4] for plane in frame.planes.values()]
     step, offset = _find_step(samples)
@@ -336,7 +345,7 @@ def _find_step(samples: Sequence[Array]) -> tuple[int, int]:
     return step, int(occurring[0]) % step
 
 
-def _read_frame(header: PhotoHeader) -> _Frame:
+def _read_frame(header: PhotoHeader, *, is_dark: bool) -> _Frame:
     """Read one photo, and cut the middle out of the planes of each channel."""
     places: dict[str, list[Array]] = defaultdict(list)
     blacks: dict[str, list[float]] = defaultdict(list)
@@ -364,8 +373,9 @@ def _read_frame(header: PhotoHeader) -> _Frame:
         width = min(plane.shape[1] for plane in places[name])
         stack = np.stack([plane[:height, :width] for plane in places[name]])
         planes[name] = _cut_middle(header.path, stack)
-        block_means[name] = _average_blocks(stack)
-        block_pixels = (height // BLOCKS) * (width // BLOCKS)
+        if is_dark:
+            block_means[name] = _average_blocks(stack)
+            block_pixels = (height // BLOCKS) * (width // BLOCKS)
     return _Frame(
         planes=planes,
         block_means=block_means,
@@ -387,7 +397,7 @@ def _cut_middle(path: Path, planes: Array) -> Array:
     height, width = planes.shape[1:]
     rows = min(int(height * MIDDLE_FRACTION), MAX_PLANE_SIDE)
     columns = min(int(width * MIDDLE_FRACTION), MAX_PLANE_SIDE)
-    if rows * columns < MIN_PLANE_PIXELS:
+    if rows * columns < MIN_PLANE_PIXELS or min(rows, columns) < BLOCKS:
         raise InputError(
             f"{path}: expected a larger photo, its channels have {width} x {height} pixels"
         )
@@ -401,7 +411,8 @@ def _average_blocks(planes: Array) -> F64:
     rows = planes.shape[1] // BLOCKS
     columns = planes.shape[2] // BLOCKS
     middle = np.median(planes)
-    reach = OUTLIER_DEVIATIONS * max(np.median(np.abs(planes - middle)) / 0.6745, 1)
+    deviation = camera_noise.DEVIATION_PER_MAD * np.median(np.abs(planes - middle))
+    reach = OUTLIER_DEVIATIONS * max(deviation, 1)
     blocks = planes[:, : rows * BLOCKS, : columns * BLOCKS].reshape(
         -1, BLOCKS, rows, BLOCKS, columns
     )

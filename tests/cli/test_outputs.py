@@ -120,7 +120,7 @@ def test_require_other_ignores_values_that_are_no_file_names(tmp_path):
         "assemble photos --stops 2 -o room.hdr --report times.csv",
         "calibrate photos --times times.csv -o missing/curve.csv",
         "calibrate photos --times times.csv --plot missing/curve.png",
-        "noise photos photos -o missing/noise.json",
+        "noise photos photos -o missing/room.json",
         "correct photos/b.png -o missing/room.png",
         "tonemap photos/room.hdr -o missing/room.png",
         "compare photos/room.hdr -o missing/room.png",
