@@ -45,8 +45,9 @@ CUT_BLACK = "black cut off"
 MIN_FLAT_PAIRS = 3
 # standard deviations that chance hardly ever exceeds in any of the checks
 SURE_DEVIATIONS = 6.0
-# change of V at the brightest used pair by the term c S^2, as a fraction of V, that is tolerated
-MAX_CURVATURE = 0.03
+# change of V at the brightest used pair by the term c S^2, as a fraction of V, that is tolerated:
+# good sensors deviate from linearity by 1 or 2 %, which bends V two or three times as much
+MAX_CURVATURE = 0.05
 # deviation of the exponent of S = t^p from 1 that is tolerated: shutters are not exact
 MAX_EXPONENT_ERROR = 0.05
 # scatter of ln S around t^p beyond which the light was changed as well as the time
