@@ -87,9 +87,6 @@ REPLACEMENTS = {
 # how NumPy says how much memory it could not get
 NUMPY_MEMORY_NEED = re.compile(r"Unable to allocate (\d[\d.]* \w+)")
 
-# the decades of a radiance map are measured on an even grid of at most so many pixels
-MAX_SAMPLED_PIXELS = 400_000
-
 
 @dataclass
 class Settings:
@@ -368,24 +365,6 @@ def read_map(source: Path, clean: bool) -> "F32":
     elif clean:
         click.echo(f"{source}: nothing to repair, all values are valid")
     return E
-
-
-def describe_map(E: "F32") -> str:
-    """Return the size of a radiance map and its range in decades, in words."""
-    from hdrlab.core.extremes import decades
-
-    height, width = E.shape[:2]
-    step = max(1, int((height * width / MAX_SAMPLED_PIXELS) ** 0.5))
-    sample = E[::step, ::step]
-    content = f"{decades(sample):.1f} decades" if sample.any() else "all black"
-    return f"{width} x {height}, {content}"
-
-
-def describe_agreement(spread: float, count: int) -> str:
-    """Return in words how far `count` photos of a map agree; NaN stops stand for "not measured"."""
-    if spread != spread:
-        return "hdrlab could not measure how far the photos agree"
-    return f"the {count} photos agree to {spread:.3f} stops"
 
 
 def parse_color(text: str | None) -> tuple[int, int, int] | None:

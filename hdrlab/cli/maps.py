@@ -209,7 +209,7 @@ def compare(
     are for that size. `hdrlab tonemap --help` explains --gamut.
     """
     from hdrlab.io import radiance
-    from hdrlab.show.pages import contact, sheet
+    from hdrlab.show.pages import contact, sheet, wording
     from hdrlab.show.plots import figures
 
     sheet.check_suffix(out)
@@ -220,7 +220,7 @@ def compare(
         unit = radiance.read_max_luminance_of_unit(source)
     steps = contact.entry_steps(E, names, way=gamut, luminance_of_unit=unit)
     entries = common.one_by_one(steps, names)
-    description = common.describe_map(E)
+    description = wording.describe_map(E)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {description}"))
     click.echo(f"{out}: {len(names)} operators, {description}")
 
@@ -237,6 +237,7 @@ def compare(
 def convert(*, source: Path, out: Path, half: bool, clean: bool) -> None:
     """Convert the radiance map SOURCE to the format that the name of the output states."""
     from hdrlab.io import radiance
+    from hdrlab.show.pages import wording
 
     radiance.require_writable(out, half=half)
     E = common.read_map(source, clean)
@@ -247,7 +248,7 @@ def convert(*, source: Path, out: Path, half: bool, clean: bool) -> None:
         luminance_of_unit=radiance.read_luminance_of_unit(source),
         max_luminance_of_unit=radiance.read_max_luminance_of_unit(source),
     )
-    click.echo(f"{out}: {common.describe_map(E)}")
+    click.echo(f"{out}: {wording.describe_map(E)}")
 
 
 @click.command(cls=common.Command)

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from hdrlab.diagnostics.noise import Noise
     from hdrlab.io.decode import PhotoHeader
     from hdrlab.pipeline.assembly import Assembly
-    from hdrlab.pipeline.pictures import Developed
 
 ALIGN_METHODS = ["auto", *catalogue.names("align"), "none"]
 
@@ -26,8 +25,6 @@ CALIBRATION_METHODS = [name for name in catalogue.names("response") if name != "
 
 EXIT_DOUBTFUL_MAP = 3
 MAX_DOUBT_LINES = 3
-
-FUSION_NOTE = "the image is an exposure fusion of the photos"
 
 
 @click.command(cls=common.Command)
@@ -182,6 +179,8 @@ def assemble(
     from hdrlab.io import photos as photo_files, radiance
     from hdrlab.io.files import require_folder_name, require_replaceable, require_suffix
     from hdrlab.io.maps import layers
+    from hdrlab.pipeline import pictures
+    from hdrlab.show.pages import wording
 
     # bad options are reported before the work starts
     if times == "stated":
@@ -252,7 +251,7 @@ def assemble(
     if meter_reading:
         assembly = pipeline.calibrate(assembly, *meter_reading)
     if assembly.fallback and (picture or report):
-        assembly = assembly.with_note(f"{FUSION_NOTE}, because {assembly.fallback}")
+        assembly = assembly.with_note(f"{pictures.FUSION_NOTE}, because {assembly.fallback}")
     for note in assembly.notes:
         remarks.note(note)
     for detail in assembly.details:
@@ -273,8 +272,8 @@ def assemble(
             luminance_of_unit=unit,
             max_luminance_of_unit=max_unit,
         )
-        description = executor.submit(common.describe_map, assembly.E)
-        developed = _develop(assembly, operator) if picture or report else None
+        description = executor.submit(wording.describe_map, assembly.E)
+        developed = pictures.develop_assembly(assembly, operator) if picture or report else None
         if uncertainty and assembly.s is not None:
             both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
             unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
@@ -301,14 +300,14 @@ def assemble(
         writing.result()
     outputs = [f"{out} ({description.result()})"]
     if picture:
-        outputs.append(_describe_picture(picture, assembly, operator))
+        outputs.append(wording.describe_picture(str(picture), assembly, operator))
     if uncertainty:
         outputs.append(_describe_uncertainty(uncertainty, assembly))
     if why:
         outputs.append(_describe_evidence(evidence))
     if report:
         outputs.append(str(report / "report.html"))
-    click.echo(_summarize(assembly, outputs))
+    click.echo(wording.summarize_assembly(assembly, outputs))
     if strict and assembly.doubts:
         ctx.exit(EXIT_DOUBTFUL_MAP)
 
@@ -404,25 +403,6 @@ def _run_steps(steps: "Iterable[Assembly]", count: int, align: str) -> "Assembly
     return last(common.progress(steps, "assembling", count))
 
 
-def _develop(assembly: "Assembly", operator: str) -> "Developed":
-    """Return the tone-mapped image of a map, or a fusion of the photos if the map is not usable."""
-    import numpy as np
-
-    from hdrlab.pipeline import pictures
-
-    if not assembly.fallback:
-        return pictures.develop_and_describe(
-            assembly.E,
-            operator,
-            luminance_of_unit=assembly.bracket.luminance_of_unit,
-            max_luminance_of_unit=assembly.bracket.max_luminance_of_unit,
-        )
-    from hdrlab.fast import mertens
-
-    fused = mertens.fuse(assembly.bracket.images).clip(0, 1)
-    return pictures.Developed(np.rint(255 * fused).astype(np.uint8), FUSION_NOTE)
-
-
 class _Remarks:
     """The notes and details on a bracket. Each is printed when it comes, details if `verbose`."""
 
@@ -441,35 +421,6 @@ class _Remarks:
         if self.verbose:
             common.echo_details([text])
         self.details.append(text)
-
-
-def _summarize(assembly: "Assembly", outputs: list[str]) -> str:
-    """Return the last line of `assemble`: OK or the number of warnings, and what was written."""
-    count = len(assembly.doubts)
-    verdict = "OK" if count == 0 else f"{count} {'warning' if count == 1 else 'warnings'}"
-    agreement = common.describe_agreement(assembly.spread, len(assembly.bracket.times))
-    return f"{verdict}: {', '.join(outputs)}; {agreement}"
-
-
-def _describe_picture(picture: Path, assembly: "Assembly", operator: str) -> str:
-    """Return the name of the tone-mapped image, and that it was kept dark if the scene was dark."""
-    from hdrlab.pipeline.photograph import BRIGHT_SCENE_EV, measure_scene_ev
-    from hdrlab.pipeline.pictures import AUTO
-
-    is_bound = assembly.bracket.luminance_of_unit is None
-    unit = assembly.bracket.luminance_of_unit
-    if is_bound:
-        unit = assembly.bracket.max_luminance_of_unit
-    if unit is None or assembly.fallback or operator != AUTO:
-        return str(picture)
-    scene_ev = measure_scene_ev(assembly.E, unit)
-    if scene_ev >= BRIGHT_SCENE_EV:
-        return str(picture)
-    if is_bound:
-        reason = f"the exposure times show that the scene had at most EV {scene_ev:z.0f}"
-    else:
-        reason = f"the scene had EV {scene_ev:z.0f}"
-    return f"{picture} (kept dark, because {reason})"
 
 
 def _describe_uncertainty(path: Path, assembly: "Assembly") -> str:

@@ -14,12 +14,13 @@ from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, as_radiance
 from hdrlab.errors import InputError
 from hdrlab.pipeline import catalogue
-from hdrlab.pipeline.assembly import Method
+from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.photograph import choose_settings, measure_scene_ev, photograph
 
 # The default operator, which chooses its settings for the map.
 AUTO = "photograph"
 DEFAULT_SATURATION = 1.0
+FUSION_NOTE = "the image is an exposure fusion of the photos"
 # The median of usual maps. Beyond, sums and quotients leave the range of float32.
 MIN_USUAL_MEDIAN = 1e-25
 MAX_USUAL_MEDIAN = 1e25
@@ -137,6 +138,24 @@ def develop_and_describe(
         at_most = " at most" if is_bound else ""
         description += f", for a scene of EV {measure_scene_ev(E, unit):z.0f}{at_most}"
     return Developed(picture, description)
+
+
+def develop_assembly(assembly: Assembly, tonemap: Method = AUTO) -> Developed:
+    """Return the picture of an assembled map, or a fusion of the photos if the map is not usable.
+
+    A scene whose luminance is known to be low stays dark, see `develop`.
+    """
+    if not assembly.fallback:
+        return develop_and_describe(
+            assembly.E,
+            tonemap,
+            luminance_of_unit=assembly.bracket.luminance_of_unit,
+            max_luminance_of_unit=assembly.bracket.max_luminance_of_unit,
+        )
+    from hdrlab.fast import mertens
+
+    fused = mertens.fuse(assembly.bracket.images).clip(0, 1)
+    return Developed(np.rint(255 * fused).astype(np.uint8), FUSION_NOTE)
 
 
 def scale_into_range(E: ArrayLike) -> tuple[F32, float]:

@@ -14,13 +14,13 @@ from PIL.ExifTags import Base
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.cli.common import describe_agreement, describe_map
 from hdrlab.core.colour import luminance
 from hdrlab.errors import InputError
 from hdrlab.io import radiance
 from hdrlab.io.maps.layers import read_layers
 from hdrlab.io.photos import read_photo, write_picture
 from hdrlab.pipeline import pictures
+from hdrlab.show.pages.wording import describe_agreement, describe_map
 
 
 def hdrlab(*arguments, capsys=None):

@@ -1,13 +1,21 @@
-"""Format numbers for reports: stops, percentages and offsets, with true minus signs."""
+"""Words for results: numbers with true minus signs, and the summary of a radiance map."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hdrlab.core import arrays, colour
+from hdrlab.core import arrays, colour, extremes
+
+if TYPE_CHECKING:
+    from hdrlab.pipeline.assembly import Assembly
 
 # Correct exposure times and a camera on a tripod reach this spread, in stops.
 AGREEMENT_STOPS = 0.03
 MIN_SHOWN_PERCENT = 0.01
 MIN_LUMINANCE = 1e-30
+# The range of a larger map is measured in a sample of its pixels.
+MAX_SAMPLED_PIXELS = 400_000
 
 
 def share(mask: arrays.ArrayLike) -> str:
@@ -89,3 +97,48 @@ def certainty(E: arrays.F32, s: arrays.F32) -> str:
         return "the uncertainty of the pixels is not known"
     median, quantile95 = np.quantile(known, [0.5, 0.95])
     return f"half of the pixels are known to ± {median:.2g} stops, 95 % to ± {quantile95:.2g}"
+
+
+def describe_map(E: arrays.F32) -> str:
+    """Return the size of a radiance map and its range in decades, in words."""
+    height, width = E.shape[:2]
+    step = max(1, int((height * width / MAX_SAMPLED_PIXELS) ** 0.5))
+    sample = E[::step, ::step]
+    content = f"{extremes.decades(sample):.1f} decades" if sample.any() else "all black"
+    return f"{width} x {height}, {content}"
+
+
+def describe_agreement(spread: float, count: int) -> str:
+    """Return in words how far `count` photos of a map agree; NaN stops stand for "not measured"."""
+    if spread != spread:
+        return "hdrlab could not measure how far the photos agree"
+    return f"the {count} photos agree to {spread:.3f} stops"
+
+
+def describe_picture(name: str, assembly: "Assembly", operator: str) -> str:
+    """Return the name of a tone-mapped image, and that it was kept dark if the scene was dark."""
+    from hdrlab.pipeline.photograph import BRIGHT_SCENE_EV, measure_scene_ev
+    from hdrlab.pipeline.pictures import AUTO
+
+    is_bound = assembly.bracket.luminance_of_unit is None
+    unit = assembly.bracket.luminance_of_unit
+    if is_bound:
+        unit = assembly.bracket.max_luminance_of_unit
+    if unit is None or assembly.fallback or operator != AUTO:
+        return name
+    scene_ev = measure_scene_ev(assembly.E, unit)
+    if scene_ev >= BRIGHT_SCENE_EV:
+        return name
+    if is_bound:
+        reason = f"the exposure times show that the scene had at most EV {scene_ev:z.0f}"
+    else:
+        reason = f"the scene had EV {scene_ev:z.0f}"
+    return f"{name} (kept dark, because {reason})"
+
+
+def summarize_assembly(assembly: "Assembly", outputs: Sequence[str]) -> str:
+    """Return OK or the number of warnings, what was written, and how far the photos agree."""
+    count = len(assembly.doubts)
+    verdict = "OK" if count == 0 else f"{count} {'warning' if count == 1 else 'warnings'}"
+    agreement = describe_agreement(assembly.spread, len(assembly.bracket.times))
+    return f"{verdict}: {', '.join(outputs)}; {agreement}"
