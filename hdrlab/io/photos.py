@@ -147,7 +147,7 @@ def read_bracket(
             selection = album.select(paths, split=False)
         times = _drop_times_of_damaged(times, paths, selection)
     headers, more_notes = album.turn_alike(selection.headers)
-    _check_alike(headers)
+    require_alike(headers)
     if detail is not None:
         for sentence in selection.details:
             detail(sentence)
@@ -332,7 +332,7 @@ def require_writable(path: str | Path) -> str:
     return files.require_suffix(path, PICTURES, "a picture file")
 
 
-def _check_alike(headers: list[PhotoHeader]) -> None:
+def require_alike(headers: list[PhotoHeader]) -> None:
     """Raise an InputError that names the first photo and one that does not go with it."""
     first = headers[0]
     for other in headers[1:]:

@@ -249,10 +249,10 @@ def _parse_times(path: str | Path, rows: list[tuple[str, list[str]]]) -> TimeLis
         numbers = {}
         for column in NUMBER_COLUMNS:
             if columns.get(column):
-                numbers[column] = _parse_number(where, columns[column])
+                numbers[column] = parse_number(where, columns[column])
         seconds = numbers.get("seconds") or numbers.get("rate")
         if seconds is None:
-            seconds = 1 / _parse_number(where, columns.get("inverse", ""))
+            seconds = 1 / parse_number(where, columns.get("inverse", ""))
         exposures[name] = Exposure(seconds, numbers.get("f_number"), numbers.get("iso"))
         if "rate" not in numbers or _is_fraction_or_has_unit(columns["rate"]):
             has_explicit_unit = True
@@ -354,16 +354,29 @@ def _name_cells(where: str, heading: list[str] | None, cells: list[str]) -> dict
     if heading or len(cells) != 3:
         return named
     name, time, third = cells
-    time_value = _parse_number(where, time)
-    third_value = _parse_number(where, third)
+    time_value = parse_number(where, time)
+    third_value = parse_number(where, third)
     if abs(time_value * third_value - 1) < INVERSE_TOLERANCE:
         return {"file": name, "seconds": time}
     third_column = "iso" if third_value >= MIN_ISO else "f_number"
     return {"file": name, "rate": time, third_column: third}
 
 
-def _parse_number(where: str, text: str) -> float:
-    """Return the positive number of a cell: 0.5, 0,5, 1/60 or one of them with its unit."""
+def parse_number(where: str, text: str) -> float:
+    """Return a positive number that is written as 0.5, 0,5 or 1/60, with or without its unit "s".
+
+    `where` is what the error message names: the file and its line, or the photo.
+
+    Raises
+    ------
+    FileFormatError
+        If the text is no such number.
+
+    Examples
+    --------
+    >>> parse_number("a.jpg", "1/4s"), parse_number("a.jpg", "0,5")
+    (0.25, 0.5)
+    """
     match = VALUE.fullmatch(text)
     if match:
         numerator = positive(match[1].replace(",", "."))
