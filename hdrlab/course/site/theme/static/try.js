@@ -39,27 +39,10 @@
     setBusy(null);
   }
 
-  function showProgress(box, { what, loaded, total }) {
-    const bar = part(box, "progress");
-    const megabytes = (bytes) => (bytes / 1e6).toFixed(0);
-    bar.hidden = false;
-    if (total) {
-      bar.max = total;
-      bar.value = Math.min(loaded, total);
-    }
-    const amount = total ? `${megabytes(loaded)} of ${megabytes(total)} MB` : `${megabytes(loaded)} MB`;
-    // not each megabyte is read out
-    bar.setAttribute("aria-valuetext", amount);
-    say(box, `Loading ${what}`);
-    bar.title = amount;
-    box.style.setProperty("--amount", JSON.stringify(`: ${amount}`));
-    box.classList.add("loading");
-  }
-
   function receive({ data }) {
     const box = busy;
     if (!box) return;
-    if (data.kind === "progress") return showProgress(box, data);
+    if (data.kind === "progress") return showLoading(box, data);
     box.classList.remove("loading");
     part(box, "progress").hidden = true;
     if (data.kind === "checking") return say(box, "Checking");
