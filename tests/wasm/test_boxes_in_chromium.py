@@ -1,32 +1,18 @@
 """A reader writes functions in the boxes of a lesson, and the browser checks them."""
 
-import sys
-import threading
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from importlib.util import find_spec
 from pathlib import Path
 
-import nbformat
 import pytest
-import testbed
-
-from hdrlab.course.site import boxes, pages
-from hdrlab.course.site.lite import build
+import small_site
 
 ROOT = Path(__file__).parents[2]
-sys.path.append(str(ROOT / "tests" / "browser"))
-from laboratory import Absent, chromium  # noqa: E402
-
 pytestmark = [
     pytest.mark.wasm,
     pytest.mark.skipif(
-        any(find_spec(name) is None for name in ("jupyterlite_pyodide_kernel", "myst_nb")),
-        reason='the site and JupyterLite need pip install ".[site,lite]"',
+        any(find_spec(name) is None for name in small_site.PACKAGES), reason=small_site.REASON
     ),
 ]
-NAME = "04_response_gsolve"
-PATIENCE_MS = 200_000  # a limit for what hangs; a machine may be busy
 RIGHT_HAT = """def hat(n=256):
     z = np.arange(n)
     return np.minimum(z, n - 1 - z) / ((n - 1) // 2)"""
@@ -35,54 +21,10 @@ ENDLESS_HAT = "def hat(n=256):\n    while True:\n        n += 1"
 RIGHT_GSOLVE = ROOT / "benchmarks" / "fairness" / "right" / "gsolve" / "columns.py"
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The address of a site with the page of one notebook."""
-    from sphinx.application import Sphinx
-
-    from hdrlab.course.site.sphinx import SETTINGS
-
-    bed = testbed.find()
-    if bed is None:
-        pytest.skip(f"no test bed: see tests/wasm/testbed.py, and set {testbed.VARIABLE}")
-    folder = tmp_path_factory.mktemp("boxes")
-    source, html = folder / "source", folder / "html"
-    (source / "notebooks").mkdir(parents=True)
-    notebook = nbformat.read(ROOT / "notebooks" / f"{NAME}.ipynb", 4)
-    for cell in notebook.cells:
-        cell.source = pages.unlink_missing_notebooks(cell.source, set())
-    boxes.insert(notebook, NAME, {"hw2"})
-    nbformat.write(notebook, source / "notebooks" / f"{NAME}.ipynb")
-    toctree = f"```{{toctree}}\nnotebooks/{NAME}\n```\n"
-    (source / "index.md").write_text(f"# First page\n\nA text.\n\n{toctree}")
-    settings = SETTINGS | {"html_context": {"edition": "0123abcd"}}
-    Sphinx(
-        source, None, html, folder / "notes", "html", settings, status=None, warning=None
-    ).build()
-    build.build(html, folder, [], [], build.find_pyodide(str(bed / "pyodide")))
-    handler = partial(SimpleHTTPRequestHandler, directory=str(html))
-    handler.func.log_message = lambda *_: None
-    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}"
-        server.shutdown()
-
-
 @pytest.fixture
-def page(site):
-    """The page of the notebook in a new browser, which keeps its requests and errors."""
-    try:
-        with chromium("chromium-headless-shell", "chromium") as browser:
-            context = browser.new_context(viewport={"width": 1280, "height": 900})
-            context.set_default_timeout(PATIENCE_MS)
-            page = context.new_page()
-            page.requests, page.problems = [], []
-            context.on("request", lambda request: page.requests.append(request.url))
-            page.on("pageerror", lambda error: page.problems.append(str(error)))
-            page.goto(f"{site}/notebooks/{NAME}.html")
-            yield page
-    except Absent as reason:
-        pytest.skip(str(reason))
+def page(open_page):
+    """The page of the notebook in a new browser."""
+    return open_page(f"notebooks/{small_site.NOTEBOOK}.html")
 
 
 def box_of(page, task):

@@ -3,7 +3,7 @@
 lite/files/EDITION    the notebooks and assignments; the edition is a digest of them
 lite/wheels/DIGEST    hdrlab and the packages that it needs
 lite/pyodide          Pyodide, if it is served from a folder
-lite/try, try.json    what the boxes "Try it" load, see `checks`
+lite/try, try.json    what the boxes "Try it" and the reader's own photos load, see `checks`
 
 JupyterLite shows the copy of a file in the browser in place of the site's. So another edition has
 other paths: a new notebook is never hidden by an old copy, and the old copy stays where it was.

@@ -1,4 +1,6 @@
-"""Write what the boxes "Try it" load in a browser: only what checks need, so that they start fast.
+"""Write what the pages load in a browser: only what checks and photos need, so that they start fast.
+
+The boxes "Try it" and the page for a reader's own photos load it with `theme/static/python_loader.js`.
 
 lite/try.json              where Pyodide and the checks are, and how many bytes each part has
 lite/try/checks-DIGEST.zip hdrlab without its photos, with pytest and Jinja for checks and feedback
