@@ -149,9 +149,10 @@ def test_one_photo_photos_of_two_sizes_and_stop_leave_the_page_usable(
 ):
     start = page.get_by_role("button", name="Start")
     state = page.get_by_role("status")
+    problems = page.get_by_role("list", name="Files that were not added")
     drop(page, bracket_files[:1])
     page.get_by_text("One photo is no bracket").wait_for()
-    start.click()
+    start.press("Enter")
     assert "One photo is no bracket" in state.inner_text()
 
     small = tmp_path / "small.jpg"
@@ -159,16 +160,16 @@ def test_one_photo_photos_of_two_sizes_and_stop_leave_the_page_usable(
         image.reduce(2).save(small, exif=image.getexif())
     drop(page, [small])
     page.get_by_text("2 photos are ready").wait_for()
-    start.click()
+    start.press("Enter")
     page.get_by_text("expected frames of one size").wait_for()
 
     page.get_by_role("button", name="Remove small.jpg").press("Enter")
     drop(page, bracket_files)  # the first is in the list already
-    assert "photo_1.jpg: a photo of this name" in page.get_by_role("list").first.inner_text()
+    assert "photo_1.jpg: a photo of this name" in problems.inner_text()
     page.get_by_text(f"{COUNT} photos are ready").wait_for()
-    start.click()
+    start.press("Enter")
     page.get_by_role("button", name="Stop").click()
     assert state.inner_text() == "Stopped."
-    start.click()
+    start.press("Enter")
     wait_for_map(page, tmp_path)
     assert page.problems == []
