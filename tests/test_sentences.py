@@ -345,6 +345,15 @@ SENTENCES = {
         ),
         "At 1000 there is a new error": lambda n: scallops(n, 2, 1000) > 2 * scallops(n, 2, 100),
         "with `cut` the error stays near zero": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
+        "is at least 16 times that of the exposure that measured the pixel correctly": lambda n: (
+            np.diff(np.log2(n.each[2] ** 2)).min() > np.log2(15.9)
+        ),
+        "it takes about 100,000 iterations to get close to the limit": lambda n: (
+            0.001 > limit_of_alternation(n)[0] ** 100_000 > 0.0001
+        ),
+        "it is between 4 and 5 % off": lambda n: (
+            4 < off(np.log(limit_of_alternation(n)[1]), n.truth) < 5
+        ),
     },
     "06": {
         "There is another minimum at 0.49": lambda n: round(float(n.second), 2) == 0.49,
@@ -1173,6 +1182,19 @@ def radiance_off(n, name):
     return np.median(
         np.abs(metrics.radiance_errors(np.exp(n.g[name][n.shot]), n.workshop, n.well)[n.well])
     )
+
+
+def limit_of_alternation(n):
+    """Return the ratio of the two largest eigenvalues of an iteration on page 05, and its limit f^-1.
+
+    With D the weighted number of pixels of each level, D^(1/2) M D^(-1/2) is symmetric.
+    """
+    matrix = n.fast.Joint(n.more, n.shutter, n.w)
+    used = np.flatnonzero((n.w > 0) & (matrix.pixels > 0))
+    root = np.sqrt(n.w[used] / matrix.pixels[used])
+    values, vectors = np.linalg.eigh(root[:, None] * matrix.S[np.ix_(used, used)] * root)
+    f_inv = vectors[:, -1] / np.sqrt(n.w[used] * matrix.pixels[used])
+    return values[-2] / values[-1], np.interp(np.arange(256), used, np.abs(f_inv))
 
 
 def patches_off(n, name, patches):
