@@ -676,8 +676,16 @@ SENTENCES = {
         "With $k = 8$ there is room for three stops above the neighborhood": lambda n: (
             np.log2(8) == 3
         ),
-        "A display of 10000 : 1 lacks about one stop": lambda n: (
+        "A display of 10000 : 1, which is 13.3 stops, lacks about one stop": lambda n: (
             round(float(np.log2(n.high / n.low / 10000))) == 1
+            and round(float(np.log2(10000)), 1) == 13.3
+        ),
+        "The foveal image spans 14.4 stops, and the pixels 17.7": lambda n: (
+            [round(robust_stops(n, image), 1) for image in (n.Lf, n.L)] == [14.4, 17.7]
+        ),
+        "Around candles and spots of sunlight on the floor": lambda n: all(
+            np.mean(n.off[200:, columns] <= -3) > 0.4
+            for columns in (slice(0, 130), slice(200, 480))
         ),
         "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
     },
@@ -1239,6 +1247,11 @@ def reshot(n, seed):
         return {"gsolve": n.debevec.recover(taken[name], n.times, **options)}, n.truth[name]
 
     return SimpleNamespace(both=both)
+
+
+def robust_stops(n, image):
+    """Return the range of an image in stops, without its most extreme pixels."""
+    return float(np.log2(n.extremes.robust_maximum(image) / n.extremes.robust_minimum(image)))
 
 
 def patches_off(n, name, patches):
