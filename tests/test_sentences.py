@@ -713,8 +713,15 @@ SENTENCES = {
         "it is far above $L_{white}$, so it is white in both images": lambda n: all(
             np.all(Ld[n.Lm > 100] == 1) for Ld in n.both.values()
         ),
-        "it leaves the band at 10.5 pixels, and is back at 16.8": lambda n: (
-            np.flatnonzero(np.abs(n.three["95 %"]) < 0.05).tolist() == [0, 1, 2, 3, 4, 6]
+        "is back at 16.8, because by then the surround contains a little of the lamp's light": lambda n: (
+            inside_band(n, n.Lm) == [0, 1, 2, 3, 4, 6]
+            and inside_band(n, np.minimum(n.Lm, 6)) == [0, 1, 2, 3, 4]
+        ),
+        "The large lamp's own response, the orange in the middle, rises with each width": lambda n: (
+            np.all(np.diff(n.V[:, np.argmax(n.L)]) > 0)
+        ),
+        "The band of the local operator is widest two to four stops above the median": lambda n: (
+            all(2 <= stops <= 4 for stops in widest_classes(n, n.both["local"]))
         ),
     },
     "15": {
@@ -1252,6 +1259,20 @@ def reshot(n, seed):
 def robust_stops(n, image):
     """Return the range of an image in stops, without its most extreme pixels."""
     return float(np.log2(n.extremes.robust_maximum(image) / n.extremes.robust_minimum(image)))
+
+
+def inside_band(n, Lm):
+    """Return the widths at which the third pixel of page 16 responds less than the threshold."""
+    scales = n.reinhard.scale_steps(n.reinhard.blurs(Lm))
+    pixel = n.ranked[len(n.ranked) * 95 // 100]
+    return [k for k, scale in enumerate(scales) if abs(scale.response.flat[pixel]) < 0.05]
+
+
+def widest_classes(n, Ld):
+    """Return at how many stops above the median an operator's band is widest, in ten classes."""
+    luminance, low, high = n.curves.spread(n.L, Ld, bins=256)
+    width = n.colour.encode_srgb(high) - n.colour.encode_srgb(low)
+    return np.round(np.log2(luminance / np.median(n.L)))[np.argsort(width)[-10:]]
 
 
 def patches_off(n, name, patches):
