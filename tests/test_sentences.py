@@ -881,6 +881,16 @@ SENTENCES = {
         "few pairs of pixels that are two stops apart are in the wrong order": lambda n: (
             exchanged(n) < 0.01
         ),
+        "and low even there, about 0.05 to 0.2": lambda n: (
+            np.round(np.quantile(exposedness_in_dark(n), [0.5, 0.9]), 2).tolist() == [0.05, 0.16]
+        ),
+        "without contrast, the maps are nearly as ragged": lambda n: (
+            0.85 < raggedness(n, (0, 1, 1)) / raggedness(n, (1, 1, 1)) < 1
+        ),
+        "Reinhard's operator is a curve, and yet its band is broad at the bright end": lambda n: (
+            max(band_widths(n, n.both["Reinhard"])[-30:]) > 100
+            and max(band_widths(n, n.both["Reinhard"])[:-60]) < 20
+        ),
     },
     "21": {
         "it has 52 chops, 26 of them open": lambda n: (len(n.CODE), np.sum(n.CODE)) == (52, 26),
@@ -1273,6 +1283,23 @@ def widest_classes(n, Ld):
     luminance, low, high = n.curves.spread(n.L, Ld, bins=256)
     width = n.colour.encode_srgb(high) - n.colour.encode_srgb(low)
     return np.round(np.log2(luminance / np.median(n.L)))[np.argsort(width)[-10:]]
+
+
+def exposedness_in_dark(n):
+    """Return E of the brightest photo in the darkest tenth of the scene, on page 20."""
+    return n.mertens.exposedness(n.F[-1])[np.quantile(n.L, 0.1) > n.L]
+
+
+def raggedness(n, powers):
+    """Return the mean deviation of the maps of weights from their blur by two pixels."""
+    maps = n.mertens.weights(n.images, powers)
+    return np.mean([np.abs(W - n.gaussian_filter(W, 2)).mean() for W in maps])
+
+
+def band_widths(n, gray):
+    """Return how many levels the pixels of each of 256 classes of luminance span."""
+    classes = np.array_split(np.argsort(n.L, axis=None), 256)
+    return [np.ptp(gray.flat[pixels]) for pixels in classes]
 
 
 def patches_off(n, name, patches):
