@@ -304,6 +304,11 @@ SENTENCES = {
         "becomes a staircase, half a stop off at its steps": lambda n: (
             0.4 < worst(n.solve(smoothness=0.1)[1].g, n.responses.true_g(), 2, 253) < 0.6
         ),
+        "With 3 samples it is wrong at both ends: few points lie there, so the smoothness wins": lambda n: (
+            min(errors_at_ends(n, 3, smoothness=30)) > 0.1
+            and max(errors_at_ends(n, 200, smoothness=30)) < 0.05
+            and max(errors_at_ends(n, 3, smoothness=3)) < 0.1
+        ),
         "the points show whether all steps are equal, but not how large they are": lambda n: (
             misfit_of_times(n, n.B) < 0.5 * misfit_of_times(n, n.B + 0.1 * (np.arange(7) % 2))
             and misfit_of_times(n, 1.3 * n.B) < 1.5 * misfit_of_times(n, n.B)
@@ -1073,6 +1078,20 @@ def brightest_spot(n):
 def bend_of_table(n, level):
     """Return by how many quarters of a stop page 7's table from pixels is off at a level."""
     return round(4 * worst(n.tables(1.0)[0], n.cubic, level, level))
+
+
+def errors_at_ends(n, samples, *, smoothness):
+    """Return by how many stops g from a few random pixels is off at levels 10 and 250, on page 4.
+
+    The median over many choices of the pixels keeps the error that they share, without their noise.
+    """
+    rng = np.random.default_rng(0)
+    errors = []
+    for _ in range(60):
+        y, x = (rng.integers(0, size, samples) for size in n.frames.shape[1:])
+        g = n.fast.gsolve(n.frames[:, y, x].T.astype(int), n.B, smoothness, n.weights.hat()).g
+        errors.append((g - n.responses.true_g())[[10, 250]] / np.log(2))
+    return np.abs(np.median(errors, axis=0)).tolist()
 
 
 def photos_that_measure(n):
