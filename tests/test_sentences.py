@@ -564,6 +564,14 @@ SENTENCES = {
         "here the choice makes a difference of less than one percent": lambda n: (
             np.ptp([errors_of(n, name) for name in n.METHODS], axis=0).max() < 1
         ),
+        "a short photo often reaches level 1 there only because of noise": lambda n: (
+            errors_of(n, "mean")[0] > errors_of(n, "log")[0] + 0.5
+            and abs(np.subtract(*errors_without_level_1(n, ["mean", "log"]))) < 0.2
+        ),
+        "Its estimate is then several times too large": lambda n: excess_at_level_1(n) > 3,
+        "in the channels in which it is clipped, a window is never darker than the stone": lambda n: (
+            all(lowest > highest for lowest, highest in bounds_and_measured(n))
+        ),
         "So its standard deviation is twice that of the one before": lambda n: 4**0.5 == 2,
         "contributes about three quarters of $\\sum 1 / V$": lambda n: (
             round(4 * np.median(longest_shares(n))) == 3
@@ -1092,6 +1100,35 @@ def errors_at_ends(n, samples, *, smoothness):
         g = n.fast.gsolve(n.frames[:, y, x].T.astype(int), n.B, smoothness, n.weights.hat()).g
         errors.append((g - n.responses.true_g())[[10, 250]] / np.log(2))
     return np.abs(np.median(errors, axis=0)).tolist()
+
+
+def errors_without_level_1(n, names):
+    """Return the error of some means in the darkest part of page 10, if level 1 has no weight."""
+    w = n.weights.hat()
+    w[1] = 0
+    images, times = n.inside.images, n.inside.times
+    return [
+        n.error(n.merge_with_quality(images, times, n.true_g, w, method=name).E)[0]
+        for name in names
+    ]
+
+
+def excess_at_level_1(n):
+    """Return how many times too large the shortest photo's estimate at level 1 is, in the dark of page 10."""
+    Z, exposure = n.inside.images[0], n.full * n.chapel * n.inside.times[0]
+    chosen = (Z == 1) & (n.ev < -2)[..., None]
+    return np.median(np.exp(n.true_g[1]) / exposure[chosen])
+
+
+def bounds_and_measured(n):
+    """Return for each channel of page 10 the lowest bound, and the highest measured value."""
+    is_clipped = (n.inside.images[n.late] >= 250).all(axis=0)
+    is_measured = n.bounded.quality == 0
+    is_bound = is_clipped & ((n.bounded.quality & n.Quality.CLIPPED) > 0)[..., None]
+    return [
+        (n.bounded.E[is_bound[..., k], k].min(), n.bounded.E[is_measured, k].max())
+        for k in range(3)
+    ]
 
 
 def photos_that_measure(n):
