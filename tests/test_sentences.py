@@ -1054,6 +1054,14 @@ SENTENCES = {
         "Only rounding: LibRaw computes in whole numbers": lambda n: (
             n.theirs is None or n.apart <= 12
         ),
+        "so here white balance may also come after demosaicing": lambda n: np.allclose(
+            np.exp(n.malvar.demosaic(np.log(n.map_of_mosaics / n.gains[n.c]), n.c)) * n.gains,
+            n.maps[n.ORDERS[2]],
+        ),
+        "the brightest place that counts, the ceiling, is nearly white": lambda n: (
+            np.median(np.ptp(colors_of_brightest(n), axis=-1)) < 0.3
+        ),
+        "is only 4.6 higher": lambda n: round(np.log(100), 1) == 4.6,
         "only about half as many colors are wrong": lambda n: (
             0.4 < wrong_colors(n, 2) / wrong_colors(n, 0) < 0.6
             and 0.4 < wrong_colors(n, 2) / wrong_colors(n, 1) < 0.6
@@ -1129,6 +1137,18 @@ def bounds_and_measured(n):
         (n.bounded.E[is_bound[..., k], k].min(), n.bounded.E[is_measured, k].max())
         for k in range(3)
     ]
+
+
+def colors_of_brightest(n):
+    """Return true colors of the brightest hundredth of each channel that white patch counts, on page 26."""
+    X = n.development.normalize(n.Z, black=n.BLACK, white=n.WHITE)
+    counts = n.maximum_filter(X, size=3) < 1
+    colors = []
+    for k in range(3):
+        channel = counts & (n.c == k)
+        color = n.E[channel & (np.quantile(X[channel], 0.985) <= X)]
+        colors.append(np.median(color / color[:, 1:2], axis=0))
+    return np.stack(colors)
 
 
 def photos_that_measure(n):
