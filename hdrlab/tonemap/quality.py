@@ -30,6 +30,7 @@ from scipy.ndimage import correlate1d
 from scipy.special import ndtr
 
 from hdrlab.core.arrays import F64, ArrayLike, as_luminance, describe
+from hdrlab.core.choices import require_choice
 from hdrlab.core.picture import gray
 from hdrlab.errors import InputError
 
@@ -39,6 +40,8 @@ FREQUENCIES = (16.0, 8.0, 4.0, 2.0, 1.0)
 WEIGHTS = (0.0448, 0.2856, 0.3001, 0.2363, 0.1333)
 # pixels along a side of the window, and of the blocks that contrast is computed from
 WINDOW_SIDE = 11
+# what N does with incomplete blocks at the edge of the picture
+EDGE_BLOCKS = ("omit", "pad")
 WINDOW = np.exp(-0.5 * (np.arange(-5, 6) / 1.5) ** 2)
 WINDOW /= WINDOW.sum()
 # C1 and C2 of the local fidelity
@@ -153,20 +156,31 @@ def brightness(y: F64) -> float:
     return float(np.exp(-(((y.mean() - 115.94) / 27.99) ** 2) / 2))
 
 
-def contrast(y: F64) -> float:
+def contrast(y: F64, *, edge_blocks: str = "omit") -> float:
     """Return P_d = d^3.4 (1 - d)^9.1, scaled to 1 at its peak d = 3.4 / 12.5 [Yeganeh13].
 
-    d is the mean standard deviation of blocks of 11 x 11 pixels over 64.29. Incomplete blocks at
-    the edge are left out; the authors' program fills them with black. The deviation divides by the
-    number of pixels; theirs divides by one less, which is 0.4 % more.
+    d is the mean standard deviation of blocks of 11 x 11 pixels over 64.29, see `block_deviation`.
     """
-    d = min(block_deviation(y) / 64.29, 1.0)
+    d = min(block_deviation(y, edge_blocks=edge_blocks) / 64.29, 1.0)
     peak = 3.4 / 12.5
     return float((d / peak) ** 3.4 * ((1 - d) / (1 - peak)) ** 9.1)
 
 
-def block_deviation(y: F64) -> float:
-    """Return the mean standard deviation of the complete blocks; a smaller picture is one block."""
+def block_deviation(y: F64, *, edge_blocks: str = "omit") -> float:
+    """Return the mean standard deviation of blocks of 11 x 11 pixels.
+
+    Where a side of the picture is no multiple of 11, the blocks at the right and lower edge are
+    incomplete. The paper does not say what to do with them:
+
+    - "omit" leaves them out, so that only the picture counts. A picture smaller than a block is
+      one block.
+    - "pad" does as the authors' program: it fills them with black, and weights each block by the
+      pixels of the picture in it. Black next to the picture counts as contrast. That program also
+      divides the squares by 120 and not by 121.
+    """
+    require_choice("edge_blocks", edge_blocks, EDGE_BLOCKS)
+    if edge_blocks == "pad":
+        return _padded_block_deviation(y)
     rows = min(WINDOW_SIDE, y.shape[0])
     columns = min(WINDOW_SIDE, y.shape[1])
     h = y.shape[0] // rows
@@ -175,9 +189,22 @@ def block_deviation(y: F64) -> float:
     return float(blocks.std(axis=(1, 3)).mean())
 
 
-def naturalness(y: F64) -> float:
+def _padded_block_deviation(y: F64) -> float:
+    """Return the mean over the pixels of the deviation of their block, filled up with black."""
+    height, width = y.shape
+    h = -(-height // WINDOW_SIDE)
+    w = -(-width // WINDOW_SIDE)
+    padded = np.pad(y, [(0, h * WINDOW_SIDE - height), (0, w * WINDOW_SIDE - width)])
+    blocks = padded.reshape(h, WINDOW_SIDE, w, WINDOW_SIDE)
+    deviations = blocks.std(axis=(1, 3), ddof=1)
+    block_rows = np.arange(height) // WINDOW_SIDE
+    block_columns = np.arange(width) // WINDOW_SIDE
+    return float(deviations[np.ix_(block_rows, block_columns)].mean())
+
+
+def naturalness(y: F64, *, edge_blocks: str = "omit") -> float:
     """Return N = P_m P_d, each of them at most 1 [Yeganeh13]."""
-    return brightness(y) * contrast(y)
+    return brightness(y) * contrast(y, edge_blocks=edge_blocks)
 
 
 def overall(S: float, N: float) -> float:
@@ -192,13 +219,16 @@ def scale_luminance(L: ArrayLike) -> F64:
     return x * (MAX_SCENE_LUMINANCE / x.max()) if x.max() > 0 else x
 
 
-def tmqi(L: ArrayLike, picture: ArrayLike) -> Quality:
+def tmqi(L: ArrayLike, picture: ArrayLike, *, edge_blocks: str = "omit") -> Quality:
     """Return the tone-mapped image quality index: overall, structural fidelity, and naturalness.
 
     Parameters
     ----------
     L : (H, W) luminance of the scene, linear, any unit
     picture : (H, W) or (H, W, 3) uint8, encoded for the display, for example by `pipeline.develop`
+    edge_blocks : "omit" or "pad"
+        What N does with incomplete blocks at the edge. "pad" is for comparisons with published
+        figures: see `block_deviation`.
 
     Returns
     -------
@@ -227,5 +257,5 @@ def tmqi(L: ArrayLike, picture: ArrayLike) -> Quality:
             f"expected a picture of the scene's {x.shape} pixels, got {describe(picture)}"
         )
     S = structural_fidelity(x, y)
-    N = naturalness(y)
+    N = naturalness(y, edge_blocks=edge_blocks)
     return Quality(overall(S, N), S, N)

@@ -149,6 +149,42 @@ def test_naturalness_is_1_at_the_typical_mean_and_contrast_and_falls_with_the_de
     assert quality.contrast(y * 0 + 80) == 0 and quality.contrast(127.5 + 127.5 * checker) == 0
 
 
+@pytest.mark.parametrize("shape", [(110, 121), (112, 130), (7, 40), (11, 11)])
+def test_padded_blocks_are_those_of_the_authors_program(shape):
+    """It calls MATLAB's blkproc, which fills up the picture with zeros and crops the result again."""
+    y = quality.gray(shown(scene(shape)))
+    filled = np.zeros([-(-side // 11) * 11 for side in shape])
+    filled[: shape[0], : shape[1]] = y
+    result = np.empty(filled.shape)
+    for i, j in np.ndindex(filled.shape[0] // 11, filled.shape[1] // 11):
+        block = slice(11 * i, 11 * i + 11), slice(11 * j, 11 * j + 11)
+        result[block] = np.std(filled[block], ddof=1)
+    d = result[: shape[0], : shape[1]].mean() / 64.29
+    P_d = beta.pdf(d, 4.4, 10.1) / beta.pdf(3.4 / 12.5, 4.4, 10.1)
+    assert quality.contrast(y, edge_blocks="pad") == pytest.approx(P_d, rel=1e-9, abs=1e-12)
+
+
+def test_padding_changes_nothing_but_the_divisor_where_all_blocks_are_complete():
+    y = quality.gray(shown(scene((110, 121))))
+    padded = quality.block_deviation(y, edge_blocks="pad")
+    assert padded == pytest.approx(quality.block_deviation(y) * np.sqrt(121 / 120))
+
+
+def test_padding_counts_as_contrast_and_changes_naturalness_only():
+    L = scene((78, 100))
+    picture = np.full(L.shape, 116, np.uint8)
+    known = quality.tmqi(L, picture)
+    padded = quality.tmqi(L, picture, edge_blocks="pad")
+    assert known.N == 0 and padded.N > 0
+    assert padded.S == known.S
+    assert padded.Q == pytest.approx(quality.overall(padded.S, padded.N))
+
+
+def test_an_unknown_treatment_of_edge_blocks_raises_an_error():
+    with pytest.raises(ValueError, match="edge_blocks must be one of omit, pad"):
+        quality.tmqi(scene(), shown(scene()), edge_blocks="mirror")
+
+
 @pytest.mark.parametrize(
     ("shape", "scales"),
     [((176, 176), 5), ((175, 400), 4), ((21, 300), 1), ((22, 22), 2), ((3, 3), 1)],
