@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from ipywidgets.widgets import widget
 from scipy.ndimage import binary_dilation
+from scipy.stats import spearmanr
 from test_notebooks import NOTEBOOKS
 
 from hdrlab.align import mtb
@@ -131,6 +132,22 @@ def differ(n, width):
 
 def quality(n, name):
     return n.quality.tmqi(n.L, n.changed[name])
+
+
+def scores(n, metric="PU-PSNR", **settings):
+    """Return the scores of the maps of notebook 18, best first."""
+    return n.scores.score_maps(n.maps, n.truth, metric=metric, **settings)
+
+
+def order(n, metric="PU-PSNR", **settings):
+    """Return the names of the maps of notebook 18, best first."""
+    return list(scores(n, metric, **settings))
+
+
+def fraction_of_the_error(n, mask):
+    """Return which fraction of the squared error of the map from five photos is in a mask (h, w)."""
+    squared = (n.five.astype(np.float64) - n.truth) ** 2
+    return squared[mask].sum() / squared.sum()
 
 
 def wrong_colors(n, order):
@@ -836,6 +853,53 @@ SENTENCES = {
             and n.three["S"][0] > 2 * n.three["S"][-1]
         ),
         "and $S = 0$": lambda n: round(quality(n, "negative").S, 2) == 0,
+        "Three sizes, three winners: `reinhard`, `fattal` and `local_laplacian`": lambda n: (
+            n.winners == ["reinhard", "fattal", "local_laplacian"]
+        ),
+        "with 32 pixels per degree": lambda n: 2 * n.quality.FREQUENCIES[0] == 32,
+        "order by $S$ is almost the opposite of the order by $N$": lambda n: (
+            spearmanr(*([n.boards[letter][name] for name in n.names] for letter in "SN"))[0] < -0.6
+        ),
+        "its exposure is wrong by half a stop": lambda n: np.allclose(
+            np.log2(n.maps["too bright"] / n.maps["five photos"]), 0.5
+        ),
+        "By PSNR all six maps are within a decibel": lambda n: (
+            max(n.by_psnr.values()) - min(n.by_psnr.values()) < 1
+        ),
+        "more than twenty times as bright as any value": lambda n: (
+            n.truth.max() > 20 * n.five.max()
+        ),
+        "They cover less than one pixel in three hundred": lambda n: (
+            np.mean(n.truth.max(axis=-1) > 1.1 * n.five.max()) < 1 / 300
+        ),
+        "have nearly all of the squared error": lambda n: (
+            fraction_of_the_error(n, n.truth.max(axis=-1) > 1.1 * n.five.max()) > 0.98
+        ),
+        "So a map that is half a stop too bright wins": lambda n: (
+            order(n, "PSNR", peak=1000)[0] == "too bright"
+        ),
+        "at 100 cd/m², most of the chapel is almost black, the flames decide again, and `too bright` "
+        "wins": lambda n: (
+            order(n, peak=100)[0] == "too bright"
+            and 100 * np.median(n.truth) / n.truth.max() < 0.02
+        ),
+        "At 10,000 cd/m² the eye sees the walls and their noise. `too bright` and `one photo` fall "
+        "behind `low contrast`": lambda n: (
+            order(n, peak=10000)[1:4] == ["low contrast", "one photo", "too bright"]
+        ),
+        "With a fitted exposure, `too bright` is equal to `five photos`": lambda n: np.isclose(
+            *(scores(n, fit="fitted")[name] for name in ("too bright", "five photos"))
+        ),
+        "PU-SSIM uses luminance only, so `gray` is as good as the best. In PU-PSNR it is among the "
+        "last": lambda n: all(
+            np.isclose(
+                scores(n, "PU-SSIM", peak=peak)["gray"],
+                max(scores(n, "PU-SSIM", peak=peak).values()),
+                atol=1e-3,
+            )
+            and order(n, peak=peak).index("gray") >= 4
+            for peak in (100, 1000, 10000)
+        ),
         "All three fidelities are near 0.9 at the finest scale": lambda n: all(
             round(each[0][1].mean(), 1) == 0.9 > each[-1][1].mean() for each in n.found.values()
         ),

@@ -43,6 +43,7 @@ NUMBERS = {
     "18": {
         "three stops": "0.4 times the level at the edge, as light",
         "6.5": "stops, the upper end of AgX",
+        "0.3": "N of `curves` on the street, 128 x 192: see test_quality.py",
     },
     "19": {"half a level": "the upper end of level 0, which holds all that is rounded to it"},
     "20": {"8 bits": "an example of a file"},

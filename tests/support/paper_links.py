@@ -33,6 +33,7 @@ PAPERS = {
     r"Khan, Akyüz and Reinhard \(ICIP 2006\)": DOI + "10.1109/ICIP.2006.312892",
     r"Levin and others, 2008": DOI + "10.1145/1360612.1360670",
     r"Malvar, He and Cutler \(2004\)": DOI + "10.1109/ICASSP.2004.1326587",
+    r"Mantiuk and Azimi, 2021": DOI + "10.1109/PCS50896.2021.9477471",
     r"Mantiuk and others \(SIGGRAPH 2011\)": DOI + "10.1145/1964921.1964935",
     r"Mantiuk, Myszkowski and Seidel \(ACM TAP 2006\)": DOI + "10.1145/1166087.1166095",
     r"Mertens, Kautz and Van Reeth \((Pacific Graphics )?2007\)": DOI + "10.1109/PG.2007.17",

@@ -7,6 +7,7 @@ from scipy.ndimage import gaussian_filter
 from scipy.stats import beta, norm
 from support import laws
 
+from hdrlab import pipeline, scenes
 from hdrlab.core.colour import to_8bit
 from hdrlab.tonemap import quality, reinhard
 
@@ -178,6 +179,13 @@ def test_padding_counts_as_contrast_and_changes_naturalness_only():
     assert known.N == 0 and padded.N > 0
     assert padded.S == known.S
     assert padded.Q == pytest.approx(quality.overall(padded.S, padded.N))
+
+
+def test_padding_alone_raises_the_naturalness_of_a_small_picture_by_0_3():
+    E = scenes.street((128, 192))
+    y = quality.gray(pipeline.develop(E, "curves"))
+    gained = quality.naturalness(y, edge_blocks="pad") - quality.naturalness(y)
+    assert gained == pytest.approx(0.31, abs=0.02)
 
 
 def test_an_unknown_treatment_of_edge_blocks_raises_an_error():
