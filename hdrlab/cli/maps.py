@@ -1,4 +1,4 @@
-"""The commands that start from a radiance map, `tonemap`, `compare` and `convert`, and `info`."""
+"""The commands that start from a radiance map, such as `tonemap`, `compare`, `score` and `convert`."""
 
 import inspect
 import math
@@ -223,6 +223,79 @@ def compare(
     description = wording.describe_map(E)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {description}"))
     click.echo(f"{out}: {len(names)} operators, {description}")
+
+
+@click.command(cls=common.Command)
+@click.argument("source", type=common.INPUT_PATH)
+@click.argument("reference", type=common.INPUT_PATH)
+@click.option(
+    "--peak",
+    type=click.FloatRange(0, min_open=True),
+    metavar="CD",
+    help="Luminance of the brightest value of REFERENCE, in cd/m^2.  [default: its stated unit]",
+)
+@click.option(
+    "--fit",
+    is_flag=True,
+    help="First multiply SOURCE by the factor that gives it the exposure of REFERENCE.",
+)
+@common.clean_option
+def score(*, source: Path, reference: Path, peak: float | None, fit: bool, clean: bool) -> None:
+    """Compare the radiance map SOURCE with the radiance map REFERENCE, the truth.
+
+    hdrlab prints four scores: PSNR of radiance, PSNR of its logarithm (mu-law with mu = 5000), and
+    PSNR and SSIM of perceptually uniform values (PU21). Larger is better. It also prints the
+    conditions, because scores under different conditions cannot be compared.
+
+    PU21 needs luminance in cd/m^2. hdrlab uses the unit that REFERENCE states, for example after
+    `hdrlab assemble --calibrate`, or --peak. Without either, it prints only the first two scores.
+    """
+    from hdrlab.io import radiance
+    from hdrlab.radiance import pu21, scores
+
+    E = common.read_map(source, clean)
+    truth = common.read_map(reference, clean)
+    if E.shape != truth.shape:
+        raise InputError(
+            f"expected two maps of one size, got {_describe_shape(E)} in {source} and "
+            f"{_describe_shape(truth)} in {reference}"
+        )
+    unit = radiance.read_luminance_of_unit(reference)
+    source_unit = radiance.read_luminance_of_unit(source)
+    factor = 1.0
+    exposure = "exposure not fitted"
+    if fit:
+        factor = pu21.fit_exposure(E, truth)
+        exposure = f"exposure fitted, {source} times {factor:.4g}"
+    elif unit is not None and source_unit is not None:
+        factor = source_unit / unit
+    E = E * factor
+    click.echo(f"{source} compared with {reference}, {_describe_shape(truth)}")
+    click.echo(f"  {'PSNR':<12} {scores.psnr(E, truth):.2f} dB")
+    click.echo(f"  {'log PSNR':<12} {scores.log_psnr(E, truth):.2f} dB")
+    if peak is not None:
+        unit = peak / float(truth.max())
+    if unit is None:
+        click.echo(f"  {'conditions':<12} {exposure}")
+        click.echo(
+            f"PU-PSNR and PU-SSIM need cd/m^2, and {reference} is in relative units; pass --peak, "
+            "the cd/m^2 of its brightest value"
+        )
+        return
+    click.echo(f"  {'PU-PSNR':<12} {pu21.psnr(E, truth, luminance_of_unit=unit):.2f} dB")
+    click.echo(f"  {'PU-SSIM':<12} {pu21.ssim(E, truth, luminance_of_unit=unit):.4f}")
+    brightest = unit * float(truth.max())
+    source_of_unit = "stated in the map" if peak is None else "from --peak"
+    click.echo(
+        f"  {'conditions':<12} {exposure}; value 1 is {unit:.6g} cd/m^2 ({source_of_unit}), "
+        f"brightest value {brightest:.4g} cd/m^2; PU21 banding_glare, peak 256"
+    )
+
+
+def _describe_shape(E: "F32") -> str:
+    """Return the size and the channels of a radiance map in words."""
+    height, width = E.shape[:2]
+    return f"{width} x {height}, {'color' if E.ndim == 3 else 'gray'}"
 
 
 @click.command(cls=common.Command)
