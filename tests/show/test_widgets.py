@@ -106,6 +106,12 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
         assert "import " not in str(script) and "import(" not in str(script)
 
 
+def test_saved_notebooks_contain_scripts_without_comments_and_indentation():
+    lines = str(widgets.Player._esm).splitlines()
+    assert "export default { render };" in lines
+    assert not any(line.startswith(("//", " ")) for line in lines)
+
+
 def test_play_rejects_no_states():
     with pytest.raises(ValueError, match="1 to 200 states to play.*none"):
         widgets.play([], square, alt="Nothing")

@@ -16,8 +16,18 @@ MAX_STILL_SIDE = 960
 
 
 def script(*names: str) -> str:
-    """Return the shared script and the named ones as one module, which imports nothing."""
-    return "".join((SCRIPT_FOLDER / name).read_text("utf-8") for name in ("canvas.js", *names))
+    """Return the shared script and the named ones as one module, which imports nothing.
+
+    Each widget in a saved notebook contains its own copy. So comment lines and indentation are left
+    out, and no template literal in a script may depend on them.
+    """
+    lines = []
+    for name in ("canvas.js", *names):
+        for line in (SCRIPT_FOLDER / name).read_text("utf-8").splitlines():
+            code = line.strip()
+            if code and not code.startswith("//"):
+                lines.append(code + "\n")
+    return "".join(lines)
 
 
 class Widget(anywidget.AnyWidget):
