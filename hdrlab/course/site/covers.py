@@ -1,8 +1,8 @@
 """Which cells of a notebook a question covers on the site until the reader answers it.
 
 A question covers the outputs of the cells after it, up to and including the first answer that
-unfolds. A heading, another question or the end of the notebook ends it earlier. `predict.js` applies
-the same rule to the cells of a notebook in JupyterLab.
+unfolds. A heading, another question or the end of the notebook ends it earlier. `covers.js` of the
+widgets applies the same rule to the cells of a notebook in JupyterLab.
 """
 
 import re

@@ -1,67 +1,86 @@
-// Pictures in one place, one after the other: what differs between them jumps to the eye.
+// `widgets.blink`: images in the same place, one after the other, so that differences are seen.
+//
+// Python sends the traits of viewer.js and
+//   period  how long each image is shown, seconds
+// and both sides set
+//   index   the image that is shown, from 0
 
 async function render({ model, el }) {
-  const root = start(el, "blink");
+  const root = createRoot(el, "blink");
   const labels = model.get("labels");
   const index = () => model.get("index");
   let timer = null;
 
-  function compose(_, show) {
-    show(index());
+  // Draw the current image, and return the words that describe what is drawn.
+  function compose(_, drawImage) {
+    drawImage(index());
     return labels[index()];
   }
 
-  function key(event) {
+  function handleKey(event) {
     if (event.key !== " ") return false;
     pause();
-    next();
+    showNext();
     return true;
   }
 
-  const hint = "To zoom, click and turn the wheel, or pinch; the arrow keys read single pixels, Space shows the next picture.";
-  const help = `${labels.join(", ")}; Space shows the next`;
-  const view = await viewer(root, model, { help, hint, compose, key });
-  const { row, buttons, show: check } = radioRow(view.controls, "picture", labels);
-  const button = element(view.controls, "button", { type: "button", textContent: "Blink" });
-  view.controls.prepend(button, row);
-  buttons.forEach(({ input }, k) => {
+  const view = await createViewer(root, model, {
+    help: `${labels.join(", ")}; Space shows the next`,
+    hint:
+      "To zoom, click and turn the wheel, or pinch; the arrow keys read single pixels, " +
+      "Space shows the next picture.",
+    compose,
+    handleKey,
+  });
+  const { row, buttons, show: checkButton } = addRadioRow(view.controls, "picture", labels);
+  const blinkButton = addElement(view.controls, "button", {
+    type: "button",
+    textContent: "Blink",
+  });
+  view.controls.prepend(blinkButton, row);
+  buttons.forEach(({ input }, position) => {
     input.addEventListener("change", () => {
       pause();
-      choose(k);
+      choose(position);
     });
   });
 
   function show() {
-    check(index());
+    checkButton(index());
     view.repaint();
   }
 
-  function choose(k) {
-    model.set("index", k);
-    model.save_changes();
+  function choose(position) {
+    saveTrait(model, "index", position);
     show();
   }
 
-  const next = () => choose((index() + 1) % labels.length);
+  function showNext() {
+    choose((index() + 1) % labels.length);
+  }
 
   function pause() {
     clearInterval(timer);
     timer = null;
-    button.textContent = "Blink";
+    blinkButton.textContent = "Blink";
   }
 
-  button.addEventListener("click", () => {
-    if (timer !== null) return pause();
-    next();
-    timer = setInterval(next, 1000 * model.get("period"));
-    button.textContent = "Stop";
+  function blink() {
+    showNext();
+    timer = setInterval(showNext, 1000 * model.get("period"));
+    blinkButton.textContent = "Stop";
+  }
+
+  blinkButton.addEventListener("click", () => {
+    if (timer === null) blink();
+    else pause();
   });
 
-  model.on("change:index", show);
+  const stopListening = onTraitChange(model, ["index"], show);
   show();
   return () => {
     pause();
-    model.off("change:index", show);
+    stopListening();
   };
 }
 

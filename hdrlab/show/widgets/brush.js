@@ -1,230 +1,376 @@
-// The Detail Brush: tonemap/brush.py and core/colour.py again, for the window under the brush, in each frame.
+// `widgets.brush`: the Detail Brush over a radiance map. It equalizes the histogram of the window
+// under it, with the formulas of tonemap/brush.py and core/colour.py, in each frame of the display.
+//
+// Python sends
+//   radiance       half floats (H, W, channels), multiplied by `scale`: E, any linear unit
+//   shape          (H, W, channels)
+//   picture        WebP, the image around the brush
+//   alt            what the map shows
+//   bins           bins of the histogram
+// and both sides set
+//   centre         (y, x), pixels
+//   size           the side of the brush, pixels
+//   magnification  how much larger the brush shows its window
+//   limit          no bin counts more than this multiple of the mean
 
-const CUT = 1e-4; // of the lit pixels: span() leaves them out
-const LEAST = 2; // ratio of luminances that the bins span at least
-const TINY = 2 ** -126; // the least normal float32
-const DARK = 1e-30;
-const FINE = 65535; // steps of ln L over the whole map, to find a rank without sorting
-const [NEAR, FAR] = [16, 64]; // pixels that an arrow key moves the brush, alone and with Shift
+const CLIPPED_FRACTION = 1e-4; // of the lit pixels at each end, as in core/extremes.py
+const MIN_LUMINANCE_RATIO = 2; // that the bins span at least, as in tonemap/brush.py
+const SMALLEST_FLOAT32 = 2 ** -126; // the smallest normal number
+const MIN_LUMINANCE = 1e-30; // below this, a pixel has no color, as in core/colour.py
+const MAX_RANK_STEP = 65535; // of ln L over the whole map: finds ranks without sorting
+const MIN_LN_RANGE = 1e-9;
+const LUMINANCE_WEIGHTS = [0.2126, 0.7152, 0.0722]; // of red, green, blue: core/colour.py
+const NEAR_STEP = 16; // pixels that an arrow key moves the brush
+const FAR_STEP = 64; // with Shift
+const SIZES = Array.from({ length: 15 }, (_, k) => 64 + 32 * k); // 64 to 512 pixels
+const MAGNIFICATIONS = [1, 2, 3, 4, 5, 6, 7, 8];
 const LIMITS = [1, 2, 4, 8, 16];
+const MOVES = {
+  ArrowLeft: [0, -1],
+  ArrowRight: [0, 1],
+  ArrowUp: [-1, 0],
+  ArrowDown: [1, 0],
+};
+// The keys that change a parameter, and by how many positions of its slider.
+const PARAMETER_KEYS = {
+  "[": ["size", -1],
+  "]": ["size", 1],
+  "-": ["magnification", -1],
+  _: ["magnification", -1],
+  "+": ["magnification", 1],
+  "=": ["magnification", 1],
+};
 
-
-// What does not change while the brush moves: ln L, its step from dark to bright, and E / L of each channel.
-function prepare(bits, scale, channels) {
+// Calculate what does not change while the brush moves: L, ln L, its rank step (0 for the darkest
+// pixel, MAX_RANK_STEP for the brightest), and E / L of each channel.
+function prepareMap(bits, scale, channels) {
   const count = bits.length / channels;
-  const [L, lnL, steps] = [new Float32Array(count), new Float32Array(count), new Uint16Array(count)];
+  const L = new Float32Array(count);
+  const lnL = new Float32Array(count);
+  const rankSteps = new Uint16Array(count);
   const ratios = new Float32Array(bits.length).fill(1);
-  let [low, high] = [Infinity, -Infinity];
+  const [red, green, blue] = LUMINANCE_WEIGHTS;
+  let low = Infinity;
+  let high = -Infinity;
   for (let i = 0; i < count; i++) {
-    const E = (c) => HALF[bits[channels * i + c]] / scale;
-    L[i] = channels === 1 ? E(0) : 0.2126 * E(0) + 0.7152 * E(1) + 0.0722 * E(2);
-    lnL[i] = Math.log(Math.max(L[i], TINY));
-    if (L[i] > 0) [low, high] = [Math.min(low, lnL[i]), Math.max(high, lnL[i])];
-    if (channels === 3 && L[i] >= DARK) for (let c = 0; c < 3; c++) ratios[3 * i + c] = E(c) / L[i];
+    const E = (c) => HALF_VALUES[bits[channels * i + c]] / scale;
+    L[i] = channels === 1 ? E(0) : red * E(0) + green * E(1) + blue * E(2);
+    lnL[i] = Math.log(Math.max(L[i], SMALLEST_FLOAT32));
+    if (L[i] > 0) {
+      low = Math.min(low, lnL[i]);
+      high = Math.max(high, lnL[i]);
+    }
+    if (channels === 3 && L[i] >= MIN_LUMINANCE) {
+      for (let c = 0; c < 3; c++) ratios[3 * i + c] = E(c) / L[i];
+    }
   }
-  const perStep = FINE / Math.max(high - low, 1e-9);
-  for (let i = 0; i < count; i++) steps[i] = L[i] > 0 ? (lnL[i] - low) * perStep : 0;
-  return { L, lnL, steps, ratios, channels };
+  const stepsPerLn = MAX_RANK_STEP / Math.max(high - low, MIN_LN_RANGE);
+  for (let i = 0; i < count; i++) {
+    rankSteps[i] = L[i] > 0 ? (lnL[i] - low) * stepsPerLn : 0;
+  }
+  return { L, lnL, rankSteps, ratios, channels };
 }
 
-function forEachRow({ x, y, across, down }, width, run) {
-  for (let row = y; row < y + down; row++) run(row * width + x, row * width + x + across);
+// Call `run` with the first and the last + 1 index of each row of an area.
+function forEachRow({ x, y, columns, rows }, width, run) {
+  for (let row = y; row < y + rows; row++) {
+    const first = row * width + x;
+    run(first, first + columns);
+  }
 }
 
-// core.extremes: the value of a rank among the lit pixels, from the bottom or from the top.
-function ranked(map, area, width, fromTop, lit, counts) {
-  const leftOut = Math.min(Math.max(1, Math.floor(CUT * lit)), Math.floor((lit - 1) / 2));
-  let [rank, step] = [fromTop ? lit - 1 - leftOut : leftOut, 0];
-  while (rank >= counts[step]) rank -= counts[step++];
-  const values = [];
-  forEachRow(area, width, (from, to) => {
-    for (let i = from; i < to; i++) if (map.steps[i] === step && map.L[i] > 0) values.push(map.L[i]);
-  });
-  return values.sort((a, b) => a - b)[rank];
-}
+const rankCounts = new Uint32Array(MAX_RANK_STEP + 1); // kept between the frames of the display
 
-const counts = new Uint32Array(FINE + 1);
-
-function span(map, area, width) {
-  let lit = 0;
-  counts.fill(0);
-  forEachRow(area, width, (from, to) => {
-    for (let i = from; i < to; i++)
+// Count the lit pixels of an area at each rank step into `rankCounts`, and return their number.
+function countLitPixels(map, area, width) {
+  let litCount = 0;
+  rankCounts.fill(0);
+  forEachRow(area, width, (first, end) => {
+    for (let i = first; i < end; i++) {
       if (map.L[i] > 0) {
-        counts[map.steps[i]]++;
-        lit++;
+        rankCounts[map.rankSteps[i]] += 1;
+        litCount += 1;
       }
-  });
-  const [low, high] = lit ? [false, true].map((top) => ranked(map, area, width, top, lit, counts)) : [1, 1];
-  const widen = Math.max(1, (LEAST * low) / high) ** 0.5;
-  return [low / widen, high * widen];
-}
-
-// histogram(): a pixel counts in the two bins whose centres it lies between.
-function histogram(map, area, width, lnLow, perBin, bins) {
-  const f = new Float64Array(bins + 1);
-  forEachRow(area, width, (from, to) => {
-    for (let i = from; i < to; i++) {
-      const t = clamp((map.lnL[i] - lnLow) * perBin - 0.5, 0, bins - 1);
-      const left = t | 0;
-      f[left] += 1 - (t - left);
-      f[left + 1] += t - left;
     }
   });
-  return f.subarray(0, bins).map((count) => count / (area.across * area.down));
+  return litCount;
 }
 
-// clipped(): no bin above the limit, and what was cut off given to all as they have room.
-function clipped(f, limit) {
-  const top = Math.min(limit / f.length, 1);
-  let [sum, room] = [0, 0];
-  for (const share of f) sum += Math.min(share, top);
-  for (const share of f) room += top - Math.min(share, top);
-  const given = (1 - sum) / Math.max(room, 1e-12);
-  return f.map((share) => Math.min(share, top) + (top - Math.min(share, top)) * given);
+// The luminance of a rank among the lit pixels of an area, from `rankCounts`.
+function luminanceOfRank(map, area, width, rank) {
+  let remaining = rank;
+  let step = 0;
+  while (remaining >= rankCounts[step]) {
+    remaining -= rankCounts[step];
+    step += 1;
+  }
+  const luminances = []; // of the pixels at this step
+  forEachRow(area, width, (first, end) => {
+    for (let i = first; i < end; i++) {
+      if (map.rankSteps[i] === step && map.L[i] > 0) luminances.push(map.L[i]);
+    }
+  });
+  return luminances.sort((a, b) => a - b)[remaining];
 }
 
-// decode(P) at the edges of the bins.
-function curve(f) {
-  const Ld = new Float64Array(f.length + 2);
+// The lowest and the highest luminance of an area: find_range in tonemap/brush.py.
+function findRange(map, area, width) {
+  const litCount = countLitPixels(map, area, width);
+  let low = 1;
+  let high = 1;
+  if (litCount > 0) {
+    const maxClipped = Math.floor((litCount - 1) / 2);
+    const clipped = Math.min(Math.max(1, Math.floor(CLIPPED_FRACTION * litCount)), maxClipped);
+    low = luminanceOfRank(map, area, width, clipped);
+    high = luminanceOfRank(map, area, width, litCount - 1 - clipped);
+  }
+  const widening = Math.max(1, (MIN_LUMINANCE_RATIO * low) / high) ** 0.5;
+  return [low / widening, high * widening];
+}
+
+// The fractions of the pixels in each bin: histogram in tonemap/brush.py. A pixel counts in the two
+// bins whose centers it lies between.
+function histogramOf(map, area, width, { lnLow, binsPerLn, bins }) {
+  const counts = new Float64Array(bins + 1);
+  forEachRow(area, width, (first, end) => {
+    for (let i = first; i < end; i++) {
+      const position = clamp((map.lnL[i] - lnLow) * binsPerLn - 0.5, 0, bins - 1);
+      const left = position | 0;
+      counts[left] += 1 - (position - left);
+      counts[left + 1] += position - left;
+    }
+  });
+  return counts.subarray(0, bins).map((count) => count / (area.columns * area.rows));
+}
+
+// clip_histogram in tonemap/brush.py: no bin above the limit, and the excess distributed over the
+// bins in proportion to the room below the limit.
+function clipHistogram(h, limit) {
+  const top = Math.min(limit / h.length, 1);
+  const clipped = h.map((fraction) => Math.min(fraction, top));
+  const room = clipped.map((fraction) => top - fraction);
+  const excess = 1 - sumOf(clipped);
+  const factor = excess / Math.max(sumOf(room), 1e-12);
+  return clipped.map((fraction, bin) => fraction + room[bin] * factor);
+}
+
+// Display luminance at the edges of the bins: decode(P). The last value is there twice, because the
+// curve is level beyond the last edge.
+function curveOf(h) {
+  const Ld = new Float64Array(h.length + 2);
   let P = 0;
-  f.forEach((share, k) => (Ld[k + 1] = decodeSrgb(Math.min((P += share), 1))));
-  Ld[f.length + 1] = Ld[f.length]; // beyond the last edge the curve is level
+  h.forEach((fraction, bin) => {
+    P += fraction;
+    Ld[bin + 1] = decodeSrgb(Math.min(P, 1));
+  });
+  Ld[h.length + 1] = Ld[h.length];
   return Ld;
 }
 
-// equalise() and recolour() of an area, written into the pixels of an ImageData, 32 bits each: A B G R.
-function equalise(map, area, width, { bins, limit }, pixels) {
-  const [low, high] = span(map, area, width);
-  const [lnLow, perBin] = [Math.fround(Math.log(low)), Math.fround(bins / Math.log(high / low))];
-  const Ld = curve(clipped(histogram(map, area, width, lnLow, perBin, bins), limit)).map((each) => 65535 * each);
+// Equalize an area and write it into `pixels`, 32 bits each. Return the range of luminance.
+function equalize(map, area, width, { bins, limit }, pixels) {
   const { lnL, ratios, channels } = map;
-  let to = 0;
-  forEachRow(area, width, (from, end) => {
-    for (let i = from; i < end; i++) {
-      const t = clamp((lnL[i] - lnLow) * perBin, 0, bins);
-      const left = t | 0;
-      const light = Ld[left] + (t - left) * (Ld[left + 1] - Ld[left]);
-      if (channels === 1) pixels[to++] = 0xff000000 | (0x10101 * code(light));
-      else {
-        const [r, g, b] = [code(light * ratios[3 * i]), code(light * ratios[3 * i + 1]), code(light * ratios[3 * i + 2])];
-        pixels[to++] = 0xff000000 | (b << 16) | (g << 8) | r;
-      }
+  const [low, high] = findRange(map, area, width);
+  const lnLow = Math.fround(Math.log(low));
+  const binsPerLn = Math.fround(bins / Math.log(high / low));
+  const h = histogramOf(map, area, width, { lnLow, binsPerLn, bins });
+  const lightAtEdge = curveOf(clipHistogram(h, limit)).map((Ld) => LIGHT_STEPS * Ld);
+
+  function colorOf(i, light) {
+    if (channels === 1) {
+      const gray = pixelValue(light);
+      return opaquePixel(gray, gray, gray);
+    }
+    const red = pixelValue(light * ratios[3 * i]);
+    const green = pixelValue(light * ratios[3 * i + 1]);
+    const blue = pixelValue(light * ratios[3 * i + 2]);
+    return opaquePixel(red, green, blue);
+  }
+
+  let target = 0;
+  forEachRow(area, width, (first, end) => {
+    for (let i = first; i < end; i++) {
+      const position = clamp((lnL[i] - lnLow) * binsPerLn, 0, bins);
+      const left = position | 0;
+      const slope = lightAtEdge[left + 1] - lightAtEdge[left];
+      pixels[target] = colorOf(i, lightAtEdge[left] + (position - left) * slope);
+      target += 1;
     }
   });
   return [low, high];
 }
 
-async function render({ model, el }) {
-  const root = start(el, "brush");
-  const keys = `arrow keys move the brush by ${NEAR} pixels, with Shift by ${FAR}; brackets change its size, plus and minus its magnification`;
-  const { frame, canvas, context } = stage(root, `Detail Brush: ${keys}`);
-  const tell = teller(root);
-  const [height, width, channels] = model.get("shape");
-  const picture = await decode(model.get("picture"), "image/webp");
-  const map = prepare(await halves(model.get("radiance"), channels), model.get("scale"), channels);
-  [canvas.width, canvas.height] = [width, height];
-  const whole = span(map, { x: 0, y: 0, across: width, down: height }, width);
-  const lens = document.createElement("canvas");
-  const stops = ([low, high]) => Math.log2(high / low).toFixed(1);
-  let [pixels, aloud, pointed] = [null, false, false];
+// Along one axis: where the brush begins and how long it is, and the same for its window. The brush
+// stays inside the image. The window is inside the brush, and begins where magnifying it does not
+// move the pixel under the pointer.
+function placeAlongAxis(centre, length, size, magnification) {
+  const brushLength = Math.min(size, length);
+  const brushStart = clamp(Math.round(centre - brushLength / 2), 0, length - brushLength);
+  const windowLength = Math.min(Math.ceil(size / magnification), length);
+  const before = (centre - brushStart) / magnification; // pixels of the window before the centre
+  const windowStart = clamp(Math.round(centre - before), 0, length - windowLength);
+  return { brushStart, brushLength, windowStart, windowLength };
+}
 
-  // The brush lies inside the picture, and the window inside the brush: what is under the pointer stays there.
-  function areas() {
+const stopsText = ([low, high]) => Math.log2(high / low).toFixed(1);
+
+async function render({ model, el }) {
+  const root = createRoot(el, "brush");
+  const keyHelp =
+    `arrow keys move the brush by ${NEAR_STEP} pixels, with Shift by ${FAR_STEP}; ` +
+    "brackets change its size, plus and minus its magnification";
+  const { frame, canvas, context } = addStage(root, `Detail Brush: ${keyHelp}`);
+  const showStatus = addStatusLine(root);
+  const [height, width, channels] = model.get("shape");
+  const picture = await decodeImage(model.get("picture"), "image/webp");
+  const bits = await decodeHalves(model.get("radiance"), channels);
+  const map = prepareMap(bits, model.get("scale"), channels);
+  canvas.width = width;
+  canvas.height = height;
+  const wholeRange = findRange(map, { x: 0, y: 0, columns: width, rows: height }, width);
+  const lens = document.createElement("canvas"); // the equalized window, not yet magnified
+  let pixels = null; // the ImageData of the lens
+  let isAloud = false;
+  let isPointerUsed = false;
+
+  // The rectangle of the brush, and that of its window.
+  function findAreas() {
     const [y, x] = model.get("centre");
-    const [size, magnification] = [model.get("size"), model.get("magnification")];
-    const within = (centre, length) => {
-      const side = Math.min(size, length);
-      const from = clamp(Math.round(centre - side / 2), 0, length - side);
-      const few = Math.min(Math.ceil(size / magnification), length);
-      return { from, side, few, first: clamp(Math.round(centre - (centre - from) / magnification), 0, length - few) };
+    const size = model.get("size");
+    const magnification = model.get("magnification");
+    const across = placeAlongAxis(x, width, size, magnification);
+    const down = placeAlongAxis(y, height, size, magnification);
+    return {
+      brush: [across.brushStart, down.brushStart, across.brushLength, down.brushLength],
+      window: {
+        x: across.windowStart,
+        y: down.windowStart,
+        columns: across.windowLength,
+        rows: down.windowLength,
+      },
     };
-    const [h, v] = [within(x, width), within(y, height)];
-    return { brush: [h.from, v.from, h.side, v.side], window: { x: h.first, y: v.first, across: h.few, down: v.few } };
+  }
+
+  function resizeLens({ columns, rows }) {
+    if (pixels?.width === columns && pixels?.height === rows) return;
+    lens.width = columns;
+    lens.height = rows;
+    pixels = new ImageData(columns, rows);
+  }
+
+  function drawOutline(brush) {
+    const strokes = [
+      ["#000", 4],
+      ["#fff", 2],
+    ];
+    for (const [color, lineWidth] of strokes) {
+      context.strokeStyle = color;
+      context.lineWidth = (lineWidth * Math.max(width, 600)) / 800;
+      context.strokeRect(...brush);
+    }
   }
 
   function paint() {
-    const { brush, window } = areas();
-    const [size, magnification] = [model.get("size"), model.get("magnification")];
-    if (pixels?.width !== window.across || pixels?.height !== window.down) {
-      [lens.width, lens.height] = [window.across, window.down];
-      pixels = new ImageData(window.across, window.down);
-    }
-    const seen = equalise(map, window, width, { bins: model.get("bins"), limit: model.get("limit") }, new Uint32Array(pixels.data.buffer));
+    const areas = findAreas();
+    const [x, y, columns, rows] = areas.brush;
+    const magnification = model.get("magnification");
+    resizeLens(areas.window);
+    const parameters = { bins: model.get("bins"), limit: model.get("limit") };
+    const target = new Uint32Array(pixels.data.buffer);
+    const range = equalize(map, areas.window, width, parameters, target);
     lens.getContext("2d").putImageData(pixels, 0, 0);
     context.drawImage(picture, 0, 0);
     context.imageSmoothingEnabled = false;
-    const [x, y, across, down] = brush;
-    context.drawImage(lens, 0, 0, across / magnification, down / magnification, x, y, across, down);
-    for (const [colour, thick] of [["#000", 4], ["#fff", 2]]) {
-      context.strokeStyle = colour;
-      context.lineWidth = (thick * Math.max(width, 600)) / 800;
-      context.strokeRect(x, y, across, down);
-    }
-    const [row, column] = model.get("centre");
-    const said = `x ${column}, y ${row}, size ${size}${magnification > 1 ? `, magnification ${magnification}` : ""}`;
-    canvas.setAttribute("aria-label", `${model.get("alt")}, the brush at ${said}`);
-    const moved = aloud || pointed ? "" : " The pointer or the arrow keys move the brush.";
-    tell(`${said}: ${stops(seen)} of the map's ${stops(whole)} stops.${moved}`, aloud);
+    const source = [0, 0, columns / magnification, rows / magnification];
+    context.drawImage(lens, ...source, x, y, columns, rows);
+    drawOutline(areas.brush);
+    describe(range);
   }
 
-  const repaint = eachFrame(paint);
-  const controls = element(root, "div", { className: "hdrlab-controls" });
-  const sizes = { name: "size", values: Array.from({ length: 15 }, (_, k) => 64 + 32 * k) };
-  const enlargements = { name: "magnification", values: [1, 2, 3, 4, 5, 6, 7, 8] };
-  const bars = [sizes, enlargements, { name: "limit", values: LIMITS }].map(({ name, values }) => {
-    const bar = slider(controls, name, values.length);
-    const away = () => values.map((value) => Math.abs(value - model.get(name)));
-    const position = () => away().indexOf(Math.min(...away()));
-    const show = () => bar.show(position(), `${model.get(name)}`);
-    const move = (to) => change(name, values[clamp(to, 0, values.length - 1)]);
-    bar.input.addEventListener("input", () => move(Number(bar.input.value)));
-    return { name, show, more: (by) => move(position() + by) };
-  });
+  function describe(range) {
+    const [y, x] = model.get("centre");
+    const magnification = model.get("magnification");
+    let position = `x ${x}, y ${y}, size ${model.get("size")}`;
+    if (magnification > 1) position += `, magnification ${magnification}`;
+    canvas.setAttribute("aria-label", `${model.get("alt")}, the brush at ${position}`);
+    const isUsed = isAloud || isPointerUsed;
+    const hint = isUsed ? "" : " The pointer or the arrow keys move the brush.";
+    const stops = `${stopsText(range)} of the map's ${stopsText(wholeRange)} stops`;
+    showStatus(`${position}: ${stops}.${hint}`, isAloud);
+  }
+  const repaint = oncePerFrame(paint);
+
+  // Append a slider for a trait. Its position is that of the value nearest to the trait.
+  const controls = addElement(root, "div", { className: "hdrlab-controls" });
+  function addParameter(name, values) {
+    const slider = addSlider(controls, name, values.length);
+    const position = () => {
+      const value = model.get(name);
+      return indexOfLeast(values.map((other) => Math.abs(other - value)));
+    };
+    const setPosition = (index) => change(name, values[clamp(index, 0, values.length - 1)]);
+    slider.input.addEventListener("input", () => setPosition(slider.position()));
+    return {
+      show: () => slider.show(position(), `${model.get(name)}`),
+      moveBy: (steps) => setPosition(position() + steps),
+    };
+  }
+  const parameters = {
+    size: addParameter("size", SIZES),
+    magnification: addParameter("magnification", MAGNIFICATIONS),
+    limit: addParameter("limit", LIMITS),
+  };
 
   function change(name, value) {
-    model.set(name, value);
-    model.save_changes();
-    follow();
+    saveTrait(model, name, value);
+    update();
   }
 
-  function follow() {
-    for (const bar of bars) bar.show();
+  function update() {
+    for (const parameter of Object.values(parameters)) parameter.show();
     repaint();
   }
 
   function moveTo(y, x) {
-    change("centre", [clamp(Math.round(y), 0, height - 1), clamp(Math.round(x), 0, width - 1)]);
+    const row = clamp(Math.round(y), 0, height - 1);
+    const column = clamp(Math.round(x), 0, width - 1);
+    change("centre", [row, column]);
   }
 
-  const moves = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] };
-  const changes = { "[": [0, -1], "]": [0, 1], "-": [1, -1], _: [1, -1], "+": [1, 1], "=": [1, 1] };
   frame.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const by = event.shiftKey ? FAR : NEAR;
-    aloud = true;
-    if (moves[event.key]) moveTo(...model.get("centre").map((at, k) => at + by * moves[event.key][k]));
-    else if (changes[event.key]) bars[changes[event.key][0]].more(changes[event.key][1]);
-    else return;
+    isAloud = true;
+    if (MOVES[event.key]) {
+      const length = event.shiftKey ? FAR_STEP : NEAR_STEP;
+      const [down, right] = MOVES[event.key];
+      const [y, x] = model.get("centre");
+      moveTo(y + length * down, x + length * right);
+    } else if (PARAMETER_KEYS[event.key]) {
+      const [name, steps] = PARAMETER_KEYS[event.key];
+      parameters[name].moveBy(steps);
+    } else {
+      return;
+    }
     event.preventDefault();
   });
 
-  function point(event) {
-    const [across, down] = place(event, canvas);
-    [aloud, pointed] = [false, true];
-    moveTo(down * height, across * width);
+  function followPointer(event) {
+    const [x, y] = pointerPosition(event, canvas);
+    isAloud = false;
+    isPointerUsed = true;
+    moveTo(y * height, x * width);
   }
 
   frame.addEventListener("pointerdown", (event) => {
     frame.setPointerCapture(event.pointerId);
-    point(event);
+    followPointer(event);
   });
-  frame.addEventListener("pointermove", point);
+  frame.addEventListener("pointermove", followPointer);
 
-  const traits = ["centre", "size", "magnification", "limit"].map((name) => `change:${name}`);
-  for (const trait of traits) model.on(trait, follow);
-  follow();
-  return () => traits.forEach((trait) => model.off(trait, follow));
+  const traits = ["centre", "size", "magnification", "limit"];
+  const stopListening = onTraitChange(model, traits, update);
+  update();
+  return stopListening;
 }
 
 export default { render };

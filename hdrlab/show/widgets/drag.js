@@ -1,20 +1,28 @@
-// Shared by the figures whose object itself is dragged.
+// Shared by the widgets in which a reader drags something: pointer and arrow keys, and the decoding
+// of the pixel values that Python sends.
 
-// Let a pointer and the arrow keys move what `surface` shows. `grab` and then `moveTo` get shares of its width and
-// height, `stepBy` gets steps (right, down), of which Shift makes `farStep`.
-function draggable(frame, surface, { grab = () => {}, moveTo, stepBy, farStep = 8 }) {
-  const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const ARROW_STEPS = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+// Let a pointer and the arrow keys on `frame` move something. `grab` and then `moveTo` get the
+// position of the pointer on `surface`, as fractions of its width and height. `stepBy` gets steps
+// to the right and down: 1 for an arrow key, and `farStep` with Shift.
+function makeDraggable(frame, surface, { grab = () => {}, moveTo, stepBy, farStep = 8 }) {
   frame.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     frame.setPointerCapture(event.pointerId);
-    grab(place(event, surface));
-    moveTo(place(event, surface));
+    grab(pointerPosition(event, surface));
+    moveTo(pointerPosition(event, surface));
   });
   frame.addEventListener("pointermove", (event) => {
-    if (frame.hasPointerCapture(event.pointerId)) moveTo(place(event, surface));
+    if (frame.hasPointerCapture(event.pointerId)) moveTo(pointerPosition(event, surface));
   });
   frame.addEventListener("keydown", (event) => {
-    const step = steps[event.key];
+    const step = ARROW_STEPS[event.key];
     if (!step) return;
     event.preventDefault();
     const length = event.shiftKey ? farStep : 1;
@@ -22,20 +30,11 @@ function draggable(frame, surface, { grab = () => {}, moveTo, stepBy, farStep = 
   });
 }
 
-// Bytes as Python's zlib.compress wrote them.
-async function unzip(view) {
-  const packed = new Blob([view]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(packed).arrayBuffer());
-}
-
-// Bytes as `pixel.deflate` wrote them: the differences of neighbours in a row.
-async function inflate(view, width) {
-  const bytes = await unzip(view);
-  for (let i = 0; i < bytes.length; i++) if (i % width) bytes[i] += bytes[i - 1];
+// Return pixel values that `pixel.deflate` in Python compressed: differences of neighbors in a row.
+async function decodeRows(view, width) {
+  const bytes = await decompress(view);
+  for (let i = 0; i < bytes.length; i++) {
+    if (i % width) bytes[i] += bytes[i - 1];
+  }
   return bytes;
-}
-
-// A number with three digits, as a reader writes it.
-function threeDigits(value) {
-  return value === 0 ? "0" : String(Number(value.toPrecision(3)));
 }

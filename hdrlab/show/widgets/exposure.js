@@ -1,11 +1,29 @@
-// The range of a photo as a window over a scene's histogram: capture/sensor.py and capture/ranges.py again.
+// `widgets.exposure_window`: a photo with simulated noise, and its range as a window over the
+// histogram of the scene. The formulas are those of capture/sensor.py and capture/ranges.py.
+//
+// Python sends
+//   radiance      half floats (H, W, channels), multiplied by `scale`: E, cd/m²
+//   shape         (H, W, channels)
+//   span          the first and the last stop of the axis, log2 of luminance
+//   sensor        full_well and read_noise, electrons; gain, electrons per level; black, levels
+//   sensitivity   s, so that the exposure X = s L t is 1 where the well is full
+//   pixel_values  the pixel value of each level of the converter, uint8
+//   limits        the exposures X at which a pixel is lost in noise, and full
+//   shutters      the text of each exposure time
+//   times         the exposure times, s
+//   alt           what the scene shows
+// and both sides set
+//   at            the index of the exposure time
 
-const NORMALS = normals(16384); // few enough for a processor's cache
-const STRIPE = 8; // pixels from one stripe of the marks to the next
-const [FULL, NOISE] = [0xff005ed5, 0xffb27200]; // A B G R, as in show/plots/lectures/sensors.py
+const STRIPE_PERIOD = 8; // pixels from one stripe of the marks to the next
+const FULL_COLOR = opaquePixel(213, 94, 0); // as in show/plots/lectures/sensors.py
+const NOISE_COLOR = opaquePixel(0, 114, 178);
+const RANDOM_COUNT = 16384; // few enough for the cache of a processor
+const NORMAL_NUMBERS = normalNumbers(RANDOM_COUNT);
 
-// Random numbers of a normal distribution: the same ones in each photo, so that only the light changes.
-function normals(count) {
+// Random numbers of a normal distribution. They are the same for each photo, so that only the light
+// changes.
+function normalNumbers(count) {
   let state = 1;
   const uniform = () => {
     state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
@@ -17,132 +35,176 @@ function normals(count) {
   });
 }
 
-async function render({ model, el }) {
-  const root = start(el, "exposure");
+const normalNumber = (index) => NORMAL_NUMBERS[index & (RANDOM_COUNT - 1)];
+
+// Return a function that writes the photo of an exposure time into `pixels`, 32 bits each, and
+// returns the fractions of pixels that are lost in noise and full.
+function createCamera(model, E, L, limitsOf) {
   const [height, width, channels] = model.get("shape");
-  const bits = await halves(model.get("radiance"), channels);
-  const E = Float32Array.from(bits, (one) => HALF[one] / model.get("scale"));
-  const L = luminances(E, channels);
-  const [low, high] = model.get("span");
   const { full_well: fullWell, read_noise: readNoise, gain, black } = model.get("sensor");
   const view = model.get("pixel_values");
   const pixelValues = new Uint8Array(view.buffer, view.byteOffset, view.byteLength);
-  const [shutters, times] = [model.get("shutters"), model.get("times")];
+  const maxLevel = pixelValues.length - 1;
+  // The noise of the photons for one electron per radiance, and the noise of the amplifier.
+  const shotNoise = E.map((radiance, i) => Math.sqrt(radiance) * normalNumber(i));
+  const amplifierNoise = E.map((_, i) => readNoise * normalNumber(5 * i + 1));
+
+  return (time, pixels) => {
+    const electronsPerRadiance = fullWell * model.get("sensitivity") * time;
+    const shotNoiseFactor = Math.sqrt(electronsPerRadiance);
+    const [minLuminance, fullLuminance] = limitsOf(time);
+    let noiseCount = 0;
+    let fullCount = 0;
+
+    function valueAt(i) {
+      const electrons = electronsPerRadiance * E[i] + shotNoiseFactor * shotNoise[i];
+      const signal = Math.min(electrons, fullWell) + amplifierNoise[i];
+      const level = signal / gain + black + 0.5;
+      return pixelValues[clamp(level, 0, maxLevel) | 0];
+    }
+
+    function colorAt(i) {
+      if (channels === 1) {
+        const gray = valueAt(i);
+        return opaquePixel(gray, gray, gray);
+      }
+      return opaquePixel(valueAt(3 * i), valueAt(3 * i + 1), valueAt(3 * i + 2));
+    }
+
+    let i = 0;
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        const isFull = L[i] >= fullLuminance;
+        const isNoise = L[i] < minLuminance;
+        if (isFull) fullCount += 1;
+        if (isNoise) noiseCount += 1;
+        const isFullStripe = (x + y) % STRIPE_PERIOD < STRIPE_PERIOD / 2;
+        const isNoiseStripe = (x + height - y) % STRIPE_PERIOD < STRIPE_PERIOD / 2;
+        if (isFull && isFullStripe) pixels[i] = FULL_COLOR;
+        else if (isNoise && isNoiseStripe) pixels[i] = NOISE_COLOR;
+        else pixels[i] = colorAt(i);
+        i += 1;
+      }
+    }
+    return { noise: noiseCount / L.length, full: fullCount / L.length };
+  };
+}
+
+// Append the words below the ruler, each behind the color of its part of the histogram.
+function addLegend(parent) {
+  const legend = addElement(parent, "div", { className: "hdrlab-parts" });
+  return ["noise", "held", "full"].map((kind) => {
+    const part = addElement(legend, "span");
+    addElement(part, "i", { className: `hdrlab-swatch hdrlab-${kind}` });
+    return addElement(part, "span");
+  });
+}
+
+async function render({ model, el }) {
+  const root = createRoot(el, "exposure");
+  const [height, width, channels] = model.get("shape");
+  const bits = await decodeHalves(model.get("radiance"), channels);
+  const E = Float32Array.from(bits, (half) => HALF_VALUES[half] / model.get("scale"));
+  const L = luminances(E, channels);
+  const span = model.get("span");
+  const [low, high] = span;
+  const shutters = model.get("shutters");
+  const times = model.get("times");
   const at = () => model.get("at");
 
-  const columns = element(root, "div", { className: "hdrlab-columns" });
-  const left = element(columns, "div", { className: "hdrlab-column" });
-  const canvas = element(left, "canvas", { role: "img", "aria-label": "", className: "hdrlab-photo", width, height });
+  // The luminances at which a photo of this time begins to measure, and ends.
+  const limitsOf = (time) => model.get("limits").map((X) => X / (model.get("sensitivity") * time));
+  // The position of a luminance on the axis, in percent.
+  const percentOf = (luminance) => (100 * (Math.log2(luminance) - low)) / (high - low);
+
+  const columns = addElement(root, "div", { className: "hdrlab-columns" });
+  const leftColumn = addElement(columns, "div", { className: "hdrlab-column" });
+  const canvas = addElement(leftColumn, "canvas", {
+    role: "img",
+    "aria-label": "",
+    className: "hdrlab-photo",
+    width,
+    height,
+  });
   const context = canvas.getContext("2d", { alpha: false });
   const image = context.createImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);
+  const expose = createCamera(model, E, L, limitsOf);
 
-  const right = element(columns, "div", { className: "hdrlab-column hdrlab-chart" });
-  const scale = element(right, "div", { className: "hdrlab-scale", role: "slider", tabIndex: 0, "aria-label": "Shutter" });
+  const rightColumn = addElement(columns, "div", { className: "hdrlab-column hdrlab-chart" });
+  const scale = addElement(rightColumn, "div", {
+    className: "hdrlab-scale",
+    role: "slider",
+    tabIndex: 0,
+    "aria-label": "Shutter",
+  });
   scale.setAttribute("aria-valuemin", 0);
   scale.setAttribute("aria-valuemax", times.length - 1);
-  const bars = histogram(scale, L, [low, high]);
-  const held = element(scale, "div", { className: "hdrlab-window" });
-  const shutter = element(held, "b", { className: "hdrlab-is-t" });
-  const luminanceText = (stop) => (stop < 0 ? `1/${2 ** -stop}` : 2 ** stop);
-  ruler(right, [low, high], everyFew([low, high], 4).map((stop) => [stop, luminanceText(stop)]));
-  element(right, "p", { className: "hdrlab-axis", textContent: "luminance, cd/m²; one mark is one stop" });
-  const parts = element(right, "div", { className: "hdrlab-parts" });
-  const [noisePart, heldPart, fullPart] = ["noise", "held", "full"].map((kind) => {
-    const part = element(parts, "span");
-    element(part, "i", { className: `hdrlab-swatch hdrlab-${kind}` });
-    return element(part, "span");
+  const bars = addHistogram(scale, L, span);
+  const rangeBox = addElement(scale, "div", { className: "hdrlab-window" });
+  const shutter = addElement(rangeBox, "b", { className: "hdrlab-is-t" });
+  const stopText = (stop) => (stop < 0 ? `1/${2 ** -stop}` : 2 ** stop);
+  const labels = multiplesBetween(span, 4).map((stop) => [stop, stopText(stop)]);
+  addRuler(rightColumn, span, labels);
+  addElement(rightColumn, "p", {
+    className: "hdrlab-axis",
+    textContent: "luminance, cd/m²; one mark is one stop",
   });
-  const say = teller(root);
-
-  // The luminances between which a photo of this time measures something.
-  function limits(time) {
-    return model.get("limits").map((X) => X / (model.get("sensitivity") * time));
-  }
-
-  // The noise of each channel of a pixel: of the photons, for one electron per radiance, and of the amplifier.
-  const shotNoise = E.map((radiance, i) => Math.sqrt(radiance) * NORMALS[i & 16383]);
-  const amplifierNoise = E.map((_, i) => readNoise * NORMALS[(5 * i + 1) & 16383]);
-  const topLevel = pixelValues.length - 1;
-
-  // Write the photo of this time with its marks, and return how many pixels are lost in noise, and how many full.
-  function expose(time) {
-    const electronsPerRadiance = fullWell * model.get("sensitivity") * time;
-    const rootOfGain = Math.sqrt(electronsPerRadiance);
-    const [darkest, full] = limits(time);
-    let [noiseCount, fullCount] = [0, 0];
-
-    function pixelValue(k) {
-      const photons = Math.min(electronsPerRadiance * E[k] + rootOfGain * shotNoise[k], fullWell);
-      const level = (photons + amplifierNoise[k]) / gain + black + 0.5;
-      return pixelValues[level < 0 ? 0 : level > topLevel ? topLevel : level | 0];
-    }
-
-    for (let y = 0, i = 0; y < height; y++)
-      for (let x = 0; x < width; x++, i++) {
-        const isFull = L[i] >= full;
-        const isNoise = L[i] < darkest;
-        if (isFull) fullCount++;
-        if (isNoise) noiseCount++;
-        if (isFull && (x + y) % STRIPE < STRIPE / 2) pixels[i] = FULL;
-        else if (isNoise && (x + height - y) % STRIPE < STRIPE / 2) pixels[i] = NOISE;
-        else if (channels === 1) pixels[i] = 0xff000000 | (0x10101 * pixelValue(i));
-        else pixels[i] = 0xff000000 | (pixelValue(3 * i + 2) << 16) | (pixelValue(3 * i + 1) << 8) | pixelValue(3 * i);
-      }
-    return [noiseCount / L.length, fullCount / L.length];
-  }
-
-  const across = (luminance) => (100 * (Math.log2(luminance) - low)) / (high - low);
+  const [noisePart, recordedPart, fullPart] = addLegend(rightColumn);
+  const showStatus = addStatusLine(root);
 
   function paint() {
     const time = times[at()];
-    const [noise, full] = expose(time);
+    const { noise, full } = expose(time, pixels);
     context.putImageData(image, 0, 0);
-    const ends = limits(time);
-    const [from, to] = ends.map((luminance) => clamp(across(luminance), 0, 100));
-    held.style.left = `${from}%`;
-    held.style.width = `${to - from}%`;
-    bars.style.background = `linear-gradient(90deg, var(--noise) ${from}%, var(--held) 0 ${to}%, var(--full) 0)`;
+
+    const limits = limitsOf(time);
+    const [from, to] = limits.map((luminance) => clamp(percentOf(luminance), 0, 100));
+    rangeBox.style.left = `${from}%`;
+    rangeBox.style.width = `${to - from}%`;
+    const colors = `var(--noise) ${from}%, var(--held) 0 ${to}%, var(--full) 0`;
+    bars.style.background = `linear-gradient(90deg, ${colors})`;
+
     shutter.textContent = shutters[at()];
-    noisePart.textContent = `lost in noise ${percent(noise)}`;
-    heldPart.textContent = `recorded ${percent(1 - noise - full)}`;
-    fullPart.textContent = `clipped ${percent(full)}`;
-    const lost = `${percent(noise)} lost in noise, ${percent(full)} clipped`;
+    noisePart.textContent = `lost in noise ${percentText(noise)}`;
+    recordedPart.textContent = `recorded ${percentText(1 - noise - full)}`;
+    fullPart.textContent = `clipped ${percentText(full)}`;
+    const lost = `${percentText(noise)} lost in noise, ${percentText(full)} clipped`;
     scale.setAttribute("aria-valuenow", at());
     scale.setAttribute("aria-valuetext", `${shutters[at()]}: ${lost}`);
     canvas.setAttribute("aria-label", `${model.get("alt")}, ${shutters[at()]}: ${lost}`);
-    const stops = Math.log2(ends[1] / ends[0]).toFixed(1);
-    const [darkest, brightest] = ends.map(threeDigits);
-    say(`${shutters[at()]} records ${stops} stops, from ${darkest} to ${brightest} cd/m².`);
+    const stops = Math.log2(limits[1] / limits[0]).toFixed(1);
+    const [darkest, brightest] = limits.map(threeDigits);
+    showStatus(`${shutters[at()]} records ${stops} stops, from ${darkest} to ${brightest} cd/m².`);
   }
-  const repaint = eachFrame(paint);
+  const repaint = oncePerFrame(paint);
 
-  function move(to) {
-    model.set("at", clamp(to, 0, times.length - 1));
-    model.save_changes();
+  function moveTo(index) {
+    saveTrait(model, "at", clamp(index, 0, times.length - 1));
     repaint();
   }
 
-  // The mark of the dial whose window has its upper end nearest to this place.
-  function nearest(share) {
-    const away = times.map((time) => Math.abs(across(limits(time)[1]) - 100 * share));
-    return away.indexOf(Math.min(...away));
+  // The exposure time whose window has its upper end nearest to this fraction of the axis.
+  function nearestTime(fraction) {
+    const upperEnds = times.map((time) => percentOf(limitsOf(time)[1]));
+    return indexOfLeast(upperEnds.map((end) => Math.abs(end - 100 * fraction)));
   }
 
-  let grip = 0; // from where the window is held to its upper end, as a share of the scale
-  draggable(scale, bars, {
-    grab: ([right]) => {
-      const [from, to] = limits(times[at()]).map((luminance) => across(luminance) / 100);
-      const isInside = from <= right && right <= to;
-      grip = isInside ? to - right : (to - from) / 2;
+  let grip = 0; // from the pointer to the upper end of the window, as a fraction of the axis
+  makeDraggable(scale, bars, {
+    // Outside the window, the window jumps so that its middle is under the pointer.
+    grab([x]) {
+      const [from, to] = limitsOf(times[at()]).map((luminance) => percentOf(luminance) / 100);
+      const isInside = from <= x && x <= to;
+      grip = isInside ? to - x : (to - from) / 2;
     },
-    moveTo: ([right]) => move(nearest(right + grip)),
-    stepBy: (right, down) => move(at() + right - down),
-    farStep: 3,
+    moveTo: ([x]) => moveTo(nearestTime(x + grip)),
+    stepBy: (right, down) => moveTo(at() + right - down),
+    farStep: 3, // a stop of the dial
   });
-  model.on("change:at", repaint);
+  const stopListening = onTraitChange(model, ["at"], repaint);
   paint();
-  return () => model.off("change:at", repaint);
+  return stopListening;
 }
 
 export default { render };

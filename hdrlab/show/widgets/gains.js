@@ -1,114 +1,179 @@
-// A base image and its gain map on the screen whose peak is dragged: core/gainmap.py again, at each pixel.
+// `widgets.gain_screen`: a base image and its gain map on a screen whose peak the reader drags. The
+// formulas are those of core/gainmap.py.
+//
+// Python sends
+//   base      pixel values of the base image (3, H, W), see decodeRows
+//   gains     codes of the gain map (3, H, W), see decodeRows
+//   shape     (H, W)
+//   low       log2 of the gain at code 0, for each channel
+//   high      log2 of the gain at code 255, for each channel
+//   offsets   what is added to the base and to the HDR image before they are divided
+//   headroom  the peak for which the gain map was made, as a multiple of white
+//   span      the first and the last stop of the axis, log2 of luminance; 0 is white
+//   alt       what the image shows
+// and both sides set
+//   screen    the peak of the screen, as a multiple of white
 
-const STEPS_PER_STOP = 6; // a key press moves a sixth of a stop
-const SHARES = [0.2126, 0.7152, 0.0722]; // of the channels in luminance, as in core/colour.py
+const STEPS_PER_STOP = 6; // a key press changes the peak by a sixth of a stop
 const LINEAR = Float32Array.from({ length: 256 }, (_, value) => decodeSrgb(value / 255));
 
+// Luminance of the base image, whose channels are planes of `count` pixels.
+function baseLuminance(base, count) {
+  return Float32Array.from({ length: count }, (_, i) =>
+    LUMINANCE_WEIGHTS.reduce((sum, weight, c) => sum + weight * LINEAR[base[c * count + i]], 0),
+  );
+}
+
+// Paint pixel values or codes (3, H, W).
+function paintPlanes(canvas, planes) {
+  const { width, height } = canvas;
+  const count = width * height;
+  const context = canvas.getContext("2d", { alpha: false });
+  const image = context.createImageData(width, height);
+  for (let i = 0; i < count; i++) {
+    image.data[4 * i] = planes[i];
+    image.data[4 * i + 1] = planes[count + i];
+    image.data[4 * i + 2] = planes[2 * count + i];
+    image.data[4 * i + 3] = 255;
+  }
+  context.putImageData(image, 0, 0);
+}
+
+// The text of a stop of the axis.
+function stopText(stop) {
+  if (stop < 0) return `1/${2 ** -stop}`;
+  return stop === 0 ? "white" : `${2 ** stop}×`;
+}
+
 async function render({ model, el }) {
-  const root = start(el, "gains");
+  const root = createRoot(el, "gains");
   const [height, width] = model.get("shape");
-  const [base, gains] = await Promise.all(["base", "gains"].map((name) => inflate(model.get(name), width)));
+  const base = await decodeRows(model.get("base"), width);
+  const gains = await decodeRows(model.get("gains"), width);
   const count = height * width;
-  const [low, high] = [model.get("low"), model.get("high")];
+  const low = model.get("low");
+  const high = model.get("high");
   const [baseOffset, lightOffset] = model.get("offsets");
   const headroom = model.get("headroom");
   const span = model.get("span");
+  const [firstStop, lastStop] = span;
   const screen = () => model.get("screen");
-  const across = (stop) => (100 * (stop - span[0])) / (span[1] - span[0]);
+  // The position of a stop on the axis, in percent.
+  const percentOf = (stop) => (100 * (stop - firstStop)) / (lastStop - firstStop);
 
-  const columns = element(root, "div", { className: "hdrlab-columns" });
-  const left = element(columns, "div", { className: "hdrlab-column" });
-  const canvas = (parent) =>
-    element(parent, "canvas", { role: "img", "aria-label": "", className: "hdrlab-photo", width, height });
-  const shown = canvas(left);
-  const right = element(columns, "div", { className: "hdrlab-column hdrlab-chart" });
-  const scale = element(right, "div", { className: "hdrlab-scale" });
-  const clip = element(scale, "div", { className: "hdrlab-clip" });
-  const result = new Float32Array(count);
-  const baseLight = result.map((_, i) => SHARES.reduce((sum, share, c) => sum + share * LINEAR[base[c * count + i]], 0));
-  histogram(clip, baseLight, span);
-  const bars = histogram(clip, result, span);
+  const columns = addElement(root, "div", { className: "hdrlab-columns" });
+  const leftColumn = addElement(columns, "div", { className: "hdrlab-column" });
+  const addCanvas = (parent) =>
+    addElement(parent, "canvas", {
+      role: "img",
+      "aria-label": "",
+      className: "hdrlab-photo",
+      width,
+      height,
+    });
+  const screenCanvas = addCanvas(leftColumn);
+
+  const rightColumn = addElement(columns, "div", { className: "hdrlab-column hdrlab-chart" });
+  const scale = addElement(rightColumn, "div", { className: "hdrlab-scale" });
+  const clip = addElement(scale, "div", { className: "hdrlab-clip" });
+  const luminance = new Float32Array(count); // of the image on the screen
+  addHistogram(clip, baseLuminance(base, count), span);
+  const bars = addHistogram(clip, luminance, span);
   bars.classList.add("hdrlab-over");
-  const white = element(scale, "i", { className: "hdrlab-white-line" });
-  white.style.left = `${across(0)}%`;
-  const handle = element(scale, "div", { className: "hdrlab-handle hdrlab-is-Ld", role: "slider", tabIndex: 0 });
+  const whiteLine = addElement(scale, "i", { className: "hdrlab-white-line" });
+  whiteLine.style.left = `${percentOf(0)}%`;
+  const handle = addElement(scale, "div", {
+    className: "hdrlab-handle hdrlab-is-Ld",
+    role: "slider",
+    tabIndex: 0,
+  });
   handle.setAttribute("aria-label", "Peak of the screen, times its white");
   handle.setAttribute("aria-valuemin", 1);
-  handle.setAttribute("aria-valuemax", 2 ** span[1]);
-  const peak = element(handle, "b");
-  const labelOf = (stop) => (stop < 0 ? `1/${2 ** -stop}` : stop === 0 ? "white" : `${2 ** stop}×`);
-  const stops = everyFew([span[0], 0], 4).concat(everyFew([1, span[1] - 1], 1));
-  ruler(right, span, stops.map((stop) => [stop, labelOf(stop)]));
-  const axis = "luminance on the screen; gray: base image, colored: this screen";
-  element(right, "p", { className: "hdrlab-axis", textContent: axis });
-  const parts = element(right, "div", { className: "hdrlab-thumbnails" });
-  const [basePart, gainPart] = ["base image", "gain map, as applied"].map((name) => {
-    const figure = element(parts, "div");
-    const part = canvas(figure);
-    part.setAttribute("aria-label", `${model.get("alt")}: ${name}`);
-    element(figure, "span", { textContent: name });
-    return part;
+  handle.setAttribute("aria-valuemax", 2 ** lastStop);
+  const peak = addElement(handle, "b");
+  // A label at each fourth stop below white, and at each stop above.
+  const stops = [...multiplesBetween([firstStop, 0], 4), ...multiplesBetween([1, lastStop - 1], 1)];
+  const labels = stops.map((stop) => [stop, stopText(stop)]);
+  addRuler(rightColumn, span, labels);
+  addElement(rightColumn, "p", {
+    className: "hdrlab-axis",
+    textContent: "luminance on the screen; gray: base image, colored: this screen",
   });
-  const say = teller(root);
 
-  // Paint the codes of an image (3, H, W).
-  function paintCodes(canvas, codes) {
-    const context = canvas.getContext("2d", { alpha: false });
-    const image = context.createImageData(width, height);
-    for (let i = 0, to = 0; i < count; i++) {
-      for (let c = 0; c < 3; c++) image.data[to++] = codes[c * count + i];
-      image.data[to++] = 255;
-    }
-    context.putImageData(image, 0, 0);
-  }
-  const codes = new Uint8Array(base.length);
-  paintCodes(basePart, base);
-  paintCodes(gainPart, gains);
+  const thumbnails = addElement(rightColumn, "div", { className: "hdrlab-thumbnails" });
+  const addThumbnail = (name, planes) => {
+    const figure = addElement(thumbnails, "div");
+    const canvas = addCanvas(figure);
+    canvas.setAttribute("aria-label", `${model.get("alt")}: ${name}`);
+    addElement(figure, "span", { textContent: name });
+    paintPlanes(canvas, planes);
+    return canvas;
+  };
+  addThumbnail("base image", base);
+  const gainCanvas = addThumbnail("gain map, as applied", gains);
+  const showStatus = addStatusLine(root);
 
-  const weight = () => clamp(Math.log2(screen()) / Math.log2(headroom), 0, 1);
+  // The fraction of the gain that the screen applies.
+  const gainWeight = () => clamp(Math.log2(screen()) / Math.log2(headroom), 0, 1);
 
-  function paint() {
-    const W = weight();
-    const factors = low.map((lowest, c) =>
-      Float32Array.from({ length: 256 }, (_, k) => 2 ** (W * (lowest + ((high[c] - lowest) * k) / 255))));
-    result.fill(0);
+  // Apply the gain map with a weight: write the luminance, and return the pixel values.
+  const values = new Uint8Array(base.length);
+  function applyGains(weight) {
+    luminance.fill(0);
     for (let c = 0; c < 3; c++) {
-      const factor = factors[c];
-      for (let i = 0, at = c * count; i < count; i++, at++) {
-        const light = (LINEAR[base[at]] + baseOffset) * factor[gains[at]] - lightOffset;
-        result[i] += SHARES[c] * light;
-        codes[at] = code(light > 0 ? (65535 * light) / headroom : 0);
+      const factors = Float32Array.from(
+        { length: 256 },
+        (_, code) => 2 ** (weight * (low[c] + ((high[c] - low[c]) * code) / 255)),
+      );
+      for (let i = 0; i < count; i++) {
+        const k = c * count + i;
+        const light = (LINEAR[base[k]] + baseOffset) * factors[gains[k]] - lightOffset;
+        luminance[i] += LUMINANCE_WEIGHTS[c] * light;
+        values[k] = pixelValue(light > 0 ? (LIGHT_STEPS * light) / headroom : 0);
       }
     }
-    paintCodes(shown, codes);
-    gainPart.style.filter = `brightness(${W})`;
-    bars.style.clipPath = barShape(result, span);
-    handle.style.left = `${across(Math.log2(screen()))}%`;
+    return values;
+  }
+
+  function paint() {
+    const weight = gainWeight();
+    paintPlanes(screenCanvas, applyGains(weight));
+    gainCanvas.style.filter = `brightness(${weight})`;
+    bars.style.clipPath = barShape(luminance, span);
+    handle.style.left = `${percentOf(Math.log2(screen()))}%`;
     const times = Number(screen().toPrecision(2));
     peak.textContent = `peak ${times}×`;
     handle.setAttribute("aria-valuenow", screen());
-    handle.setAttribute("aria-valuetext", `${times} times white, ${percent(W)} of the gain`);
-    shown.setAttribute("aria-label", `${model.get("alt")}, on a screen that shows ${times} times its white`);
-    say(`A screen that can show ${times} times its white applies ${percent(W)} of the gain.`);
+    handle.setAttribute(
+      "aria-valuetext",
+      `${times} times white, ${percentText(weight)} of the gain`,
+    );
+    screenCanvas.setAttribute(
+      "aria-label",
+      `${model.get("alt")}, on a screen that shows ${times} times its white`,
+    );
+    showStatus(
+      `A screen that can show ${times} times its white applies ${percentText(weight)} of the gain.`,
+    );
   }
-  const repaint = eachFrame(paint);
+  const repaint = oncePerFrame(paint);
 
-  function move(value) {
-    const rounded = 2 ** (Math.round(Math.log2(value) * STEPS_PER_STOP) / STEPS_PER_STOP);
-    model.set("screen", clamp(rounded, 1, 2 ** span[1]));
-    model.save_changes();
+  // Set the peak, rounded to a sixth of a stop.
+  function moveTo(value) {
+    const steps = Math.round(Math.log2(value) * STEPS_PER_STOP);
+    saveTrait(model, "screen", clamp(2 ** (steps / STEPS_PER_STOP), 1, 2 ** lastStop));
     repaint();
   }
 
-  draggable(scale, clip, {
+  makeDraggable(scale, clip, {
     grab: () => handle.focus({ preventScroll: true }),
-    moveTo: ([share]) => move(2 ** (span[0] + share * (span[1] - span[0]))),
-    stepBy: (right, down) => move(screen() * 2 ** ((right - down) / STEPS_PER_STOP)),
+    moveTo: ([x]) => moveTo(2 ** (firstStop + x * (lastStop - firstStop))),
+    stepBy: (right, down) => moveTo(screen() * 2 ** ((right - down) / STEPS_PER_STOP)),
     farStep: STEPS_PER_STOP,
   });
-  model.on("change:screen", repaint);
+  const stopListening = onTraitChange(model, ["screen"], repaint);
   paint();
-  return () => model.off("change:screen", repaint);
+  return stopListening;
 }
 
 export default { render };

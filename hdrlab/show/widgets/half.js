@@ -1,16 +1,26 @@
-// Shared by the widgets that get radiance.
+// Shared by the widgets that compute with radiance: Python sends half floats (io/web.py,
+// encode_halves), and this file decodes them.
 
-// Half floats as numbers, by a table: not every browser has Float16Array.
-const HALF = Float32Array.from({ length: 65536 }, (_, bits) => {
-  const [sign, power, part] = [bits >> 15 ? -1 : 1, (bits >> 10) & 31, bits & 1023];
-  return sign * (power === 0 ? part * 2 ** -24 : (1024 + part) * 2 ** (power - 25));
-});
+// The value of a half float: 1 bit sign, 5 bits exponent, 10 bits fraction.
+function halfValue(bits) {
+  const sign = bits >> 15 ? -1 : 1;
+  const exponent = (bits >> 10) & 31;
+  const fraction = bits & 1023;
+  if (exponent === 0) return sign * fraction * 2 ** -24;
+  return sign * (1024 + fraction) * 2 ** (exponent - 25);
+}
 
-// The bits of half floats, as `web.encode_halves` wrote them: their steps, the low bytes before the high ones.
-async function halves(view, channels) {
-  const packed = new Blob([view]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
+// The values of all half floats, because not every browser has Float16Array.
+const HALF_VALUES = Float32Array.from({ length: 65536 }, (_, bits) => halfValue(bits));
+
+// Return the bits of half floats. The bytes are differences between neighboring pixels, compressed:
+// all low bytes, then all high bytes.
+async function decodeHalves(view, channels) {
+  const bytes = await decompress(view);
   const bits = new Uint16Array(bytes.length / 2);
-  for (let i = 0; i < bits.length; i++) bits[i] = bytes[i] + (bytes[i + bits.length] << 8) + (bits[i - channels] ?? 0);
+  for (let i = 0; i < bits.length; i++) {
+    const difference = bytes[i] + (bytes[i + bits.length] << 8);
+    bits[i] = difference + (bits[i - channels] ?? 0);
+  }
   return bits;
 }

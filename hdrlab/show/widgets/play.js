@@ -1,28 +1,39 @@
-// Steps of an algorithm: all frames are here from the start, so moving through them asks nobody.
+// `widgets.play`: the steps of an algorithm as frames, with a slider and a button that plays them.
+//
+// Python sends
+//   frames  WebP, one for each step
+//   alts    the alternative text of each frame
+//   name    what the slider counts, such as "step"
+//   areas   the maps in the frames, see addPicture
+// and both sides set
+//   index   the frame that is shown, from 0
 
-const PER_SECOND = 8;
+const FRAMES_PER_SECOND = 8;
 
 function render({ model, el }) {
-  const root = start(el, "play");
-  const [name, count] = [model.get("name"), model.get("frames").length];
-  const frames = model.get("frames").map((bytes) => decode(bytes, "image/webp"));
-  frames.forEach((waiting, i) => waiting.then((bitmap) => (frames[i] = bitmap)));
+  const root = createRoot(el, "play");
+  const alts = model.get("alts");
+  const count = model.get("frames").length;
+  // Decode all frames now, so that a step never waits for Python or for the decoder.
+  const frames = model.get("frames").map((bytes) => decodeImage(bytes, "image/webp"));
+  frames.forEach(async (promise, step) => {
+    frames[step] = await promise;
+  });
 
-  const view = picture(root, model.get("areas"));
-  const controls = element(root, "div", { className: "hdrlab-controls" });
-  const button = element(controls, "button", { type: "button", textContent: "Play" });
-  const bar = slider(controls, name, count);
+  const view = addPicture(root, model.get("areas"));
+  const controls = addElement(root, "div", { className: "hdrlab-controls" });
+  const button = addElement(controls, "button", { type: "button", textContent: "Play" });
+  const slider = addSlider(controls, model.get("name"), count);
   let timer = null;
 
   function show(step) {
-    bar.show(step, `${step + 1} of ${count}`);
-    view.show(frames[step], model.get("alts")[step]);
+    slider.show(step, `${step + 1} of ${count}`);
+    view.show(frames[step], alts[step]);
   }
 
-  function move(step) {
+  function moveTo(step) {
     show(step);
-    model.set("index", step);
-    model.save_changes();
+    saveTrait(model, "index", step);
   }
 
   function pause() {
@@ -32,30 +43,32 @@ function render({ model, el }) {
   }
 
   function advance() {
-    const step = Number(bar.input.value) + 1;
-    if (step < count) move(step);
+    const step = slider.position() + 1;
+    if (step < count) moveTo(step);
     if (step >= count - 1) pause();
   }
 
   function play() {
-    if (Number(bar.input.value) === count - 1) move(0);
-    timer = setInterval(advance, 1000 / PER_SECOND);
+    if (slider.position() === count - 1) moveTo(0);
+    timer = setInterval(advance, 1000 / FRAMES_PER_SECOND);
     button.textContent = "Pause";
   }
 
-  const follow = () => {
-    if (model.get("index") !== Number(bar.input.value)) show(model.get("index"));
-  };
-  bar.input.addEventListener("input", () => {
+  slider.input.addEventListener("input", () => {
     pause();
-    move(Number(bar.input.value));
+    moveTo(slider.position());
   });
-  button.addEventListener("click", () => (timer === null ? play() : pause()));
-  model.on("change:index", follow);
+  button.addEventListener("click", () => {
+    if (timer === null) play();
+    else pause();
+  });
+  const stopListening = onTraitChange(model, ["index"], () => {
+    if (model.get("index") !== slider.position()) show(model.get("index"));
+  });
   show(model.get("index"));
   return () => {
     pause();
-    model.off("change:index", follow);
+    stopListening();
   };
 }
 

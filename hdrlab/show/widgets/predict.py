@@ -36,7 +36,9 @@ MAX_LEVEL_SPAN = 400
 class Prediction(Widget):
     """A question, the true answer `truth`, and the reader's answer `given`, None until there is one."""
 
-    _esm = script("predict.js")
+    _esm = script(
+        "covers.js", "questions.js", "curve_question.js", "place_question.js", "predict.js"
+    )
     kind = traitlets.Unicode().tag(sync=True)  # choice, number, curve or place
     question = traitlets.Unicode().tag(sync=True)
     because = traitlets.Unicode().tag(sync=True)

@@ -1,60 +1,70 @@
-// Two pictures with a movable edge between them.
+// `widgets.wipe`: two images with an edge between them that the reader drags.
+//
+// Python sends the traits of viewer.js, and both sides set
+//   edge  where the edge is, as a fraction of the width
 
-const NEAR = 24; // pixels of the page: how near to the edge a drag takes it, where the picture is zoomed
+const EDGE_GRIP = 24; // pixels of the page: a drag that starts this near to the edge moves the edge
 
 async function render({ model, el }) {
-  const root = start(el, "wipe");
+  const root = createRoot(el, "wipe");
   const [first, second] = model.get("labels");
-  const names = element(root, "div", { className: "hdrlab-names", "aria-hidden": "true" });
-  element(names, "span", { textContent: `◧ ${first}` });
-  element(names, "span", { textContent: `${second} ◨` });
+  const names = addElement(root, "div", { className: "hdrlab-names", "aria-hidden": "true" });
+  addElement(names, "span", { textContent: `◧ ${first}` });
+  addElement(names, "span", { textContent: `${second} ◨` });
   const percent = () => Math.round(100 * model.get("edge"));
 
-  function compose(context, show) {
+  // Draw both images and the edge, and return the words that describe what is drawn.
+  function compose(context, drawImage) {
     const { width, height } = context.canvas;
     const edge = model.get("edge") * width;
-    show(1);
+    drawImage(1);
     context.save();
     context.beginPath();
     context.rect(0, 0, edge, height);
     context.clip();
-    show(0);
+    drawImage(0);
     context.restore();
-    const thin = Math.max(1, width / 500);
+    const lineWidth = Math.max(1, width / 500);
     context.fillStyle = "#000";
-    context.fillRect(edge - 2 * thin, 0, 4 * thin, height);
+    context.fillRect(edge - 2 * lineWidth, 0, 4 * lineWidth, height);
     context.fillStyle = "#fff";
-    context.fillRect(edge - thin, 0, 2 * thin, height);
+    context.fillRect(edge - lineWidth, 0, 2 * lineWidth, height);
     return `${first} left of the edge at ${percent()} %, ${second} right of it`;
   }
 
-  // At first every drag moves the edge; a zoomed picture is dragged along, but for the edge itself.
-  function take([across], zoom, width) {
-    const near = Math.abs(across - model.get("edge")) * width < NEAR;
-    return zoom === 1 || near ? ([to]) => move(to) : null;
+  // Without zoom, each drag moves the edge. With zoom, a drag moves the image unless it starts near
+  // the edge. `pageWidth` is the width of the canvas in pixels of the page.
+  function startDrag([x], zoom, pageWidth) {
+    const isNearEdge = Math.abs(x - model.get("edge")) * pageWidth < EDGE_GRIP;
+    return zoom === 1 || isNearEdge ? ([pointerX]) => moveEdge(pointerX) : null;
   }
 
-  const hint = "Drag the edge. To zoom, click and turn the wheel, or pinch; the arrow keys read single pixels.";
-  const view = await viewer(root, model, { help: `${first} and ${second}`, hint, compose, take });
+  const view = await createViewer(root, model, {
+    help: `${first} and ${second}`,
+    hint:
+      "Drag the edge. To zoom, click and turn the wheel, or pinch; " +
+      "the arrow keys read single pixels.",
+    compose,
+    startDrag,
+  });
   names.style.width = view.canvas.style.width || `${view.canvas.width}px`;
-  const bar = slider(view.controls, "edge", 101);
-  view.controls.prepend(bar.input.parentElement);
+  const slider = addSlider(view.controls, "edge", 101);
+  view.controls.prepend(slider.input.parentElement);
 
   function show() {
-    bar.show(percent(), `${percent()} %`);
+    slider.show(percent(), `${percent()} %`);
     view.repaint();
   }
 
-  function move(to) {
-    model.set("edge", clamp(to, 0, 1));
-    model.save_changes();
+  function moveEdge(fraction) {
+    saveTrait(model, "edge", clamp(fraction, 0, 1));
     show();
   }
 
-  bar.input.addEventListener("input", () => move(Number(bar.input.value) / 100));
-  model.on("change:edge", show);
+  slider.input.addEventListener("input", () => moveEdge(slider.position() / 100));
+  const stopListening = onTraitChange(model, ["edge"], show);
   show();
-  return () => model.off("change:edge", show);
+  return stopListening;
 }
 
 export default { render };
