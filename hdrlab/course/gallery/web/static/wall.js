@@ -1,63 +1,84 @@
-// The wall works without this. With it, each vote is saved when it is given, and the bar says so.
+// The wall of the gallery. It works without this script. With it, the page saves each vote at once,
+// and the bar at the bottom says so.
 "use strict";
 
+const MAX_COMPARED = 2; // artifacts
+
 const ballot = document.getElementById("ballot");
-const votes = [...ballot.querySelectorAll("input[name=mark]")];
-const picks = [...document.querySelectorAll("input[name=with]")];
-const state = document.getElementById("state");
-const side = document.getElementById("side");
-const most = Number(ballot.dataset.marks);
-let saved = votes.filter((one) => one.defaultChecked);
-let turn = 0;
+const voteBoxes = [...ballot.querySelectorAll("input[name=mark]")];
+const compareBoxes = [...document.querySelectorAll("input[name=with]")];
+const statusLine = document.getElementById("state");
+const compareButton = document.getElementById("side");
+const maxVotes = Number(ballot.dataset.marks);
+let savedBoxes = voteBoxes.filter((box) => box.defaultChecked); // as the gallery knows them
+let lastRequest = 0;
 
-const marked = () => votes.filter((one) => one.checked);
+const checkedBoxes = () => voteBoxes.filter((box) => box.checked);
 
-function say(text, wrong = false) {
-  state.textContent = text;
-  state.classList.toggle("wrong", wrong);
+function showStatus(text, isError = false) {
+  statusLine.textContent = text;
+  statusLine.classList.toggle("wrong", isError);
 }
 
-function show() {
-  const full = marked().length >= most;
-  for (const one of votes) {
-    one.disabled = full && !one.checked;
-    one.closest(".card").classList.toggle("chosen", one.checked);
+// Mark the cards with a vote. Without votes left, the other boxes cannot be checked.
+function showVotes() {
+  const isFull = checkedBoxes().length >= maxVotes;
+  for (const box of voteBoxes) {
+    box.disabled = isFull && !box.checked;
+    box.closest(".card").classList.toggle("chosen", box.checked);
   }
 }
 
-async function save() {
-  const mine = ++turn;
-  const now = marked();
-  show();
-  say("Saving…");
+// Send the ballot, and return the gallery's answer.
+async function sendBallot() {
+  const response = await fetch("/ballot", {
+    method: "POST",
+    headers: { Accept: "application/json" },
+    body: new URLSearchParams(new FormData(ballot)),
+  });
+  const answer = await response.json();
+  if (!response.ok) throw new Error(answer.error);
+  return answer;
+}
+
+async function saveVotes() {
+  lastRequest += 1;
+  const request = lastRequest;
+  const boxes = checkedBoxes();
+  showVotes();
+  showStatus("Saving…");
   try {
-    const answer = await fetch("/ballot", {
-      method: "POST",
-      headers: { Accept: "application/json" },
-      body: new URLSearchParams(new FormData(ballot)),
-    });
-    const found = await answer.json();
-    if (!answer.ok) throw new Error(found.error);
-    saved = now;
-    const full = found.votes >= most ? " Remove one to vote for another artifact." : "";
-    if (mine === turn) say(`${found.votes} of ${most} votes saved at ${found.when}.${full}`);
+    const { votes, when } = await sendBallot();
+    savedBoxes = boxes;
+    const hint = votes >= maxVotes ? " Remove one to vote for another artifact." : "";
+    const text = `${votes} of ${maxVotes} votes saved at ${when}.${hint}`;
+    if (request === lastRequest) showStatus(text);
   } catch (error) {
-    if (mine !== turn) return; // a later one is on its way
-    for (const one of votes) one.checked = saved.includes(one);
-    show();
-    say(error instanceof TypeError ? "Not saved: the gallery does not answer. Try again." : `Not saved. ${error.message}`, true);
+    if (request !== lastRequest) return; // a later request will say what is saved
+    for (const box of voteBoxes) box.checked = savedBoxes.includes(box);
+    showVotes();
+    const isNetworkError = error instanceof TypeError;
+    const text = isNetworkError
+      ? "Not saved: the gallery does not answer. Try again."
+      : `Not saved. ${error.message}`;
+    showStatus(text, true);
   }
 }
 
-function pick() {
-  const two = picks.filter((one) => one.checked).length;
-  for (const one of picks) one.disabled = two >= 2 && !one.checked;
-  side.disabled = two !== 2;
-  side.textContent = two === 1 ? "Compare: one more" : "Compare two";
+// Enable the button once two artifacts are chosen, and then no third one.
+function showCompared() {
+  const count = compareBoxes.filter((box) => box.checked).length;
+  for (const box of compareBoxes) box.disabled = count >= MAX_COMPARED && !box.checked;
+  compareButton.disabled = count !== MAX_COMPARED;
+  compareButton.textContent = count === 1 ? "Compare: one more" : "Compare two";
 }
 
-for (const one of votes) one.addEventListener("change", save);
-for (const one of picks) one.addEventListener("change", pick);
-document.getElementById("save")?.remove(); // there is nothing left to save by hand
-if (votes.some((one) => one.checked !== one.defaultChecked)) save(); // given before this was here
-addEventListener("pageshow", () => { show(); pick(); });
+for (const box of voteBoxes) box.addEventListener("change", saveVotes);
+for (const box of compareBoxes) box.addEventListener("change", showCompared);
+document.getElementById("save")?.remove(); // the button that saves all votes
+// Save votes that the reader gave before this script was loaded.
+if (voteBoxes.some((box) => box.checked !== box.defaultChecked)) saveVotes();
+addEventListener("pageshow", () => {
+  showVotes();
+  showCompared();
+});
