@@ -1,78 +1,109 @@
-// Starts reveal.js, gives each figure the size that its slide leaves, and lets widgets have the keyboard.
+// The slides: start reveal.js, give each figure the size that its slide leaves, and let the widgets
+// on a slide have the keyboard.
 (() => {
-  const WIDTHS = [400, 480, 640, 800, 960, 1168]; // px, at which a figure is tried
-  const PRINTED_WIDTH = 800; // px, of what a cell prints
-  const MAX_SCALE = 2.2;
-  const GOOD_SCALE = 1.3; // at which the letters of a widget are read from the last row
+  const TRIED_WIDTHS = [400, 480, 640, 800, 960, 1168]; // px, of a figure
+  const PRINTED_WIDTH = 800; // px, of the text that a cell prints
+  const MAX_SCALE = 2.2; // of a figure
+  const READABLE_SCALE = 1.3; // at which a widget can be read from the last row
+  const MIN_GAIN = 1.02; // another width must be this much better
+  const MAX_LETTERS = 29; // px, of text that does not fit at its own size
   const MIN_LETTERS = 20; // px
 
-  // The area of the images of a figure, in its own pixels.
-  const areaOf = (sized) =>
-    [...sized.querySelectorAll("img, canvas, svg")].reduce((sum, image) => {
+  // The area of the images in a figure, px².
+  function imageArea(figure) {
+    let area = 0;
+    for (const image of figure.querySelectorAll("img, canvas, svg")) {
       const { width, height } = image.getBoundingClientRect();
-      return sum + width * height;
-    }, 0);
-
-  function apply(sized, { width, scale }, room) {
-    sized.style.width = `${width}px`;
-    sized.style.transform = `translate(${(room.width - width * scale) / 2}px) scale(${scale})`;
-  }
-
-  // Lay a figure out at several widths, and keep that at which its images and its letters become large.
-  function fit(sized) {
-    const room = { width: sized.parentElement.clientWidth, height: sized.parentElement.clientHeight };
-    if (room.width === 0) return; // not shown
-    let best = { size: 0 };
-    const widths = sized.querySelector("img, .live, figure") ? WIDTHS : [PRINTED_WIDTH];
-    for (const width of widths) {
-      apply(sized, { width, scale: 1 }, room);
-      const measured = sized.getBoundingClientRect();
-      const unit = measured.width / width; // the scale of the whole deck
-      const scale = Math.min(room.width / width, room.height / (measured.height / unit), MAX_SCALE);
-      const area = (areaOf(sized) / unit ** 2 || 1) * scale ** 2;
-      const size = area * Math.min(scale, GOOD_SCALE); // small letters count against a width
-      if (size > 1.02 * best.size) best = { size, width, scale };
+      area += width * height;
     }
-    apply(sized, best, room);
-    sized.dataset.height = sized.offsetHeight;
+    return area;
   }
 
-  // Text that is longer than estimated gets smaller letters.
+  // Give a figure a width, scale it, and center it.
+  function applySize(figure, { width, scale }, room) {
+    const left = (room.width - width * scale) / 2;
+    figure.style.width = `${width}px`;
+    figure.style.transform = `translate(${left}px) scale(${scale})`;
+  }
+
+  // Lay out a figure at a width, and return the scale that fits the room, and how good this is: the
+  // area of the images, reduced if the letters are small.
+  function measure(figure, width, room) {
+    applySize(figure, { width, scale: 1 }, room);
+    const box = figure.getBoundingClientRect();
+    const deckScale = box.width / width; // reveal.js scales the whole deck
+    const height = box.height / deckScale;
+    const scale = Math.min(room.width / width, room.height / height, MAX_SCALE);
+    const area = (imageArea(figure) / deckScale ** 2 || 1) * scale ** 2;
+    return { width, scale, quality: area * Math.min(scale, READABLE_SCALE) };
+  }
+
+  // Lay out a figure at several widths, and keep the best.
+  function fitFigure(figure) {
+    const { clientWidth, clientHeight } = figure.parentElement;
+    const room = { width: clientWidth, height: clientHeight };
+    if (room.width === 0) return; // the slide is not shown
+    const hasImages = figure.querySelector("img, .live, figure") !== null;
+    const widths = hasImages ? TRIED_WIDTHS : [PRINTED_WIDTH];
+    let best = { quality: 0 };
+    for (const width of widths) {
+      const size = measure(figure, width, room);
+      if (size.quality > MIN_GAIN * best.quality) best = size;
+    }
+    applySize(figure, best, room);
+    figure.dataset.height = figure.offsetHeight;
+  }
+
+  // Reduce the letters of a text that does not fit.
   function fitText(text) {
-    for (let size = 29; size >= MIN_LETTERS && text.scrollHeight > text.clientHeight + 1; size--)
+    for (let size = MAX_LETTERS; size >= MIN_LETTERS; size--) {
+      if (text.scrollHeight <= text.clientHeight + 1) return;
       text.style.fontSize = `${size}px`;
+    }
   }
 
-  const fitAll = (part) => {
+  // Fit the text and the figures of a slide, or of the whole document.
+  function fitAll(part) {
     part?.querySelectorAll(".text").forEach(fitText);
-    part?.querySelectorAll(".sized").forEach(fit);
+    part?.querySelectorAll(".sized").forEach(fitFigure);
+  }
+
+  // Fit a figure again when it has grown, and when a widget in it has opened.
+  const growthObserver = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      const fittedHeight = Number(target.dataset.height ?? 0);
+      if (target.offsetHeight > fittedHeight + 1) fitFigure(target);
+    }
+  });
+  const openingObserver = new MutationObserver((changes) => {
+    for (const { target } of changes) fitFigure(target.closest(".sized"));
+  });
+  for (const figure of document.querySelectorAll(".sized")) growthObserver.observe(figure);
+  for (const place of document.querySelectorAll(".live")) {
+    openingObserver.observe(place, { attributes: true, attributeFilter: ["data-state"] });
+  }
+
+  const isInWidget = () => Boolean(document.activeElement?.closest(".live"));
+
+  function leaveWidget() {
+    if (isInWidget()) document.activeElement.blur();
+  }
+
+  // A remote control sends Page Up and Page Down. They also change the slide while a widget has the
+  // focus, which would otherwise use them itself. Escape leaves the widget.
+  const WIDGET_KEYS = {
+    PageUp: () => Reveal.prev(),
+    PageDown: () => Reveal.next(),
+    Escape: () => {},
   };
-
-  // A widget that has opened, or says more than before, may need more room.
-  const grown = new ResizeObserver((entries) => {
-    for (const { target } of entries)
-      if (target.offsetHeight > Number(target.dataset.height ?? 0) + 1) fit(target);
-  });
-  const opened = new MutationObserver((changes) => {
-    for (const { target } of changes) fit(target.closest(".sized"));
-  });
-  for (const sized of document.querySelectorAll(".sized")) grown.observe(sized);
-  for (const place of document.querySelectorAll(".live"))
-    opened.observe(place, { attributes: true, attributeFilter: ["data-state"] });
-
-  // A remote control sends Page Up and Page Down: they turn the page from within a widget, too, which would keep them
-  // for itself. Escape leaves the widget.
-  const TURNS = { PageUp: () => Reveal.prev(), PageDown: () => Reveal.next(), Escape: () => {} };
-  const inWidget = () => document.activeElement?.closest(".live");
-  const leave = () => inWidget() && document.activeElement.blur();
-  function turn(event) {
-    if (!inWidget() || !(event.key in TURNS)) return;
+  function handleKeyInWidget(event) {
+    if (!isInWidget() || !(event.key in WIDGET_KEYS)) return;
     event.preventDefault();
     event.stopPropagation();
-    leave();
-    TURNS[event.key]();
+    leaveWidget();
+    WIDGET_KEYS[event.key]();
   }
-  addEventListener("keydown", turn, true);
+  addEventListener("keydown", handleKeyInWidget, true);
 
   Reveal.initialize({
     width: 1280,
@@ -85,11 +116,11 @@
     slideNumber: "c/t",
     transition: "none",
     backgroundTransition: "none",
-    keyboardCondition: () => !inWidget(),
+    keyboardCondition: () => !isInWidget(),
     plugins: [RevealNotes],
   }).then(() => fitAll(Reveal.getCurrentSlide()));
   Reveal.on("slidechanged", ({ currentSlide }) => {
-    leave();
+    leaveWidget();
     fitAll(currentSlide);
   });
   Reveal.on("pdf-ready", () => fitAll(document));
