@@ -46,7 +46,8 @@ function codeTables(isExcluding) {
   };
 }
 
-// Unpack one level of the pyramid: a code for each pixel of both photos.
+// Unpack one level of the pyramid into a code for each pixel of both photos. Eight bits are in a
+// byte, the lowest first.
 async function unpackLevel(view, [height, width]) {
   const bytes = await decompress(view);
   const size = height * width;
@@ -87,12 +88,12 @@ function compareBitmaps({ height, width, fixed, moving }, [dy, dx], tables, pixe
 const percentOf = (fraction) => `${(100 * fraction).toFixed(2)} %`;
 const offsetText = ([dy, dx]) => `(${dy}, ${dx})`.replaceAll("-", "−");
 
-// The offsets on the way from one to the other, one pixel apart, without the first.
+// The offsets from one to the other, at most a pixel apart, with `to` but without `from`.
 function offsetsBetween(from, to) {
-  const way = to.map((pixels, axis) => pixels - from[axis]);
-  const steps = Math.max(...way.map(Math.abs), 1);
+  const displacement = to.map((pixels, axis) => pixels - from[axis]);
+  const steps = Math.max(...displacement.map(Math.abs), 1);
   return Array.from({ length: steps }, (_, k) =>
-    from.map((pixels, axis) => Math.round(pixels + (way[axis] * (k + 1)) / steps)),
+    from.map((pixels, axis) => Math.round(pixels + (displacement[axis] * (k + 1)) / steps)),
   );
 }
 

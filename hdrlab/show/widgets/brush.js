@@ -135,7 +135,7 @@ function histogramOf(map, area, width, { lnLow, binsPerLn, bins }) {
   forEachRow(area, width, (first, end) => {
     for (let i = first; i < end; i++) {
       const position = clamp((map.lnL[i] - lnLow) * binsPerLn - 0.5, 0, bins - 1);
-      const left = position | 0;
+      const left = position | 0; // rounded down
       counts[left] += 1 - (position - left);
       counts[left + 1] += position - left;
     }
@@ -191,7 +191,7 @@ function equalize(map, area, width, { bins, limit }, pixels) {
   forEachRow(area, width, (first, end) => {
     for (let i = first; i < end; i++) {
       const position = clamp((lnL[i] - lnLow) * binsPerLn, 0, bins);
-      const left = position | 0;
+      const left = position | 0; // rounded down
       const slope = lightAtEdge[left + 1] - lightAtEdge[left];
       pixels[target] = colorOf(i, lightAtEdge[left] + (position - left) * slope);
       target += 1;

@@ -226,6 +226,17 @@ function addPicture(parent, areas = []) {
   };
 }
 
+// Append a canvas of this size for a photo, which is as wide as its column.
+function addPhotoCanvas(parent, width, height) {
+  return addElement(parent, "canvas", {
+    role: "img",
+    "aria-label": "",
+    className: "hdrlab-photo",
+    width,
+    height,
+  });
+}
+
 // Append a frame that takes the focus, the keys and the pointer, with a canvas in it. For a screen
 // reader the canvas is an image, and `help` is the name of the frame.
 function addStage(parent, help) {

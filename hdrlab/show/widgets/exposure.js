@@ -60,7 +60,7 @@ function createCamera(model, E, L, limitsOf) {
       const electrons = electronsPerRadiance * E[i] + shotNoiseFactor * shotNoise[i];
       const signal = Math.min(electrons, fullWell) + amplifierNoise[i];
       const level = signal / gain + black + 0.5;
-      return pixelValues[clamp(level, 0, maxLevel) | 0];
+      return pixelValues[clamp(level, 0, maxLevel) | 0]; // rounded down
     }
 
     function colorAt(i) {
@@ -119,13 +119,7 @@ async function render({ model, el }) {
 
   const columns = addElement(root, "div", { className: "hdrlab-columns" });
   const leftColumn = addElement(columns, "div", { className: "hdrlab-column" });
-  const canvas = addElement(leftColumn, "canvas", {
-    role: "img",
-    "aria-label": "",
-    className: "hdrlab-photo",
-    width,
-    height,
-  });
+  const canvas = addPhotoCanvas(leftColumn, width, height);
   const context = canvas.getContext("2d", { alpha: false });
   const image = context.createImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);

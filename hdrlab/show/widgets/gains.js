@@ -63,15 +63,7 @@ async function render({ model, el }) {
 
   const columns = addElement(root, "div", { className: "hdrlab-columns" });
   const leftColumn = addElement(columns, "div", { className: "hdrlab-column" });
-  const addCanvas = (parent) =>
-    addElement(parent, "canvas", {
-      role: "img",
-      "aria-label": "",
-      className: "hdrlab-photo",
-      width,
-      height,
-    });
-  const screenCanvas = addCanvas(leftColumn);
+  const screenCanvas = addPhotoCanvas(leftColumn, width, height);
 
   const rightColumn = addElement(columns, "div", { className: "hdrlab-column hdrlab-chart" });
   const scale = addElement(rightColumn, "div", { className: "hdrlab-scale" });
@@ -103,7 +95,7 @@ async function render({ model, el }) {
   const thumbnails = addElement(rightColumn, "div", { className: "hdrlab-thumbnails" });
   const addThumbnail = (name, planes) => {
     const figure = addElement(thumbnails, "div");
-    const canvas = addCanvas(figure);
+    const canvas = addPhotoCanvas(figure, width, height);
     canvas.setAttribute("aria-label", `${model.get("alt")}: ${name}`);
     addElement(figure, "span", { textContent: name });
     paintPlanes(canvas, planes);

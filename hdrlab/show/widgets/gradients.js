@@ -53,10 +53,9 @@ function addLinePlots(parent, { lL, G, span, maxStep, topOf, stepTop }) {
   addSideLabels(plot, "", valueLabels);
 
   addBeforeAndAfter(parent, "steps from pixel to pixel, nats");
-  const steps = addPlotSlider(parent, "hdrlab-levels hdrlab-steps", "Step from pixel to pixel", [
-    0,
-    G.length - 1,
-  ]);
+  const stepLabel = "Step from pixel to pixel";
+  const stepRange = [0, G.length - 1];
+  const steps = addPlotSlider(parent, "hdrlab-levels hdrlab-steps", stepLabel, stepRange);
   const [barsBefore, barsAfter, zeroLine] = addPaths(steps.frame, [
     `${BEFORE_CLASS} hdrlab-area`,
     `${AFTER_CLASS} hdrlab-area`,

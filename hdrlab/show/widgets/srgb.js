@@ -8,5 +8,6 @@ const PIXEL_VALUES = Uint8Array.from({ length: LIGHT_STEPS + 1 }, (_, step) =>
   Math.floor(255 * encodeSrgb(step / LIGHT_STEPS) + 0.5),
 );
 
-// The pixel value of a channel. `light` is in steps: 0 is black, LIGHT_STEPS is white.
+// The pixel value of a channel. `light` is in steps: 0 is black, LIGHT_STEPS is white. It is
+// rounded to the nearest step.
 const pixelValue = (light) => PIXEL_VALUES[light < LIGHT_STEPS ? (light + 0.5) | 0 : LIGHT_STEPS];

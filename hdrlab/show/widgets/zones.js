@@ -107,13 +107,7 @@ async function render({ model, el }) {
 
   const columns = addElement(root, "div", { className: "hdrlab-columns" });
   const leftColumn = addElement(columns, "div", { className: "hdrlab-column" });
-  const canvas = addElement(leftColumn, "canvas", {
-    role: "img",
-    "aria-label": "",
-    className: "hdrlab-photo",
-    width,
-    height,
-  });
+  const canvas = addPhotoCanvas(leftColumn, width, height);
   const context = canvas.getContext("2d", { alpha: false });
   const image = context.createImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);
