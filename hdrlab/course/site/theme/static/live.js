@@ -1,215 +1,334 @@
-// The widgets of a page, with no kernel: each is opened when it comes near the screen.
-// A page from a folder may load scripts but read no files, so a widget's file is a script that calls `take`.
+// The pages of the site and the slides: open widgets without a kernel when they come near to the
+// window, cover the results that a question asks for, and add the buttons of a page.
+//
+// A page that is opened from a folder may load scripts, but it may not read files. So the code and
+// the state of a widget are scripts that call `hdrlab.take` (live.py).
 (() => {
-  const places = new Map();
-  const codes = new Map(); // of each kind of widget, its module
+  const ANSWER_PREFIX = "hdrlab-answer:"; // keys in localStorage
+  const ANSWERS_KEY = "hdrlab-answers";
+  const CODE_KEY = "hdrlab-code";
+  const LETTER_BASE = 0x3000; // the letter that stands for 15 bits of 0
+  const BITS_PER_LETTER = 15;
+  const LOADING_DISTANCE = "600px 0px"; // from the window, at which a widget is loaded
+  const MAX_WAITING_FRAMES = 120; // of the display, until a widget shows its first image
+  const COPIED_TIME = 2000; // ms
+  const PROMPT = /^(>>>|\.\.\.)( |$)/;
 
-  // Bytes as `live.write_widget` packed them, fifteen bits a letter, or as base64 on a page that contains its widgets.
-  function bytesOf({ base64, letters, length }) {
-    if (base64 !== undefined) return new DataView(Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)).buffer);
-    const bytes = new Uint8Array(length);
-    for (let [k, at, bits, held] = [0, 0, 0, 0]; k < length; k++) {
-      if (held < 8) [bits, held] = [((bits & 255) << 15) | (letters.charCodeAt(at++) - 0x3000), held + 15];
-      bytes[k] = bits >> (held -= 8);
-    }
-    return new DataView(bytes.buffer);
-  }
+  const createElement = (tag, properties) => Object.assign(document.createElement(tag), properties);
 
-  // `shown` is the picture that stands on the page.
-  const unpack = (value, shown) => {
-    if (Array.isArray(value)) return value.map((each) => unpack(each, shown));
-    if (value?.shown) return shown;
-    return value?.letters === undefined && value?.base64 === undefined ? value : bytesOf(value);
-  };
-
-  // The browser's own memory. Where it keeps nothing for a file, what is remembered holds for this page alone.
-  const recall = (key) => {
+  // Read and write localStorage. Without it, for example for a file, a choice holds for this page.
+  function readSetting(key) {
     try {
       return localStorage.getItem(key);
     } catch {
       return null;
     }
-  };
-  const remember = (key, value) => {
+  }
+  function writeSetting(key, value) {
     try {
       localStorage.setItem(key, value);
-    } catch {}
-  };
+    } catch {
+      // This browser stores nothing.
+    }
+  }
 
-  // The answer to a question survives a reload, as long as it is the same question.
-  const keyOf = (name) => `hdrlab-answer:${name}`;
-  const answerTo = ({ name, asks }) => {
-    const kept = JSON.parse(recall(keyOf(name)) ?? "{}");
-    return kept.question === asks ? kept : {};
-  };
+  // ---- The state of a widget
 
-  // A question covers the marked cells after it, up to the next question.
-  const questions = new Map([...document.querySelectorAll(".live[data-asks]")].map((place) => [place, []]));
-  let asking = null;
-  for (const part of document.querySelectorAll(".live[data-asks], .tag_covered, details.covered"))
-    if (questions.has(part)) asking = part;
-    else questions.get(asking)?.push(part);
-  const uncover = (place) => questions.get(place)?.forEach((part) => part.classList.remove("tag_covered", "covered"));
-  for (const place of questions.keys()) if (answerTo(place.dataset).done) uncover(place);
+  // Decode the bytes of a state: 15 bits a letter, as `live.write_widget` packs them, or base64 on
+  // a page that contains its widgets.
+  function decodeBytes({ base64, letters, length }) {
+    if (base64 !== undefined) {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      return new DataView(bytes.buffer);
+    }
+    const bytes = new Uint8Array(length);
+    let position = 0; // of the next letter
+    let bits = 0; // of the letters so far, of which bitCount are not used yet
+    let bitCount = 0;
+    for (let k = 0; k < length; k++) {
+      if (bitCount < 8) {
+        const nextBits = letters.charCodeAt(position) - LETTER_BASE;
+        bits = ((bits & 255) << BITS_PER_LETTER) | nextBits;
+        bitCount += BITS_PER_LETTER;
+        position += 1;
+      }
+      bitCount -= 8;
+      bytes[k] = bits >> bitCount;
+    }
+    return new DataView(bytes.buffer);
+  }
 
-  // What a widget's script asks of its model: values, and who is told when one changes.
-  function modelOf(state, place) {
-    const listeners = {};
+  // Decode a value of a state. `image` is the <img> on the page, which replaces the first image.
+  function decodeValue(value, image) {
+    if (Array.isArray(value)) return value.map((item) => decodeValue(item, image));
+    if (value?.shown) return image;
+    const isBytes = value?.letters !== undefined || value?.base64 !== undefined;
+    return isBytes ? decodeBytes(value) : value;
+  }
+
+  // ---- Questions, and the cells that they cover
+
+  const answerKey = (name) => `${ANSWER_PREFIX}${name}`;
+
+  // The stored answer to a question, unless the question has changed.
+  function storedAnswer({ name, asks }) {
+    const stored = JSON.parse(readSetting(answerKey(name)) ?? "{}");
+    return stored.question === asks ? stored : {};
+  }
+
+  // From each question to the cells that it covers: those after it, up to the next question.
+  function findQuestions() {
+    const questions = new Map();
+    let current = null;
+    const selector = ".live[data-asks], .tag_covered, details.covered";
+    for (const part of document.querySelectorAll(selector)) {
+      if (part.matches(".live[data-asks]")) {
+        current = part;
+        questions.set(part, []);
+      } else if (current) {
+        questions.get(current).push(part);
+      }
+    }
+    return questions;
+  }
+
+  const questions = findQuestions();
+  let resetButton = null; // "Ask me again"
+
+  function uncover(place) {
+    for (const part of questions.get(place) ?? []) part.classList.remove("tag_covered", "covered");
+  }
+
+  for (const place of questions.keys()) {
+    if (storedAnswer(place.dataset).done) uncover(place);
+  }
+
+  // ---- Widgets
+
+  const placesByName = new Map(); // where each widget is shown
+  const modules = new Map(); // promises of the modules, by the name of their code
+
+  // The model of a widget, as anywidget gives it to a script, but without Python.
+  function createModel(state, place) {
     const { name, asks } = place.dataset;
-    if (asks) Object.assign(state, answerTo(place.dataset));
+    const listeners = {};
+    const listenersOf = (event) => listeners[event] ?? [];
+    if (asks) Object.assign(state, storedAnswer(place.dataset));
     return {
-      get: (name) => state[name],
-      set: (name, value) => {
-        state[name] = value;
-        for (const listener of listeners[`change:${name}`] ?? []) listener();
+      get: (trait) => state[trait],
+      set(trait, value) {
+        state[trait] = value;
+        for (const listener of listenersOf(`change:${trait}`)) listener();
       },
+      // Store the answer to a question, and uncover what follows it.
       save_changes() {
         if (!asks || !state.done) return;
-        remember(keyOf(name), JSON.stringify({ question: asks, given: state.given, done: true }));
+        const answer = { question: asks, given: state.given, done: true };
+        writeSetting(answerKey(name), JSON.stringify(answer));
         uncover(place);
-        again.hidden = false;
+        resetButton.hidden = false;
       },
-      on: (name, listener) => (listeners[name] ??= []).push(listener),
-      off: (name, listener) => (listeners[name] = (listeners[name] ?? []).filter((one) => one !== listener)),
+      on(event, listener) {
+        listeners[event] = [...listenersOf(event), listener];
+      },
+      off(event, listener) {
+        listeners[event] = listenersOf(event).filter((other) => other !== listener);
+      },
     };
   }
 
-  function learn(code, { script, style }) {
-    document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
-    codes.set(code, import(URL.createObjectURL(new Blob([script], { type: "text/javascript" }))));
+  function addCode(name, { script, style }) {
+    document.head.append(createElement("style", { textContent: style }));
+    const blob = new Blob([script], { type: "text/javascript" });
+    modules.set(name, import(URL.createObjectURL(blob)));
   }
 
-  const frame = () => new Promise(requestAnimationFrame);
+  const nextFrame = () => new Promise(requestAnimationFrame);
 
-  async function open(place, { code, state }) {
-    const { default: widget } = await codes.get(code);
+  // Wait until the widget has painted its first image, which gives the canvas its description.
+  async function waitForImage(el) {
+    for (let k = 0; k < MAX_WAITING_FRAMES; k++) {
+      if (el.querySelector("canvas")?.getAttribute("aria-label") !== "") return;
+      await nextFrame();
+    }
+  }
+
+  // Replace the image on the page with the widget.
+  async function openWidget(place, { code, state }) {
+    const { default: widget } = await modules.get(code);
     const el = document.createElement("div");
-    const shown = place.querySelector("img"); // a question may have none
-    if (shown) shown.loading = "eager";
-    await shown?.decode();
-    el.toggleAttribute("data-ink", shown?.hasAttribute("data-ink") ?? false); // and so is what is drawn in its place
-    const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value, shown)]));
-    await widget.render({ model: modelOf(values, place), el });
+    const image = place.querySelector("img"); // a question may have none
+    if (image) {
+      image.loading = "eager";
+      await image.decode();
+    }
+    // If the image is ink on white paper, the canvas is as well.
+    el.toggleAttribute("data-ink", image?.hasAttribute("data-ink") ?? false);
+    const decoded = Object.entries(state).map(([name, value]) => [name, decodeValue(value, image)]);
+    await widget.render({ model: createModel(Object.fromEntries(decoded), place), el });
     const notice = el.querySelector(".hdrlab-cover");
     if (notice) notice.hidden = !questions.get(place)?.length;
-    const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
-    for (let k = 0; k < 120 && waiting(); k++) await frame();
-    place.replaceChildren(el); // the picture that stood here until now is what the canvas begins with
+    await waitForImage(el);
+    place.replaceChildren(el);
     place.dataset.state = "open";
   }
 
-  const root = document.documentElement.dataset.content_root; // a page by itself has none
+  function reportFailure(place, error) {
+    place.dataset.state = "failed";
+    uncover(place);
+    console.error(error);
+  }
+
+  const root = document.documentElement.dataset.content_root; // a single page has none
   window.hdrlab = {
     running: root === undefined ? undefined : `${root}installing.html`,
+    // Take the code of a kind of widgets, or the state of one widget.
     take(name, content) {
-      if (content.script) learn(name, content);
-      for (const place of places.get(name) ?? [])
-        open(place, content).catch((error) => {
-          place.dataset.state = "failed";
-          uncover(place);
-          console.error(error);
-        });
+      if (content.script) addCode(name, content);
+      for (const place of placesByName.get(name) ?? []) {
+        openWidget(place, content).catch((error) => reportFailure(place, error));
+      }
     },
   };
 
-  // What is loaded runs in this order: a widget after the code of its kind. A page by itself contains the scripts.
-  const asked = new Set();
-  function load(src) {
+  // Load a script once. A single page contains its scripts as text, in elements with their names.
+  // Scripts run in the order of their loading: the code before the state of a widget.
+  const loaded = new Set();
+  function loadScript(src) {
+    if (loaded.has(src)) return;
+    loaded.add(src);
     const contained = document.getElementById(src);
-    const what = contained ? { textContent: contained.textContent } : { src, async: false };
-    if (!asked.has(src)) document.head.append(Object.assign(document.createElement("script"), what));
-    asked.add(src);
+    const source = contained ? { textContent: contained.textContent } : { src, async: false };
+    document.head.append(createElement("script", source));
   }
 
-  const near = new IntersectionObserver((entries) => {
-    for (const { isIntersecting, target } of entries) {
-      if (!isIntersecting) continue;
-      near.unobserve(target);
-      const { name, code, from } = target.dataset;
-      places.set(name, [...(places.get(name) ?? []), target]);
-      [code, from].forEach(load);
+  function loadWidget(place) {
+    const { name, code, from } = place.dataset;
+    placesByName.set(name, [...(placesByName.get(name) ?? []), place]);
+    loadScript(code);
+    loadScript(from);
+  }
+
+  const approachObserver = new IntersectionObserver(
+    (entries) => {
+      for (const { isIntersecting, target } of entries) {
+        if (!isIntersecting) continue;
+        approachObserver.unobserve(target);
+        loadWidget(target);
+      }
+    },
+    { rootMargin: LOADING_DISTANCE },
+  );
+
+  // ---- The rest of a page
+
+  // Let the keyboard reach what is wider than the page, so that it can be scrolled.
+  function makeWidePartsFocusable() {
+    for (const part of document.querySelectorAll("pre, table, div.math")) {
+      if (part.scrollWidth > part.clientWidth) part.tabIndex = 0;
+      else part.removeAttribute("tabindex");
     }
-  }, { rootMargin: "600px 0px" });
-
-  // What is wider than the page is scrolled, so the keyboard must reach it.
-  function reach() {
-    for (const each of document.querySelectorAll("pre, table, div.math"))
-      if (each.scrollWidth > each.clientWidth) each.tabIndex = 0;
-      else each.removeAttribute("tabindex");
   }
 
-  // A button that copies a cell; what stands behind a prompt is copied without it.
-  function copyable(block) {
+  // The code of a cell, for a copy. Of a session with prompts, only the code behind them.
+  function codeToCopy(code) {
+    const lines = code.textContent.trimEnd().split("\n");
+    const prompted = lines.filter((line) => PROMPT.test(line)).map((line) => line.slice(4));
+    return (prompted.length ? prompted : lines).join("\n");
+  }
+
+  function addCopyButton(block) {
     const code = block.querySelector("pre");
-    const button = Object.assign(document.createElement("button"), { className: "copy", textContent: "Copy" });
+    const button = createElement("button", { className: "copy", textContent: "Copy" });
     button.addEventListener("click", async () => {
-      const lines = code.textContent.trimEnd().split("\n");
-      const asked = lines.filter((line) => /^(>>>|\.\.\.)( |$)/.test(line)).map((line) => line.slice(4));
-      await navigator.clipboard.writeText((asked.length ? asked : lines).join("\n"));
+      await navigator.clipboard.writeText(codeToCopy(code));
       button.textContent = "Copied";
-      setTimeout(() => (button.textContent = "Copy"), 2000);
+      setTimeout(() => {
+        button.textContent = "Copy";
+      }, COPIED_TIME);
     });
     block.append(button);
   }
 
-  // A button below the title. One that switches remembers how it is, for this page and the next.
-  const buttons = Object.assign(document.createElement("div"), { className: "switches" });
-  function button(textContent, action) {
-    const made = Object.assign(document.createElement("button"), { className: "codes", textContent });
-    made.addEventListener("click", action);
-    buttons.append(made);
-    return made;
+  // Add a button below the title.
+  const buttonRow = createElement("div", { className: "switches" });
+  function addButton(textContent, action) {
+    const button = createElement("button", { className: "codes", textContent });
+    button.addEventListener("click", action);
+    buttonRow.append(button);
+    return button;
   }
-  function switchable(key, [off, on], set) {
-    let open = recall(key) === on.value;
-    const apply = () => {
-      made.textContent = (open ? on : off).label;
-      set(open);
+
+  // Add a button that turns something on and off, and stores this for all pages. `off` and `on` are
+  // { label, value }: the label of the button in this state, and the value that is stored.
+  function addSwitch(key, { off, on, apply }) {
+    let isOn = readSetting(key) === on.value;
+    const update = () => {
+      button.textContent = isOn ? on.label : off.label;
+      apply(isOn);
     };
-    const made = button("", () => {
-      open = !open;
-      remember(key, (open ? on : off).value);
-      apply();
+    const button = addButton("", () => {
+      isOn = !isOn;
+      writeSetting(key, isOn ? on.value : off.value);
+      update();
     });
-    apply();
+    update();
   }
 
   // Cells that only draw are folded; a switch opens all of them.
-  const folds = document.querySelectorAll("main details.hide");
-  if (folds.length) {
-    const labels = [{ label: "Show all code", value: "folded" }, { label: "Fold the code of pictures", value: "open" }];
-    switchable("hdrlab-code", labels, (open) => {
-      folds.forEach((fold) => (fold.open = open));
-      if (open) reach();
+  function addFoldSwitch() {
+    const folds = document.querySelectorAll("main details.hide");
+    if (folds.length === 0) return;
+    addSwitch(CODE_KEY, {
+      off: { label: "Show all code", value: "folded" },
+      on: { label: "Fold the code of pictures", value: "open" },
+      apply(isOpen) {
+        for (const fold of folds) fold.open = isOpen;
+        if (isOpen) makeWidePartsFocusable();
+      },
     });
-    for (const fold of folds) fold.querySelector("summary").removeAttribute("aria-label"); // its text says more
+    // The text of the summary says more than the label that Sphinx gives it.
+    for (const fold of folds) fold.querySelector("summary").removeAttribute("aria-label");
   }
 
-  // Another switch shows what the questions cover.
-  let again = null;
-  if (questions.size) {
-    const labels = [{ label: "Show all answers", value: "covered" }, { label: "Cover the answers", value: "shown" }];
-    switchable("hdrlab-answers", labels, (shown) => {
-      document.documentElement.classList.toggle("answers", shown);
-      if (shown) reach();
+  // Add a switch that uncovers all answers, and a button that forgets those of the reader.
+  function addAnswerButtons() {
+    if (questions.size === 0) return;
+    addSwitch(ANSWERS_KEY, {
+      off: { label: "Show all answers", value: "covered" },
+      on: { label: "Cover the answers", value: "shown" },
+      apply(isShown) {
+        document.documentElement.classList.toggle("answers", isShown);
+        if (isShown) makeWidePartsFocusable();
+      },
     });
-    again = button("Ask me again", () => {
-      for (const { dataset } of questions.keys()) localStorage.removeItem(keyOf(dataset.name));
+    const places = [...questions.keys()];
+    resetButton = addButton("Ask me again", () => {
+      for (const { dataset } of places) localStorage.removeItem(answerKey(dataset.name));
       location.reload();
     });
-    again.hidden = ![...questions.keys()].some(({ dataset }) => answerTo(dataset).done);
+    resetButton.hidden = !places.some(({ dataset }) => storedAnswer(dataset).done);
   }
-  if (buttons.childElementCount) document.querySelector("main h1").after(buttons);
 
-  // On paper an answer cannot be opened, so all are; afterwards they are as they were.
-  const closed = () => document.querySelectorAll("main details:not(.hide):not([open])");
-  let opened = [];
-  addEventListener("beforeprint", () => (opened = [...closed()]).forEach((each) => (each.open = true)));
-  addEventListener("afterprint", () => opened.forEach((each) => (each.open = false)));
+  // On paper nobody can open an answer: open all of them, and close them again after printing.
+  let openedForPrint = [];
+  addEventListener("beforeprint", () => {
+    const closed = document.querySelectorAll("main details:not(.hide):not([open])");
+    openedForPrint = [...closed];
+    for (const answer of openedForPrint) answer.open = true;
+  });
+  addEventListener("afterprint", () => {
+    for (const answer of openedForPrint) answer.open = false;
+  });
 
-  if (navigator.clipboard)
-    document.querySelectorAll("main .highlight:not(.cell_output *)").forEach(copyable);
-  document.querySelectorAll(".live").forEach((place) => near.observe(place));
-  reach();
-  addEventListener("resize", reach);
+  addFoldSwitch();
+  addAnswerButtons();
+  if (buttonRow.childElementCount) document.querySelector("main h1").after(buttonRow);
+  if (navigator.clipboard) {
+    const blocks = document.querySelectorAll("main .highlight:not(.cell_output *)");
+    blocks.forEach(addCopyButton);
+  }
+  for (const place of document.querySelectorAll(".live")) approachObserver.observe(place);
+  makeWidePartsFocusable();
+  addEventListener("resize", makeWidePartsFocusable);
 })();

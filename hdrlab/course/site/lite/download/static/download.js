@@ -1,8 +1,9 @@
 // An extension of JupyterLab, written as the prebuilt module that JupyterLab loads: the command
-// "Download my notebook". JupyterLite 0.5 has no entry for a download in the menu of a notebook, and
-// its own command names the file after the whole path, with the folder of the edition.
+// "Download my notebook". JupyterLite 0.5 has no entry for a download in the menu of a notebook,
+// and its own command names the file after the whole path, with the folder of the edition.
 const COMMAND = "hdrlab:download";
-// as on a computer, where there is no kernel "Python (Pyodide)"
+const DOWNLOAD_TIME = 60_000; // ms, after which the address of a download is released
+// The kernel of an installed Jupyter, which has no kernel "Python (Pyodide)"
 const KERNEL = { display_name: "Python 3 (ipykernel)", language: "python", name: "python3" };
 
 async function download(context) {
@@ -14,7 +15,7 @@ async function download(context) {
   link.href = URL.createObjectURL(new Blob([text], { type: "application/x-ipynb+json" }));
   link.download = context.path.split("/").pop();
   link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  setTimeout(() => URL.revokeObjectURL(link.href), DOWNLOAD_TIME);
 }
 
 const plugin = {
@@ -23,7 +24,8 @@ const plugin = {
   activate: ({ commands, shell }) => {
     commands.addCommand(COMMAND, {
       label: "Download my notebook",
-      caption: "Save this notebook as a file, to hand it in. Until then it is in this browser only.",
+      caption:
+        "Save this notebook as a file, to hand it in. Until then it is in this browser only.",
       isEnabled: () => Boolean(shell.currentWidget?.context?.model),
       execute: () => download(shell.currentWidget.context),
     });
