@@ -6,6 +6,7 @@ The script writes the metadata that JupyterLab and the site read into every note
 
 - a cell that draws with `hdrlab.show`, uses nothing else of hdrlab, and defines no function that
   computes;
+- a cell that only imports;
 - a cell that asks for a prediction, because its code contains the answer;
 - a cell that shows the images of a slider side by side, unless it also plays or tunes.
 """
@@ -47,6 +48,8 @@ def is_folded(source, known_names):
     known_names : what this cell and the cells above it import, see `imported_names`
     """
     tree = ast.parse(source)
+    if all(isinstance(node, ast.Import | ast.ImportFrom) for node in tree.body):
+        return True
     used = used_names(tree) & set(known_names)
     if not all(imported_names(source).values()):
         return False
