@@ -12,6 +12,9 @@ NUMBERS = {
         "129": PAPERS_PROGRAM,
         "50": "the samples that Debevec and Malik used",
     },
+    "05": {
+        "100 000": "the logarithm of an error over that of the iteration's second largest eigenvalue"
+    },
     "07": {
         "4.018": "the estimate of a ratio of 4 that the paper reports",
         "0 stops": "where the slider begins",
@@ -23,7 +26,10 @@ NUMBERS = {
         "1 %": "the difference that the paper's good example stays below",
     },
     "09": {"254": "second differences of 256 levels"},
-    "10": {"eight times": "a burst of eight frames"},
+    "10": {
+        "eight times": "a burst of eight frames",
+        "half a percent": "`MAX_RELATIVE_LOSS` in `pipeline.recovery`",
+    },
     "11": {
         "two degrees": "an example of a rotation",
     },
