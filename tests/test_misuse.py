@@ -41,6 +41,8 @@ VALUES = {
     "times": TAKEN.times,
     "g": np.log(np.maximum(np.arange(256), 0.5) / 128),
     **dict.fromkeys(("L", "E", "F", "truth"), LIGHT),
+    "reference": 1.5 * LIGHT[:, ::-1],
+    "luminance_of_unit": 100.0,
     "Ld": LIGHT / LIGHT.max(),
     "picture": TAKEN.images[2],
     "w": np.ones(256),
@@ -52,6 +54,12 @@ VALUES = {
     **{"x": 16, "y": 12, "reading": 5.0},
     "offsets": np.zeros((5, 2), int),
     "homographies": np.stack([np.eye(3)] * 5),
+}
+# view transforms map colors
+COLORS = np.stack([LIGHT, LIGHT[::-1], LIGHT[:, ::-1]], axis=-1)
+VALUES_OF_VERBS = {
+    "tonemap.agx.tonemap_rgb": {"E": COLORS},
+    "tonemap.khronos.tonemap_rgb": {"E": COLORS},
 }
 SHARES = {
     "beyond.assorted.shoot": np.tile([[1, 0.25], [0.5, 0.125]], (12, 16)),
@@ -95,7 +103,7 @@ VERBS = verbs()
 
 def arguments(verb):
     """Return what a verb is given, of its own: name to value."""
-    own = {**VALUES, "e": SHARES.get(verb)}
+    own = {**VALUES, "e": SHARES.get(verb), **VALUES_OF_VERBS.get(verb, {})}
     return {
         name: np.copy(own[name]) if isinstance(own[name], np.ndarray) else own[name]
         for name in VERBS[verb][1]
@@ -103,7 +111,7 @@ def arguments(verb):
 
 
 def call(verb, given):
-    return VERBS[verb][0](*given.values())
+    return VERBS[verb][0](**given)
 
 
 def leaves(answer):
@@ -190,7 +198,7 @@ MISTAKES = {
         "16 bits": lambda a: a.astype(np.uint16),
         "Pillow's places in a palette": lambda a: Image.fromarray(a).convert("P"),
     },
-    "truth": {**ANY, **NO_LIGHT, "another size": lambda a: a[:-1]},
+    **dict.fromkeys(("truth", "reference"), {**ANY, **NO_LIGHT, "another size": lambda a: a[:-1]}),
     "Ld": {**ANY, **NOT_FINITE, "another size": lambda a: a[:-1]},
     "well": {**ANY, "another size": lambda a: a[:-1]},
     "w": {**ANY, **NOT_FINITE, "negative": lambda a: -a, "0": lambda a: 0 * a},
