@@ -5,11 +5,14 @@ peak          luminance of the brightest pixel of the reference    cd/m2
 H             radiance over the largest radiance of the reference  0 to 1
 T             H after the mu-law                                   0 to 1
 
-PSNR     of linear radiance: the brightest pixels decide
-log PSNR of T = ln(1 + mu H) / ln(1 + mu), mu = 5000, as papers about deghosting report it since
-         Kalantari and Ramamoorthi, Deep high dynamic range imaging of dynamic scenes, SIGGRAPH 2017
-PU-PSNR  of perceptually uniform values, see `radiance.pu21`; it depends on `peak`
-PU-SSIM  structural similarity of perceptually uniform luminance; it depends on `peak`
+The metrics:
+
+- PSNR of linear radiance: the brightest pixels decide.
+- Log PSNR, the PSNR of T = ln(1 + mu H) / ln(1 + mu) with mu = 5000, as papers about deghosting
+  report it since Kalantari and Ramamoorthi, Deep high dynamic range imaging of dynamic scenes,
+  SIGGRAPH 2017.
+- PU-PSNR, of perceptually uniform values, see `radiance.pu21`. It depends on `peak`.
+- PU-SSIM, structural similarity of perceptually uniform luminance. It depends on `peak`.
 
 Maps are relative, so PU21 needs a decision how bright they are shown. As in the example of its
 authors, the brightest pixel of the reference becomes the peak of a display.
