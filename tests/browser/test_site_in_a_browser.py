@@ -285,7 +285,7 @@ def test_a_cell_is_copied_and_an_example_without_its_prompts(opened):
     page = opened("notebooks/00_welcome")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     for name, copied in (
-        ("notebooks/00_welcome", "import tempfile"),
+        ("notebooks/00_welcome", "photograph("),
         ("reference/tonemap.chiu", "tonemap("),
     ):
         page = opened(name)
