@@ -20,7 +20,7 @@ forged session         as links; renewing a link ends its session               
 own team's artifact    refused by a trigger of the database                        a_vote_for_the_own_team
 second ballot          the voter is the ballot's key                               a_second_ballot
 too many votes         refused by a trigger of the database                        too_many_votes
-votes for nothing      a foreign key                                               a_vote_for_nothing
+votes for nothing      a foreign key                                               a_vote_for_no_artifact
 late ballot            the server's clock, read within the transaction             a_late_ballot
 others' ballots        no page shows a ballot but one's own; results count them    the_ballots_of_others
 results before time    refused until the end                                       results_before_the_end
