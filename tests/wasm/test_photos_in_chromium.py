@@ -77,7 +77,11 @@ def times_of(page):
 def wait_for_map(page, folder):
     """Wait until the map can be downloaded, and return its path."""
     link = page.get_by_role("link", name="Download the radiance map")
-    link.wait_for()
+    try:
+        link.wait_for()
+    except Exception as error:
+        error.add_note(f"the page says: {page.locator('.own .state').inner_text()}")
+        raise
     with page.expect_download() as waiting:
         link.click()
     path = folder / "downloaded.hdr"

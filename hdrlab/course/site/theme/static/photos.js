@@ -34,15 +34,23 @@
   // ---- the worker
 
   function ask(kind, details) {
-    if (!worker) {
-      worker = new Worker(workerUrl);
-      worker.onmessage = receive;
-      worker.onerror = () => endWorker(FAILED);
-    }
+    if (!worker) worker = startWorker();
     const id = crypto.randomUUID?.() ?? `${Math.random()}`;
     pending.push({ id, kind, ...details });
     worker.postMessage({ lite, id, kind, ...details });
     update();
+  }
+
+  // Events of a worker that was ended may still arrive. They must not end its successor.
+  function startWorker() {
+    const started = new Worker(workerUrl);
+    started.onmessage = (event) => {
+      if (worker === started) receive(event);
+    };
+    started.onerror = () => {
+      if (worker === started) endWorker(FAILED);
+    };
+    return started;
   }
 
   function endWorker(text) {

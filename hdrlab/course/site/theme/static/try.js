@@ -29,6 +29,18 @@
     }
   }
 
+  // Events of a worker that was ended may still arrive. They must not end its successor.
+  function startWorker() {
+    const started = new Worker(workerUrl);
+    started.onmessage = (event) => {
+      if (worker === started) receive(event);
+    };
+    started.onerror = () => {
+      if (worker === started) endWorker(FAILED);
+    };
+    return started;
+  }
+
   function endWorker(text) {
     worker?.terminate();
     worker = null;
@@ -59,11 +71,7 @@
       if (busy !== box) say(box, "Python is checking another function on this page.");
       return;
     }
-    if (!worker) {
-      worker = new Worker(workerUrl);
-      worker.onmessage = receive;
-      worker.onerror = () => endWorker(FAILED);
-    }
+    if (!worker) worker = startWorker();
     setBusy(box);
     say(box, "Checking");
     const { task, packages } = box.dataset;
