@@ -144,6 +144,7 @@ def shrink(Y):
 """
 
 
+@pytest.mark.grading
 def test_a_counterexample_shows_nothing_of_the_inputs_that_were_drawn_with_the_secret():
     options = GradingOptions(in_process.TIER, "ada", "one secret", draw=False)
     others = replace(options, student="grace", secret="another")
@@ -172,6 +173,7 @@ def test_a_hidden_check_gets_no_counterexample(tmp_path):
     assert "77" not in str([check.counterexample for check in result.checks])
 
 
+@pytest.mark.grading
 def test_the_search_changes_neither_outcomes_nor_points(monkeypatch):
     options = GradingOptions(in_process.TIER, draw=False)
     with_search = graded("shrink", CUT, options)
@@ -312,6 +314,7 @@ def test_feedback_states_an_error_that_was_raised_once():
         assert text.count(error) == 1
 
 
+@pytest.mark.grading
 def test_checks_of_a_task_that_have_the_same_counterexample_show_it_once():
     source = "def threshold(h, q):\n    return h[999]\n"
     result = graded("threshold", source, GradingOptions(tier=in_process.TIER, draw=False))

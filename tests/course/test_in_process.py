@@ -57,6 +57,7 @@ def subject_of(source, *, timeout=10.0):
     return Subject({"f": source}, tiers.choose(in_process.TIER), timeout)
 
 
+@pytest.mark.grading
 def test_an_answer_gets_the_outcomes_of_the_practice_tier():
     for text in (right_answers("hat")[0], wrong_answers("hat")[0]):
         assert outcomes_of("hat", text, in_process.TIER) == outcomes_of("hat", text, "practice")
@@ -141,6 +142,7 @@ def test_a_function_prints_into_the_feedback_and_warns_there():
         assert "hi" in subject.printed and "divide by zero" in subject.printed
 
 
+@pytest.mark.grading
 def test_check_in_a_notebook_runs_without_processes_where_there_are_none(monkeypatch):
     shell = start_ipython() or sys.modules["IPython"].get_ipython()
     right = right_answers("hat")[0]
@@ -178,6 +180,7 @@ def test_nobody_can_pass_this(subject):
 """
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("tier", ["practice", in_process.TIER])
 def test_checks_that_cannot_be_imported_are_an_error_and_no_key_press(tier, tmp_path, monkeypatch):
     monkeypatch.setattr(grader, "SPECIFICATION", tmp_path)
@@ -188,6 +191,7 @@ def test_checks_that_cannot_be_imported_are_an_error_and_no_key_press(tier, tmp_
         last(grader.check_steps(code, homework._replace(tasks=(task,)), GradingOptions(tier=tier)))
 
 
+@pytest.mark.grading
 def test_a_key_press_ends_checks_in_the_same_interpreter(tmp_path, monkeypatch):
     monkeypatch.setattr(grader, "SPECIFICATION", tmp_path)
     pressed = BROKEN_CHECK.replace('TypeError("Cannot cast array data")', "KeyboardInterrupt")
