@@ -1,4 +1,20 @@
-// Show in a box of the page how much of Python has come, as python_loader.js tells it: a bar, and words.
+// What the pages with Python share (try.js, photos.js): the worker, and the progress of loading.
+
+// Start a worker. Events of an ended worker may still arrive. They are ignored, so that they cannot
+// end its successor: `getCurrent()` returns the worker that the page uses now.
+function startWorker(url, getCurrent, receive, fail) {
+  const worker = new Worker(url);
+  worker.onmessage = (event) => {
+    if (getCurrent() === worker) receive(event);
+  };
+  worker.onerror = () => {
+    if (getCurrent() === worker) fail();
+  };
+  return worker;
+}
+
+// Show how much of Python is loaded, in a progress bar and in words. python_loader.js sends the
+// numbers: `what` is being loaded, `loaded` and `total` are bytes.
 function showLoading(box, { what, loaded, total }) {
   const bar = box.querySelector("progress");
   const megabytes = (bytes) => (bytes / 1e6).toFixed(0);
@@ -9,8 +25,10 @@ function showLoading(box, { what, loaded, total }) {
   } else {
     bar.removeAttribute("value");
   }
-  const amount = total ? `${megabytes(loaded)} of ${megabytes(total)} MB` : `${megabytes(loaded)} MB`;
-  // not each megabyte is read out
+  const amount = total
+    ? `${megabytes(loaded)} of ${megabytes(total)} MB`
+    : `${megabytes(loaded)} MB`;
+  // as a value of the bar, which a screen reader does not announce at each megabyte
   bar.setAttribute("aria-valuetext", amount);
   box.querySelector(".state").textContent = `Loading ${what}`;
   bar.title = amount;

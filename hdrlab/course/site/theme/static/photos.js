@@ -1,5 +1,5 @@
-// The page of a reader's own photos: a list of photos with their times, and the map that is made of them.
-// Python runs in a worker (photos_worker.js), which starts with the first photo.
+// The page for a reader's own photos: a list of the photos with their exposure times, and the
+// radiance map. Python runs in a worker (photos_worker.js). The first photo starts it.
 (() => {
   const box = document.querySelector(".own");
   if (!box) return;
@@ -21,37 +21,29 @@
   const say = (text) => (part(".state").textContent = text);
   const element = (tag, properties) => Object.assign(document.createElement(tag), properties);
 
-  // name, file, row and input of each photo; isRead: hdrlab has its header; isThere: the worker has the file
+  // Each photo has name, file, row, size, input and thumbnail. isRead: hdrlab has read its header.
+  // isSent: the worker has its file.
   let photos = [];
   let worker = null;
   let pending = []; // the messages that the worker has not answered
   let isStarted = false; // hdrlab is merging
   let startsWhenRead = false; // Start was pressed while hdrlab read the photos
-  let lastSaid = ""; // how long the map took
-  let waitingStops = null; // what the slider shows, while a picture of an earlier place is made
-  const addresses = new Map(); // of the results, by the class of their link
+  let doneText = ""; // how long the map took
+  let waitingStops = null; // the position of the slider that is shown after the image in progress
+  const addresses = new Map(); // class of a link -> address of its file
 
   // ---- the worker
 
   function ask(kind, details) {
-    if (!worker) worker = startWorker();
+    if (!worker) worker = startWorker(workerUrl, getWorker, receive, failToLoad);
     const id = crypto.randomUUID?.() ?? `${Math.random()}`;
     pending.push({ id, kind, ...details });
     worker.postMessage({ lite, id, kind, ...details });
     update();
   }
 
-  // Events of a worker that was ended may still arrive. They must not end its successor.
-  function startWorker() {
-    const started = new Worker(workerUrl);
-    started.onmessage = (event) => {
-      if (worker === started) receive(event);
-    };
-    started.onerror = () => {
-      if (worker === started) endWorker(FAILED);
-    };
-    return started;
-  }
+  const getWorker = () => worker;
+  const failToLoad = () => endWorker(FAILED);
 
   function endWorker(text) {
     worker?.terminate();
@@ -60,7 +52,7 @@
     isStarted = false;
     startsWhenRead = false;
     waitingStops = null;
-    for (const photo of photos) photo.isThere = false;
+    for (const photo of photos) photo.isSent = false;
     closeMap();
     hideProgress();
     say(text);
@@ -103,17 +95,19 @@
 
   const ANSWERS = {
     add({ name, isAgain }, answer) {
-      const photo = photos.find((one) => one.name === name);
-      if (!photo) return; // removed in the meantime
+      const photo = photos.find((added) => added.name === name);
+      if (!photo) return; // the reader has removed it
       if (answer.error) {
         discard(photo);
         complain(answer.error);
       } else {
-        photo.isThere = true;
+        photo.isSent = true;
         photo.isRead = true;
       }
       if (!answer.error && !isAgain) {
-        photo.size.textContent = answer.reducedTo ? `${answer.size}, reduced to ${answer.reducedTo}` : answer.size;
+        photo.size.textContent = answer.reducedTo
+          ? `${answer.size}, reduced to ${answer.reducedTo}`
+          : answer.size;
         photo.input.value = answer.time;
         photo.input.disabled = false;
       }
@@ -126,14 +120,14 @@
       isStarted = false;
       if (answer.error) return say(`Stopped: ${answer.error}.`);
       showResult(answer);
-      lastSaid = `Done in ${((performance.now() - question.started) / 1000).toFixed(0)} seconds.`;
-      say(lastSaid);
+      doneText = `Done in ${((performance.now() - question.started) / 1000).toFixed(0)} seconds.`;
+      say(doneText);
       ask("map");
     },
     map(question, answer) {
       if (answer.error) return say(answer.error);
       link("hdr", answer.map);
-      say(lastSaid);
+      say(doneText);
     },
     toneMap({ operator }, answer) {
       if (answer.error) return say(answer.error);
@@ -144,7 +138,10 @@
     },
     expose(question, answer) {
       if (answer.error) return say(answer.error);
-      showPicture(answer.jpg, `Without tone mapping: ${answer.settings}. White is clipped, as in a photo.`);
+      showPicture(
+        answer.jpg,
+        `Without tone mapping: ${answer.settings}. White is clipped, as in a photo.`,
+      );
       press("");
       const stops = waitingStops;
       waitingStops = null;
@@ -168,12 +165,20 @@
   function choose(files) {
     part(".problems").replaceChildren();
     for (const file of files) {
-      if (photos.some((photo) => photo.name === file.name)) complain(`${file.name}: a photo of this name is in the list`);
-      else if (photos.length >= MAX_PHOTOS) complain(`${file.name}: left out, because ${MAX_PHOTOS} photos are enough`);
-      else if (file.size > MAX_FILE_BYTES) complain(`${file.name}: larger than ${MAX_FILE_BYTES / 1e6} MB`);
+      const problem = describeProblem(file);
+      if (problem) complain(`${file.name}: ${problem}`);
       else addPhoto(file);
     }
     update();
+  }
+
+  // Return why a file cannot be added, or "".
+  function describeProblem(file) {
+    const isInList = photos.some((photo) => photo.name === file.name);
+    if (isInList) return "a photo of this name is in the list";
+    if (photos.length >= MAX_PHOTOS) return `left out, because ${MAX_PHOTOS} photos are enough`;
+    if (file.size > MAX_FILE_BYTES) return `larger than ${MAX_FILE_BYTES / 1e6} MB`;
+    return "";
   }
 
   function addPhoto(file) {
@@ -183,12 +188,28 @@
     const name = element("th", { scope: "row" });
     name.append(thumbnail, element("span", { textContent: file.name }));
     const size = element("td", { textContent: "reading" });
-    const input = element("input", { type: "text", size: 9, disabled: true, placeholder: "unknown", autocomplete: "off", spellcheck: false });
+    const input = element("input", {
+      type: "text",
+      size: 9,
+      disabled: true,
+      placeholder: "unknown",
+      autocomplete: "off",
+      spellcheck: false,
+    });
     input.setAttribute("aria-label", `Exposure time of ${file.name}, such as 1/60 s`);
     input.addEventListener("input", update);
     const remove = element("button", { type: "button", textContent: "Remove" });
     remove.setAttribute("aria-label", `Remove ${file.name}`);
-    const photo = { name: file.name, file, row, size, input, thumbnail, isRead: false, isThere: false };
+    const photo = {
+      name: file.name,
+      file,
+      row,
+      size,
+      input,
+      thumbnail,
+      isRead: false,
+      isSent: false,
+    };
     remove.addEventListener("click", () => {
       if (isStarted) return say("Press Stop first.");
       const next = (row.nextElementSibling ?? row.previousElementSibling)?.querySelector("button");
@@ -207,16 +228,19 @@
   }
 
   function discard(photo) {
-    photos = photos.filter((one) => one !== photo);
+    photos = photos.filter((other) => other !== photo);
     URL.revokeObjectURL(photo.thumbnail.src);
     photo.row.remove();
     update();
   }
 
   function update() {
-    const unknown = photos.filter((photo) => photo.isRead && !photo.input.value.trim()).map((photo) => photo.name);
+    const unknown = photos
+      .filter((photo) => photo.isRead && !photo.input.value.trim())
+      .map((photo) => photo.name);
+    const advice = "type it, or leave it out. Then hdrlab estimates all times from the pixels.";
     part(".times").textContent = unknown.length
-      ? `No exposure time in ${unknown.join(", ")}: type it, or leave it out. Then hdrlab estimates all times from the pixels.`
+      ? `No exposure time in ${unknown.join(", ")}: ${advice}`
       : "";
     const isReady = photos.length >= MIN_PHOTOS && !isStarted;
     part(".go").setAttribute("aria-disabled", String(!isReady));
@@ -230,12 +254,11 @@
 
   function start() {
     if (isStarted) return;
-    if (photos.length < MIN_PHOTOS) return say(photos.length ? describeList() : "Choose some photos first.");
-    // after Stop, the worker has no photos
-    const isAsked = (photo) => pending.some(({ kind, name }) => kind === "add" && name === photo.name);
-    for (const photo of photos.filter((one) => !one.isThere && !isAsked(one))) {
-      ask("add", { name: photo.name, file: photo.file, isAgain: photo.isRead });
+    if (photos.length < MIN_PHOTOS) {
+      say(photos.length ? describeList() : "Choose some photos first.");
+      return;
     }
+    sendMissingPhotos();
     startsWhenRead = photos.some((photo) => !photo.isRead);
     if (startsWhenRead) return;
     isStarted = true;
@@ -244,6 +267,17 @@
     const times = Object.fromEntries(photos.map((photo) => [photo.name, photo.input.value]));
     ask("assemble", { times, started: performance.now() });
     say("Starting");
+  }
+
+  // After Stop, a new worker has no photos.
+  function sendMissingPhotos() {
+    const messages = pending.filter(({ kind }) => kind === "add");
+    const namesBeingSent = new Set(messages.map(({ name }) => name));
+    for (const photo of photos) {
+      if (!photo.isSent && !namesBeingSent.has(photo.name)) {
+        ask("add", { name: photo.name, file: photo.file, isAgain: photo.isRead });
+      }
+    }
   }
 
   // ---- the result
@@ -269,7 +303,7 @@
     }
   }
 
-  // The map is gone; its picture and the links stay.
+  // The worker has no map any more. The image and the links stay.
   function closeMap() {
     for (const controls of box.querySelectorAll("fieldset")) controls.disabled = true;
   }
@@ -280,13 +314,16 @@
 
   function showResult(answer) {
     part(".summary").textContent = answer.summary;
-    const remarks = [...answer.warnings.map((text) => `warning: ${text}`), ...answer.notes.map((text) => `note: ${text}`)];
+    const remarks = [
+      ...answer.warnings.map((text) => `warning: ${text}`),
+      ...answer.notes.map((text) => `note: ${text}`),
+    ];
     listOf(".remarks", remarks);
     listOf(".details", answer.details);
     showPicture(answer.png, answer.isFusion ? answer.settings : `Tone mapping: ${answer.settings}`);
     link("png", answer.png);
     link("jpg", answer.jpg);
-    part(".downloads .hdr").hidden = true; // until the new map is written
+    part(".downloads .hdr").hidden = true; // until the worker has written the new map
     press(OPERATOR);
     for (const controls of box.querySelectorAll("fieldset")) controls.disabled = answer.isFusion;
     part(".result").hidden = false;

@@ -1,14 +1,14 @@
-// The boxes "Try it" of a page: a text field with the stub of a task, and the feedback of its checks.
-// Python runs in a worker (try_worker.js), which starts with the first check and serves all boxes.
+// The boxes "Try it" of a page: a text field with the stub of a task, and the checks' feedback.
+// Python runs in a worker (try_worker.js). The first check starts it, and all boxes share it.
 (() => {
   const boxes = [...document.querySelectorAll(".try")];
-  // a page that was opened from a folder can load no Python
+  // A page that was opened from a folder cannot load Python.
   if (!boxes.length || location.protocol === "file:") return;
 
   const script = document.currentScript.src;
   const workerUrl = new URL("try_worker.js", script);
   const lite = new URL("../lite/", script).href;
-  const NOT_KEPT = "This browser does not keep what you type: copy it before you leave the page.";
+  const NOT_SAVED = "This browser does not save your text. Copy it before you leave the page.";
   const FAILED = "Python could not be loaded. Check your connection, and press Check again.";
   let worker = null;
   let busy = null; // the box that is being checked
@@ -19,7 +19,9 @@
   function setBusy(box) {
     const previous = busy;
     busy = box;
-    for (const each of boxes) part(each, ".check").setAttribute("aria-disabled", String(box !== null));
+    for (const other of boxes) {
+      part(other, ".check").setAttribute("aria-disabled", String(box !== null));
+    }
     if (box) part(box, ".stop").hidden = false;
     if (!box && previous) {
       const stop = part(previous, ".stop");
@@ -29,17 +31,8 @@
     }
   }
 
-  // Events of a worker that was ended may still arrive. They must not end its successor.
-  function startWorker() {
-    const started = new Worker(workerUrl);
-    started.onmessage = (event) => {
-      if (worker === started) receive(event);
-    };
-    started.onerror = () => {
-      if (worker === started) endWorker(FAILED);
-    };
-    return started;
-  }
+  const getWorker = () => worker;
+  const failToLoad = () => endWorker(FAILED);
 
   function endWorker(text) {
     worker?.terminate();
@@ -58,7 +51,8 @@
     box.classList.remove("loading");
     part(box, "progress").hidden = true;
     if (data.kind === "checking") return say(box, "Checking");
-    if (data.kind === "failed") return endWorker(data.message || FAILED); // the next check starts afresh
+    // The next check starts a new worker.
+    if (data.kind === "failed") return endWorker(data.message || FAILED);
     const feedback = part(box, ".feedback");
     feedback.innerHTML = data.html;
     feedback.hidden = false;
@@ -71,7 +65,7 @@
       if (busy !== box) say(box, "Python is checking another function on this page.");
       return;
     }
-    if (!worker) worker = startWorker();
+    if (!worker) worker = startWorker(workerUrl, getWorker, receive, failToLoad);
     setBusy(box);
     say(box, "Checking");
     const { task, packages } = box.dataset;
@@ -79,47 +73,50 @@
     worker.postMessage({ lite, task, text, packages: packages.split(" ").filter(Boolean) });
   }
 
-  // Continue with the indentation of the line, and that of a new block.
+  // Indent the new line like the current one, and by four more spaces after a colon.
   function breakLine(event) {
     const field = event.target;
     const line = field.value.slice(0, field.selectionStart).split("\n").pop();
     const indent = line.match(/^ */)[0] + (line.trimEnd().endsWith(":") ? "    " : "");
     event.preventDefault();
-    document.execCommand("insertText", false, `\n${indent}`); // unlike setRangeText, it can be undone
+    document.execCommand("insertText", false, `\n${indent}`); // can be undone, unlike setRangeText
   }
 
   for (const box of boxes) {
     const field = part(box, "textarea");
     const key = `hdrlab-try:${box.dataset.task}`;
-    const keep = () => {
+    const save = () => {
       try {
         localStorage.setItem(key, field.value);
       } catch {
-        say(box, NOT_KEPT);
+        say(box, NOT_SAVED);
       }
     };
     try {
       field.value = localStorage.getItem(key) ?? field.defaultValue;
     } catch {
-      say(box, NOT_KEPT);
+      say(box, NOT_SAVED);
     }
-    field.addEventListener("input", keep);
+    field.addEventListener("input", save);
     field.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" || event.isComposing) return;
       if (event.ctrlKey || event.metaKey) check(box);
       else breakLine(event);
     });
-    // the same box in another tab; a text that is not the same as there stays
+    // Copy what a reader types into the same box of another tab, unless this text differs already.
     addEventListener("storage", (event) => {
       const before = event.oldValue ?? field.defaultValue;
-      if (event.key === key && event.newValue !== null && field.value === before) field.value = event.newValue;
+      const isSaved = event.key === key && event.newValue !== null;
+      if (isSaved && field.value === before) field.value = event.newValue;
     });
     part(box, ".check").addEventListener("click", () => check(box));
     part(box, ".stop").addEventListener("click", () => endWorker("Stopped."));
     part(box, ".again").addEventListener("click", () => {
-      if (field.value !== field.defaultValue && !confirm("Replace your text with the stub? You cannot undo this.")) return;
+      const isChanged = field.value !== field.defaultValue;
+      const question = "Replace your text with the stub? You cannot undo this.";
+      if (isChanged && !confirm(question)) return;
       field.value = field.defaultValue;
-      keep();
+      save();
       field.focus();
     });
     box.hidden = false;
