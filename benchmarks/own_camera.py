@@ -1,21 +1,24 @@
-"""Simulated cameras whose noise `hdrlab noise` measures from darks and flats, and faults of them.
+"""Measure simulated cameras by `hdrlab noise`, from darks and flats whose truth is known.
 
-Run `python -m benchmarks.own_camera` for a table of 20 cameras: the error of each figure, and how
-often the intervals hold the truth. Then each fault is put into the photos of one camera; the last
-column is what hdrlab finds.
+One row measures 20 cameras. The other puts each fault into the photos of one camera, such as a tone
+curve, and counts whether hdrlab names it. The tests use the same cameras and faults.
 """
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import ndimage
+from tqdm import tqdm
 
+from benchmarks.experiments import Experiment, at_least, at_most
 from hdrlab.capture import sensor
 from hdrlab.capture.sensor import Sensor
 from hdrlab.core.arrays import Array
+from hdrlab.diagnostics import camera_noise as kinds
 from hdrlab.io import raw
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.pipeline.camera_noise import CameraNoise, measure_camera_noise
@@ -59,15 +62,15 @@ def make_sensor(number: int) -> Sensor:
     return Sensor(full_well, read_noise, gain, bits, black)
 
 
-def white_level(one: Sensor) -> int:
+def white_level(simulated: Sensor) -> int:
     """Return the level at which a pixel of a sensor is full, as an honest file states it."""
-    full_electrons = sensor.full_electrons(one)
-    return round(full_electrons / one.gain) + one.black
+    full_electrons = sensor.full_electrons(simulated)
+    return round(full_electrons / simulated.gain) + simulated.black
 
 
 def write_photos(
     folder: Path,
-    one: Sensor,
+    simulated: Sensor,
     *,
     studio: Studio | None = None,
     fault: Fault | None = None,
@@ -83,7 +86,9 @@ def write_photos(
         path.mkdir(parents=True, exist_ok=True)
     for number, time in enumerate((0.0, *studio.times)):
         for which in range(2):
-            Z = sensor.raw(wall, time, one, vignetting=studio.vignetting, bayer=True, rng=generator)
+            Z = sensor.raw(
+                wall, time, simulated, vignetting=studio.vignetting, bayer=True, rng=generator
+            )
             if fault is not None:
                 Z = fault(Z, time, which)
             name = f"IMG_{2 * number + which}.dng"
@@ -91,8 +96,8 @@ def write_photos(
                 (flat if time else dark) / name,
                 Z,
                 pattern=PATTERN,
-                black=one.black,
-                white=white_level(one),
+                black=simulated.black,
+                white=white_level(simulated),
                 gains=GAINS,
                 matrix=MATRIX,
                 exposure=Exposure(time or 0.1, 8.0, studio.iso),
@@ -101,10 +106,10 @@ def write_photos(
     return dark, flat
 
 
-def make_faults(one: Sensor, rng: int = 0) -> dict[str, Fault]:
+def make_faults(simulated: Sensor, rng: int = 0) -> dict[str, Fault]:
     """Return what can be wrong with the photos of a sensor, by name."""
-    black = one.black
-    top = white_level(one)
+    black = simulated.black
+    top = white_level(simulated)
     generator = np.random.default_rng(rng)
 
     def bend(Z: Array, time: float, which: int) -> Array:
@@ -152,10 +157,12 @@ def make_faults(one: Sensor, rng: int = 0) -> dict[str, Fault]:
         if time:
             return Z
         slope = np.linspace(0, 1, Z.shape[1]) ** 2
-        return _add_light(Z, one, 12 * one.read_noise**2 * slope, generator)
+        return _add_light(Z, simulated, 12 * simulated.read_noise**2 * slope, generator)
 
     def leak_everywhere(Z: Array, time: float, which: int) -> Array:
-        return Z if time else _add_light(Z, one, np.full(1, one.read_noise**2), generator)
+        return (
+            Z if time else _add_light(Z, simulated, np.full(1, simulated.read_noise**2), generator)
+        )
 
     return {
         "tone curve x^0.9": bend,
@@ -171,10 +178,25 @@ def make_faults(one: Sensor, rng: int = 0) -> dict[str, Fault]:
     }
 
 
-def _add_light(Z: Array, one: Sensor, electrons: Array, rng: np.random.Generator) -> Array:
+# the warning that names each fault
+FAULT_KINDS = {
+    "tone curve x^0.9": kinds.TONE_CURVE,
+    "tone curve x - 0.05 x^2": kinds.TONE_CURVE,
+    "darks denoised by 3 x 3 means": kinds.DENOISED_DARKS,
+    "darks denoised pixel by pixel": kinds.DENOISED_DARKS,
+    "all photos denoised": kinds.DENOISED_FLATS,
+    "clipping at 80 % of the white level": kinds.EARLY_CLIPPING,
+    "light changes by 7 % within a pair": kinds.UNSTEADY_LIGHT,
+    "lamp flickers in stripes of 2 %": kinds.UNSTEADY_LIGHT,
+    "light leak at one side": kinds.LIGHT_LEAK,
+    "light leak everywhere": kinds.LIGHT_LEAK,
+}
+
+
+def _add_light(Z: Array, simulated: Sensor, electrons: Array, rng: np.random.Generator) -> Array:
     """Return levels with the photons of a light leak, by row or column."""
     photons = rng.poisson(np.broadcast_to(electrons, Z.shape))
-    levels = np.floor(photons / one.gain + rng.random(Z.shape))
+    levels = np.floor(photons / simulated.gain + rng.random(Z.shape))
     return np.minimum(Z + levels, np.iinfo(np.uint16).max).astype(np.uint16)
 
 
@@ -188,13 +210,13 @@ class Errors:
     holds: dict[str, list[bool]]
 
 
-def compare(found: CameraNoise, one: Sensor) -> Errors:
+def compare(found: CameraNoise, simulated: Sensor) -> Errors:
     """Return the largest errors of the channels against the sensor that was simulated."""
     truth = {
-        "gain": one.gain,
-        "read_noise": one.read_noise,
-        "full_well": sensor.full_electrons(one),
-        "black": float(one.black),
+        "gain": simulated.gain,
+        "read_noise": simulated.read_noise,
+        "full_well": sensor.full_electrons(simulated),
+        "black": float(simulated.black),
     }
     worst = dict.fromkeys(truth, 0.0)
     holds: dict[str, list[bool]] = {quantity: [] for quantity in truth}
@@ -211,33 +233,55 @@ def compare(found: CameraNoise, one: Sensor) -> Errors:
     )
 
 
-def main() -> None:
-    """Print both tables."""
-    print("bits   gain  read noise  full well | largest error of a channel")
-    counts: dict[str, list[bool]] = {}
-    for number in range(CAMERAS):
-        one = make_sensor(number)
-        with tempfile.TemporaryDirectory() as folder:
-            found = measure_camera_noise(*write_photos(Path(folder), one, rng=number))
-        errors = compare(found, one)
-        for quantity, held in errors.holds.items():
-            counts.setdefault(quantity, []).extend(held)
-        kinds = ", ".join(warning.kind for warning in found.warnings) or "no warnings"
-        print(
-            f"{one.bits:4}  {one.gain:5.2f}  {one.read_noise:10.2f}  {one.full_well:9.0f} | gain "
-            f"{errors.gain:.1%}, read noise {errors.read_noise:.1%}, full well {errors.full_well:.1%}; "
-            f"{kinds}"
-        )
-    for quantity, held in counts.items():
-        print(f"{quantity}: {np.mean(held):.1%} of {len(held)} intervals hold the truth")
-    print()
-    one = make_sensor(3)
-    for name, fault in make_faults(one).items():
-        with tempfile.TemporaryDirectory() as folder:
-            found = measure_camera_noise(*write_photos(Path(folder), one, fault=fault))
-        kinds = ", ".join(warning.kind for warning in found.warnings) or "nothing"
-        print(f"{name:40} {kinds}")
+def measure_cameras(folder: Path) -> Mapping[str, ArrayLike]:
+    """Return the errors of all simulated cameras, and how often the intervals hold the truth."""
+    errors = []
+    false_warnings = 0
+    for number in tqdm(range(CAMERAS), "cameras", leave=False):
+        simulated = make_sensor(number)
+        with tempfile.TemporaryDirectory() as photos:
+            found = measure_camera_noise(*write_photos(Path(photos), simulated, rng=number))
+        errors.append(compare(found, simulated))
+        false_warnings += len(found.warnings)
+    results: dict[str, ArrayLike] = {
+        "gain": max(error.gain for error in errors),
+        "read noise": max(error.read_noise for error in errors),
+        "full well": max(error.full_well for error in errors),
+        "false warnings": false_warnings,
+    }
+    for quantity in errors[0].holds:
+        held = [is_inside for error in errors for is_inside in error.holds[quantity]]
+        results[f"intervals of {quantity} that hold the truth"] = np.mean(held)
+    return results
 
 
-if __name__ == "__main__":
-    main()
+def find_faults(folder: Path) -> Mapping[str, ArrayLike]:
+    """Return for each fault of the photos of one camera whether hdrlab names it: 1, or 0."""
+    simulated = make_sensor(3)
+    results: dict[str, ArrayLike] = {}
+    for name, fault in make_faults(simulated).items():
+        with tempfile.TemporaryDirectory() as photos:
+            found = measure_camera_noise(*write_photos(Path(photos), simulated, fault=fault))
+        results[name] = float(FAULT_KINDS[name] in {warning.kind for warning in found.warnings})
+    return results
+
+
+ROWS = (
+    Experiment(
+        "own-camera",
+        "hdrlab noise on 20 simulated cameras: largest relative error of a channel",
+        measure_cameras,
+        (
+            at_most("gain", 0.05),
+            at_most("read noise", 0.05),
+            at_most("full well", 0.05),
+            at_most("false warnings", 0),
+        ),
+    ),
+    Experiment(
+        "own-camera-faults",
+        "hdrlab noise on photos with a fault: 1 if it names the fault",
+        find_faults,
+        tuple(at_least(name, 1) for name in FAULT_KINDS),
+    ),
+)

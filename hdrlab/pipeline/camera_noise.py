@@ -500,6 +500,12 @@ def require_same_camera(noise: CameraNoise, headers: Sequence[PhotoHeader]) -> N
     require_useful(noise)
     if noise.kind != RAW:
         raise InputError("the noise was measured on linear files; measure it on RAW photos")
+    names = [channel.name for channel in noise.channels]
+    if sorted(names) != sorted(CHANNEL_NAMES):
+        raise InputError(
+            f"expected the noise of {', '.join(CHANNEL_NAMES)}, got that of {', '.join(names)}; "
+            "measure it on photos of a color camera"
+        )
     for header in headers:
         if header.kind != "RAW":
             raise InputError(

@@ -35,9 +35,9 @@ LARGE = Studio(side=360, times=TIMES)
 FEW = Studio(side=120, times=(0.1, 0.3, 0.6, 0.9))
 
 
-def measure(folder, one=CAMERA, **settings):
+def measure(folder, simulated=CAMERA, **settings):
     settings = {"studio": SMALL} | settings
-    return pipeline.measure_camera_noise(*own_camera.write_photos(folder, one, **settings))
+    return pipeline.measure_camera_noise(*own_camera.write_photos(folder, simulated, **settings))
 
 
 def kinds_of(noise):
@@ -64,9 +64,9 @@ def measured(folders):
 
 @pytest.mark.parametrize("number", [0, 3, 17])
 def test_gain_and_full_well_of_a_camera_are_right_within_5_percent(number, tmp_path):
-    one = own_camera.make_sensor(number)
-    noise = measure(tmp_path, one, rng=number)
-    errors = own_camera.compare(noise, one)
+    simulated = own_camera.make_sensor(number)
+    noise = measure(tmp_path, simulated, rng=number)
+    errors = own_camera.compare(noise, simulated)
     assert noise.warnings == ()
     assert max(errors.gain, errors.full_well, errors.read_noise) < 0.05
     assert [channel.name for channel in noise.channels] == ["red", "green", "blue"]
@@ -76,9 +76,9 @@ def test_gain_and_full_well_of_a_camera_are_right_within_5_percent(number, tmp_p
 def test_of_20_cameras_every_figure_is_right_and_95_percent_of_the_intervals_hold_it(tmp_path):
     held = []
     for number in range(own_camera.CAMERAS):
-        one = own_camera.make_sensor(number)
-        noise = measure(tmp_path / str(number), one, studio=Studio(), rng=number)
-        errors = own_camera.compare(noise, one)
+        simulated = own_camera.make_sensor(number)
+        noise = measure(tmp_path / str(number), simulated, studio=Studio(), rng=number)
+        errors = own_camera.compare(noise, simulated)
         assert noise.warnings == (), number
         assert max(errors.gain, errors.full_well, errors.read_noise) < 0.05, number
         for quantity in ("gain", "read_noise", "black"):
@@ -157,18 +157,7 @@ def test_linear_files_whose_levels_are_multiples_of_16_have_the_gain_of_these_le
 # Faults
 
 
-FAULTS = {
-    "tone curve x^0.9": kinds.TONE_CURVE,
-    "tone curve x - 0.05 x^2": kinds.TONE_CURVE,
-    "darks denoised by 3 x 3 means": kinds.DENOISED_DARKS,
-    "darks denoised pixel by pixel": kinds.DENOISED_DARKS,
-    "all photos denoised": kinds.DENOISED_FLATS,
-    "clipping at 80 % of the white level": kinds.EARLY_CLIPPING,
-    "light changes by 7 % within a pair": kinds.UNSTEADY_LIGHT,
-    "lamp flickers in stripes of 2 %": kinds.UNSTEADY_LIGHT,
-    "light leak at one side": kinds.LIGHT_LEAK,
-    "light leak everywhere": kinds.LIGHT_LEAK,
-}
+FAULTS = own_camera.FAULT_KINDS
 # faults that have other effects than their own
 SIDE_EFFECTS = {
     "tone curve x - 0.05 x^2": {kinds.EARLY_CLIPPING},
@@ -389,6 +378,9 @@ def test_photos_of_another_camera_or_speed_are_refused(bracket_folder, measured)
     other = dataclasses.replace(measured, camera="Another")
     with pytest.raises(InputError, match="0.dng: taken with Simulated, .* that of Another"):
         camera_noise.require_same_camera(other, headers)
+    without_blue = dataclasses.replace(measured, channels=measured.channels[:2])
+    with pytest.raises(InputError, match="noise of red, green, blue, got that of red, green"):
+        camera_noise.require_same_camera(without_blue, headers)
 
 
 def test_noise_measured_through_a_tone_curve_is_refused(bracket_folder, tmp_path):
