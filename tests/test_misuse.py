@@ -43,6 +43,7 @@ VALUES = {
     **dict.fromkeys(("L", "E", "F", "truth"), LIGHT),
     "reference": 1.5 * LIGHT[:, ::-1],
     "luminance_of_unit": 100.0,
+    "key": 0.18,
     "Ld": LIGHT / LIGHT.max(),
     "picture": TAKEN.images[2],
     "w": np.ones(256),
@@ -60,6 +61,7 @@ COLORS = np.stack([LIGHT, LIGHT[::-1], LIGHT[:, ::-1]], axis=-1)
 VALUES_OF_VERBS = {
     "tonemap.agx.tonemap_rgb": {"E": COLORS},
     "tonemap.khronos.tonemap_rgb": {"E": COLORS},
+    "tonemap.view_unit.scale_colors": {"E": COLORS},
 }
 SHARES = {
     "beyond.assorted.shoot": np.tile([[1, 0.25], [0.5, 0.125]], (12, 16)),

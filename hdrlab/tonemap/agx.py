@@ -17,10 +17,8 @@ BT.2020.
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance, as_radiance, describe
-from hdrlab.core.colour import luminance
-from hdrlab.errors import InputError
-from hdrlab.tonemap.reinhard import log_average
+from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
+from hdrlab.tonemap.view_unit import scale_colors
 
 LAWS = ("monotone", "exposure")
 MIDDLE_GRAY = 0.18
@@ -155,11 +153,4 @@ def tonemap_rgb(E: ArrayLike, *, key: float = 0.18) -> F32:
     Sobotka, AgX, an OpenColorIO configuration, 2022: the range, the sigmoid, the inset. Wrensch,
     Minimal AgX implementation, 2023: the outset, and the exponent 2.2.
     """
-    E = as_radiance(E)
-    if E.ndim != 3:
-        raise InputError(f"expected colors (H, W, 3), got {describe(E)}; gray light has `tonemap`")
-    if not 0 < key < np.inf:
-        raise InputError(f"expected a key above 0, got {key}")
-    Lav = log_average(luminance(E).astype(np.float64))
-    C = E.astype(np.float64) * (key / Lav)
-    return view(C).astype(np.float32)
+    return view(scale_colors(E, key=key)).astype(np.float32)

@@ -16,10 +16,8 @@ white, which keeps its hue: the angle around the gray axis.
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance, as_radiance, describe
-from hdrlab.core.colour import luminance
-from hdrlab.errors import InputError
-from hdrlab.tonemap.reinhard import log_average
+from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
+from hdrlab.tonemap.view_unit import scale_colors
 
 LAWS = ("monotone", "exposure")
 # F90 of the specification, the reflectance of glass and plastic seen from the front
@@ -123,11 +121,4 @@ def tonemap_rgb(E: ArrayLike, *, key: float = 0.18) -> F32:
     ----------
     The Khronos Group, Khronos PBR Neutral Tone Mapper, specification, 2024.
     """
-    E = as_radiance(E)
-    if E.ndim != 3:
-        raise InputError(f"expected colors (H, W, 3), got {describe(E)}; gray light has `tonemap`")
-    if not 0 < key < np.inf:
-        raise InputError(f"expected a key above 0, got {key}")
-    Lav = log_average(luminance(E).astype(np.float64))
-    C = E.astype(np.float64) * (key / Lav)
-    return np.clip(view(C), 0, 1).astype(np.float32)
+    return np.clip(view(scale_colors(E, key=key)), 0, 1).astype(np.float32)
