@@ -169,6 +169,18 @@ def seconds_of(text):
     return float(numerator) / float(denominator or 1)
 
 
+def test_advice_about_times_names_the_list_and_other_options_are_explained(own, files, monkeypatch):
+    unknown = dict.fromkeys(add_all(own, files), "")
+    answer = assemble(own, unknown)
+    texts = [*answer["warnings"], *answer["notes"]]
+    assert any("times into the list" in text for text in texts)
+    assert not any("--" in text for text in texts)
+
+    # as if the page had nothing in place of these options
+    monkeypatch.setattr(own_photos, "ADVICE_OF_THE_PAGE", {})
+    assert own_photos.OPTION_NOTE in assemble(own, unknown)["notes"]
+
+
 def test_large_photos_are_reduced_stand_upright_and_keep_their_exposure(
     own, taken, tmp_path, monkeypatch
 ):

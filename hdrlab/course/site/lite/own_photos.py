@@ -48,6 +48,16 @@ NEXT_STEP = {
 # reading, the stages of NEXT_STEP without "ghosts", and aligning
 STEPS = 7
 
+# what the page offers in place of the options of `hdrlab assemble` that warnings name
+ADVICE_OF_THE_PAGE = {
+    "pass --times FILE or --stops": "type the times into the list",
+    "pass the true times (--times FILE or --stops)": "type the true times into the list",
+}
+OPTION = re.compile(r"(?<!\S)--[a-z]")
+OPTION_NOTE = (
+    "words such as --align are options of the command `hdrlab assemble`; install hdrlab to use them"
+)
+
 # called with what hdrlab does now, the number of steps that are done, and that of all steps
 Report = Callable[[str, int, int], object]
 
@@ -180,10 +190,14 @@ class OwnPhotos:
         ]
         if state.fallback:
             notes.append(f"{pictures.FUSION_NOTE}, because {state.fallback}")
+        warnings = [_advise_for_page(text) for text in state.doubts]
+        notes = [_advise_for_page(text) for text in (*notes, *state.notes)]
+        if any(OPTION.search(text) for text in (*warnings, *notes)):
+            notes.append(OPTION_NOTE)
         return {
             "summary": wording.summarize_assembly(state, outputs),
-            "warnings": state.doubts,
-            "notes": [*notes, *state.notes],
+            "warnings": warnings,
+            "notes": notes,
             "details": state.details,
             "isFusion": bool(state.fallback),
             **tone_mapped,
@@ -283,6 +297,19 @@ def expose(E: F32, stops: float) -> Array:
     L = colour.luminance(small)
     median = float(np.median(L[L > 0])) if (L > 0).any() else 1.0
     return colour.to_8bit(np.minimum(small * (MIDDLE_GRAY / median * 2.0**stops), 1))
+
+
+def _advise_for_page(text: str) -> str:
+    """Return a warning with advice that a reader can follow on the page, if there is any.
+
+    Examples
+    --------
+    >>> _advise_for_page("the times are estimated, so pass --times FILE or --stops if you know them")
+    'the times are estimated, so type the times into the list if you know them'
+    """
+    for advice, replacement in ADVICE_OF_THE_PAGE.items():
+        text = text.replace(advice, replacement)
+    return text
 
 
 def _parse_time(name: str, text: str) -> float | None:
