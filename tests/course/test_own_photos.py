@@ -4,7 +4,9 @@
 """
 
 import json
+import re
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from hdrlab.capture import camera
 from hdrlab.core.optional import MissingPackageError
 from hdrlab.course.site.lite import own_photos
 from hdrlab.io import photos, radiance
+from hdrlab.pipeline import catalogue, pictures
 
 SHAPE = (96, 144)
 COUNT = 4
@@ -97,6 +100,12 @@ def test_each_operator_writes_the_picture_of_the_library(own, files):
     picture = photos.read_photo(own.folder / "tone_mapped.png")
     assert np.array_equal(picture, pipeline.develop(expected.E, "reinhard"))
     assert (own.folder / "tone_mapped.jpg").exists()
+
+
+def test_the_page_has_a_button_for_each_operator():
+    theme = Path(own_photos.__file__).parents[1] / "theme"
+    listed = re.search(r"operators = (\[.*?\])", (theme / "own_photos.html").read_text("utf8"))[1]
+    assert sorted(json.loads(listed)) == sorted([pictures.AUTO, *catalogue.names("tonemap")])
 
 
 def test_every_step_is_reported_before_the_map_is_there(own, files):
