@@ -18,6 +18,9 @@ PICTURES |= {"widgets.exposure_window"}
 PICTURES |= {"widgets.bitmap_difference"}
 PICTURES |= {"widgets.zone_scale", "widgets.gain_screen"}
 PICTURES |= {"widgets.gsolve_by_hand", "widgets.bilateral_kernel", "widgets.gradient_line"}
+# a cell is read at a glance; the limits leave room for one statement a line
+MAX_CELL_LINES = 14
+MAX_FUNCTION_LINES = 8
 LONGEST = 100  # letters: what JupyterLab shows at 1280 px without scrolling
 
 pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -66,11 +69,26 @@ def test_a_notebook_carries_no_outputs(path):
     assert set(nbformat.read(path, as_version=4).metadata) <= {"kernelspec", "language_info"}
 
 
-def test_no_function_of_a_notebook_is_longer_than_five_lines(path):
+def test_a_function_of_a_notebook_is_short(path):
+    """Students read it between two figures; longer ones belong in the library."""
     for cell in cells_of(path, "code"):
         for node in ast.walk(ast.parse(cell.source)):
             if isinstance(node, ast.FunctionDef):
-                assert node.end_lineno - node.lineno < 5, f"{cell.id}: {node.name}"
+                lines = node.end_lineno - node.lineno + 1
+                assert lines <= MAX_FUNCTION_LINES, f"{cell.id}: {node.name}"
+
+
+def test_a_statement_of_a_notebook_assigns_one_thing(path):
+    """Values of one tuple are assigned one by one, unless the statement changes names together."""
+    for cell in cells_of(path, "code"):
+        for node in ast.walk(ast.parse(cell.source)):
+            if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Tuple):
+                continue
+            target = node.targets[0]
+            if isinstance(target, ast.Tuple):
+                assigned = {name.id for name in ast.walk(target) if isinstance(name, ast.Name)}
+                used = {name.id for name in ast.walk(node.value) if isinstance(name, ast.Name)}
+                assert assigned & used, f"{cell.id}: {ast.unparse(node)}"
 
 
 def test_a_cell_of_code_fits_the_page(path):
@@ -80,7 +98,7 @@ def test_a_cell_of_code_fits_the_page(path):
         imports_only = all(
             isinstance(node, ast.Import | ast.ImportFrom) for node in ast.parse(cell.source).body
         )
-        assert len(lines) <= 12 or imports_only, cell.id
+        assert len(lines) <= MAX_CELL_LINES or imports_only, cell.id
 
 
 def test_a_cell_is_folded_where_it_only_draws_and_open_where_its_code_is_the_lesson(path):
