@@ -230,7 +230,7 @@
     }
   }
 
-  // The code of a cell, for a copy. Of a session with prompts, only the code behind them.
+  // Return the code of a cell to copy. In a session with prompts, return only what stands behind them.
   function codeToCopy(code) {
     const lines = code.textContent.trimEnd().split("\n");
     const prompted = lines.filter((line) => PROMPT.test(line)).map((line) => line.slice(4));
